@@ -1,0 +1,99 @@
+#include "estimators/catalogue.h"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+namespace assay {
+
+namespace plugins {
+
+/// Generated from the list in estimators/CMakeLists.txt: what every listed file contributes.
+std::vector<Entry> all();
+
+}  // namespace plugins
+
+namespace {
+
+[[noreturn]] void malformed(const Entry& entry, const std::string& why) {
+  throw std::logic_error("the catalogue's entry `" + entry.information.name + "` " + why);
+}
+
+// Lower-case words of letters, digits and underscores; two or more of them joined by slashes.
+bool well_formed(std::string_view name) {
+  bool word_begins = true;
+  bool slash = false;
+  for (const char c : name) {
+    const bool letter = c >= 'a' && c <= 'z';
+    const bool later = (c >= '0' && c <= '9') || c == '_';
+    if (c == '/' && !word_begins) {
+      slash = word_begins = true;
+    } else if (letter || (later && !word_begins)) {
+      word_begins = false;
+    } else {
+      return false;
+    }
+  }
+  return slash && !word_begins;
+}
+
+const Entry* lookup(const std::vector<Entry>& entries, std::string_view name) {
+  const auto found = std::ranges::find(
+      entries, name, [](const Entry& e) -> std::string_view { return e.information.name; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+void check(const Entry& entry, const std::vector<Entry>& entries) {
+  const Information& information = entry.information;
+  if (!well_formed(information.name)) malformed(entry, "is not named family/name");
+  if (!entry.prepare) malformed(entry, "has no prepare()");
+  std::set<std::string> names;
+  for (const ParameterInformation& parameter : information.parameters) {
+    if (!names.insert(parameter.name).second) {
+      malformed(entry, "declares the parameter `" + parameter.name + "` twice");
+    }
+  }
+  const bool mutant = information.name.starts_with("mutants/");
+  if (mutant != !information.original.empty() || mutant != !information.defect.empty()) {
+    malformed(entry, "must be under mutants/ exactly when it names an original and a defect");
+  }
+  if (mutant && !lookup(entries, information.original)) {
+    malformed(entry, "is a mutant of `" + information.original + "`, which is not there");
+  }
+}
+
+// `area` for `luminaire/area`, else the nearest spelling.
+std::string suggested(std::string_view name, const std::vector<std::string>& names) {
+  const std::string ending = "/" + std::string(name);
+  const auto same = std::ranges::find_if(
+      names, [&](const std::string& candidate) { return candidate.ends_with(ending); });
+  return same == names.end() ? nearest(name, names) : *same;
+}
+
+}  // namespace
+
+std::vector<Entry> checked(std::vector<Entry> entries) {
+  std::ranges::sort(entries, {}, [](const Entry& e) { return e.information.name; });
+  for (const Entry& entry : entries) check(entry, entries);
+  const auto twice =
+      std::ranges::adjacent_find(entries, {}, [](const Entry& e) { return e.information.name; });
+  if (twice != entries.end()) malformed(*twice, "is registered twice");
+  return entries;
+}
+
+const std::vector<Entry>& catalogue() {
+  static const std::vector<Entry> entries = checked(plugins::all());
+  return entries;
+}
+
+const Entry& find_plugin(std::string_view name, const Location& where) {
+  if (const Entry* entry = lookup(catalogue(), name)) return *entry;
+  std::vector<std::string> names;
+  for (const Entry& entry : catalogue()) names.push_back(entry.information.name);
+  const std::string near = suggested(name, names);
+  throw InputError(where, "there is no plugin `" + std::string(name) + "`" +
+                              (near.empty() ? "; `assay list plugins` shows them all"
+                                            : "; did you mean `" + near + "`?"));
+}
+
+}  // namespace assay

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+namespace assay {
+
+/// What an observation cost, counted by the estimator; seconds are the caller's to measure.
+struct Cost {
+  std::uint64_t camera_rays = 0;
+  std::uint64_t closest_hit_rays = 0;
+  std::uint64_t shadow_rays = 0;
+  std::uint64_t samples = 0;  ///< primary estimates
+
+  std::uint64_t rays() const { return camera_rays + closest_hit_rays + shadow_rays; }
+
+  Cost& operator+=(const Cost& other) {
+    camera_rays += other.camera_rays;
+    closest_hit_rays += other.closest_hit_rays;
+    shadow_rays += other.shadow_rays;
+    samples += other.samples;
+    return *this;
+  }
+  bool operator==(const Cost&) const = default;
+};
+
+}  // namespace assay

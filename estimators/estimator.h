@@ -1,0 +1,148 @@
+#pragma once
+
+// What a plugin is: static information, an immutable set-up, and estimators made from it.
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "estimators/cost.h"
+#include "estimators/parameters.h"
+#include "estimators/sampler.h"
+#include "estimators/stream.h"
+
+namespace assay {
+
+/// Yields secondary estimates. One object per worker; nothing leaks from one call to the next, so
+/// that an observation is a function of its stream alone.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+  /// Writes one secondary estimate built from `primaries` >= 1 primary estimates, one number per
+  /// channel, and adds what it cost.
+  virtual void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                         Cost& cost) = 0;
+};
+
+/// How the expectation of a secondary estimate relates to the integral.
+enum class BiasClass {
+  unbiased,
+  inverse_primaries,  ///< bias falls like 1 / primaries (ratios)
+  start_up,           ///< a chain that has not forgotten its start
+  reconstruction,     ///< bias of a filter or an interpolation
+};
+
+/// One number of an observation, and what is known of it exactly.
+struct Channel {
+  std::string name = "value";
+  std::optional<double> mean = {};      ///< of a secondary estimate: the analytic reference
+  double mean_error = 0;                ///< standard error or error bound of `mean`, if any
+  std::optional<double> variance = {};  ///< of ONE primary estimate
+  double low = -std::numeric_limits<double>::infinity();  ///< no value is below
+  double high = std::numeric_limits<double>::infinity();  ///< no value is above
+  bool diagnostic = false;                                ///< tested only where a claim names it
+};
+
+/// A sampler under the name by which claims reach it.
+struct NamedSampler {
+  std::string name;
+  std::shared_ptr<const Sampler> sampler;
+};
+
+/// Everything that all workers share: scene, tables, references. Draws nothing at random.
+class Setup {
+ public:
+  virtual ~Setup() = default;
+  virtual std::vector<Channel> channels() const = 0;
+  virtual std::unique_ptr<Estimator> make() const = 0;
+  virtual std::vector<NamedSampler> samplers() const { return {}; }
+  /// The most secondary estimates there are (recorded data), if bounded.
+  virtual std::optional<std::uint64_t> observations() const { return {}; }
+  /// What making the set-up cost.
+  virtual Cost cost() const { return {}; }
+};
+
+/// What is known of a plugin without preparing it; `assay describe` prints it.
+struct Information {
+  std::string name;         ///< "luminaire/area"
+  std::string summary;      ///< one line
+  std::string description;  ///< the manual: statement, formula, source
+  std::vector<ParameterInformation> parameters = {};
+  BiasClass bias = BiasClass::unbiased;
+  /// A secondary estimate is the mean of `primaries` independent primaries, so that its variance
+  /// falls like 1 / primaries and `primaries` may be chosen from the pilot.
+  bool averages = true;
+  std::string original = "";  ///< of a mutant: the plugin whose streams it uses
+  std::string defect = "";    ///< of a mutant: what is wrong
+};
+
+/// An entry of the catalogue.
+struct Entry {
+  Information information;
+  std::function<std::shared_ptr<const Setup>(Parameters&)> prepare;
+};
+
+/// The common case: an estimator whose secondary estimate is the mean of independent primaries.
+/// `Primary` is callable as double(Stream&) or double(Stream&, Cost&); it is a template so that a
+/// primary of a few nanoseconds is inlined into the loop.
+template <class Primary>
+class AveragingEstimator final : public Estimator {
+ public:
+  explicit AveragingEstimator(Primary primary) : primary_(std::move(primary)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    double sum = 0;
+    for (std::uint64_t i = 0; i < primaries; ++i) sum += draw(random, cost);
+    out[0] = sum / static_cast<double>(primaries);
+    cost.samples += primaries;
+  }
+
+ private:
+  double draw(Stream& random, Cost& cost) {
+    if constexpr (std::is_invocable_v<Primary&, Stream&, Cost&>) {
+      return primary_(random, cost);
+    } else {
+      return primary_(random);
+    }
+  }
+
+  Primary primary_;
+};
+
+/// The set-up of an averaging estimator with one channel: a channel, a primary that is copied into
+/// every worker (hold shared state by shared_ptr<const T>), and the samplers inside.
+template <class Primary>
+class AveragingSetup final : public Setup {
+ public:
+  AveragingSetup(Channel channel, Primary primary, std::vector<NamedSampler> samplers)
+      : channel_(std::move(channel)),
+        primary_(std::move(primary)),
+        samplers_(std::move(samplers)) {}
+
+  std::vector<Channel> channels() const override { return {channel_}; }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<AveragingEstimator<Primary>>(primary_);
+  }
+  std::vector<NamedSampler> samplers() const override { return samplers_; }
+
+ private:
+  Channel channel_;
+  Primary primary_;
+  std::vector<NamedSampler> samplers_;
+};
+
+template <class Primary>
+std::shared_ptr<const Setup> averaging(Channel channel, Primary primary,
+                                       std::vector<NamedSampler> samplers = {}) {
+  return std::make_shared<AveragingSetup<Primary>>(std::move(channel), std::move(primary),
+                                                   std::move(samplers));
+}
+
+}  // namespace assay

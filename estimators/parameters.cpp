@@ -1,0 +1,188 @@
+#include "estimators/parameters.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "estimators/flow.h"
+
+namespace assay {
+
+namespace {
+
+std::vector<std::string> names_of(const std::vector<ParameterInformation>& declared) {
+  std::vector<std::string> names;
+  for (const ParameterInformation& parameter : declared) names.push_back(parameter.name);
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
+  if (known.empty()) return "; it has none";
+  const std::string near = nearest(name, known);
+  return near.empty() ? "; it has: " + joined(known) : "; did you mean `" + near + "`?";
+}
+
+std::string shown(double value) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+
+std::string range_text(const ParameterInformation& p) {
+  std::string out;
+  if (std::isfinite(p.low))
+    out += std::string(p.low_excluded ? "above " : "at least ") + shown(p.low);
+  if (std::isfinite(p.high)) {
+    out += (out.empty() ? "" : " and ") + std::string(p.high_excluded ? "below " : "at most ") +
+           shown(p.high);
+  }
+  return out.empty() ? "finite" : out;
+}
+
+bool within(const ParameterInformation& p, double value) {
+  const bool above = p.low_excluded ? value > p.low : value >= p.low;
+  const bool below = p.high_excluded ? value < p.high : value <= p.high;
+  return std::isfinite(value) && above && below;
+}
+
+std::string canonical_value(const ParameterInformation& parameter, const Value& value) {
+  // A text parameter `1e3` is not the text `1000`; prefixing keeps both from reading as numbers.
+  if (parameter.type == ParameterType::string) return Value::scalar(":" + value.text()).canonical();
+  return value.canonical();
+}
+
+}  // namespace
+
+Parameters::Parameters(std::string plugin, std::vector<ParameterInformation> declared,
+                       const Value& given, std::string folder)
+    : plugin_(std::move(plugin)),
+      declared_(std::move(declared)),
+      where_(given.where()),
+      folder_(std::move(folder)) {
+  if (given.kind() != Value::Kind::map && given.kind() != Value::Kind::null) {
+    throw InputError(where_, plugin_ + ": parameters must be a map of names to values");
+  }
+  const std::vector<std::string> known = names_of(declared_);
+  for (const auto& [name, value] : given.members()) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw InputError(value.where(),
+                       plugin_ + " has no parameter `" + name + "`" + suggestion(name, known));
+    }
+    values_.emplace(name, value);
+    given_.insert(name);
+  }
+  for (const ParameterInformation& parameter : declared_) complete(parameter);
+}
+
+void Parameters::complete(const ParameterInformation& parameter) {
+  if (!given(parameter.name)) {
+    if (parameter.fallback.empty()) {
+      throw InputError(where_, plugin_ + " needs the parameter `" + parameter.name + "` (" +
+                                   parameter.summary + ")");
+    }
+    const bool text = parameter.type == ParameterType::string;
+    values_.emplace(parameter.name,
+                    text ? Value::scalar(parameter.fallback) : parse_flow(parameter.fallback));
+  }
+  check(parameter, values_.find(parameter.name)->second);
+}
+
+void Parameters::check(const ParameterInformation& parameter, const Value& value) const {
+  const std::string what = plugin_ + ": parameter `" + parameter.name + "`";
+  switch (parameter.type) {
+    case ParameterType::number:
+      in_range(parameter, value.number(what));
+      break;
+    case ParameterType::count:
+      in_range(parameter, static_cast<double>(value.count(what)));
+      break;
+    case ParameterType::boolean:
+      value.boolean(what);
+      break;
+    case ParameterType::string:
+      one_of(parameter, value.string(what));
+      break;
+    case ParameterType::structure:
+      break;
+  }
+}
+
+double Parameters::in_range(const ParameterInformation& parameter, double number) const {
+  if (!within(parameter, number)) {
+    refuse(parameter.name, "must be " + range_text(parameter) + ", but it is " + shown(number));
+  }
+  return number;
+}
+
+void Parameters::one_of(const ParameterInformation& parameter, const std::string& text) const {
+  const std::vector<std::string>& choices = parameter.choices;
+  if (choices.empty() || std::ranges::find(choices, text) != choices.end()) return;
+  const std::string near = nearest(text, choices);
+  refuse(parameter.name, "must be one of " + joined(choices) + ", but it is `" + text + "`" +
+                             (near.empty() ? "" : "; did you mean `" + near + "`?"));
+}
+
+const ParameterInformation& Parameters::declared(std::string_view name) const {
+  const auto found = std::ranges::find(declared_, name, &ParameterInformation::name);
+  if (found == declared_.end()) {
+    throw std::logic_error(plugin_ + " reads the parameter `" + std::string(name) +
+                           "`, which it does not declare");
+  }
+  return *found;
+}
+
+const Value& Parameters::value(std::string_view name) {
+  read_.insert(declared(name).name);
+  return values_.find(name)->second;
+}
+
+double Parameters::number(std::string_view name) { return value(name).number(name); }
+std::uint64_t Parameters::count(std::string_view name) { return value(name).count(name); }
+bool Parameters::boolean(std::string_view name) { return value(name).boolean(name); }
+std::string Parameters::string(std::string_view name) { return value(name).string(name); }
+const Value& Parameters::structure(std::string_view name) { return value(name); }
+
+std::string Parameters::file(std::string_view name) {
+  const std::filesystem::path path = value(name).string(name);
+  if (path.is_absolute() || folder_.empty()) return path.string();
+  return (std::filesystem::path(folder_) / path).lexically_normal().string();
+}
+
+bool Parameters::given(std::string_view name) const { return given_.contains(name); }
+
+Location Parameters::where(std::string_view name) const {
+  return given(name) ? values_.find(name)->second.where() : where_;
+}
+
+void Parameters::refuse(std::string_view name, const std::string& why) const {
+  throw InputError(where(name), plugin_ + ": parameter `" + std::string(name) + "` " + why);
+}
+
+void Parameters::require_all_read() const {
+  for (const ParameterInformation& parameter : declared_) {
+    if (!read_.contains(parameter.name)) {
+      throw std::logic_error(plugin_ + " declares the parameter `" + parameter.name +
+                             "` and never reads it: setting it would have no effect");
+    }
+  }
+}
+
+std::string Parameters::canonical() const { return canonical(names_of(declared_)); }
+
+std::string Parameters::canonical(const std::vector<std::string>& names) const {
+  std::string out;
+  for (const auto& [name, value] : values_) {
+    if (std::ranges::find(names, name) == names.end()) continue;
+    out += (out.empty() ? "" : ",") + name + "=" + canonical_value(declared(name), value);
+  }
+  return out;
+}
+
+}  // namespace assay

@@ -1,0 +1,89 @@
+#pragma once
+
+// The parameters of a plugin: what it declares, and what a user gave.
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimators/value.h"
+
+namespace assay {
+
+enum class ParameterType { number, count, boolean, string, structure };
+
+/// One parameter as the plugin declares it. `fallback` is YAML-like text; empty means required.
+struct ParameterInformation {
+  std::string name;
+  ParameterType type = ParameterType::number;
+  std::string summary;
+  std::string unit = "";
+  std::string fallback = "";
+  double low = -std::numeric_limits<double>::infinity();  ///< least value allowed
+  double high = std::numeric_limits<double>::infinity();  ///< largest value allowed
+  bool low_excluded = false;
+  bool high_excluded = false;
+  std::vector<std::string> choices = {};  ///< of a string: the only texts allowed
+};
+
+/// The values a user gave for one estimator, checked against what the plugin declares.
+///
+/// Errors are InputErrors that name plugin, parameter and the place in the file: an unknown name
+/// (with the nearest known one), a missing required one, a wrong type, a value out of range, and
+/// (`require_all_read`) a parameter the plugin declares but never reads.
+class Parameters {
+ public:
+  /// `given` is a map (or null for none); its place is used where a parameter is missing.
+  /// `folder` is what relative file names are relative to.
+  Parameters(std::string plugin, std::vector<ParameterInformation> declared, const Value& given,
+             std::string folder);
+
+  double number(std::string_view name);
+  std::uint64_t count(std::string_view name);
+  bool boolean(std::string_view name);
+  std::string string(std::string_view name);
+  /// A string that names a file, resolved against the folder of the suite.
+  std::string file(std::string_view name);
+  /// A list or map with a meaning of the plugin's own (a scene).
+  const Value& structure(std::string_view name);
+  /// Whether the user wrote it (rather than the fallback standing in).
+  bool given(std::string_view name) const;
+  /// The place to blame for a parameter's value.
+  Location where(std::string_view name) const;
+  /// An InputError at the parameter's place, beginning with plugin and parameter.
+  [[noreturn]] void refuse(std::string_view name, const std::string& why) const;
+
+  const std::string& plugin() const { return plugin_; }
+  const std::string& folder() const { return folder_; }
+
+  /// Throws std::logic_error when the plugin declares a parameter and never asked for it: a user's
+  /// setting would be without effect.
+  void require_all_read() const;
+
+  /// Every declared parameter with its value, fallbacks included, names sorted.
+  std::string canonical() const;
+  /// The same restricted to `names`: a mutant's key is that of its original's parameters.
+  std::string canonical(const std::vector<std::string>& names) const;
+
+ private:
+  const ParameterInformation& declared(std::string_view name) const;
+  const Value& value(std::string_view name);
+  void complete(const ParameterInformation&);
+  void check(const ParameterInformation&, const Value&) const;
+  double in_range(const ParameterInformation&, double) const;
+  void one_of(const ParameterInformation&, const std::string&) const;
+
+  std::string plugin_;
+  std::vector<ParameterInformation> declared_;
+  std::map<std::string, Value, std::less<>> values_;
+  std::set<std::string, std::less<>> given_;
+  std::set<std::string, std::less<>> read_;
+  Location where_;
+  std::string folder_;
+};
+
+}  // namespace assay

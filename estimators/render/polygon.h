@@ -1,0 +1,42 @@
+#pragma once
+
+// Planar polygons as lists of vertices in order, and what a point sees of them.
+
+#include <vector>
+
+#include "render/vector.h"
+
+namespace assay::render {
+
+using Polygon = std::vector<Vector3>;
+
+/// The points p with dot(normal, p) >= offset.
+struct HalfSpace {
+  Vector3 normal;
+  double offset = 0;
+
+  double height(const Vector3& p) const { return dot(normal, p) - offset; }
+};
+
+/// Half the sum of cross products: along the normal by the right-hand rule, as long as the area is
+/// large. Exact for planar polygons, the area vector of any spanning surface otherwise.
+Vector3 area_vector(const Polygon& polygon);
+inline double area(const Polygon& polygon) { return length(area_vector(polygon)); }
+
+/// The part of a polygon in a half space (Sutherland and Hodgman 1974); empty when nothing of
+/// positive extent is left. Of a concave polygon the parts stay joined by edges of no area, which
+/// changes neither area_vector() nor lambert().
+Polygon clipped(const Polygon& polygon, const HalfSpace& half_space);
+
+/// The irradiance at the origin on a surface of unit normal n from a polygon of unit radiance that
+/// lies above the horizon (dot(n, p) >= 0; clip beforehand), both sides emitting:
+///   E = | sum over edges of angle(v_i, v_i+1) dot(n, normalised(v_i x v_i+1)) | / 2
+/// (Lambert 1760; Baum, Rushmeier and Winget 1989, equation 12). In [0, pi]. Edges through the
+/// origin subtend nothing and add nothing.
+double lambert(const Polygon& polygon, const Vector3& n);
+
+/// The solid angle of a triangle from the origin in [0, 2 pi), whichever way round (van Oosterom
+/// and Strackee 1983, equation 8).
+double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c);
+
+}  // namespace assay::render

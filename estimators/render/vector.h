@@ -1,0 +1,47 @@
+#pragma once
+
+// Points, directions and normals of three-space in double precision.
+
+#include <cmath>
+
+namespace assay::render {
+
+struct Vector3 {
+  double x = 0;
+  double y = 0;
+  double z = 0;
+
+  constexpr Vector3 operator-() const { return {-x, -y, -z}; }
+  constexpr Vector3& operator+=(const Vector3& v) { return *this = {x + v.x, y + v.y, z + v.z}; }
+  constexpr bool operator==(const Vector3&) const = default;
+};
+
+constexpr Vector3 operator+(const Vector3& a, const Vector3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+constexpr Vector3 operator-(const Vector3& a, const Vector3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+constexpr Vector3 operator*(double s, const Vector3& v) { return {s * v.x, s * v.y, s * v.z}; }
+constexpr Vector3 operator*(const Vector3& v, double s) { return s * v; }
+constexpr Vector3 operator/(const Vector3& v, double s) { return {v.x / s, v.y / s, v.z / s}; }
+
+constexpr double dot(const Vector3& a, const Vector3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+constexpr Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+constexpr double squared_length(const Vector3& v) { return dot(v, v); }
+inline double length(const Vector3& v) { return std::sqrt(squared_length(v)); }
+/// The unit vector along v; not a number for the zero vector, which callers exclude beforehand.
+inline Vector3 normalised(const Vector3& v) { return v / length(v); }
+inline bool is_finite(const Vector3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+/// The angle between two vectors in [0, pi], accurate near both ends, where acos is not.
+inline double angle_between(const Vector3& a, const Vector3& b) {
+  return std::atan2(length(cross(a, b)), dot(a, b));
+}
+
+}  // namespace assay::render

@@ -1,0 +1,45 @@
+#include "estimators/sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace assay {
+
+namespace {
+
+double first(const Point& p) { return p[0]; }
+double second(const Point& p) { return p[1]; }
+
+// acos(z) loses half the digits near the poles; atan2 of the two legs does not.
+double theta(const Point& p) { return std::atan2(std::hypot(p[0], p[1]), p[2]); }
+
+double phi(const Point& p) {
+  const double angle = std::atan2(p[1], p[0]);
+  // A tiny negative angle plus 2 pi rounds to 2 pi itself, which is not in [0, 2 pi).
+  const double turned = angle < 0 ? angle + 2 * std::numbers::pi : angle;
+  return turned < 2 * std::numbers::pi ? turned : 0;
+}
+
+std::vector<Marginal> directions(double highest_theta) {
+  return {{"theta", 0, highest_theta, theta}, {"phi", 0, 2 * std::numbers::pi, phi}};
+}
+
+}  // namespace
+
+std::vector<Marginal> marginals(Domain domain) {
+  switch (domain) {
+    case Domain::interval:
+      return {{"x", 0, 1, first}};
+    case Domain::square:
+    case Domain::triangle:
+      return {{"u", 0, 1, first}, {"v", 0, 1, second}};
+    case Domain::hemisphere:
+      return directions(std::numbers::pi / 2);
+    case Domain::sphere:
+      return directions(std::numbers::pi);
+  }
+  return {};
+}
+
+}  // namespace assay

@@ -1,0 +1,73 @@
+#pragma once
+
+// Random numbers as a function of (key, observation, substream, draw): any observation can be drawn
+// again alone, in any order, on any thread.
+
+#include <Random123/philox.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+namespace assay {
+
+/// Which family of streams: Philox4x32-10's 64-bit key.
+struct StreamKey {
+  std::uint64_t bits = 0;
+  bool operator==(const StreamKey&) const = default;
+};
+
+/// The key of an estimator's streams in a run: a hash of the run's seed, the plugin's name (a
+/// mutant: its original's), its canonical parameters and the copy (0; 1 for a second source of the
+/// same key in one claim; the pilot has copies of its own).
+StreamKey stream_key(std::uint64_t seed, std::string_view plugin, std::string_view parameters,
+                     std::uint32_t copy);
+
+/// The random numbers of one observation. A uniform_random_bit_generator of 64-bit words.
+/// Philox4x32-10 (Salmon et al. 2011): counter = draw, substream, observation (two words).
+class Stream {
+ public:
+  using result_type = std::uint64_t;
+
+  Stream(StreamKey key, std::uint64_t observation) : Stream(key, observation, 0) {}
+
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
+
+  result_type operator()() {
+    if (next_ == 2) refill();
+    return words_[next_++];
+  }
+
+  /// Uniform in [0, 1): a multiple of 2^-53.
+  double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
+
+  /// Uniform in (0, 1): the midpoints of 2^52 cells, for logarithms and quantiles.
+  double uniform_open() { return (static_cast<double>((*this)() >> 12) + 0.5) * 0x1p-52; }
+
+  /// An independent stream of the same observation, the same whatever was drawn before. One level:
+  /// a substream has no substreams. `index` below 2^32 - 1.
+  Stream substream(std::uint32_t index) const;
+
+ private:
+  Stream(StreamKey key, std::uint64_t observation, std::uint32_t substream)
+      : key_{{static_cast<std::uint32_t>(key.bits), static_cast<std::uint32_t>(key.bits >> 32)}},
+        counter_{{0, substream, static_cast<std::uint32_t>(observation),
+                  static_cast<std::uint32_t>(observation >> 32)}} {}
+
+  void refill() {
+    const auto block = r123::Philox4x32{}(counter_, key_);
+    ++counter_[0];
+    words_[0] = block[0] | static_cast<std::uint64_t>(block[1]) << 32;
+    words_[1] = block[2] | static_cast<std::uint64_t>(block[3]) << 32;
+    next_ = 0;
+  }
+
+  r123::Philox4x32::key_type key_;
+  r123::Philox4x32::ctr_type counter_;
+  std::array<std::uint64_t, 2> words_{};
+  std::uint32_t next_ = 2;
+};
+
+}  // namespace assay

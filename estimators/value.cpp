@@ -1,0 +1,197 @@
+#include "estimators/value.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace assay {
+
+namespace {
+
+std::optional<double> parse_number(std::string_view text) {
+  if (text.starts_with("+-")) return {};
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  return value;
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end};
+}
+
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+const char* kind_name(Value::Kind kind) {
+  switch (kind) {
+    case Value::Kind::null:
+      return "nothing";
+    case Value::Kind::scalar:
+      return "text";
+    case Value::Kind::list:
+      return "a list";
+    case Value::Kind::map:
+      return "a map";
+  }
+  return "";
+}
+
+[[noreturn]] void wrong_type(const Value& value, std::string_view what, const char* wanted) {
+  const std::string found =
+      value.kind() == Value::Kind::scalar ? "`" + value.text() + "`" : kind_name(value.kind());
+  throw InputError(value.where(),
+                   std::string(what) + " must be " + wanted + ", but it is " + found);
+}
+
+std::string canonical_scalar(const std::string& text) {
+  const std::optional<double> number = parse_number(text);
+  return number && std::isfinite(*number) ? shortest(*number) : quoted(text);
+}
+
+std::string canonical_list(const std::vector<Value>& items) {
+  std::string out = "[";
+  for (const Value& item : items) out += (out.size() > 1 ? "," : "") + item.canonical();
+  return out + "]";
+}
+
+std::string canonical_map(const std::vector<Value::Member>& members) {
+  std::vector<const Value::Member*> sorted;
+  for (const Value::Member& member : members) sorted.push_back(&member);
+  std::ranges::sort(sorted, {}, [](const Value::Member* m) { return m->first; });
+  std::string out = "{";
+  for (const Value::Member* member : sorted) {
+    out += (out.size() > 1 ? "," : "") + quoted(member->first) + ":" + member->second.canonical();
+  }
+  return out + "}";
+}
+
+// Optimal string alignment distance: insertions, deletions, substitutions, swaps of neighbours.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, substituted});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string to_string(const Location& where) {
+  if (where.line == 0) return where.file;
+  return where.file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
+}
+
+InputError::InputError(Location where, const std::string& what)
+    : std::runtime_error(to_string(where).empty() ? what : to_string(where) + ": " + what),
+      where_(std::move(where)),
+      message_(what) {}
+
+Value Value::scalar(std::string text, Location where) {
+  Value value;
+  value.kind_ = Kind::scalar;
+  value.text_ = std::move(text);
+  value.where_ = std::move(where);
+  return value;
+}
+
+Value Value::list(std::vector<Value> items, Location where) {
+  Value value;
+  value.kind_ = Kind::list;
+  value.items_ = std::move(items);
+  value.where_ = std::move(where);
+  return value;
+}
+
+Value Value::map(std::vector<Member> members, Location where) {
+  Value value;
+  value.kind_ = Kind::map;
+  value.members_ = std::move(members);
+  value.where_ = std::move(where);
+  return value;
+}
+
+const Value* Value::find(std::string_view key) const {
+  const auto member = std::ranges::find(members_, key, &Member::first);
+  return member == members_.end() ? nullptr : &member->second;
+}
+
+double Value::number(std::string_view what) const {
+  if (kind_ != Kind::scalar) wrong_type(*this, what, "a number");
+  const std::optional<double> value = parse_number(text_);
+  if (!value) wrong_type(*this, what, "a number");
+  return *value;
+}
+
+std::uint64_t Value::count(std::string_view what) const {
+  constexpr const char* wanted = "a whole number, 0 or more";
+  if (kind_ != Kind::scalar) wrong_type(*this, what, wanted);
+  std::uint64_t digits = 0;
+  const char* const end = text_.data() + text_.size();
+  const auto parsed = std::from_chars(text_.data(), end, digits);
+  if (parsed.ec == std::errc{} && parsed.ptr == end) return digits;
+  const std::optional<double> value = parse_number(text_);
+  // Up to 2^53 every whole double stands for itself; above, 1e17 might not be what was meant.
+  const bool exact = value && *value >= 0 && *value <= 0x1p53 && *value == std::floor(*value);
+  if (!exact) wrong_type(*this, what, wanted);
+  return static_cast<std::uint64_t>(*value);
+}
+
+bool Value::boolean(std::string_view what) const {
+  if (kind_ == Kind::scalar && text_ == "true") return true;
+  if (kind_ == Kind::scalar && text_ == "false") return false;
+  wrong_type(*this, what, "true or false");
+}
+
+const std::string& Value::string(std::string_view what) const {
+  if (kind_ != Kind::scalar) wrong_type(*this, what, "text");
+  return text_;
+}
+
+std::string Value::canonical() const {
+  switch (kind_) {
+    case Kind::null:
+      return "null";
+    case Kind::scalar:
+      return canonical_scalar(text_);
+    case Kind::list:
+      return canonical_list(items_);
+    case Kind::map:
+      return canonical_map(members_);
+  }
+  return "";
+}
+
+std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
+  // One slip for every three letters, at least one: `sceen` suggests `scene`, `x` suggests nothing.
+  std::size_t best = std::min(std::max<std::size_t>(1, name.size() / 3) + 1, name.size());
+  std::string found;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < best) {
+      best = distance;
+      found = candidate;
+    }
+  }
+  return found;
+}
+
+}  // namespace assay

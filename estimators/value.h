@@ -1,0 +1,84 @@
+#pragma once
+
+// Plain data that a user wrote: a YAML document, a `--set` value, a recorded file's header. Every
+// node remembers where it was written, so that whatever is wrong with it can be shown there.
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace assay {
+
+/// A place in a text, counted from 1; line 0 means "not from a file".
+struct Location {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// "suite.yaml:12:5", "suite.yaml" when no line is known, "" when nothing is.
+std::string to_string(const Location&);
+
+/// A mistake in what the user gave: one sentence that says what is wrong and how to mend it, and
+/// where. Always found before anything is sampled.
+class InputError : public std::runtime_error {
+ public:
+  InputError(Location where, const std::string& what);
+  const Location& where() const { return where_; }
+  /// The sentence without the place.
+  const std::string& message() const { return message_; }
+
+ private:
+  Location where_;
+  std::string message_;
+};
+
+/// A tree of null, text, numbers, lists and maps. A scalar keeps its text: whether `1e6` is a
+/// number or a name is decided by who reads it. Maps keep the order of the file and have unique
+/// keys.
+class Value {
+ public:
+  enum class Kind { null, scalar, list, map };
+  using Member = std::pair<std::string, Value>;
+
+  Value() = default;
+  static Value scalar(std::string text, Location where = {});
+  static Value list(std::vector<Value> items, Location where = {});
+  static Value map(std::vector<Member> members, Location where = {});
+
+  Kind kind() const { return kind_; }
+  const Location& where() const { return where_; }
+  const std::string& text() const { return text_; }
+  const std::vector<Value>& items() const { return items_; }
+  const std::vector<Member>& members() const { return members_; }
+
+  /// The member of a map, or nullptr.
+  const Value* find(std::string_view key) const;
+
+  /// Typed readings; InputError at the node's place when the text is not that. `what` names the
+  /// thing in the message ("parameter `radius`"). Numbers are finite unless they say so themselves.
+  double number(std::string_view what) const;
+  std::uint64_t count(std::string_view what) const;  ///< accepts 1000, 1e3
+  bool boolean(std::string_view what) const;         ///< true or false
+  const std::string& string(std::string_view what) const;
+
+  /// One text for equal contents whatever the spelling: map keys sorted, numbers in shortest
+  /// round-trip form. Part of the key of a random stream.
+  std::string canonical() const;
+
+ private:
+  Kind kind_ = Kind::null;
+  Location where_;
+  std::string text_;
+  std::vector<Value> items_;
+  std::vector<Member> members_;
+};
+
+/// The candidate nearest to `name` in edit distance, or "" when none is near enough to suggest.
+std::string nearest(std::string_view name, const std::vector<std::string>& candidates);
+
+}  // namespace assay

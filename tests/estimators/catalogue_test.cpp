@@ -1,0 +1,83 @@
+#include "estimators/catalogue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace assay {
+namespace {
+
+Entry entry(std::string name) {
+  return {{.name = std::move(name), .summary = "", .description = ""},
+          [](Parameters&) { return std::shared_ptr<const Setup>(); }};
+}
+
+std::string refusal(std::vector<Entry> entries) {
+  try {
+    checked(std::move(entries));
+  } catch (const std::logic_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Catalogue, IsSortedAndSound) {
+  EXPECT_TRUE(
+      std::ranges::is_sorted(catalogue(), {}, [](const Entry& e) { return e.information.name; }));
+  for (const Entry& e : catalogue()) {
+    EXPECT_FALSE(e.information.summary.empty()) << e.information.name;
+    EXPECT_FALSE(e.information.description.empty()) << e.information.name;
+  }
+}
+
+TEST(Catalogue, FindsAPluginByName) {
+  const Entry& found = find_plugin("analytic/dart_throwing", {});
+  EXPECT_EQ(found.information.name, "analytic/dart_throwing");
+}
+
+TEST(Catalogue, AnUnknownPluginIsRefusedWithTheNearestName) {
+  for (const char* name : {"analytic/dart_throwin", "dart_throwing", "analitic/dart_throwing"}) {
+    try {
+      find_plugin(name, {"suite.yaml", 4, 9});
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith("suite.yaml:4:9: there is no plugin"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("`analytic/dart_throwing`?"));
+    }
+  }
+}
+
+TEST(Catalogue, RefusesANameUsedTwice) {
+  EXPECT_THAT(refusal({entry("a/b"), entry("a/c"), entry("a/b")}),
+              testing::HasSubstr("registered twice"));
+}
+
+TEST(Catalogue, RefusesMalformedNames) {
+  for (const char* name : {"", "a", "a/", "/a", "a//b", "A/b", "a/b c", "a/1b", "a/_b", "a/b-c"}) {
+    EXPECT_THAT(refusal({entry(name)}), testing::HasSubstr("family/name")) << name;
+  }
+  EXPECT_EQ(refusal({entry("a/b_2/c")}), "");
+}
+
+TEST(Catalogue, RefusesAMutantWithoutItsOriginal) {
+  Entry mutant = entry("mutants/b");
+  EXPECT_NE(refusal({mutant}), "");
+  mutant.information.original = "a/b";
+  mutant.information.defect = "none";
+  EXPECT_THAT(refusal({mutant}), testing::HasSubstr("which is not there"));
+  EXPECT_EQ(refusal({mutant, entry("a/b")}), "");
+}
+
+TEST(Catalogue, RefusesAParameterDeclaredTwiceAndAMissingPrepare) {
+  Entry twice = entry("a/b");
+  twice.information.parameters = {{.name = "x", .summary = ""}, {.name = "x", .summary = ""}};
+  EXPECT_THAT(refusal({twice}), testing::HasSubstr("twice"));
+  Entry empty = entry("a/b");
+  empty.prepare = nullptr;
+  EXPECT_THAT(refusal({empty}), testing::HasSubstr("prepare"));
+}
+
+}  // namespace
+}  // namespace assay
