@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "stats/moments.h"
+
+namespace assay::stats {
+
+enum class GateState { green, amber, red };
+
+// A diagnosis of one assumption. green: value within the planning bound. red: `low`, the lower
+// confidence limit of the value, exceeds `limit`. amber: in between. At the boundary law (value
+// equal to limit) and on normal data red has probability below 1e-4.
+struct Gate {
+  std::string name;
+  double value = 0;
+  double low = 0;
+  double limit = 0;
+  GateState state = GateState::green;
+};
+
+// ---- On the pilot's primaries: choose how many make a secondary
+// ------------------------------------
+
+// Shape of one primary. Means of m have skewness / sqrt(m) and excess_kurtosis / m.
+struct PrimaryShape {
+  double skewness = 0;
+  double excess_kurtosis = 0;
+};
+PrimaryShape primary_shape(const Moments& pilot);
+
+struct ShapeLimits {
+  double excess_kurtosis = 0.2;  // F and chi-square: at nominal .10 the level stays below .12
+  double level_factor = 1.25;    // t: exp(2 |a| x^3), see skewness_gate
+};
+
+// The planned test: how many secondary estimates, and the critical value x of its smallest share.
+struct PlannedTest {
+  std::uint64_t secondaries = 2;
+  double critical_value = 0;
+};
+
+// Smallest m with excess_kurtosis / m <= limits.excess_kurtosis (1 for negative excess).
+std::uint64_t primaries_for_variance(PrimaryShape shape, ShapeLimits limits = {});
+// Smallest m with exp(|skewness| x^3 / (3 sqrt(m secondaries))) <= limits.level_factor.
+std::uint64_t primaries_for_mean(PrimaryShape shape, PlannedTest test, ShapeLimits limits = {});
+
+// What the gates are predicted to read with m primaries a secondary; low = value, as planning has
+// no error of its own to allow for. Red above the planning bound.
+Gate predicted_kurtosis_gate(PrimaryShape shape, std::uint64_t primaries, ShapeLimits limits = {});
+Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, PlannedTest test,
+                             ShapeLimits limits = {});
+
+// ---- On the test's own data: can only invalidate
+// ----------------------------------------------------
+
+// Value: exp(2 |a| x^3), the factor by which the worse tail of a Studentised mean at critical value
+// x departs from nominal, 2 |a| = |g1| / (3 sqrt n) (self-normalised moderate deviations: Jing,
+// Shao & Wang 2003). green <= 1.25, limit 2. The confidence limit takes from |g1| its 1e-4
+// quantile: for normal data by D'Agostino (1970), widened to a gamma law whose factor is the limit.
+Gate skewness_gate(const Moments& x, double critical_value);
+// The same of the contrast mean x - scale mean y: a = sum psi^3 / (6 (sum psi^2)^1.5).
+Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value);
+
+// Value: max |x_i - mean| / (s sqrt n), no observation may dominate. Limit .1, or where normal data
+// exceed it by themselves, the 1e-4 critical value of Grubbs (1950); green below half the limit.
+Gate dominance_gate(const Moments& x);
+
+// Value: excess kurtosis b2 - 3 for F and chi-square tests of variances, green <= .2, limit .2. The
+// confidence limit takes off the 1e-4 quantile of b2, for normal data by Anscombe & Glynn (1983),
+// widened to a gamma law whose excess is the limit.
+Gate kurtosis_gate(const Moments& x);
+
+}  // namespace assay::stats

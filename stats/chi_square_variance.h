@@ -1,0 +1,18 @@
+#pragma once
+
+#include "stats/moments.h"
+#include "stats/test_result.h"
+
+namespace assay::stats {
+
+// Null hypothesis: Var x = null_variance. X = (n - 1) s2 / null_variance ~ chi-square, nu = n - 1.
+// Exact for normal data and only there: an excess kurtosis k inflates the statistic's standard
+// deviation by sqrt(1 + k/2) for every n (see assumption_gates.h).
+// Throws std::domain_error (count < 2, null_variance not positive and finite), ZeroVariance (s2 =
+// 0).
+TestResult chi_square_variance(const Moments& x, double null_variance);
+
+// Central interval of Var x.
+Interval chi_square_variance_interval(const Moments& x, double confidence);
+
+}  // namespace assay::stats

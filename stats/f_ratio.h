@@ -1,0 +1,16 @@
+#pragma once
+
+#include "stats/moments.h"
+#include "stats/test_result.h"
+
+namespace assay::stats {
+
+// Null hypothesis: Var x / Var y = null_ratio. F = (s2x / s2y) / null_ratio ~ F(nx - 1, ny - 1).
+// Exact for two independent normal samples and only there (see assumption_gates.h).
+// Throws std::domain_error (count < 2, null_ratio not positive and finite), ZeroVariance.
+TestResult f_ratio(const Moments& x, const Moments& y, double null_ratio);
+
+// Central interval of Var x / Var y.
+Interval f_ratio_interval(const Moments& x, const Moments& y, double confidence);
+
+}  // namespace assay::stats

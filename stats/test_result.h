@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace assay::stats {
+
+// The law of a statistic under the null hypothesis, by name and parameters:
+//   "normal" {}, "student-t" {nu}, "chi-square" {nu}, "F" {nu1, nu2}, "binomial" {n, p},
+//   "noncentral-chi-square" {nu, ncp}, "kolmogorov" {n}, "smirnov" {m, n}, "bound" {} (a
+//   probability inequality: the p-value is an upper bound, the statistic has no stated law).
+struct Distribution {
+  std::string family;
+  std::vector<double> parameters;
+};
+
+// exact: under the method's stated assumptions P(p <= a) <= a for every sample size.
+// asymptotic: in the limit of large samples.
+enum class Exactness { exact, asymptotic };
+
+// One statistic S and its two one-sided p-values, as natural logarithms that are always finite: a
+// value too small for a double's logarithm is its most negative finite value.
+struct TestResult {
+  double statistic = 0;
+  Distribution distribution;
+  double log_p_lower = 0;  // ln P(S <= statistic): rejects "parameter >= null value" when small
+  double log_p_upper = 0;  // ln P(S >= statistic): rejects "parameter <= null value" when small
+  Exactness exactness = Exactness::exact;
+};
+
+// ln p of the point null: min(0, ln 2 + min(log_p_lower, log_p_upper)).
+double log_p_two_sided(const TestResult& result);
+
+// A central interval: each of the two tails carries (1 - confidence) / 2. Two one-sided tests each
+// at beta therefore correspond to confidence = 1 - 2 beta. An end may be infinite.
+struct Interval {
+  double low = 0;
+  double high = 0;
+  double confidence = 0;
+};
+
+}  // namespace assay::stats
