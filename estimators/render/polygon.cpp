@@ -1,11 +1,28 @@
 #include "render/polygon.h"
 
+#include <algorithm>
+#include <numbers>
+
 namespace assay::render {
 
 namespace {
 
 const Vector3& next(const Polygon& polygon, std::size_t i) {
   return polygon[i + 1 == polygon.size() ? 0 : i + 1];
+}
+
+// The integral of dot(n, w) along the great arc from a to b, both of unit length, where m is the
+// unit normal of its plane: w(s) = a cos s + (m x a) sin s.
+double arc_integral(const Vector3& a, const Vector3& b, const Vector3& m, const Vector3& n) {
+  const double sine = dot(m, cross(a, b));
+  const double one_minus_cosine = squared_length(a - b) / 2;
+  return dot(n, a) * sine + dot(n, cross(m, a)) * one_minus_cosine;
+}
+
+double distance_to_segment(const Vector3& a, const Vector3& b) {
+  const Vector3 along = b - a;
+  const double t = std::clamp(-dot(a, along) / squared_length(along), 0.0, 1.0);
+  return length(a + t * along);
 }
 
 }  // namespace
@@ -54,6 +71,64 @@ double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double volume = std::abs(dot(a, cross(b, c)));
   const double scale = la * lb * lc + dot(a, b) * lc + dot(a, c) * lb + dot(b, c) * la;
   return 2 * std::atan2(volume, scale);
+}
+
+double squared_cosine(const Polygon& polygon, const Vector3& n) {
+  double omega = 0;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    omega += solid_angle(polygon[0], polygon[i], polygon[i + 1]);
+  }
+  const double inside = dot(area_vector(polygon), polygon[0]) > 0 ? 1 : -1;
+  double boundary = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector3 across = cross(polygon[i], next(polygon, i));
+    if (squared_length(across) == 0) continue;
+    const Vector3 m = normalised(across);
+    boundary +=
+        dot(n, m) * arc_integral(normalised(polygon[i]), normalised(next(polygon, i)), m, n);
+  }
+  return (omega + inside * boundary) / 3;
+}
+
+bool is_planar(const Polygon& polygon, double tolerance) {
+  const Vector3 n = normalised(area_vector(polygon));
+  const double bound = tolerance * diameter(polygon);
+  return std::ranges::all_of(
+      polygon, [&](const Vector3& p) { return std::abs(dot(n, p - polygon[0])) <= bound; });
+}
+
+bool is_convex(const Polygon& polygon) {
+  const Vector3 n = normalised(area_vector(polygon));
+  double turned = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const std::size_t j = (i + 1) % polygon.size();
+    const Vector3 in = polygon[j] - polygon[i];
+    const Vector3 out = next(polygon, j) - polygon[j];
+    const double turn = std::atan2(dot(n, cross(in, out)), dot(in, out));
+    // Rounding of a straight continuation; a real dent turns further.
+    if (turn < -1e-9) return false;
+    turned += turn;
+  }
+  return turned < 3 * std::numbers::pi;
+}
+
+double diameter(const Polygon& polygon) {
+  double largest = 0;
+  for (const Vector3& a : polygon) {
+    for (const Vector3& b : polygon) largest = std::max(largest, length(a - b));
+  }
+  return largest;
+}
+
+double distance_to_triangle(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const Vector3 n = normalised(cross(b - a, c - a));
+  const Vector3 foot = dot(n, a) * n;
+  const auto left_of = [&](const Vector3& from, const Vector3& to) {
+    return dot(n, cross(to - from, foot - from)) >= 0;
+  };
+  if (left_of(a, b) && left_of(b, c) && left_of(c, a)) return std::abs(dot(n, a));
+  return std::min(
+      {distance_to_segment(a, b), distance_to_segment(b, c), distance_to_segment(c, a)});
 }
 
 }  // namespace assay::render

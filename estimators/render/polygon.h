@@ -35,8 +35,30 @@ Polygon clipped(const Polygon& polygon, const HalfSpace& half_space);
 /// origin subtend nothing and add nothing.
 double lambert(const Polygon& polygon, const Vector3& n);
 
+/// The integral of dot(n, w)^2 over the directions w in which a convex polygon is seen from the
+/// origin, which must not lie in its plane. With Omega its solid angle, m_i the edges' unit normals
+/// towards the inside, and s the arc length along an edge, Stokes' theorem for the field
+/// dot(n, w) (n - dot(n, w) w), whose divergence on the sphere is 1 - 3 dot(n, w)^2, gives
+///   (Omega + sum over edges of dot(n, m_i) integral dot(n, w(s)) ds) / 3
+/// (the axial moment of order 2 of Arvo 1995, "Applications of irradiance tensors").
+double squared_cosine(const Polygon& polygon, const Vector3& n);
+
 /// The solid angle of a triangle from the origin in [0, 2 pi), whichever way round (van Oosterom
 /// and Strackee 1983, equation 8).
 double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c);
+
+/// Whether every vertex lies within `tolerance` times the largest distance between vertices of the
+/// plane through the first vertex along area_vector().
+bool is_planar(const Polygon& polygon, double tolerance);
+
+/// Whether a planar polygon turns one way only and once around; vertices on a straight edge are
+/// allowed.
+bool is_convex(const Polygon& polygon);
+
+/// The greatest distance between two vertices.
+double diameter(const Polygon& polygon);
+
+/// The distance from the origin to the nearest point of a triangle.
+double distance_to_triangle(const Vector3& a, const Vector3& b, const Vector3& c);
 
 }  // namespace assay::render

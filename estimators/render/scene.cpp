@@ -1,0 +1,170 @@
+#include "render/scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace assay::render {
+
+namespace {
+
+constexpr unsigned seen_mask = 1;    // of closest-hit rays, and in the mask of every shape
+constexpr unsigned shadow_mask = 2;  // of shadow rays, and in the mask of the shapes that block
+
+[[noreturn]] void embree_failed(const char* message) {
+  throw std::runtime_error(std::string("Embree: ") + message);
+}
+
+// One device for the process: it pins the instruction set, and builds on the calling thread so that
+// a scene's tree does not depend on the number of processors.
+class Device {
+ public:
+  Device() : isa_(__builtin_cpu_supports("avx2") ? "avx2" : "sse4.2") {
+    const std::string settings = "isa=" + isa_ + ",threads=1,set_affinity=0";
+    handle_ = rtcNewDevice(settings.c_str());
+    if (!handle_) embree_failed("no device could be made");
+  }
+  ~Device() { rtcReleaseDevice(handle_); }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  static const std::shared_ptr<const Device>& shared() {
+    static const std::shared_ptr<const Device> device = std::make_shared<const Device>();
+    return device;
+  }
+
+  RTCDevice handle() const { return handle_; }
+  const std::string& isa() const { return isa_; }
+
+  // Embree keeps the first error of each thread until it is asked.
+  void check() const {
+    switch (rtcGetDeviceError(handle_)) {
+      case RTC_ERROR_NONE:
+        return;
+      case RTC_ERROR_INVALID_ARGUMENT:
+        embree_failed("invalid argument");
+      case RTC_ERROR_INVALID_OPERATION:
+        embree_failed("invalid operation");
+      case RTC_ERROR_OUT_OF_MEMORY:
+        embree_failed("out of memory");
+      case RTC_ERROR_UNSUPPORTED_CPU:
+        embree_failed("this processor is not supported");
+      default:
+        embree_failed("unknown error");
+    }
+  }
+
+ private:
+  std::string isa_;
+  RTCDevice handle_ = nullptr;
+};
+
+void put(float* target, const Vector3& v) {
+  target[0] = static_cast<float>(v.x);
+  target[1] = static_cast<float>(v.y);
+  target[2] = static_cast<float>(v.z);
+}
+
+struct Layout {
+  RTCBufferType type;
+  RTCFormat format;
+  std::size_t bytes;
+};
+
+template <class Element>
+Element* new_buffer(RTCGeometry geometry, const Layout& layout, std::size_t count) {
+  void* const buffer =
+      rtcSetNewGeometryBuffer(geometry, layout.type, 0, layout.format, layout.bytes, count);
+  if (!buffer) embree_failed("no memory for a geometry");
+  return static_cast<Element*>(buffer);
+}
+
+RTCGeometry geometry_of(const TriangleMesh& mesh, RTCDevice device) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  float* vertex =
+      new_buffer<float>(geometry, {RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3 * sizeof(float)},
+                        mesh.vertices.size());
+  for (const Vector3& v : mesh.vertices) put(std::exchange(vertex, vertex + 3), v);
+  unsigned* index = new_buffer<unsigned>(
+      geometry, {RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 3 * sizeof(unsigned)},
+      mesh.triangles.size());
+  for (const auto& triangle : mesh.triangles) index = std::ranges::copy(triangle, index).out;
+  return geometry;
+}
+
+RTCGeometry geometry_of(const Disc& disc, RTCDevice device) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+  float* const centre = new_buffer<float>(
+      geometry, {RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4 * sizeof(float)}, 1);
+  put(centre, disc.centre);
+  centre[3] = static_cast<float>(disc.radius);
+  float* const normal = new_buffer<float>(
+      geometry, {RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, 3 * sizeof(float)}, 1);
+  put(normal, disc.normal);
+  return geometry;
+}
+
+void attach(RTCScene scene, const Shape& shape, RTCDevice device) {
+  const RTCGeometry geometry =
+      std::visit([&](const auto& form) { return geometry_of(form, device); }, shape.form);
+  rtcSetGeometryMask(geometry, shape.blocks ? seen_mask | shadow_mask : seen_mask);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+RTCRay embree_ray(const Ray& ray, unsigned mask) {
+  RTCRay out;
+  out.org_x = static_cast<float>(ray.origin.x);
+  out.org_y = static_cast<float>(ray.origin.y);
+  out.org_z = static_cast<float>(ray.origin.z);
+  out.tnear = static_cast<float>(ray.near);
+  out.dir_x = static_cast<float>(ray.direction.x);
+  out.dir_y = static_cast<float>(ray.direction.y);
+  out.dir_z = static_cast<float>(ray.direction.z);
+  out.time = 0;
+  out.tfar = static_cast<float>(ray.far);
+  out.mask = mask;
+  out.id = 0;
+  out.flags = 0;
+  return out;
+}
+
+}  // namespace
+
+Scene::Scene(const std::vector<Shape>& shapes) {
+  const std::shared_ptr<const Device> device = Device::shared();
+  // The deleter holds the device, which must outlive its scenes.
+  scene_ = {rtcNewScene(device->handle()), [device](RTCScene scene) { rtcReleaseScene(scene); }};
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
+  for (const Shape& shape : shapes) attach(scene_.get(), shape, device->handle());
+  rtcCommitScene(scene_.get());
+  device->check();
+}
+
+Hit Scene::closest_hit(const Ray& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query;
+  query.ray = embree_ray(ray, seen_mask);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene_.get(), &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return {query.hit.geomID, query.hit.primID, static_cast<double>(query.ray.tfar)};
+}
+
+bool Scene::occluded(const Ray& ray) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay query = embree_ray(ray, shadow_mask);
+  rtcOccluded1(scene_.get(), &context, &query);
+  return query.tfar < 0;
+}
+
+std::string isa() { return Device::shared()->isa(); }
+
+}  // namespace assay::render

@@ -1,0 +1,51 @@
+#pragma once
+
+// Directions uniform in the solid angle of a triangle.
+
+#include <array>
+
+#include "render/vector.h"
+
+namespace assay::render {
+
+/// A triangle on the unit sphere, smaller than a hemisphere, with the constants of
+/// Arvo (1995), "Stratified sampling of spherical triangles".
+///
+/// A point is found in two steps: point c' on the arc from a to c cuts off the fraction u of the
+/// solid angle beside edge ab; on the arc from b to c' the cosine is uniform. The relative error of
+/// a density is about 1e-16 / solid_angle().
+class SphericalTriangle {
+ public:
+  /// Vertices seen from the origin, of any length, either way round; not in one plane with it.
+  SphericalTriangle(const Vector3& a, const Vector3& b, const Vector3& c);
+
+  double solid_angle() const { return solid_angle_; }
+
+  /// c' such that the triangle a, b, c' has u times the solid angle; u in [0, 1].
+  Vector3 edge_point(double u) const;
+  /// The unit vector on the arc from b to c' whose cosine with b is 1 - v (1 - cos(b, c')).
+  Vector3 arc_point(const Vector3& c_prime, double v) const;
+  /// Uniform in solid angle for uniform u, v.
+  Vector3 sample(double u, double v) const { return arc_point(edge_point(u), v); }
+
+  /// The (u, v) that sample() maps to the unit vector w of the triangle: uniform on the unit square
+  /// when w is uniform in the triangle.
+  std::array<double, 2> coordinates(const Vector3& w) const;
+  bool contains(const Vector3& w) const;
+
+  const Vector3& a() const { return a_; }
+  const Vector3& b() const { return b_; }
+  const Vector3& c() const { return c_; }
+
+ private:
+  Vector3 a_;
+  Vector3 b_;
+  Vector3 c_;
+  Vector3 towards_c_;  // the unit tangent at a of the arc from a to c
+  double solid_angle_;
+  double cos_alpha_;
+  double sin_alpha_;
+  double cos_ab_;
+};
+
+}  // namespace assay::render

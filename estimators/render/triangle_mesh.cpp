@@ -1,0 +1,11 @@
+#include "render/triangle_mesh.h"
+
+namespace assay::render {
+
+TriangleMesh fan(const Polygon& polygon) {
+  TriangleMesh mesh{polygon, {}};
+  for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) mesh.triangles.push_back({0, i, i + 1});
+  return mesh;
+}
+
+}  // namespace assay::render

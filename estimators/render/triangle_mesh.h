@@ -1,0 +1,37 @@
+#pragma once
+
+// Triangles with shared vertices, and the files they come from.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/polygon.h"
+
+namespace assay::render {
+
+struct TriangleMesh {
+  std::vector<Vector3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  /// The vertices of one triangle in order.
+  std::array<Vector3, 3> corners(std::size_t triangle) const {
+    const auto& [a, b, c] = triangles[triangle];
+    return {vertices[a], vertices[b], vertices[c]};
+  }
+};
+
+/// A convex polygon as a fan of triangles about its first vertex.
+TriangleMesh fan(const Polygon& polygon);
+
+/// Reads a Wavefront OBJ file: `v x y z`, `f` with three or more corners `v`, `v/vt`, `v//vn` or
+/// `v/vt/vn`, positive (from 1) or negative (from the last) indices, comments and blank lines; the
+/// statements vt vn g o s usemtl mtllib have no effect on the shape and are passed over. Polygons
+/// become fans about their first corner, so that a concave one comes out wrong: split it.
+///
+/// InputError at `file:line` for a file that cannot be read or holds no face, any other statement,
+/// a malformed or non-finite number, an index out of range, and a face without area.
+TriangleMesh read_obj(const std::string& file);
+
+}  // namespace assay::render
