@@ -1,0 +1,59 @@
+#pragma once
+
+// What a test's numbers say, in the same words in every format.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reports/record.h"
+
+namespace assay::reports {
+
+/// The worst channel's numbers, or those of an untested channel where nothing was tested.
+Channel worst_channel(const Test&);
+
+/// "+0.31 % [+0.12 %, +0.5 %]"; empty where there is no estimate.
+std::string effect_text(const Effect&);
+
+/// The number of a test that a reader looks for first: the worst channel's effect with its
+/// interval, else its p-value; empty where nothing was tested.
+std::string key_number(const Test&);
+
+/// One word for the mark in front of a test: "ok", "not ok", "undecided", "not run".
+std::string outcome_word(Outcome);
+
+/// ✓ ✗ ? – : the same in one column.
+std::string mark(Outcome);
+
+/// The verdict, with what was expected where that is not pass: "fail (as expected)".
+std::string verdict_text(const Test&);
+
+/// "1.05 M rays", or samples where no ray was traced.
+std::string cost_text(const Cost&);
+std::uint64_t rays(const Cost&);
+
+/// "suites/triangle.yaml:14".
+std::string place(const Test&);
+
+/// The first sentence of the message, or what the verdict says by itself: a report's one line.
+std::string headline(const Test&);
+
+/// How many tests had which outcome, as a sentence for a title.
+std::string tally_sentence(const Tally&);
+
+/// A label and a sentence.
+using Fact = std::pair<std::string, std::string>;
+
+/// Everything that a reader of a verdict needs, in reading order: claim, null hypothesis, estimate,
+/// p-value, margins, expectation, channels, assumptions, message. Without place and replay command.
+std::vector<Fact> facts(const Test&);
+
+/// The same facts as lines "label: sentence", with place and replay command: for formats that show
+/// plain text.
+std::string plain_text(const Test&);
+
+/// "alpha 0.01, beta 0.01, seed 1".
+std::string levels_text(const Suite&, std::uint64_t seed);
+
+}  // namespace assay::reports

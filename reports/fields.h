@@ -1,0 +1,227 @@
+#pragma once
+
+// The keys of the JSON record, once, in their order. An archive is called with a key and a member;
+// writing and reading are two archives, so they cannot disagree. Not part of the public interface.
+
+#include <concepts>
+#include <type_traits>
+
+#include "reports/record.h"
+
+namespace assay::reports {
+
+template <class T, class Struct>
+concept maybe_const = std::same_as<std::remove_const_t<T>, Struct>;
+
+template <class Archive, maybe_const<Tool> T>
+void fields(Archive& a, T& tool) {
+  a("name", tool.name);
+  a("version", tool.version);
+  a("commit", tool.commit);
+}
+
+template <class Archive, maybe_const<Environment> T>
+void fields(Archive& a, T& environment) {
+  a("compiler", environment.compiler);
+  a("cpu", environment.cpu);
+  a("isa", environment.isa);
+  a("threads", environment.threads);
+}
+
+template <class Archive, maybe_const<Cost> T>
+void fields(Archive& a, T& cost) {
+  a("camera_rays", cost.camera_rays);
+  a("closest_hit_rays", cost.closest_hit_rays);
+  a("shadow_rays", cost.shadow_rays);
+  a("samples", cost.samples);
+  a("seconds", cost.seconds);
+}
+
+template <class Archive, maybe_const<Histogram> T>
+void fields(Archive& a, T& histogram) {
+  a("low", histogram.low);
+  a("high", histogram.high);
+  a("counts", histogram.counts);
+  a("below", histogram.below);
+  a("above", histogram.above);
+}
+
+template <class Archive, maybe_const<QuantilePoint> T>
+void fields(Archive& a, T& point) {
+  a("normal", point.normal);
+  a("observed", point.observed);
+}
+
+template <class Archive, maybe_const<Sample> T>
+void fields(Archive& a, T& sample) {
+  a("estimator", sample.estimator);
+  a("plugin", sample.plugin);
+  a("parameters", sample.parameters);
+  a("channel", sample.channel);
+  a("primaries", sample.primaries);
+  a("secondaries", sample.secondaries);
+  a("mean", sample.mean);
+  a("variance", sample.variance);
+  a("skewness", sample.skewness);
+  a("kurtosis", sample.kurtosis);
+  a("min", sample.minimum);
+  a("max", sample.maximum);
+  a("nonzero", sample.nonzero);
+  a("nonfinite", sample.nonfinite);
+  a("histogram", sample.histogram);
+  a("quantiles", sample.quantiles);
+  a("cost", sample.cost);
+}
+
+template <class Archive, maybe_const<Estimate> T>
+void fields(Archive& a, T& estimate) {
+  a("value", estimate.value);
+  a("low", estimate.low);
+  a("high", estimate.high);
+}
+
+template <class Archive, maybe_const<Effect> T>
+void fields(Archive& a, T& effect) {
+  a("quantity", effect.quantity);
+  a("estimate", effect.estimate);
+  a("low", effect.low);
+  a("high", effect.high);
+  a("confidence", effect.confidence);
+  a("relative", effect.relative);
+}
+
+template <class Archive, maybe_const<Gate> T>
+void fields(Archive& a, T& gate) {
+  a("name", gate.name);
+  a("value", gate.value);
+  a("limit", gate.limit);
+  a("state", gate.state);
+}
+
+template <class Archive, maybe_const<Distribution> T>
+void fields(Archive& a, T& distribution) {
+  a("family", distribution.family);
+  a("parameters", distribution.parameters);
+}
+
+template <class Archive, maybe_const<Channel> T>
+void fields(Archive& a, T& channel) {
+  a("name", channel.name);
+  a("statistic", channel.statistic);
+  a("distribution", channel.distribution);
+  a("p_value", channel.p_value);
+  a("log10_p", channel.log10_p);
+  a("p_adjusted", channel.p_adjusted);
+  a("p_pass", channel.p_pass);
+  a("effect", channel.effect);
+  a("reference", channel.reference);
+}
+
+template <class Archive, maybe_const<Look> T>
+void fields(Archive& a, T& look) {
+  a("secondaries", look.secondaries);
+  a("log10_p", look.log10_p);
+  a("p_pass", look.p_pass);
+}
+
+/// The worst channel's numbers are `repeated` at the test's own level, for readers that want one
+/// number a test; an archive that reads checks their presence and keeps those of `channels`.
+template <class Archive, maybe_const<Test> T>
+void fields(Archive& a, T& test) {
+  const Channel worst = test.channels.empty() ? Channel{} : test.channels.front();
+  a("name", test.name);
+  a("id", test.id);
+  a("claim", test.claim);
+  a("file", test.file);
+  a("line", test.line);
+  a("tags", test.tags);
+  a("verdict", test.verdict);
+  a("expected", test.expected);
+  a("ok", test.ok);
+  a("method", test.method);
+  a("null_hypothesis", test.null_hypothesis);
+  a("tail", test.tail);
+  a.repeated("statistic", worst.statistic);
+  a.repeated("distribution", worst.distribution);
+  a.repeated("p_value", worst.p_value);
+  a.repeated("log10_p", worst.log10_p);
+  a.repeated("p_adjusted", worst.p_adjusted);
+  a.repeated("p_pass", worst.p_pass);
+  a("alpha", test.alpha);
+  a("beta", test.beta);
+  a.repeated("effect", worst.effect);
+  a("detect", test.detect);
+  a("allow", test.allow);
+  a("detectable", test.detectable);
+  a("power", test.power);
+  a("looks", test.looks);
+  a("gates", test.gates);
+  a("samples", test.samples);
+  a("channels", test.channels);
+  a.no_elements("maps");  // images
+  a("message", test.message);
+  a("replay", test.replay);
+}
+
+template <class Archive, maybe_const<EstimatorChannel> T>
+void fields(Archive& a, T& channel) {
+  a("name", channel.name);
+  a("mean", channel.mean);
+  a("variance", channel.variance);
+  a("reference", channel.reference);
+  a("reference_variance", channel.reference_variance);
+}
+
+template <class Archive, maybe_const<EstimatorSummary> T>
+void fields(Archive& a, T& estimator) {
+  a("name", estimator.name);
+  a("plugin", estimator.plugin);
+  a("parameters", estimator.parameters);
+  a("bias", estimator.bias);
+  a("original", estimator.original);
+  a("defect", estimator.defect);
+  a("primaries", estimator.primaries);
+  a("secondaries", estimator.secondaries);
+  a("confidence", estimator.confidence);
+  a("channels", estimator.channels);
+  a("cost", estimator.cost);
+}
+
+template <class Archive, maybe_const<Comparison> T>
+void fields(Archive& a, T& comparison) {
+  a("first", comparison.first);
+  a("second", comparison.second);
+  a("channel", comparison.channel);
+  a("mean_p", comparison.mean_p);
+  a("variance_p", comparison.variance_p);
+  a("means_differ", comparison.means_differ);
+  a("variances_differ", comparison.variances_differ);
+  a("variance_ratio", comparison.variance_ratio);
+}
+
+template <class Archive, maybe_const<Suite> T>
+void fields(Archive& a, T& suite) {
+  a("name", suite.name);
+  a("file", suite.file);
+  a("about", suite.about);
+  a("alpha", suite.alpha);
+  a("beta", suite.beta);
+  a("timed", suite.timed);
+  a("estimators", suite.estimators);
+  a("comparisons", suite.comparisons);
+  a("tests", suite.tests);
+}
+
+template <class Archive, maybe_const<Record> T>
+void fields(Archive& a, T& record) {
+  a("schema", record.schema);
+  a("tool", record.tool);
+  a("environment", record.environment);
+  a("seed", record.seed);
+  a("started", record.started);
+  a("seconds", record.seconds);
+  a("note", record.note);
+  a("suites", record.suites);
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,99 @@
+#include "reports/json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "reports/fields.h"
+#include "reports/number.h"
+#include "reports/text.h"
+
+namespace assay::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json tree(const T& value);
+
+class Writer {
+ public:
+  template <class T>
+  void operator()(const char* key, const T& value) {
+    object_[key] = tree(value);
+  }
+  template <class T>
+  void repeated(const char* key, const T& value) {
+    object_[key] = tree(value);
+  }
+  void no_elements(const char* key) { object_[key] = Json::array(); }
+  Json take() { return std::move(object_); }
+
+ private:
+  Json object_ = Json::object();
+};
+
+Json leaf(double value) {
+  if (std::isfinite(value)) return value;
+  return round_trip(value);
+}
+Json leaf(const Number& value) { return value ? leaf(*value) : Json(nullptr); }
+Json leaf(const std::string& value) { return clean(value); }
+Json leaf(Verdict value) { return to_string(value); }
+Json leaf(bool value) { return value; }
+Json leaf(int value) { return value; }
+Json leaf(std::uint64_t value) { return value; }
+
+template <class T>
+Json leaf(const std::vector<T>& values) {
+  Json array = Json::array();
+  for (const T& value : values) array.push_back(tree(value));
+  return array;
+}
+
+template <class T>
+Json tree(const T& value) {
+  if constexpr (requires(Writer & w) { fields(w, value); }) {
+    Writer writer;
+    fields(writer, value);
+    return writer.take();
+  } else {
+    return leaf(value);
+  }
+}
+
+bool flat(const Json& node) {
+  for (const Json& child : node) {
+    if (child.is_structured()) return false;
+  }
+  return true;
+}
+
+// Objects are spread over lines, arrays of numbers and small objects are not: a histogram is a
+// line.
+void print(const Json& node, const std::string& indent, std::string& out) {
+  if (!node.is_structured() || node.empty() ||
+      (flat(node) && (node.is_array() || indent.size() > 5 * 2))) {
+    out += node.dump();
+    return;
+  }
+  const std::string inner = indent + "  ";
+  out += node.is_array() ? '[' : '{';
+  const char* separator = "\n";
+  for (const auto& item : node.items()) {
+    out += separator + inner;
+    if (node.is_object()) out += Json(item.key()).dump() + ": ";
+    print(item.value(), inner, out);
+    separator = ",\n";
+  }
+  out += "\n" + indent + (node.is_array() ? ']' : '}');
+}
+
+}  // namespace
+
+std::string json(const Record& record) {
+  std::string out;
+  print(tree(record), "", out);
+  return out + "\n";
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,200 @@
+#include "reports/junit.h"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <utility>
+
+#include "reports/describe.h"
+#include "reports/number.h"
+#include "reports/text.h"
+
+namespace assay::reports {
+namespace {
+
+// A case has up to two texts; servers cut or refuse much longer ones.
+constexpr std::size_t text_limit = 32 * 1024 - 1;
+constexpr std::size_t attribute_limit = 1024;
+
+std::string attribute(const std::string& name, const std::string& value) {
+  return fmt::format(" {}=\"{}\"", name, escape_attribute(cap(clean(value), attribute_limit)));
+}
+
+// Servers read times with a plain decimal point and no exponent.
+std::string time_attribute(double seconds) { return fmt::format(" time=\"{:.6f}\"", seconds); }
+
+std::string property(const std::string& name, const std::string& value) {
+  return fmt::format("    <property{}{}/>\n", attribute("name", name), attribute("value", value));
+}
+
+void add(std::string& out, const char* name, const Number& value) {
+  if (value) out += property(name, round_trip(*value));
+}
+
+void add(std::string& out, const char* name, const std::string& value) {
+  if (!value.empty()) out += property(name, value);
+}
+
+std::string sample_properties(const Test& test) {
+  std::string out;
+  const std::string channel = worst_channel(test).name;
+  for (const Sample& sample : test.samples) {
+    if (sample.channel != channel) continue;
+    const auto key = [&sample](const char* name) {
+      return std::string(name) + "." + sample.estimator;
+    };
+    if (sample.mean) out += property(key("mean"), round_trip(*sample.mean));
+    if (sample.variance) out += property(key("variance"), round_trip(*sample.variance));
+    out += property(key("primaries"), fmt::format("{}", sample.primaries));
+    out += property(key("secondaries"), fmt::format("{}", sample.secondaries));
+  }
+  return out;
+}
+
+std::string test_properties(const Test& test) {
+  const Channel channel = worst_channel(test);
+  std::string out;
+  add(out, "id", test.id);
+  add(out, "claim", test.claim);
+  add(out, "verdict", std::string(to_string(test.verdict)));
+  add(out, "expected", std::string(to_string(test.expected)));
+  add(out, "method", test.method);
+  add(out, "channel", channel.name);
+  add(out, "quantity", channel.effect.quantity);
+  add(out, "estimate", channel.effect.estimate);
+  add(out, "low", channel.effect.low);
+  add(out, "high", channel.effect.high);
+  add(out, "statistic", channel.statistic);
+  add(out, "p_value", channel.p_value);
+  add(out, "log10_p", channel.log10_p);
+  add(out, "p_adjusted", channel.p_adjusted);
+  add(out, "p_pass", channel.p_pass);
+  add(out, "alpha", test.alpha);
+  add(out, "detect", test.detect);
+  add(out, "detectable", test.detectable);
+  out += sample_properties(test);
+  out += property("rays", fmt::format("{}", rays(total_cost(test))));
+  add(out, "replay", test.replay);
+  return "   <properties>\n" + out + "   </properties>\n";
+}
+
+std::string element(const char* name, const std::string& attributes, const std::string& text) {
+  return fmt::format("   <{}{}>{}</{}>\n", name, attributes, escape_xml(cap(text, text_limit)),
+                     name);
+}
+
+std::string outcome_element(const Test& test) {
+  const std::string message = attribute("message", headline(test));
+  const std::string type = attribute("type", to_string(test.verdict));
+  switch (outcome(test)) {
+    case Outcome::passed:
+      return {};
+    case Outcome::failed:
+      return element(test.verdict == Verdict::error ? "error" : "failure", message + type,
+                     plain_text(test));
+    case Outcome::inconclusive:
+    case Outcome::skipped:
+      break;
+  }
+  return element("skipped", message, {});
+}
+
+// GitLab and Jenkins know a case by its class name and name, and drop a second one silently.
+class UniqueNames {
+ public:
+  std::pair<std::string, std::string> of(const Suite& suite, const Test& test) {
+    const std::size_t slash = test.id.find('/');
+    std::string group = slash == std::string::npos ? suite.name : test.id.substr(0, slash);
+    std::string name = slash == std::string::npos ? test.name : test.id.substr(slash + 1);
+    group = tidy(group, "suite");
+    name = tidy(name, "test");
+    std::string unique = name;
+    for (int copy = 2; !taken_.emplace(group, unique).second; ++copy)
+      unique = fmt::format("{} ({})", name, copy);
+    return {group, unique};
+  }
+
+ private:
+  static std::string tidy(const std::string& text, const char* otherwise) {
+    const std::string line = one_line(text);
+    const std::size_t first = line.find_first_not_of(' ');
+    if (first == std::string::npos) return otherwise;
+    return cap(line.substr(first, line.find_last_not_of(' ') - first + 1), attribute_limit / 2);
+  }
+
+  std::set<std::pair<std::string, std::string>> taken_;
+};
+
+std::string test_case(const Suite& suite, const Test& test, UniqueNames& names) {
+  const auto [group, name] = names.of(suite, test);
+  std::string out = "  <testcase" + attribute("classname", group) + attribute("name", name);
+  if (!test.file.empty()) out += attribute("file", test.file);
+  if (test.line > 0) out += fmt::format(" line=\"{}\"", test.line);
+  out += time_attribute(total_cost(test).seconds) + ">\n";
+  out += test_properties(test);
+  out += outcome_element(test);
+  out += element("system-out", "", plain_text(test));
+  return out + "  </testcase>\n";
+}
+
+struct Counts {
+  int tests = 0, failures = 0, errors = 0, skipped = 0;
+  double seconds = 0;
+
+  void add(const Test& test) {
+    const Outcome result = outcome(test);
+    const bool error = result == Outcome::failed && test.verdict == Verdict::error;
+    ++tests;
+    errors += error;
+    failures += result == Outcome::failed && !error;
+    skipped += result == Outcome::inconclusive || result == Outcome::skipped;
+    seconds += total_cost(test).seconds;
+  }
+  std::string attributes() const {
+    return fmt::format(" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\"", tests,
+                       failures, errors, skipped) +
+           time_attribute(seconds);
+  }
+};
+
+std::string suite_properties(const Record& record, const Suite& suite) {
+  std::string out;
+  add(out, "seed", fmt::format("{}", record.seed));
+  add(out, "alpha", Number(suite.alpha));
+  add(out, "beta", Number(suite.beta));
+  add(out, "tool", record.tool.name);
+  add(out, "version", record.tool.version);
+  add(out, "commit", record.tool.commit);
+  add(out, "isa", record.environment.isa);
+  add(out, "threads", fmt::format("{}", record.environment.threads));
+  return "  <properties>\n" + out + "  </properties>\n";
+}
+
+std::string test_suite(const Record& record, const Suite& suite, UniqueNames& names) {
+  Counts counts;
+  for (const Test& test : suite.tests) counts.add(test);
+  std::string out = " <testsuite" + attribute("name", suite.name.empty() ? "suite" : suite.name);
+  if (!suite.file.empty()) out += attribute("file", suite.file);
+  out += counts.attributes();
+  if (!record.started.empty()) out += attribute("timestamp", record.started);
+  out += ">\n" + suite_properties(record, suite);
+  for (const Test& test : suite.tests) out += test_case(suite, test, names);
+  return out + " </testsuite>\n";
+}
+
+}  // namespace
+
+std::string junit(const Record& record) {
+  Counts counts;
+  for (const Suite& suite : record.suites) {
+    for (const Test& test : suite.tests) counts.add(test);
+  }
+  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" +
+                    attribute("name", record.tool.name.empty() ? "assay" : record.tool.name) +
+                    counts.attributes() + ">\n";
+  UniqueNames names;
+  for (const Suite& suite : record.suites) out += test_suite(record, suite, names);
+  return out + "</testsuites>\n";
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,123 @@
+#include "reports/markdown.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/describe.h"
+#include "reports/number.h"
+#include "reports/text.h"
+
+namespace assay::reports {
+namespace {
+
+constexpr std::size_t cell_limit = 300;
+constexpr std::size_t paragraph_limit = 4000;
+
+std::string cell(const std::string& text, std::size_t limit = cell_limit) {
+  return escape_markdown(cap(clean(text), limit));
+}
+
+// A fence that the text cannot close.
+std::string code_block(const std::string& text) {
+  std::size_t longest = 0, run = 0;
+  for (const char c : text) {
+    run = c == '`' ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  const std::string fence(std::max<std::size_t>(3, longest + 1), '`');
+  return fmt::format("{}sh\n{}\n{}\n", fence, text, fence);
+}
+
+std::string problem(const Test& test) {
+  std::string out =
+      fmt::format("### {} {}: {}\n\n", mark(outcome(test)), verdict_text(test), cell(test.name));
+  for (const auto& [label, sentence] : facts(test))
+    out += fmt::format("- {}: {}\n", label, cell(sentence, paragraph_limit));
+  if (const std::string where = place(test); !where.empty())
+    out += fmt::format("- where: {}\n", cell(where));
+  if (!test.replay.empty()) out += "\n" + code_block(cap(one_line(test.replay), paragraph_limit));
+  return out + "\n";
+}
+
+std::string row(const Test& test) {
+  return fmt::format("| {} {} | {} | {} | {} | {} |\n", mark(outcome(test)), verdict_text(test),
+                     cell(test.name), cell(key_number(test)), cell(cost_text(total_cost(test))),
+                     duration(total_cost(test).seconds));
+}
+
+std::string suite_heading(const Record& record, const Suite& suite) {
+  std::string out = fmt::format("## {}\n\n", cell(suite.name));
+  if (!suite.about.empty()) out += cell(suite.about, paragraph_limit) + "\n\n";
+  return out + cell(levels_text(suite, record.seed)) + "\n\n" +
+         "| verdict | test | effect | cost | time |\n|---|---|---|---|---|\n";
+}
+
+// Pieces up to a limit that leaves room for the note on what is missing.
+class Page {
+ public:
+  explicit Page(std::size_t limit) : limit_(limit > note_room ? limit - note_room : 0) {}
+
+  bool add(const std::string& piece) {
+    if (text_.size() + piece.size() > limit_) return false;
+    text_ += piece;
+    return true;
+  }
+  std::string take() { return std::move(text_); }
+
+  static constexpr std::size_t note_room = 256;
+
+ private:
+  std::string text_;
+  std::size_t limit_;
+};
+
+std::string title(const Record& record) {
+  std::string out = fmt::format("# {}\n\n", tally_sentence(tally(record)));
+  out += cell(fmt::format("{} {} {}, seed {}, {}", record.tool.name, record.tool.version,
+                          record.tool.commit, record.seed, record.started)) +
+         "\n\n";
+  if (!record.note.empty()) out += cell(record.note, paragraph_limit) + "\n\n";
+  return out;
+}
+
+int add_problems(const Record& record, Outcome kind, Page& page) {
+  int missing = 0;
+  for (const Suite& suite : record.suites) {
+    for (const Test& test : suite.tests) {
+      if (outcome(test) == kind && !page.add(problem(test))) ++missing;
+    }
+  }
+  return missing;
+}
+
+int add_table(const Record& record, const Suite& suite, Page& page) {
+  if (suite.tests.empty()) return 0;
+  if (!page.add(suite_heading(record, suite))) return static_cast<int>(suite.tests.size());
+  int missing = 0;
+  for (const Test& test : suite.tests) {
+    if (!page.add(row(test))) ++missing;
+  }
+  page.add("\n");
+  return missing;
+}
+
+}  // namespace
+
+std::string markdown(const Record& record, std::size_t limit) {
+  Page page(limit);
+  page.add(title(record));
+  int problems = add_problems(record, Outcome::failed, page);
+  problems += add_problems(record, Outcome::inconclusive, page);
+  int rows = 0;
+  for (const Suite& suite : record.suites) rows += add_table(record, suite, page);
+  std::string out = page.take();
+  if (problems > 0 || rows > 0)
+    out += fmt::format(
+        "\nCut to fit: {} descriptions and {} table rows are missing here; the JSON "
+        "record has them all.\n",
+        problems, rows);
+  return out;
+}
+
+}  // namespace assay::reports

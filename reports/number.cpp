@@ -1,0 +1,108 @@
+#include "reports/number.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace assay::reports {
+namespace {
+
+constexpr const char* no_break_space = "\u00A0";
+
+std::string non_finite(double value) {
+  if (std::isnan(value)) return "NaN";
+  return value > 0 ? "Infinity" : "-Infinity";
+}
+
+std::string from_log10(double log10_p) {
+  double exponent = std::floor(log10_p);
+  double mantissa = std::pow(10.0, log10_p - exponent);
+  // 9.96e-5 must not be printed as 10.0e-5.
+  if (mantissa >= 9.95) {
+    mantissa = 1;
+    ++exponent;
+  }
+  return fmt::format("{:.1f}e{:.0f}", mantissa, exponent);
+}
+
+}  // namespace
+
+std::string round_trip(double value) {
+  if (!std::isfinite(value)) return non_finite(value);
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::string human(double value, int digits) {
+  if (!std::isfinite(value)) return non_finite(value);
+  if (value == 0) return "0";
+  return fmt::format("{:.{}g}", value, digits);
+}
+
+std::string human(Number value) { return value ? human(*value) : no_number; }
+
+std::string percent(double fraction) {
+  if (!std::isfinite(fraction)) return non_finite(fraction);
+  return human(100 * fraction, 3) + no_break_space + "%";
+}
+
+std::string with_sign(double value, bool relative) {
+  const std::string text = magnitude(value, relative);
+  return value > 0 ? "+" + text : text;
+}
+
+std::string magnitude(double value, bool relative) {
+  return relative ? percent(value) : human(value);
+}
+
+std::string p_text(Number p, Number log10_p) {
+  if (log10_p && std::isfinite(*log10_p) && *log10_p < -4) return from_log10(*log10_p);
+  if (!p) return log10_p ? p_text(std::pow(10.0, *log10_p), std::nullopt) : no_number;
+  if (!std::isfinite(*p)) return non_finite(*p);
+  if (*p > 0 && *p < 1e-4) return from_log10(std::log10(*p));
+  // Two digits would turn 0.9996 into 1: a p-value near one is itself a finding.
+  return *p > 0.99 && *p < 1 ? fmt::format("1 - {:.1g}", 1 - *p) : fmt::format("{:.2g}", *p);
+}
+
+std::string count_text(std::uint64_t count) {
+  if (count < 10000) return fmt::format("{}", count);
+  static constexpr std::array<const char*, 6> prefixes = {"k", "M", "G", "T", "P", "E"};
+  double scaled = static_cast<double>(count) / 1000;
+  std::size_t prefix = 0;
+  while (scaled >= 999.5 && prefix + 1 < prefixes.size()) {
+    scaled /= 1000;
+    ++prefix;
+  }
+  return fmt::format("{:.{}f}{}{}", scaled,
+                     scaled < 9.995   ? 2
+                     : scaled < 99.95 ? 1
+                                      : 0,
+                     no_break_space, prefixes[prefix]);
+}
+
+std::string grouped(std::uint64_t count) {
+  const std::string digits = fmt::format("{}", count);
+  std::string result;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) result += no_break_space;
+    result += digits[i];
+  }
+  return result;
+}
+
+std::string duration(double seconds) {
+  if (!std::isfinite(seconds)) return non_finite(seconds);
+  if (seconds < 1) return human(1000 * seconds, 3) + no_break_space + "ms";
+  if (seconds < 60) return human(seconds, 3) + no_break_space + "s";
+  const double whole = std::round(seconds);
+  if (whole < 3600)
+    return fmt::format("{:.0f}\u00A0min\u00A0{:.0f}\u00A0s", std::floor(whole / 60),
+                       std::fmod(whole, 60));
+  return fmt::format("{:.0f}\u00A0h\u00A0{:.0f}\u00A0min", std::floor(whole / 3600),
+                     std::floor(std::fmod(whole, 3600) / 60));
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,248 @@
+#pragma once
+
+// The record of a run: plain data that every report is a pure function of. Versioned; its JSON form
+// is described by record.schema.json. A number that does not exist is std::nullopt (JSON null) and
+// `message` says why. Quantities carry the unit of the estimator's output unless stated.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace assay::reports {
+
+inline constexpr int schema_version = 1;
+
+using Number = std::optional<double>;
+
+/// What a claim's test answers (design: verdicts). `skipped` was not run (another shard's).
+enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };
+const char* to_string(Verdict);
+
+struct Tool {
+  std::string name = "assay";
+  std::string version;
+  std::string commit;
+  bool operator==(const Tool&) const = default;
+};
+
+struct Environment {
+  std::string compiler;
+  std::string cpu;
+  std::string isa;  ///< instruction set that rays were traced with; their bits depend on it
+  int threads = 0;
+  bool operator==(const Environment&) const = default;
+};
+
+struct Cost {
+  std::uint64_t camera_rays = 0;
+  std::uint64_t closest_hit_rays = 0;
+  std::uint64_t shadow_rays = 0;
+  std::uint64_t samples = 0;
+  double seconds = 0;  ///< CPU seconds of drawing
+  bool operator==(const Cost&) const = default;
+};
+
+/// Counts of observations in equal bins over [low, high); the rest below and above.
+struct Histogram {
+  double low = 0;
+  double high = 0;
+  std::vector<std::uint64_t> counts;
+  std::uint64_t below = 0;
+  std::uint64_t above = 0;
+  bool operator==(const Histogram&) const = default;
+};
+
+/// Points of a normal quantile plot: theoretical standard normal quantile, observed value.
+struct QuantilePoint {
+  double normal;
+  double observed;
+  bool operator==(const QuantilePoint&) const = default;
+};
+
+/// Observations of one channel of one estimator, as one test saw them.
+struct Sample {
+  std::string estimator;  ///< its name in the suite
+  std::string plugin;
+  std::string parameters;  ///< canonical text
+  std::string channel;
+  std::uint64_t primaries = 0;
+  std::uint64_t secondaries = 0;
+  Number mean, variance, skewness, kurtosis, minimum, maximum;  ///< of secondary estimates
+  std::uint64_t nonzero = 0;
+  std::uint64_t nonfinite = 0;
+  Histogram histogram;
+  std::vector<QuantilePoint> quantiles;
+  Cost cost;
+  bool operator==(const Sample&) const = default;
+};
+
+/// A number with its interval at `confidence`.
+struct Estimate {
+  Number value, low, high;
+  bool operator==(const Estimate&) const = default;
+};
+
+/// theta of the claim: what it is, its estimate and interval.
+struct Effect {
+  std::string quantity;  ///< "relative difference of means", "ln variance ratio", …
+  Number estimate, low, high;
+  double confidence = 0;
+  bool relative = false;  ///< in units of the reference: shown in per cent
+  bool operator==(const Effect&) const = default;
+};
+
+/// An assumption checked. state: green, amber, red.
+struct Gate {
+  std::string name;
+  Number value;
+  Number limit;
+  std::string state;
+  bool operator==(const Gate&) const = default;
+};
+
+struct Distribution {
+  std::string family;  ///< of the statistic under the null hypothesis
+  std::vector<double> parameters;
+  bool operator==(const Distribution&) const = default;
+};
+
+/// The numbers of one channel of a claim.
+struct Channel {
+  std::string name;
+  Number statistic;
+  Distribution distribution;
+  Number p_value;  ///< of the null hypothesis; may underflow to the least double, see log10_p
+  Number log10_p;
+  Number p_adjusted;  ///< Holm over the family; null outside it (mutants, filtered runs)
+  Number p_pass;      ///< p-value of "theta lies in the forbidden region"
+  Effect effect;
+  Number reference;  ///< what the mean is marked against in the histogram, if a number
+  bool operator==(const Channel&) const = default;
+};
+
+/// One look: what was known after so many observations.
+struct Look {
+  std::uint64_t secondaries = 0;
+  Number log10_p;
+  Number p_pass;
+  bool operator==(const Look&) const = default;
+};
+
+struct Test {
+  std::string name;
+  std::string id;  ///< suite file's stem, slash, name
+  std::string claim;
+  std::string file;
+  int line = 0;
+  std::vector<std::string> tags;
+  Verdict verdict = Verdict::skipped;
+  Verdict expected = Verdict::pass;
+  bool ok = false;
+  std::string method;  ///< design: method names
+  std::string null_hypothesis;
+  std::string tail;  ///< "two-sided", "upper", "lower"
+  Number alpha;      ///< this test's share of the suite's alpha
+  Number beta;
+  Number detect, allow;  ///< as margins on theta (same unit as effect)
+  Number detectable;     ///< least effect found with probability 1 - beta at this n
+  Number power;          ///< at `detect` (planned)
+  std::vector<Look> looks;
+  std::vector<Gate> gates;
+  std::vector<Sample> samples;
+  std::vector<Channel> channels;  ///< the worst first; never empty once tested
+  std::string message;  ///< what a reader needs to know: what was excluded, or what would decide
+  std::string replay;   ///< command that gives the same numbers again
+  bool operator==(const Test&) const = default;
+};
+
+/// One channel of an estimator for the suite's picture.
+struct EstimatorChannel {
+  std::string name;
+  Estimate mean;
+  Estimate variance;  ///< of one primary estimate where it averages, else of the secondary
+  Number reference;   ///< analytic mean
+  Number reference_variance;
+  bool operator==(const EstimatorChannel&) const = default;
+};
+
+/// An estimator of a suite with everything drawn from it.
+struct EstimatorSummary {
+  std::string name;
+  std::string plugin;
+  std::string parameters;
+  std::string bias;      ///< bias class
+  std::string original;  ///< of a mutant
+  std::string defect;    ///< of a mutant
+  std::uint64_t primaries = 0;
+  std::uint64_t secondaries = 0;
+  double confidence = 0;  ///< of the intervals in channels
+  std::vector<EstimatorChannel> channels;
+  Cost cost;
+  bool operator==(const EstimatorSummary&) const = default;
+};
+
+/// Where a pair of estimators of a suite stands at its alpha: descriptive, not part of the family.
+struct Comparison {
+  std::string first, second, channel;
+  Number mean_p;              ///< Welch, two-sided
+  Number variance_p;          ///< log-variance ratio, two-sided
+  bool means_differ = false;  ///< after Holm over the pairs of the suite
+  bool variances_differ = false;
+  Number variance_ratio;  ///< first over second, a primary each
+  bool operator==(const Comparison&) const = default;
+};
+
+struct Suite {
+  std::string name;
+  std::string file;
+  std::string about;
+  double alpha = 0;
+  double beta = 0;
+  bool timed = false;  ///< a budget in seconds ended sampling: exempt from bit identity
+  std::vector<EstimatorSummary> estimators;
+  std::vector<Comparison> comparisons;
+  std::vector<Test> tests;
+  bool operator==(const Suite&) const = default;
+};
+
+struct Record {
+  int schema = schema_version;
+  Tool tool;
+  Environment environment;
+  std::uint64_t seed = 0;
+  std::string started;  ///< UTC, ISO 8601
+  double seconds = 0;
+  std::string note;  ///< "filtered: verdicts rest on fixed shares" and the like
+  std::vector<Suite> suites;
+  bool operator==(const Record&) const = default;
+};
+
+/// What a test's verdict and expectation together mean for the run.
+enum class Outcome {
+  passed,        ///< ok
+  failed,        ///< not ok: fail, invalid, error, or an expectation not met
+  inconclusive,  ///< undecided, whatever was expected
+  skipped        ///< not run
+};
+Outcome outcome(const Test&);
+
+/// Tests by outcome: what the last line of the console and the exit code are made of.
+struct Tally {
+  int passed = 0;
+  int failed = 0;
+  int inconclusive = 0;  ///< counted as skipped in the last line
+  int skipped = 0;
+};
+Tally tally(const Suite&);
+Tally tally(const Record&);
+
+/// The record without what differs between two runs of the same suite, seed and program: `started`,
+/// every `seconds`, and `environment.threads`. Two runs agree when these are equal byte for byte.
+Record without_times(Record);
+
+/// What a test cost: each estimator once, though each of its channels has a sample.
+Cost total_cost(const Test&);
+
+}  // namespace assay::reports

@@ -1,0 +1,44 @@
+#pragma once
+
+// Text that may come from a suite file, a plugin or another program, made safe for each format.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace assay::reports {
+
+/// What stands for a byte or character that cannot be shown.
+inline constexpr char32_t replacement_character = 0xFFFD;
+
+/// The code point that starts at `position`, which moves behind it. A byte that starts no valid
+/// UTF-8 sequence (overlong forms, surrogates and cut sequences included) gives the replacement
+/// character and is stepped over alone. `position` must be below text.size().
+char32_t next_code_point(std::string_view text, std::size_t& position);
+
+/// Appends a code point as UTF-8.
+void append_code_point(std::string& text, char32_t code_point);
+
+/// Valid UTF-8 without control characters: line feed and tab stay, CR LF becomes LF, everything
+/// that a terminal or an XML reader must not meet (C0, C1, DEL, line and direction controls,
+/// non-characters) becomes U+FFFD. Idempotent.
+std::string clean(std::string_view text);
+
+/// clean(), with line feeds and tabs as spaces: for names, headings and table cells.
+std::string one_line(std::string_view text);
+
+/// clean(), with & < > " ' as references: for text between XML or HTML tags.
+std::string escape_xml(std::string_view text);
+
+/// escape_xml() with line feeds and tabs as references, which attribute values would lose
+/// otherwise.
+std::string escape_attribute(std::string_view text);
+
+/// one_line(), with everything that Markdown or HTML gives a meaning escaped: for a table cell or a
+/// heading of GitHub's or GitLab's dialect.
+std::string escape_markdown(std::string_view text);
+
+/// At most `bytes` of the text, cut between characters; what is missing is said at the end.
+std::string cap(std::string text, std::size_t bytes);
+
+}  // namespace assay::reports
