@@ -22,7 +22,7 @@ struct TriangleMesh {
   }
 };
 
-/// A convex polygon as a fan of triangles about its first vertex.
+/// A convex polygon as a fan of triangles about its first vertex; those without area are left out.
 TriangleMesh fan(const Polygon& polygon);
 
 /// Reads a Wavefront OBJ file: `v x y z`, `f` with three or more corners `v`, `v/vt`, `v//vn` or

@@ -1,0 +1,59 @@
+// Irradiance from a luminaire by points uniform on its area.
+//
+// X = A L cos+ light_cosine+ / r^2 [visible], density 1 / A per unit area: the light's cosine over
+// r^2 turns solid angle into area, so E[X] is the irradiance.
+
+#include "luminaire/area.h"
+
+namespace assay::luminaire {
+
+namespace {
+
+// light_cosine / r^2 = h / r^3 at distance h from a triangle's plane, and r is at least h and at
+// least what rays see.
+double highest_term(const Setting& setting) {
+  const double least = setting.near() / resolution;
+  double highest = 0;
+  for (const LightTriangle& triangle : setting.triangles()) {
+    const double h = -dot(triangle.normal, triangle.a);
+    if (triangle.emits) highest = std::max(highest, h / (least * least * least));
+  }
+  return highest;
+}
+
+}  // namespace
+
+Channel area_channel(const Setting& setting) {
+  const auto second_moment = [](const ExactIntegrals& exact) {
+    std::optional<double> moment = exact.squared_geometry;
+    if (moment) *moment *= exact.area;
+    return moment;
+  };
+  return irradiance_channel(setting, second_moment,
+                            setting.area() * setting.radiance() * highest_term(setting));
+}
+
+}  // namespace assay::luminaire
+
+namespace assay::plugins {
+
+namespace {
+
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  const luminaire::SharedSetting setting = luminaire::read_setting(parameters);
+  return averaging(luminaire::area_channel(*setting), luminaire::AreaPrimary<>(setting),
+                   luminaire::point_samplers<>(setting));
+}
+
+}  // namespace
+
+std::vector<Entry> luminaire_area() {
+  return {{luminaire::information(
+               "luminaire/area", "Irradiance from a luminaire by points uniform on its area.",
+               "X = A L cos+(receiver) cos+(light) / r^2 [visible] at a point uniform on the "
+               "luminaire of area A. At most one shadow ray a sample: none where a cosine is "
+               "zero. Sampler (of a single triangle): point."),
+           prepare}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,33 @@
+#pragma once
+
+// What is known of a luminaire scene without sampling it.
+
+#include <optional>
+
+#include "luminaire/setting.h"
+
+namespace assay::luminaire {
+
+/// Integrals over the part of a planar luminaire that the receiver sees and that lies above its
+/// horizon, for unit radiance.
+struct ExactIntegrals {
+  double irradiance = 0;      ///< integral of cos+ over solid angle: Lambert's formula
+  double squared_cosine = 0;  ///< integral of cos+^2 over solid angle
+  double solid_angle = 0;     ///< of the whole luminaire, hidden and below the horizon included
+  double area = 0;            ///< of the whole luminaire
+  /// Integral over area of (cos+ light_cosine+ / distance^2)^2, by Gauss-Legendre quadrature to
+  /// 1e-12; absent where that does not converge (the receiver nearly touches the luminaire).
+  std::optional<double> squared_geometry;
+};
+
+/// The integrals of a planar luminaire without occluders or with at most eight, all convex
+/// polygons; none otherwise, or when an occluder is so near to the receiver that rays do not see
+/// it. The part of the luminaire behind a convex polygon is the luminaire clipped to the pyramid
+/// from the receiver through the polygon; several occluders are taken by inclusion and exclusion.
+std::optional<ExactIntegrals> exact_integrals(const Setting& setting);
+
+/// E = L lambert(polygon) of the whole polygon as it stands, without clipping at the horizon: right
+/// only where the luminaire lies above it.
+double unclipped_irradiance(const Setting& setting);
+
+}  // namespace assay::luminaire

@@ -1,0 +1,66 @@
+#include "luminaire/family.h"
+
+#include <utility>
+
+namespace assay::luminaire {
+
+namespace {
+
+const ParameterInformation scene_parameter = {
+    .name = "scene",
+    .type = ParameterType::structure,
+    .summary =
+        "a built-in scene (triangle, cornell_triangle, rectangle), or receiver, light and "
+        "occluders",
+    .fallback = "triangle"};
+
+std::optional<double> variance(double mean, const std::optional<double>& second_moment) {
+  if (!second_moment) return {};
+  const double difference = *second_moment - mean * mean;
+  // Both terms are good to about 1e-15; the difference must be so to 1e-10. Nothing seen is exact.
+  if (*second_moment != 0 && difference < 1e-5 * *second_moment) return {};
+  return difference;
+}
+
+}  // namespace
+
+Information information(std::string name, std::string summary, std::string description) {
+  Information out;
+  out.name = std::move(name);
+  out.summary = std::move(summary);
+  out.description = std::move(description);
+  out.parameters = {scene_parameter};
+  return out;
+}
+
+Information mutant_information(std::string name, std::string original, std::string defect) {
+  Information out = information(std::move(name), "A mutant of " + original + ".",
+                                "The estimator " + original + " with one defect: " + defect);
+  out.original = std::move(original);
+  out.defect = std::move(defect);
+  return out;
+}
+
+SharedSetting read_setting(Parameters& parameters) {
+  const SceneDescription scene = read_scene(parameters.structure("scene"), parameters.folder());
+  return std::make_shared<const Setting>(scene, parameters.where("scene"));
+}
+
+Channel irradiance_channel(const Setting& setting, const SecondMoment& second_moment, double high) {
+  Channel channel{.name = "irradiance", .low = 0, .high = high};
+  const std::optional<ExactIntegrals> exact = exact_integrals(setting);
+  if (!exact) return channel;
+  const double l = setting.radiance();
+  channel.mean = l * exact->irradiance;
+  std::optional<double> square = second_moment(*exact);
+  if (square) *square *= l * l;
+  channel.variance = variance(*channel.mean, square);
+  return channel;
+}
+
+Channel unknown_variance(Channel channel) {
+  channel.variance.reset();
+  return channel;
+}
+
+}  // namespace assay::luminaire

@@ -1,0 +1,230 @@
+#include "luminaire/scene_description.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+namespace assay::luminaire {
+
+namespace {
+
+using render::Disc;
+using render::Polygon;
+using render::TriangleMesh;
+using render::Vector3;
+
+// How far a vertex may lie off a polygon's plane, in diameters: room for coordinates written with
+// seven digits. The irradiance of a bent polygon is that of its edges all the same.
+constexpr double planarity = 1e-6;
+
+const std::string& quoted_list(const std::vector<std::string>& names, std::string& out) {
+  for (const std::string& name : names) out += (out.empty() ? "`" : ", `") + name + "`";
+  return out;
+}
+
+std::string alternatives(std::string_view name, const std::vector<std::string>& known) {
+  std::string out;
+  const std::string near = nearest(name, known);
+  return near.empty() ? "known are " + quoted_list(known, out) : "did you mean `" + near + "`?";
+}
+
+void require_map(const Value& value, const std::string& what) {
+  if (value.kind() != Value::Kind::map) throw InputError(value.where(), what + " must be a map");
+}
+
+// A map with no key but these.
+void require_keys(const Value& value, const std::string& what,
+                  const std::vector<std::string>& known) {
+  require_map(value, what);
+  for (const auto& [key, member] : value.members()) {
+    if (std::ranges::find(known, key) == known.end()) {
+      throw InputError(member.where(),
+                       what + " has no key `" + key + "`; " + alternatives(key, known));
+    }
+  }
+}
+
+const Value& required(const Value& value, const std::string& what, const char* key) {
+  if (const Value* found = value.find(key)) return *found;
+  throw InputError(value.where(), what + " needs the key `" + key + "`");
+}
+
+double finite_number(const Value& value, const std::string& what) {
+  const double number = value.number(what);
+  if (!std::isfinite(number)) throw InputError(value.where(), what + " must be finite");
+  return number;
+}
+
+Vector3 vector(const Value& value, const std::string& what) {
+  if (value.kind() != Value::Kind::list || value.items().size() != 3) {
+    throw InputError(value.where(), what + " must be a list of three numbers");
+  }
+  const std::vector<Value>& items = value.items();
+  return {finite_number(items[0], what), finite_number(items[1], what),
+          finite_number(items[2], what)};
+}
+
+Vector3 unit_vector(const Value& value, const std::string& what) {
+  const Vector3 v = vector(value, what);
+  const double scale = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (scale == 0) throw InputError(value.where(), what + " must not be the zero vector");
+  return render::normalised(v / scale);
+}
+
+double at_least_zero(const Value& value, const std::string& what) {
+  const double number = finite_number(value, what);
+  if (number < 0) throw InputError(value.where(), what + " must not be negative");
+  return number;
+}
+
+Polygon polygon(const Value& value, const std::string& what) {
+  if (value.kind() != Value::Kind::list || value.items().size() < 3) {
+    throw InputError(value.where(), what + " must be a list of three or more vertices");
+  }
+  Polygon vertices;
+  for (const Value& item : value.items()) vertices.push_back(vector(item, "a vertex of " + what));
+  const auto same = std::ranges::adjacent_find(vertices);
+  if (same != vertices.end() || vertices.front() == vertices.back()) {
+    throw InputError(value.where(), what + " has the same vertex twice in a row");
+  }
+  // Rounding leaves points on a line an area of about 1e-16 squared diameters.
+  const double extent = render::diameter(vertices);
+  if (!(render::area(vertices) > 1e-12 * extent * extent)) {
+    throw InputError(value.where(), what + " has no area");
+  }
+  if (!render::is_planar(vertices, planarity)) {
+    throw InputError(value.where(), what + " is not planar");
+  }
+  if (!render::is_convex(vertices)) {
+    throw InputError(value.where(), what + " is not convex: split it, or give it as an OBJ file");
+  }
+  return vertices;
+}
+
+TriangleMesh mesh(const Value& value, const std::string& what, const std::string& folder) {
+  const std::filesystem::path file = std::filesystem::path(folder) / value.string(what);
+  try {
+    return render::read_obj(file.lexically_normal().string());
+  } catch (const InputError& error) {
+    // A file that is not there is a mistake of the scene, what stands in it one of the file.
+    if (error.where().line != 0) throw;
+    throw InputError(value.where(), what + " `" + error.where().file + "`: " + error.message());
+  }
+}
+
+Receiver receiver(const Value& value) {
+  require_keys(value, "the receiver", {"position", "normal"});
+  return {vector(required(value, "the receiver", "position"), "the receiver's position"),
+          unit_vector(required(value, "the receiver", "normal"), "the receiver's normal")};
+}
+
+// Whether a polygon is seen clockwise from the side that `direction` points to.
+bool is_clockwise(const Polygon& vertices, const Vector3& direction) {
+  return dot(render::area_vector(vertices), direction) < 0;
+}
+
+// With `normal` the side that it points from emits, else the side that the receiver is on.
+Light polygon_light(const Value& value, const Receiver& receiver, double radiance) {
+  Polygon vertices = polygon(required(value, "the light", "polygon"), "the light's polygon");
+  const Value* const given = value.find("normal");
+  const Vector3 emitting =
+      given ? unit_vector(*given, "the light's normal") : receiver.position - vertices[0];
+  const double cosine = dot(emitting, render::normalised(render::area_vector(vertices)));
+  // The normal only chooses the side, but one that is far off was meant for something else.
+  if (given && std::abs(cosine) < 0.99) {
+    throw InputError(given->where(), "the light's normal must be at right angles to its polygon");
+  }
+  const bool clockwise = is_clockwise(vertices, emitting);
+  return {std::move(vertices), radiance, clockwise};
+}
+
+Light light(const Value& value, const Receiver& receiver, const std::string& folder) {
+  require_keys(value, "the light", {"polygon", "obj", "normal", "radiance"});
+  const bool from_file = value.find("obj") != nullptr;
+  if (from_file == (value.find("polygon") != nullptr)) {
+    throw InputError(value.where(), "the light needs either `polygon` or `obj`");
+  }
+  if (from_file && value.find("normal")) {
+    throw InputError(value.find("normal")->where(),
+                     "the light's normal belongs to a polygon; an OBJ file's faces emit from the "
+                     "side on which they are counter-clockwise");
+  }
+  const double radiance =
+      at_least_zero(required(value, "the light", "radiance"), "the light's radiance");
+  if (from_file) return {mesh(*value.find("obj"), "the light's file", folder), radiance, false};
+  return polygon_light(value, receiver, radiance);
+}
+
+Disc disc(const Value& value) {
+  require_keys(value, "a disc", {"center", "normal", "radius"});
+  return {vector(required(value, "a disc", "center"), "a disc's center"),
+          unit_vector(required(value, "a disc", "normal"), "a disc's normal"),
+          at_least_zero(required(value, "a disc", "radius"), "a disc's radius")};
+}
+
+Occluder occluder(const Value& value, const std::string& folder) {
+  require_keys(value, "an occluder", {"polygon", "disc", "obj"});
+  if (value.members().size() != 1) {
+    throw InputError(value.where(), "an occluder needs one of `polygon`, `disc` and `obj`");
+  }
+  const auto& [key, form] = value.members().front();
+  if (key == "polygon") return polygon(form, "an occluder's polygon");
+  if (key == "disc") return disc(form);
+  return mesh(form, "an occluder's file", folder);
+}
+
+std::vector<Occluder> occluders(const Value* value, const std::string& folder) {
+  if (!value) return {};
+  if (value->kind() != Value::Kind::list) {
+    throw InputError(value->where(), "occluders must be a list");
+  }
+  std::vector<Occluder> list;
+  for (const Value& item : value->items()) list.push_back(occluder(item, folder));
+  return list;
+}
+
+const std::vector<std::pair<std::string, SceneDescription>>& built_in() {
+  static const double h = std::sqrt(3.0) / 2;
+  static const Receiver upward{{0, 0, 0}, {0, 0, 1}};
+  static const Polygon triangle = {{.2, -.4, 1}, {1.6, .3, 1.4}, {-.3, 1.2, 1.1}};
+  static const Polygon rectangle = {{-.8, -.6, 1}, {-.8, .8, 1}, {.9, .8, 1}, {.9, -.6, 1}};
+  // Cornell University, CS 667, homework 4: `tri-lum-normal`.
+  static const Receiver along_y{{0, 0, 0}, {0, 1, 0}};
+  static const Polygon cornell = {{0, 5, 1}, {-h, 5, -.5}, {h, 5, -.5}};
+  static const std::vector<std::pair<std::string, SceneDescription>> scenes = {
+      {"triangle", {upward, {triangle, 1, true}, {}}},
+      {"cornell_triangle", {along_y, {cornell, 20, is_clockwise(cornell, {0, -1, 0})}, {}}},
+      {"rectangle", {upward, {rectangle, 1, is_clockwise(rectangle, {0, 0, -1})}, {}}},
+  };
+  return scenes;
+}
+
+SceneDescription named(const Value& value) {
+  const std::string& name = value.string("the scene");
+  for (const auto& [known, scene] : built_in()) {
+    if (known == name) return scene;
+  }
+  throw InputError(value.where(),
+                   "there is no scene `" + name + "`; " + alternatives(name, built_in_scenes()));
+}
+
+}  // namespace
+
+std::vector<std::string> built_in_scenes() {
+  std::vector<std::string> names;
+  for (const auto& [name, scene] : built_in()) names.push_back(name);
+  return names;
+}
+
+SceneDescription read_scene(const Value& value, const std::string& folder) {
+  if (value.kind() == Value::Kind::scalar) return named(value);
+  require_keys(value, "the scene", {"receiver", "light", "occluders"});
+  SceneDescription scene;
+  scene.receiver = receiver(required(value, "the scene", "receiver"));
+  scene.light = light(required(value, "the scene", "light"), scene.receiver, folder);
+  scene.occluders = occluders(value.find("occluders"), folder);
+  return scene;
+}
+
+}  // namespace assay::luminaire

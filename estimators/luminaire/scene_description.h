@@ -1,0 +1,48 @@
+#pragma once
+
+// A point that receives light, a luminaire and what stands between, as a suite states them.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "estimators/value.h"
+#include "render/scene.h"
+
+namespace assay::luminaire {
+
+struct Receiver {
+  render::Vector3 position;
+  render::Vector3 normal;  ///< unit
+};
+
+/// A diffuse luminaire of one radiance.
+struct Light {
+  /// A polygon is planar and convex.
+  std::variant<render::Polygon, render::TriangleMesh> shape;
+  double radiance = 1;
+  /// Whether the side emits from which the vertices are seen clockwise, not the other one.
+  bool clockwise = false;
+};
+
+/// Blocks light from both sides. A polygon is planar and convex.
+using Occluder = std::variant<render::Polygon, render::Disc, render::TriangleMesh>;
+
+struct SceneDescription {
+  Receiver receiver;
+  Light light;
+  std::vector<Occluder> occluders;
+};
+
+/// Reads a scene: the name of a built-in one, or a map as in estimators/README.md. File names are
+/// relative to `folder`. InputError at the offending node for an unknown name or key (with the
+/// nearest known), a missing key, a number that is not finite, a zero normal, a polygon of fewer
+/// than three vertices, without area, not planar (to 1e-6 of its diameter) or not convex, a
+/// negative radius or radiance, and whatever read_obj() refuses.
+SceneDescription read_scene(const Value& value, const std::string& folder);
+
+/// The built-in scenes' names: triangle, cornell_triangle, rectangle.
+std::vector<std::string> built_in_scenes();
+
+}  // namespace assay::luminaire

@@ -1,0 +1,128 @@
+#include "luminaire/setting.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace assay::luminaire {
+
+namespace {
+
+using render::Disc;
+using render::Frame;
+using render::Polygon;
+using render::Shape;
+using render::TriangleMesh;
+using render::Vector3;
+
+// From the scene's coordinates to the receiver's.
+class View {
+ public:
+  explicit View(const Receiver& receiver)
+      : origin_(receiver.position), frame_(Frame::about(receiver.normal)) {}
+
+  Vector3 point(const Vector3& p) const { return frame_.to_local(p - origin_); }
+  Polygon of(Polygon polygon) const {
+    for (Vector3& p : polygon) p = point(p);
+    return polygon;
+  }
+  TriangleMesh of(TriangleMesh mesh) const {
+    for (Vector3& p : mesh.vertices) p = point(p);
+    return mesh;
+  }
+  Disc of(const Disc& disc) const {
+    return {point(disc.centre), frame_.to_local(disc.normal), disc.radius};
+  }
+
+ private:
+  Vector3 origin_;
+  Frame frame_;
+};
+
+TriangleMesh light_mesh(const Light& light, const View& view) {
+  if (const auto* polygon = std::get_if<Polygon>(&light.shape)) return fan(view.of(*polygon));
+  return view.of(std::get<TriangleMesh>(light.shape));
+}
+
+LightTriangle light_triangle(const std::array<Vector3, 3>& corners, bool clockwise) {
+  const auto& [a, b, c] = corners;
+  const Vector3 area = 0.5 * cross(b - a, c - a);
+  const Vector3 normal = normalised(clockwise ? -area : area);
+  return {a, b - a, c - a, normal, length(area), dot(normal, a) < 0};
+}
+
+std::vector<LightTriangle> light_triangles(const TriangleMesh& mesh, bool clockwise) {
+  std::vector<LightTriangle> triangles;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    triangles.push_back(light_triangle(mesh.corners(i), clockwise));
+  }
+  return triangles;
+}
+
+std::optional<std::vector<Polygon>> polygons_of(const std::vector<Occluder>& occluders,
+                                                const View& view) {
+  std::vector<Polygon> polygons;
+  for (const Occluder& occluder : occluders) {
+    const Polygon* polygon = std::get_if<Polygon>(&occluder);
+    if (!polygon) return {};
+    polygons.push_back(view.of(*polygon));
+  }
+  return polygons;
+}
+
+double near_distance(const TriangleMesh& mesh, const Location& where) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [a, b, c] = mesh.corners(i);
+    nearest = std::min(nearest, render::distance_to_triangle(a, b, c));
+  }
+  if (!(nearest > 0)) throw InputError(where, "the receiver lies on the light");
+  return resolution * nearest;
+}
+
+Shape occluder_shape(const Occluder& occluder, const View& view) {
+  if (const auto* polygon = std::get_if<Polygon>(&occluder)) return {fan(view.of(*polygon))};
+  if (const auto* disc = std::get_if<Disc>(&occluder)) return {view.of(*disc)};
+  return {view.of(std::get<TriangleMesh>(occluder))};
+}
+
+// The luminaire is shape 0. A planar one never shades itself, so shadow rays need not look at it.
+std::vector<Shape> shapes(TriangleMesh light, bool planar, const std::vector<Occluder>& occluders,
+                          const View& view) {
+  for (Vector3& p : light.vertices) p = (1 - resolution) * p;
+  std::vector<Shape> list = {{std::move(light), !planar}};
+  for (const Occluder& occluder : occluders) list.push_back(occluder_shape(occluder, view));
+  return list;
+}
+
+}  // namespace
+
+Setting::Setting(const SceneDescription& description, const Location& where)
+    : radiance_(description.light.radiance),
+      planar_(std::holds_alternative<Polygon>(description.light.shape)),
+      triangles_(light_triangles(light_mesh(description.light, View(description.receiver)),
+                                 description.light.clockwise)),
+      polygonal_occluders_(polygons_of(description.occluders, View(description.receiver))),
+      area_(0),
+      near_(near_distance(light_mesh(description.light, View(description.receiver)), where)),
+      scene_(shapes(light_mesh(description.light, View(description.receiver)), planar_,
+                    description.occluders, View(description.receiver))) {
+  if (planar_) {
+    polygon_ = View(description.receiver).of(std::get<Polygon>(description.light.shape));
+  }
+  for (const LightTriangle& triangle : triangles_) area_ += triangle.area;
+}
+
+ShareTable::ShareTable(const std::vector<double>& shares) {
+  for (const double share : shares) ends_.push_back(total_ += share);
+}
+
+std::uint32_t ShareTable::pick_of_many(double& x) const {
+  const double place = x * total_;
+  const auto end = std::upper_bound(ends_.begin(), ends_.end() - 1, place);
+  const double begin = end == ends_.begin() ? 0 : *(end - 1);
+  x = std::min((place - begin) / (*end - begin), 1.0);
+  return static_cast<std::uint32_t>(end - ends_.begin());
+}
+
+}  // namespace assay::luminaire

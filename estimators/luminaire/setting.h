@@ -1,0 +1,121 @@
+#pragma once
+
+// A luminaire scene as its receiver sees it: everything that does not depend on the sample, worked
+// out once and shared by all workers.
+//
+// All of it is in the receiver's frame: the receiver is the origin and its normal is +z, so that
+// the receiver's cosine of a unit vector w is w.z and every ray starts at the exact zero vector.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "estimators/cost.h"
+#include "luminaire/scene_description.h"
+#include "render/frame.h"
+#include "render/scene.h"
+
+namespace assay::luminaire {
+
+/// Surfaces are told apart down to this fraction of a distance. What lies nearer to the receiver
+/// than this fraction of the way to the luminaire is not seen. The luminaire blocks rays as if it
+/// were nearer by this fraction, and shadow rays end twice as much before it: of two coplanar
+/// surfaces, a lamp and the wall it is let into, the lamp wins for every estimator. Moving a
+/// surface along the lines through the receiver changes nothing that the receiver sees.
+inline constexpr double resolution = 0x1p-14;
+
+/// A triangle of the luminaire.
+struct LightTriangle {
+  render::Vector3 a;       ///< first vertex
+  render::Vector3 ab;      ///< edge to the second
+  render::Vector3 ac;      ///< edge to the third
+  render::Vector3 normal;  ///< unit, on the side that emits
+  double area = 0;
+  bool emits = false;  ///< whether the side that emits faces the receiver
+};
+
+/// What joins the receiver to a point of the luminaire.
+struct Connection {
+  render::Vector3 direction;  ///< unit, towards the luminaire
+  double distance = 0;
+  double light_cosine = 0;  ///< of -direction and the light's normal; negative behind
+};
+
+class Setting {
+ public:
+  /// InputError at `where` when the receiver lies on the luminaire.
+  Setting(const SceneDescription& description, const Location& where);
+
+  double radiance() const { return radiance_; }
+  const std::vector<LightTriangle>& triangles() const { return triangles_; }
+  /// Of all triangles, those that face away included.
+  double area() const { return area_; }
+  /// Whether the luminaire is one planar polygon; it then does not shade itself.
+  bool planar() const { return planar_; }
+  /// The planar polygon as written, in the receiver's frame; empty for a mesh.
+  const render::Polygon& polygon() const { return polygon_; }
+  /// The occluders' polygons in the receiver's frame; none when some occluder is something else.
+  const std::optional<std::vector<render::Polygon>>& polygonal_occluders() const {
+    return polygonal_occluders_;
+  }
+  /// Below this distance rays see nothing.
+  double near() const { return near_; }
+
+  Connection connect(const LightTriangle& triangle, double u, double v) const {
+    const render::Vector3 y = triangle.a + u * triangle.ab + v * triangle.ac;
+    const double distance = length(y);
+    const render::Vector3 direction = y / distance;
+    return {direction, distance, -dot(direction, triangle.normal)};
+  }
+
+  /// Whether a ray from the receiver first hits a side of the luminaire that emits.
+  bool sees_light(const render::Vector3& direction, Cost& cost) const {
+    ++cost.closest_hit_rays;
+    const render::Hit hit =
+        scene_.closest_hit({.origin = {}, .direction = direction, .near = near_});
+    return hit.shape == 0 && triangles_[hit.primitive].emits;
+  }
+
+  /// Whether nothing stands between the receiver and a point of the luminaire.
+  bool visible(const render::Vector3& direction, double distance, Cost& cost) const {
+    ++cost.shadow_rays;
+    return !scene_.occluded({.origin = {},
+                             .direction = direction,
+                             .near = near_,
+                             .far = distance * (1 - 2 * resolution)});
+  }
+
+ private:
+  double radiance_;
+  bool planar_;
+  render::Polygon polygon_;
+  std::vector<LightTriangle> triangles_;
+  std::optional<std::vector<render::Polygon>> polygonal_occluders_;
+  double area_;
+  double near_;
+  render::Scene scene_;
+};
+
+/// Picks an index with probability proportional to its share.
+class ShareTable {
+ public:
+  explicit ShareTable(const std::vector<double>& shares);
+
+  double total() const { return total_; }
+  /// Maps x uniform in [0, 1) to an index and to x uniform again: its place within the share. With
+  /// one index x stays what it is.
+  std::uint32_t pick(double& x) const {
+    if (ends_.size() == 1) return 0;
+    return pick_of_many(x);
+  }
+
+ private:
+  std::uint32_t pick_of_many(double& x) const;
+
+  std::vector<double> ends_;
+  double total_ = 0;
+};
+
+}  // namespace assay::luminaire

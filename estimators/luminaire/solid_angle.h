@@ -1,0 +1,169 @@
+#pragma once
+
+// The parts of the estimator by directions uniform in the luminaire's solid angle.
+
+#include <algorithm>
+#include <utility>
+
+#include "luminaire/direction_sampler.h"
+#include "render/spherical_triangle.h"
+
+namespace assay::luminaire {
+
+/// A triangle of the luminaire that faces the receiver.
+struct LitTriangle {
+  render::SphericalTriangle seen;
+  render::Vector3 normal;
+  double plane_distance;
+
+  double distance(const render::Vector3& w) const { return plane_distance / -dot(w, normal); }
+};
+
+/// The triangles that face the receiver, below the horizon too.
+std::vector<LitTriangle> lit_triangles(const Setting& setting);
+
+/// Arvo's two steps from the unit square to a spherical triangle.
+struct ArvoMap {
+  render::Vector3 operator()(const render::SphericalTriangle& triangle, double u, double v) const {
+    return triangle.sample(u, v);
+  }
+};
+
+/// X = Omega L cos+ [visible] where Omega is the sum over triangles. `Map` gives the direction.
+template <class Map = ArvoMap>
+class SolidAnglePrimary {
+ public:
+  explicit SolidAnglePrimary(SharedSetting setting)
+      : setting_(std::move(setting)),
+        triangles_(lit_triangles(*setting_)),
+        shares_(solid_angles(triangles_)),
+        factor_(shares_.total() * setting_->radiance()) {}
+
+  double operator()(Stream& random, Cost& cost) const {
+    if (triangles_.empty()) return 0;
+    double u = random.uniform();
+    const double v = random.uniform();
+    const LitTriangle& triangle = triangles_[shares_.pick(u)];
+    return along(Map{}(triangle.seen, u, v), triangle, cost);
+  }
+
+  /// X for that direction.
+  double along(const render::Vector3& w, const LitTriangle& triangle, Cost& cost) const {
+    if (w.z <= 0) return 0;
+    return setting_->visible(w, triangle.distance(w), cost) ? factor_ * w.z : 0;
+  }
+
+  const std::vector<LitTriangle>& triangles() const { return triangles_; }
+  const ShareTable& shares() const { return shares_; }
+  double solid_angle() const { return shares_.total(); }
+
+ private:
+  static std::vector<double> solid_angles(const std::vector<LitTriangle>& triangles) {
+    std::vector<double> list;
+    for (const LitTriangle& triangle : triangles) list.push_back(triangle.seen.solid_angle());
+    return list;
+  }
+
+  SharedSetting setting_;
+  std::vector<LitTriangle> triangles_;
+  ShareTable shares_;
+  double factor_;
+};
+
+/// Directions of a planar luminaire that faces the receiver: density 1 / Omega inside its outline.
+template <class Map = ArvoMap>
+class SolidAngleSampler final : public Sampler {
+ public:
+  explicit SolidAngleSampler(SharedSetting setting) : primary_(std::move(setting)) {}
+
+  Domain domain() const override {
+    const auto above = [](const render::Vector3& v) { return v.z >= 0; };
+    const bool all_above = std::ranges::all_of(primary_.triangles(), [&](const LitTriangle& t) {
+      return above(t.seen.a()) && above(t.seen.b()) && above(t.seen.c());
+    });
+    return all_above ? Domain::hemisphere : Domain::sphere;
+  }
+
+  SamplerDraw sample(Stream& random) const override {
+    double u = random.uniform();
+    const double v = random.uniform();
+    const std::uint32_t index = primary_.shares().pick(u);
+    const LitTriangle& triangle = primary_.triangles()[index];
+    const render::Vector3 w = Map{}(triangle.seen, u, v);
+    Cost uncounted;
+    return {.point = point_of(w),
+            .density = 1 / primary_.solid_angle(),
+            .weight = primary_.along(w, triangle, uncounted),
+            .lobe = static_cast<int>(index)};
+  }
+
+  double density(const Point& point) const override {
+    return containing(direction_of(point)) ? 1 / primary_.solid_angle() : 0;
+  }
+
+  double evaluate(const Point& point) const override {
+    const render::Vector3 w = direction_of(point);
+    const LitTriangle* triangle = containing(w);
+    Cost uncounted;
+    return triangle ? primary_.along(w, *triangle, uncounted) / primary_.solid_angle() : 0;
+  }
+
+  // The density jumps at the outline.
+  int quadrature_subdivision() const override { return 8; }
+
+ private:
+  const LitTriangle* containing(const render::Vector3& w) const {
+    const auto found = std::ranges::find_if(
+        primary_.triangles(), [&](const LitTriangle& t) { return t.seen.contains(w); });
+    return found == primary_.triangles().end() ? nullptr : &*found;
+  }
+
+  SolidAnglePrimary<Map> primary_;
+};
+
+/// The same of a single triangle in coordinates that turn the spherical triangle into the unit
+/// square at constant density 1: what a histogram tests to the outline's very edge.
+template <class Map = ArvoMap>
+class SquareSampler final : public Sampler {
+ public:
+  explicit SquareSampler(SharedSetting setting) : primary_(std::move(setting)) {}
+
+  Domain domain() const override { return Domain::square; }
+
+  SamplerDraw sample(Stream& random) const override {
+    const double u = random.uniform();
+    const double v = random.uniform();
+    const auto [s, t] = triangle().seen.coordinates(Map{}(triangle().seen, u, v));
+    const Point point = {s, t, 0};
+    return {.point = point, .density = 1, .weight = evaluate(point)};
+  }
+
+  double density(const Point&) const override { return 1; }
+
+  double evaluate(const Point& point) const override {
+    Cost uncounted;
+    return primary_.along(triangle().seen.sample(point[0], point[1]), triangle(), uncounted);
+  }
+
+ private:
+  const LitTriangle& triangle() const { return primary_.triangles().front(); }
+
+  SolidAnglePrimary<Map> primary_;
+};
+
+/// `direction` of a planar luminaire, `square` of a single triangle.
+template <class Map = ArvoMap>
+std::vector<NamedSampler> solid_angle_samplers(const SharedSetting& setting) {
+  std::vector<NamedSampler> samplers;
+  if (!setting->planar() || !setting->triangles()[0].emits) return samplers;
+  samplers.push_back({"direction", std::make_shared<SolidAngleSampler<Map>>(setting)});
+  if (setting->triangles().size() == 1) {
+    samplers.push_back({"square", std::make_shared<SquareSampler<Map>>(setting)});
+  }
+  return samplers;
+}
+
+/// The channel of the sound estimator.
+Channel solid_angle_channel(const Setting& setting);
+
+}  // namespace assay::luminaire
