@@ -65,9 +65,10 @@ double AshikhminShirley::half_vector_density(const Vector3& h) const {
 
 // With C = sqrt((nu+1)(nv+1)), c = cos d, 1 / q = 4 pi sqrt(cos_o), m = max(cos_i, cos_o) and
 // cos_i + cos_o = 2 (h.w_i) c:
-//   density:     p / q = C c^(e+1) sqrt(cos_o) / (cos_i + cos_o)              <= C / (2 sqrt(cos_i))
-//   brdf:        f / q = C c^(e+1) F sqrt(cos_o) / ((cos_i + cos_o) m)        <= C / (2 cos_i^1.5)
-//   brdf_cosine: f cos_o / q = C c^(e+1) F cos_o^1.5 / ((cos_i + cos_o) m)    <= C / (2 sqrt(cos_i))
+//   density:     p / q = C c^(e+1) sqrt(cos_o) / (cos_i + cos_o)              <= C / (2
+//   sqrt(cos_i)) brdf:        f / q = C c^(e+1) F sqrt(cos_o) / ((cos_i + cos_o) m)        <= C /
+//   (2 cos_i^1.5) brdf_cosine: f cos_o / q = C c^(e+1) F cos_o^1.5 / ((cos_i + cos_o) m)    <= C /
+//   (2 sqrt(cos_i))
 // as each function of cos_o is largest at cos_o = cos_i, and c <= 1, F <= 1, e >= 0.
 double AshikhminShirley::rejection_bound(Target target) const {
   const double cosine = incident().z;

@@ -14,10 +14,10 @@ using Five = std::array<double, 5>;
 
 constexpr double tolerance = 1e-12;
 
-// In the half plane of h with azimuth phi, cos_o = R cos(2 theta - psi), theta the polar angle of h,
-// R cos psi = cos_i and R sin psi = sin_i cos(phi - phi_i). w_o meets the horizon at
-// theta = pi / 4 + psi / 2, where the integrand of f has a root's singularity in cos_o; with
-// theta = limit - delta, cos_o = R sin 2 delta has no cancellation there.
+// In the half plane of h with azimuth phi, cos_o = R cos(2 theta - psi), theta the polar angle of
+// h, R cos psi = cos_i and R sin psi = sin_i cos(phi - phi_i). w_o meets the horizon at theta = pi
+// / 4 + psi / 2, where the integrand of f has a root's singularity in cos_o; with theta = limit -
+// delta, cos_o = R sin 2 delta has no cancellation there.
 struct HalfPlane {
   double phi;
   double amplitude;

@@ -36,8 +36,7 @@ void add_nodes(std::array<double, N>& sum, const F& f, std::array<double, 2> ran
   for (double t = nodes[0]; t <= 3.5; t += nodes[1]) {
     const double q = std::exp(-std::numbers::pi * std::sinh(t));
     const double from_end = half * 2 * q / (1 + q);
-    const double weight =
-        half * std::numbers::pi / 2 * std::cosh(t) * 4 * q / ((1 + q) * (1 + q));
+    const double weight = half * std::numbers::pi / 2 * std::cosh(t) * 4 * q / ((1 + q) * (1 + q));
     for (const double x : {range[0] + from_end, range[1] - from_end}) {
       // A node that rounds to an end is where a singular integrand has no value.
       if (x <= range[0] || x >= range[1]) continue;

@@ -1,0 +1,87 @@
+// A path of one branching: X = D(u) + (W(u) / s) (Z_1 + ... + Z_N), D = 1 + u, W = 4 u^2, Z
+// exponential of mean 1, N = floor(s + v) children: roulette for s < 1, splitting for s > 1.
+// E[X] = 3/2 + 4/3 = 17/6 for any s. Given u, E = 1 + u + 4 u^2 and Var = W^2 (E[N] + Var N) / s^2;
+// with r the fraction of s, Var X = 10.2 - (17/6)^2 + (16/5) (s + r (1 - r)) / s^2.
+
+#include <cmath>
+
+#include "estimators/estimator.h"
+
+namespace assay::plugins {
+
+namespace {
+
+class TwoLevel final : public Estimator {
+ public:
+  explicit TwoLevel(double splitting) : splitting_(splitting) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    double value = 0;
+    double children = 0;
+    for (std::uint64_t i = 0; i < primaries; ++i) value += primary(random, children);
+    const double n = static_cast<double>(primaries);
+    out[0] = value / n;
+    out[1] = children / n;
+    cost.samples += primaries;
+  }
+
+ private:
+  double primary(Stream& random, double& children) const {
+    const double u = random.uniform();
+    const double count = std::floor(splitting_ + random.uniform());
+    double sum = 0;
+    for (double i = 0; i < count; ++i) sum -= std::log(random.uniform_open());
+    children += count;
+    return 1 + u + 4 * u * u / splitting_ * sum;
+  }
+
+  double splitting_;
+};
+
+class TwoLevelSetup final : public Setup {
+ public:
+  explicit TwoLevelSetup(double splitting) : splitting_(splitting) {}
+
+  std::vector<Channel> channels() const override {
+    const double s = splitting_;
+    const double whole = std::floor(s);
+    const double of_count = (s - whole) * (1 - (s - whole));
+    const double mean = 17.0 / 6;
+    return {
+        {.mean = mean, .variance = 10.2 - mean * mean + 3.2 * (s + of_count) / (s * s), .low = 1},
+        {.name = "children",
+         .mean = s,
+         .variance = of_count,
+         .low = whole,
+         .high = std::ceil(s),
+         .diagnostic = true}};
+  }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<TwoLevel>(splitting_);
+  }
+
+ private:
+  double splitting_;
+};
+
+}  // namespace
+
+std::vector<Entry> analytic_two_level() {
+  return {{{.name = "analytic/two_level",
+            .summary = "One branching with roulette or splitting of a fractional number.",
+            .description = "Estimates 17/6 by 1 + u + (4 u^2 / s) (sum of N exponentials), N = "
+                           "floor(s + v). Unbiased for every s > 0; the diagnostic channel "
+                           "`children` counts N, of mean s.",
+            .parameters = {{.name = "splitting",
+                            .summary = "s, the expected number of children",
+                            .fallback = "1",
+                            .low = 0,
+                            .high = 1000,
+                            .low_excluded = true}}},
+           [](Parameters& given) {
+             return std::make_shared<TwoLevelSetup>(given.number("splitting"));
+           }}};
+}
+
+}  // namespace assay::plugins

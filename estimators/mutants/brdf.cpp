@@ -1,0 +1,184 @@
+// Reflectance samplers with one defect each. Every mutant is the original's reflectance with one
+// part exchanged; its declared density, weight and reference stay the original's, as its author
+// would have claimed.
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "brdf/albedo.h"
+#include "brdf/ashikhmin_shirley.h"
+#include "brdf/ward.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using render::AshikhminShirley;
+using render::Vector3;
+using render::Ward;
+using std::numbers::pi;
+
+template <class Brdf>
+struct SingleQuadrant final : Brdf {
+  using Brdf::Brdf;
+  double azimuth(double u) const override { return Brdf::azimuth(u / 4); }
+};
+
+template <class Brdf>
+struct UniformAzimuth final : Brdf {
+  using Brdf::Brdf;
+  double azimuth(double u) const override { return 2 * pi * u; }
+};
+
+template <class Brdf>
+struct NoJacobian final : Brdf {
+  using Brdf::Brdf;
+  double jacobian(const Vector3&) const override { return 1; }
+};
+
+struct UnmirroredQuadrants final : AshikhminShirley {
+  using AshikhminShirley::AshikhminShirley;
+  double azimuth(double u) const override {
+    const double quadrant = std::floor(4 * u);
+    return quadrant * pi / 2 + first_quadrant(4 * u - quadrant);
+  }
+};
+
+struct ExponentWithoutOne final : AshikhminShirley {
+  using AshikhminShirley::AshikhminShirley;
+  double squared_sine(double azimuth, double v) const override {
+    return -std::expm1(2 * std::log(v) / exponent(azimuth));
+  }
+};
+
+struct NoArctangent final : Ward {
+  using Ward::Ward;
+  double azimuth(double u) const override {
+    return roughness().y / roughness().x * std::tan(2 * pi * u);
+  }
+};
+
+struct NoSineOfAzimuth final : Ward {
+  using Ward::Ward;
+  Vector3 half_vector(double u, double v) const override {
+    const Vector3 h = Ward::half_vector(u, v);
+    return normalised(Vector3{h.x, std::hypot(h.x, h.y), h.z});
+  }
+};
+
+// Draws until a direction is above the horizon and declares the density as if it had not.
+class Redrawn final : public Sampler {
+ public:
+  explicit Redrawn(std::shared_ptr<const Sampler> original) : original_(std::move(original)) {}
+  Domain domain() const override { return original_->domain(); }
+  SamplerDraw sample(Stream& random) const override {
+    while (true) {
+      const SamplerDraw draw = original_->sample(random);
+      if (draw.valid) return draw;
+    }
+  }
+  double density(const Point& p) const override { return original_->density(p); }
+  double evaluate(const Point& p) const override { return original_->evaluate(p); }
+  int quadrature_subdivision() const override { return original_->quadrature_subdivision(); }
+
+ private:
+  std::shared_ptr<const Sampler> original_;
+};
+
+// What the author claims: the original's mean. Nothing is claimed of the range and the variance.
+Channel claimed(const render::HalfVectorBrdf& original) {
+  const Channel channel = brdf::published_channel(original);
+  return {.name = channel.name, .mean = channel.mean, .mean_error = channel.mean_error};
+}
+
+struct Defect {
+  std::string name;
+  std::string what;
+};
+
+Information information(std::string original, Defect defect,
+                        std::vector<ParameterInformation> parameters) {
+  return {.name = "mutants/" + defect.name,
+          .summary = original + " with a defect: " + defect.what,
+          .description = "The albedo as " + original +
+                         " estimates it with sampler: published, "
+                         "but: " +
+                         defect.what,
+          .parameters = std::move(parameters),
+          .original = std::move(original),
+          .defect = std::move(defect.what)};
+}
+
+template <class Mutant>
+Entry ward(Defect defect) {
+  return {information("brdf/ward", std::move(defect), brdf::ward_parameters()),
+          [](Parameters& given) {
+            auto mutant = std::make_shared<Mutant>(brdf::ward<Mutant>(given));
+            return brdf::albedo(claimed(brdf::ward(given)), brdf::published_sampler(mutant));
+          }};
+}
+
+template <class Mutant>
+Entry ashikhmin_shirley(Defect defect) {
+  return {information("brdf/ashikhmin_shirley", std::move(defect),
+                      brdf::ashikhmin_shirley_parameters()),
+          [](Parameters& given) {
+            auto mutant = std::make_shared<Mutant>(brdf::ashikhmin_shirley<Mutant>(given));
+            return brdf::albedo(claimed(brdf::ashikhmin_shirley(given)),
+                                brdf::published_sampler(mutant));
+          }};
+}
+
+std::shared_ptr<const Setup> redrawn(brdf::SharedBrdf original) {
+  return brdf::albedo(claimed(*original),
+                      std::make_shared<Redrawn>(brdf::published_sampler(original)));
+}
+
+Entry ward_redrawn(Defect defect) {
+  return {information("brdf/ward", std::move(defect), brdf::ward_parameters()),
+          [](Parameters& given) { return redrawn(std::make_shared<Ward>(brdf::ward(given))); }};
+}
+
+Entry ashikhmin_shirley_redrawn(Defect defect) {
+  return {information("brdf/ashikhmin_shirley", std::move(defect),
+                      brdf::ashikhmin_shirley_parameters()),
+          [](Parameters& given) {
+            return redrawn(std::make_shared<AshikhminShirley>(brdf::ashikhmin_shirley(given)));
+          }};
+}
+
+}  // namespace
+
+std::vector<Entry> mutants_brdf() {
+  const std::string quadrant = "half vectors are drawn in the first quadrant only.";
+  const std::string uniform = "the azimuth is 2 pi u although the lobe is anisotropic.";
+  const std::string jacobian = "the density lacks the factor 1 / (4 h . w_i).";
+  const std::string redrawn_what =
+      "directions below the horizon are drawn again, and the density is not renormalised.";
+  return {
+      ward<SingleQuadrant<Ward>>({"ward_single_quadrant", quadrant}),
+      ward<UniformAzimuth<Ward>>({"ward_uniform_azimuth", uniform}),
+      ward<NoJacobian<Ward>>({"ward_no_jacobian", jacobian}),
+      ward<NoArctangent>({"ward_no_arctangent",
+                          "the azimuth is (ay / ax) tan 2 pi u without the arctangent, as printed "
+                          "in the paper of 1992."}),
+      ward<NoSineOfAzimuth>({"ward_no_sine", "the y component of h lacks the factor sin phi."}),
+      ward_redrawn({"ward_redrawn", redrawn_what}),
+      ashikhmin_shirley<SingleQuadrant<AshikhminShirley>>(
+          {"ashikhmin_shirley_single_quadrant", quadrant}),
+      ashikhmin_shirley<UniformAzimuth<AshikhminShirley>>(
+          {"ashikhmin_shirley_uniform_azimuth", uniform}),
+      ashikhmin_shirley<UnmirroredQuadrants>(
+          {"ashikhmin_shirley_unmirrored",
+           "the second and fourth quadrant turn the first instead of mirroring it."}),
+      ashikhmin_shirley<ExponentWithoutOne>(
+          {"ashikhmin_shirley_exponent", "cos d = v^(1/e) instead of v^(1/(e+1))."}),
+      ashikhmin_shirley<NoJacobian<AshikhminShirley>>({"ashikhmin_shirley_no_jacobian", jacobian}),
+      ashikhmin_shirley_redrawn({"ashikhmin_shirley_redrawn", redrawn_what}),
+  };
+}
+
+}  // namespace assay::plugins
