@@ -59,6 +59,7 @@ class AreaPrimary {
   }
 
   const Setting& setting() const { return *setting_; }
+  const ShareTable& shares() const { return shares_; }
 
  private:
   static std::vector<double> areas(const Setting& setting) {

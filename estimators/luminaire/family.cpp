@@ -58,9 +58,4 @@ Channel irradiance_channel(const Setting& setting, const SecondMoment& second_mo
   return channel;
 }
 
-Channel unknown_variance(Channel channel) {
-  channel.variance.reset();
-  return channel;
-}
-
 }  // namespace assay::luminaire

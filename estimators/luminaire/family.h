@@ -36,7 +36,4 @@ using SecondMoment = std::function<std::optional<double>(const ExactIntegrals&)>
 /// subtracting the squared mean leaves ten digits; between 0 and `high`.
 Channel irradiance_channel(const Setting& setting, const SecondMoment& second_moment, double high);
 
-/// The channel with its range only: for primaries whose mean is somebody else's.
-Channel unknown_variance(Channel channel);
-
 }  // namespace assay::luminaire

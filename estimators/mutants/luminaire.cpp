@@ -1,0 +1,223 @@
+// Mutants of the luminaire family: the parts of the sound estimators with one replaced.
+//
+// Expected biases are for the built-in scene `triangle` unless said otherwise; those of the maps
+// depend on the order of its vertices.
+
+#include "luminaire/area.h"
+#include "luminaire/solid_angle.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace luminaire;
+using render::SphericalTriangle;
+using render::Vector3;
+
+// Replacements for the geometry term cos+ light_cosine+ / r^2.
+
+struct NoReceiverCosine {
+  double operator()(const Connection& c) const {
+    if (c.direction.z <= 0) return 0;
+    return std::max(0.0, c.light_cosine) / (c.distance * c.distance);
+  }
+};
+
+struct NoLightCosine {
+  double operator()(const Connection& c) const {
+    if (c.light_cosine <= 0) return 0;
+    return std::max(0.0, c.direction.z) / (c.distance * c.distance);
+  }
+};
+
+struct NoChangeOfVariables {
+  double operator()(const Connection& c) const {
+    return c.light_cosine > 0 ? std::max(0.0, c.direction.z) : 0;
+  }
+};
+
+struct InverseDistance {
+  double operator()(const Connection& c) const { return GeometryTerm{}(c)*c.distance; }
+};
+
+struct ReversedDifference {
+  double operator()(const Connection& c) const {
+    return -c.direction.z * c.light_cosine / (c.distance * c.distance);
+  }
+};
+
+struct AbsoluteReceiverCosine {
+  double operator()(const Connection& c) const {
+    return std::abs(c.direction.z) * std::max(0.0, c.light_cosine) / (c.distance * c.distance);
+  }
+};
+
+struct TwoSidedLight {
+  double operator()(const Connection& c) const {
+    return std::max(0.0, c.direction.z) * std::abs(c.light_cosine) / (c.distance * c.distance);
+  }
+};
+
+struct OnePercentMore {
+  double operator()(const Connection& c) const { return 1.01 * GeometryTerm{}(c); }
+};
+
+// The points are uniform in area, but what they are divided by is the density 1 / Omega.
+struct SolidAngleDensity {
+  double omega_over_area;
+  double operator()(const Connection& c) const {
+    return c.light_cosine > 0 ? omega_over_area * std::max(0.0, c.direction.z) : 0;
+  }
+};
+
+// Replacements for the map of the unit square to the triangle.
+
+struct UnwarpedTriangle {
+  Barycentric operator()(double x, double y) const { return {x, y * (1 - x)}; }
+};
+
+struct UnitSquare {
+  Barycentric operator()(double x, double y) const { return {x, y}; }
+};
+
+/// Points of the unit square outside the triangle count as zero, without doubling the others.
+class HalfDropped {
+ public:
+  explicit HalfDropped(SharedSetting setting) : area_(std::move(setting)) {}
+
+  double operator()(Stream& random, Cost& cost) const {
+    double x = random.uniform();
+    const double y = random.uniform();
+    const LightTriangle& triangle = area_.setting().triangles()[area_.shares().pick(x)];
+    return x + y > 1 ? 0 : area_.at(triangle, UnitSquare{}(x, y), cost);
+  }
+
+ private:
+  AreaPrimary<> area_;
+};
+
+// Replacements for Arvo's two steps.
+
+struct UniformArc {
+  Vector3 operator()(const SphericalTriangle& triangle, double u, double v) const {
+    const double angle = u * render::angle_between(triangle.a(), triangle.c());
+    const Vector3 axis = normalised(cross(triangle.a(), triangle.c()));
+    const Vector3 edge_point =
+        std::cos(angle) * triangle.a() + std::sin(angle) * cross(axis, triangle.a());
+    return triangle.arc_point(edge_point, v);
+  }
+};
+
+struct UniformAngle {
+  Vector3 operator()(const SphericalTriangle& triangle, double u, double v) const {
+    const Vector3 edge_point = triangle.edge_point(u);
+    const double angle = v * render::angle_between(triangle.b(), edge_point);
+    const Vector3 axis = normalised(cross(triangle.b(), edge_point));
+    return std::cos(angle) * triangle.b() + std::sin(angle) * cross(axis, triangle.b());
+  }
+};
+
+// Entries. The channel keeps the original's mean, which is the reference to be missed; its variance
+// and range are the original's alone.
+
+Channel only_mean(const Channel& original) {
+  return {.name = original.name, .mean = original.mean, .mean_error = original.mean_error};
+}
+
+Entry mutant(Information information,
+             std::function<std::shared_ptr<const Setup>(SharedSetting)> of) {
+  return {std::move(information),
+          [of = std::move(of)](Parameters& parameters) { return of(read_setting(parameters)); }};
+}
+
+template <class Term>
+Entry term_mutant(const char* name, const char* defect) {
+  return mutant(mutant_information(name, "luminaire/area", defect), [](SharedSetting setting) {
+    return averaging(only_mean(area_channel(*setting)), AreaPrimary<UniformTriangle, Term>(setting),
+                     point_samplers<>(setting));
+  });
+}
+
+template <class Map>
+Entry arvo_mutant(const char* name, const char* defect) {
+  return mutant(
+      mutant_information(name, "luminaire/solid_angle", defect), [](SharedSetting setting) {
+        return averaging(only_mean(solid_angle_channel(*setting)), SolidAnglePrimary<Map>(setting),
+                         solid_angle_samplers<Map>(setting));
+      });
+}
+
+std::shared_ptr<const Setup> unwarped_triangle(SharedSetting setting) {
+  return averaging(only_mean(area_channel(*setting)), AreaPrimary<UnwarpedTriangle>(setting),
+                   point_samplers<UnwarpedTriangle>(setting));
+}
+
+std::shared_ptr<const Setup> half_dropped(SharedSetting setting) {
+  return averaging(only_mean(area_channel(*setting)), HalfDropped(setting),
+                   point_samplers<UnitSquare>(setting));
+}
+
+std::shared_ptr<const Setup> solid_angle_density(SharedSetting setting) {
+  const double omega = SolidAnglePrimary<>(setting).solid_angle();
+  return averaging(only_mean(area_channel(*setting)),
+                   AreaPrimary<UniformTriangle, SolidAngleDensity>(
+                       setting, {.omega_over_area = omega / setting->area()}),
+                   point_samplers<>(setting));
+}
+
+std::shared_ptr<const Setup> unclipped_reference(SharedSetting setting) {
+  Channel channel = only_mean(area_channel(*setting));
+  if (channel.mean) channel.mean = unclipped_irradiance(*setting);
+  return averaging(channel, AreaPrimary<>(setting), point_samplers<>(setting));
+}
+
+}  // namespace
+
+std::vector<Entry> mutants_luminaire() {
+  return {
+      term_mutant<NoReceiverCosine>(
+          "mutants/no_cosine", "forgets the receiver's cosine: the result is L Omega; +13.8 %."),
+      term_mutant<NoLightCosine>("mutants/no_light_cosine",
+                                 "forgets the luminaire's cosine; +31.9 %."),
+      term_mutant<NoChangeOfVariables>(
+          "mutants/no_change_of_variables",
+          "forgets light_cosine / r^2, which turns solid angle into area; +134 %."),
+      term_mutant<InverseDistance>("mutants/inverse_distance", "divides by r, not r^2; +28.9 %."),
+      term_mutant<ReversedDifference>(
+          "mutants/reversed_difference",
+          "takes the connection from the luminaire to the receiver and does not clamp: the "
+          "irradiance comes out negative; -200 %."),
+      term_mutant<AbsoluteReceiverCosine>(
+          "mutants/absolute_cosine",
+          "takes the receiver's cosine absolutely, so that a luminaire below the horizon shines: "
+          "nothing on `triangle`, too bright where a luminaire crosses the horizon."),
+      term_mutant<TwoSidedLight>(
+          "mutants/two_sided_light",
+          "lets both sides of the luminaire emit: nothing where the emitting side faces the "
+          "receiver; a luminaire that faces away shines."),
+      term_mutant<OnePercentMore>("mutants/one_percent", "is scaled by 1.01; +1 %."),
+      mutant(mutant_information("mutants/nonuniform_triangle", "luminaire/area",
+                                "maps (x, y) to (x, y (1 - x)), which is not uniform in the "
+                                "triangle, at the uniform density; -25.4 %."),
+             unwarped_triangle),
+      mutant(mutant_information("mutants/half_dropped", "luminaire/area",
+                                "takes points of the unit square, counts those outside the "
+                                "triangle as zero and does not double the others; -50 %."),
+             half_dropped),
+      mutant(mutant_information("mutants/solid_angle_density", "luminaire/area",
+                                "divides points uniform in area by the density 1 / Omega of "
+                                "directions uniform in solid angle; -4.0 %."),
+             solid_angle_density),
+      mutant(mutant_information("mutants/unclipped_reference", "luminaire/area",
+                                "states as its mean Lambert's formula without clipping at the "
+                                "horizon; the estimator is sound. Nothing on `triangle`, wrong "
+                                "where a luminaire crosses the horizon."),
+             unclipped_reference),
+      arvo_mutant<UniformArc>("mutants/arvo_uniform_arc",
+                              "takes c' uniform on the arc from a to c; +0.32 %."),
+      arvo_mutant<UniformAngle>("mutants/arvo_uniform_angle",
+                                "takes the angle from b uniform, not its cosine; -4.7 %."),
+  };
+}
+
+}  // namespace assay::plugins
