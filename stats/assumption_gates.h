@@ -10,8 +10,9 @@ namespace assay::stats {
 enum class GateState { green, amber, red };
 
 // A diagnosis of one assumption. green: value within the planning bound. red: `low`, the lower
-// confidence limit of the value, exceeds `limit`. amber: in between. At the boundary law (value
-// equal to limit) and on normal data red has probability below 1e-4.
+// confidence limit of the value, exceeds `limit`. amber: in between. On normal data red has
+// probability below 1e-4 at every sample size; at a law whose value is the limit itself about 1e-3
+// (README.md).
 struct Gate {
   std::string name;
   double value = 0;
@@ -63,8 +64,9 @@ Gate skewness_gate(const Moments& x, double critical_value);
 // The same of the contrast mean x - scale mean y: a = sum psi^3 / (6 (sum psi^2)^1.5).
 Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value);
 
-// Value: max |x_i - mean| / (s sqrt n), no observation may dominate. Limit .1, or where normal data
-// exceed it by themselves, the 1e-4 critical value of Grubbs (1950); green below half the limit.
+// Value: max |x_i - mean| / (s sqrt n): no observation may dominate. Limit .1, or where normal data
+// exceed it by themselves, the 1e-4 critical value of Grubbs (1950), which is the exact allowance,
+// so low = value; green up to .1 or the 5 % critical value.
 Gate dominance_gate(const Moments& x);
 
 // Value: excess kurtosis b2 - 3 for F and chi-square tests of variances, green <= .2, limit .2. The

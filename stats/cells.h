@@ -40,8 +40,10 @@ struct CellProbabilities {
 
 struct QuadratureOptions {
   double tolerance = 1e-10;  // absolute, of each cell
-  int deepest_bisection = 12;
+  int deepest_bisection = 40;
 };
+// A jump along a curve costs 2^depth parts a cell.
+inline constexpr QuadratureOptions hemisphere_quadrature{1e-10, 8};
 
 // Integral of a density over every cell, by adaptive Gauss-Legendre quadrature: a cell is halved
 // (quartered on the hemisphere) until the parts agree with the whole to the tolerance or the depth
@@ -53,6 +55,6 @@ CellProbabilities cell_probabilities(const IntervalGrid& grid,
                                      QuadratureOptions options = {});
 CellProbabilities cell_probabilities(const HemisphereGrid& grid,
                                      const std::function<double(Direction)>& density,
-                                     QuadratureOptions options = {});
+                                     QuadratureOptions options = hemisphere_quadrature);
 
 }  // namespace assay::stats

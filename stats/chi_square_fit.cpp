@@ -1,0 +1,172 @@
+#include "stats/chi_square_fit.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "stats/check.h"
+#include "stats/special.h"
+#include "stats/tails.h"
+
+namespace assay::stats {
+namespace {
+
+void check_cells(const CellCounts& counts, const FitOptions& options) {
+  check::at_least({"chi_square_fit", "number of cells"}, counts.probability.size(), 1);
+  if (counts.observed.size() != counts.probability.size()) {
+    check::fail({"chi_square_fit", "number of counts"}, counts.observed.size(),
+                "the number of probabilities, " + std::to_string(counts.probability.size()));
+  }
+  check::non_negative({"chi_square_fit", "minimum_expected"}, options.minimum_expected);
+  check::non_negative({"chi_square_fit", "probability_tolerance"}, options.probability_tolerance);
+  double sum = 0;
+  for (const double p : counts.probability) {
+    check::non_negative({"chi_square_fit", "probability"}, p);
+    sum += p;
+  }
+  const double rounding = 1e-15 * static_cast<double>(counts.probability.size() + 10);
+  if (std::abs(sum - 1) > options.probability_tolerance + rounding) {
+    check::fail({"chi_square_fit", "sum of probabilities"}, sum, "1 within the tolerance");
+  }
+}
+
+void absorb(PooledCell& into, const PooledCell& from) {
+  into.observed += from.observed;
+  into.expected += from.expected;
+  into.members.insert(into.members.end(), from.members.begin(), from.members.end());
+}
+
+// Cells of positive probability, large ones alone and small ones gathered.
+struct Pools {
+  std::vector<PooledCell> large;
+  std::vector<PooledCell> gathered;
+  PooledCell rest;  // the incomplete last pool
+};
+
+Pools gather(const CellCounts& counts, double observations, double minimum) {
+  Pools pools;
+  for (std::size_t i = 0; i < counts.probability.size(); ++i) {
+    if (counts.probability[i] == 0) continue;
+    const PooledCell cell{counts.observed[i], observations * counts.probability[i], {i}};
+    if (cell.expected >= minimum) {
+      pools.large.push_back(cell);
+      continue;
+    }
+    absorb(pools.rest, cell);
+    if (pools.rest.expected >= minimum) {
+      pools.gathered.push_back(std::move(pools.rest));
+      pools.rest = {};
+    }
+  }
+  return pools;
+}
+
+void flush_rest(Pools& pools) {
+  if (pools.rest.members.empty()) return;
+  if (!pools.gathered.empty()) {
+    absorb(pools.gathered.back(), pools.rest);
+  } else if (!pools.large.empty()) {
+    absorb(*std::min_element(pools.large.begin(), pools.large.end(),
+                             [](const auto& a, const auto& b) { return a.expected < b.expected; }),
+           pools.rest);
+  } else {
+    pools.gathered.push_back(pools.rest);
+  }
+}
+
+std::vector<PooledCell> pooled(const CellCounts& counts, double observations, double minimum) {
+  Pools pools = gather(counts, observations, minimum);
+  flush_rest(pools);
+  std::vector<PooledCell> cells = std::move(pools.large);
+  cells.insert(cells.end(), pools.gathered.begin(), pools.gathered.end());
+  std::sort(cells.begin(), cells.end(),
+            [](const auto& a, const auto& b) { return a.members.front() < b.members.front(); });
+  return cells;
+}
+
+std::uint64_t impossible_observations(const CellCounts& counts) {
+  std::uint64_t total = 0;
+  for (std::size_t i = 0; i < counts.probability.size(); ++i) {
+    if (counts.probability[i] == 0) total += counts.observed[i];
+  }
+  return total;
+}
+
+double log_p_impossible(const ChiSquareFit& fit, double tolerance) {
+  if (fit.impossible == 0) return 0;
+  if (tolerance == 0) return special::lowest_log();
+  return binomial_tails(fit.impossible, {fit.observations, std::min(tolerance, 1.0)}).upper;
+}
+
+double pearson(const std::vector<PooledCell>& cells) {
+  double sum = 0;
+  for (const PooledCell& cell : cells) {
+    const double difference = static_cast<double>(cell.observed) - cell.expected;
+    sum += difference * difference / cell.expected;
+  }
+  return sum;
+}
+
+LogTails effect_tails(const ChiSquareFit& fit, double effect) {
+  const double noncentrality = static_cast<double>(fit.observations) * effect * effect;
+  return noncentral_chi_square_tails(fit.test.statistic, {fit.degrees_of_freedom, noncentrality});
+}
+
+}  // namespace
+
+ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
+  check_cells(counts, options);
+  ChiSquareFit fit;
+  fit.observations =
+      std::accumulate(counts.observed.begin(), counts.observed.end(), std::uint64_t{0});
+  check::at_least({"chi_square_fit", "observations"}, fit.observations, 1);
+  const double n = static_cast<double>(fit.observations);
+  fit.cells = pooled(counts, n, options.minimum_expected);
+  check::at_least({"chi_square_fit", "pooled cells"}, fit.cells.size(), 2);
+  fit.impossible = impossible_observations(counts);
+  fit.degrees_of_freedom = static_cast<double>(fit.cells.size() - 1);
+  const double statistic = pearson(fit.cells);
+  const LogTails tails = chi_square_tails(statistic, fit.degrees_of_freedom);
+  // Two ways to reject share the level.
+  const double impossible = log_p_impossible(fit, options.probability_tolerance);
+  const bool two_ways = fit.impossible > 0;
+  const double log_p = two_ways ? std::min(tails.upper, impossible) + std::log(2.0) : tails.upper;
+  fit.test = {statistic,
+              {"chi-square", {fit.degrees_of_freedom}},
+              tails.lower,
+              special::clamp_log(log_p),
+              Exactness::asymptotic};
+  fit.effect = std::sqrt(std::max(0.0, statistic - fit.degrees_of_freedom) / n);
+  return fit;
+}
+
+TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect) {
+  check::non_negative({"chi_square_fit_effect", "null_effect"}, null_effect);
+  const LogTails tails = effect_tails(fit, null_effect);
+  const double n = static_cast<double>(fit.observations);
+  return {fit.test.statistic,
+          {"noncentral-chi-square", {fit.degrees_of_freedom, n * null_effect * null_effect}},
+          tails.lower,
+          tails.upper,
+          Exactness::asymptotic};
+}
+
+Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence) {
+  check::inside_unit({"chi_square_fit_interval", "confidence"}, confidence);
+  const double log_tail = std::log((1 - confidence) / 2);
+  // Both tails are monotone in w; an end is 0 when even w = 0 is not rejected from that side.
+  const auto end = [&](auto excess) {
+    if (excess(0.0) >= 0) return 0.0;
+    double high = fit.effect + 1 / std::sqrt(static_cast<double>(fit.observations));
+    while (excess(high) < 0) high *= 2;
+    std::uintmax_t iterations = 200;
+    const auto ends = boost::math::tools::toms748_solve(
+        excess, 0.0, high, boost::math::tools::eps_tolerance<double>(44), iterations);
+    return std::midpoint(ends.first, ends.second);
+  };
+  return {end([&](double w) { return effect_tails(fit, w).upper - log_tail; }),
+          end([&](double w) { return log_tail - effect_tails(fit, w).lower; }), confidence};
+}
+
+}  // namespace assay::stats

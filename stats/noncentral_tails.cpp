@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "stats/check.h"
+#include "stats/special.h"
+#include "stats/tails.h"
+
+namespace assay::stats {
+namespace {
+
+// Terms this far (in logarithm) below the largest are left out: e^-46 = 1e-20.
+constexpr double negligible = 46;
+
+// ---- Noncentral chi-square: a Poisson mixture of central laws
+// ---------------------------------------
+
+// P(X >= x) = sum_j Poisson(j; ncp/2) Q(nu/2 + j, x/2), and P for the lower tail. Both factors are
+// log-concave in j, so the terms have one mode and can be bracketed by bisection.
+struct PoissonMixture {
+  double half_x;
+  double half_degrees;
+  double rate;
+  Tail tail;
+
+  double log_weight(double j) const {
+    return special::log_gamma_prefix(j + 1, rate) - std::log(rate);
+  }
+  double log_central(double j) const {
+    const LogTails tails = gamma_tails(half_x, half_degrees + j);
+    return tail == Tail::lower ? tails.lower : tails.upper;
+  }
+  double log_term(double j) const { return log_weight(j) + log_central(j); }
+};
+
+double mode(const PoissonMixture& mixture) {
+  double low = 0;
+  double high = 2 * (mixture.rate + mixture.half_x) + 10;
+  while (high - low > 1) {
+    const double middle = std::floor((low + high) / 2);
+    const bool rising = mixture.log_term(middle + 1) > mixture.log_term(middle);
+    (rising ? low : high) = middle;
+  }
+  return mixture.log_term(high) > mixture.log_term(low) ? high : low;
+}
+
+// The index nearest the mode, in steps of `direction`, from which on the terms are negligible.
+double edge(const PoissonMixture& mixture, double centre, int direction) {
+  const double floor = mixture.log_term(centre) - negligible;
+  double inside = centre;
+  double step = 1;
+  double outside = centre + direction;
+  while (outside > 0 && mixture.log_term(outside) > floor) {
+    inside = outside;
+    step *= 2;
+    outside = std::max(0.0, centre + direction * step);
+  }
+  while (std::abs(outside - inside) > 1) {
+    const double middle = std::floor((inside + outside) / 2);
+    (mixture.log_term(middle) > floor ? inside : outside) = middle;
+  }
+  return std::max(0.0, outside);
+}
+
+// Sum from one edge to the other in the direction in which the central tail grows, by
+// Q(a+1, y) = Q(a, y) + y^a e^-y / Gamma(a+1) upwards and P(a-1, y) = P(a, y) + y^(a-1) e^-y /
+// Gamma(a) downwards: positive terms only. Both factors are held relative to their starting values.
+double log_mixture(const PoissonMixture& mixture) {
+  const double centre = mode(mixture);
+  const double low = edge(mixture, centre, -1);
+  const double high = edge(mixture, centre, +1);
+  const bool up = mixture.tail == Tail::upper;
+  // Reference scales at the mode keep the products in range however small the tail.
+  const double weight_scale = mixture.log_weight(centre);
+  const double central_scale = mixture.log_central(centre);
+  double j = up ? low : high;
+  double weight = std::exp(mixture.log_weight(j) - weight_scale);
+  double central = std::exp(mixture.log_central(j) - central_scale);
+  const double y = mixture.half_x;
+  // The increment between a and a + 1: y^a e^-y / Gamma(a + 1).
+  const double first = mixture.half_degrees + (up ? j : j - 1);
+  double increment =
+      first > 0 ? std::exp(special::log_gamma_prefix(first, y) - std::log(first) - central_scale)
+                : 0;
+  double sum = weight * central;
+  for (; up ? j < high : j > low;) {
+    central += increment;
+    const double a = mixture.half_degrees + j;
+    if (up) {
+      increment *= y / (a + 1);
+      weight *= mixture.rate / (j + 1);
+      j += 1;
+    } else {
+      increment *= (a - 1) / y;
+      weight *= j / mixture.rate;
+      j -= 1;
+    }
+    sum += weight * central;
+  }
+  return weight_scale + central_scale + std::log(sum);
+}
+
+// ---- Noncentral t: an integral over the chi law of s
+// -------------------------------------------------
+
+// ln of the integrand of P(T >= t) = int P(Z >= t s - delta) f(s) ds over u = ln s, where
+// nu s^2 ~ chi-square: f(u) = 2 (nu/2)^(nu/2) / Gamma(nu/2) exp(nu u - nu e^(2u) / 2).
+struct UpperIntegrand {
+  double t;
+  Noncentral parameters;
+
+  double operator()(double u) const {
+    const double half = parameters.degrees / 2;
+    const double square = std::exp(2 * u);
+    const double density =
+        std::log(2.0) + special::log_gamma_prefix(half, half) + half * (2 * u + 1 - square);
+    return density + normal_tails(t * std::exp(u) - parameters.noncentrality).upper;
+  }
+};
+
+double maximise(const UpperIntegrand& f, double low, double high) {
+  constexpr double golden = 0.38196601125010515;
+  for (int k = 0; k < 60; ++k) {
+    const double left = low + golden * (high - low);
+    const double right = high - golden * (high - low);
+    if (f(left) < f(right)) {
+      low = left;
+    } else {
+      high = right;
+    }
+  }
+  return (low + high) / 2;
+}
+
+double support_edge(const UpperIntegrand& f, double centre, double direction) {
+  const double floor = f(centre) - negligible;
+  double step = 1e-3 / std::sqrt(f.parameters.degrees);
+  while (f(centre + direction * step) > floor) step *= 1.5;
+  return centre + direction * step;
+}
+
+// The trapezoidal rule converges exponentially for an analytic integrand that decays at both ends.
+double log_noncentral_upper(double t, Noncentral parameters) {
+  const UpperIntegrand f{t, parameters};
+  const double spread = 60 / std::sqrt(parameters.degrees) + 60 / parameters.degrees;
+  const double centre = maximise(f, -spread - std::log1p(std::abs(t)), std::min(spread, 300.0));
+  const double peak = f(centre);
+  const double low = support_edge(f, centre, -1);
+  const double high = support_edge(f, centre, +1);
+  const double scale = std::abs(t) * std::exp(centre) + std::sqrt(2 * parameters.degrees);
+  const double step = std::min((high - low) / 200, 0.25 / scale);
+  double sum = 0;
+  for (double u = low; u <= high; u += step) sum += std::exp(f(u) - peak);
+  return peak + std::log(sum * step);
+}
+
+}  // namespace
+
+LogTails noncentral_chi_square_tails(double x, Noncentral parameters) {
+  check::finite({"noncentral_chi_square_tails", "x"}, x);
+  check::positive({"noncentral_chi_square_tails", "degrees"}, parameters.degrees);
+  check::non_negative({"noncentral_chi_square_tails", "noncentrality"}, parameters.noncentrality);
+  if (parameters.noncentrality == 0) return chi_square_tails(x, parameters.degrees);
+  if (x <= 0) return special::from_lower(special::lowest_log());
+  const Tail tail = x >= parameters.degrees + parameters.noncentrality ? Tail::upper : Tail::lower;
+  const double log_p =
+      log_mixture({x / 2, parameters.degrees / 2, parameters.noncentrality / 2, tail});
+  return tail == Tail::upper ? special::from_upper(log_p) : special::from_lower(log_p);
+}
+
+LogTails noncentral_t_tails(double t, Noncentral parameters) {
+  check::finite({"noncentral_t_tails", "t"}, t);
+  check::positive({"noncentral_t_tails", "degrees"}, parameters.degrees);
+  check::finite({"noncentral_t_tails", "noncentrality"}, parameters.noncentrality);
+  if (t >= parameters.noncentrality) {
+    return special::from_upper(log_noncentral_upper(t, parameters));
+  }
+  const Noncentral mirrored{parameters.degrees, -parameters.noncentrality};
+  return special::from_lower(log_noncentral_upper(-t, mirrored));
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+
+#include "stats/kolmogorov.h"
+#include "stats/planning.h"
+#include "stats/power.h"
+#include "stats/smirnov.h"
+#include "stats/supremum_bound.h"
+
+namespace assay::stats {
+namespace {
+
+void check_plan(const char* function, const DistancePlan& plan) {
+  planning::check_rates(function, plan.rates);
+  if (!(plan.allow >= 0 && plan.allow < 1)) {
+    check::fail({function, "allow"}, plan.allow, "in [0, 1)");
+  }
+}
+
+// Smallest lattice distance of two samples of n that the exact law rejects; 1 + 1/n when none.
+double two_sample_critical(double log_alpha, std::uint64_t n) {
+  std::uint64_t low = 0;
+  std::uint64_t high = n + 1;
+  while (high - low > 1) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    (smirnov_upper_tail({middle, n, n}).log_p <= log_alpha ? high : low) = middle;
+  }
+  return static_cast<double>(high) / static_cast<double>(n);
+}
+
+double two_sample_margin_critical(double log_alpha, std::uint64_t n) {
+  const auto excess = [&](double gap) { return log_alpha - log_two_suprema_bound(gap, {n, n}); };
+  double high = 1;
+  while (excess(high) < 0) high *= 2;
+  std::uintmax_t iterations = 100;
+  return boost::math::tools::toms748_solve(
+             excess, 0.0, high, boost::math::tools::eps_tolerance<double>(30), iterations)
+      .second;
+}
+
+// d_alpha: the distance above `allow` from which the test rejects.
+double critical_distance(const DistancePlan& plan, double n) {
+  const auto size = static_cast<std::uint64_t>(n);
+  const double log_alpha = std::log(plan.rates.alpha);
+  if (!plan.two_samples) return kolmogorov_upper_quantile(log_alpha, size);
+  return plan.allow == 0 ? two_sample_critical(log_alpha, size)
+                         : two_sample_margin_critical(log_alpha, size);
+}
+
+double effective(const DistancePlan& plan, double n) { return plan.two_samples ? n / 2 : n; }
+
+double check_distance_size(const char* function, double n) {
+  if (!(n >= 1) || n > planning::most_samples) check::fail({function, "n"}, n, "in [1, 2^53]");
+  return std::floor(n);
+}
+
+double power_bound(const DistancePlan& plan, double n, double distance) {
+  const double gap = distance - plan.allow - critical_distance(plan, n);
+  return gap > 0 ? -std::expm1(-2 * effective(plan, n) * gap * gap) : 0;
+}
+
+void check_plan(const char* function, const FitPlan& plan) {
+  planning::check_rates(function, plan.rates);
+  check::positive({function, "degrees_of_freedom"}, plan.degrees_of_freedom);
+  check::non_negative({function, "allow"}, plan.allow);
+}
+
+double fit_power(const FitPlan& plan, double n, double effect) {
+  const double nu = plan.degrees_of_freedom;
+  const LogTail tail{Tail::upper, std::log(plan.rates.alpha)};
+  const double critical = noncentral_chi_square_quantile(tail, {nu, n * plan.allow * plan.allow});
+  return std::exp(noncentral_chi_square_tails(critical, {nu, n * effect * effect}).upper);
+}
+
+void check_fit_size(const char* function, double n) {
+  if (!(n >= 1) || n > planning::most_samples) check::fail({function, "n"}, n, "in [1, 2^53]");
+}
+
+}  // namespace
+
+double ks_power_bound(const DistancePlan& plan, double n, double distance) {
+  check_plan("ks_power_bound", plan);
+  check::unit({"ks_power_bound", "distance"}, distance);
+  return power_bound(plan, check_distance_size("ks_power_bound", n), distance);
+}
+
+double ks_detectable(const DistancePlan& plan, double n) {
+  check_plan("ks_detectable", plan);
+  const double size = check_distance_size("ks_detectable", n);
+  const double miss = std::sqrt(-std::log(plan.rates.beta) / (2 * effective(plan, size)));
+  const double distance = plan.allow + critical_distance(plan, size) + miss;
+  return distance <= 1 ? distance : std::numeric_limits<double>::infinity();
+}
+
+std::optional<std::uint64_t> ks_sample_size(const DistancePlan& plan, double detect) {
+  check_plan("ks_sample_size", plan);
+  planning::check_effect("ks_sample_size", plan.allow, detect);
+  check::unit({"ks_sample_size", "detect"}, detect);
+  const double scale = plan.two_samples ? 2 : 1;
+  const double root =
+      std::sqrt(std::log(2 / plan.rates.alpha) / 2) + std::sqrt(-std::log(plan.rates.beta) / 2);
+  const double gap = detect - plan.allow;
+  const double guess = scale * (root / gap) * (root / gap);
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) { return power_bound(plan, n, detect) >= 1 - plan.rates.beta; };
+  return planning::smallest_sample(enough, guess, 1);
+}
+
+double chi_square_fit_power(const FitPlan& plan, double n, double effect) {
+  check_plan("chi_square_fit_power", plan);
+  check_fit_size("chi_square_fit_power", n);
+  check::non_negative({"chi_square_fit_power", "effect"}, effect);
+  return fit_power(plan, n, effect);
+}
+
+double chi_square_fit_detectable(const FitPlan& plan, double n) {
+  check_plan("chi_square_fit_detectable", plan);
+  check_fit_size("chi_square_fit_detectable", n);
+  const auto enough = [&](double effect) {
+    return fit_power(plan, n, effect) >= 1 - plan.rates.beta;
+  };
+  return planning::smallest_effect(enough, plan.allow, 1 / std::sqrt(n));
+}
+
+std::optional<std::uint64_t> chi_square_fit_sample_size(const FitPlan& plan, double detect) {
+  check_plan("chi_square_fit_sample_size", plan);
+  planning::check_effect("chi_square_fit_sample_size", plan.allow, detect);
+  const double z = planning::z_upper(plan.rates.alpha) + planning::z_upper(plan.rates.beta);
+  const double gap = detect - plan.allow;
+  const double guess = (z * z + z * std::sqrt(2 * plan.degrees_of_freedom)) / (gap * gap);
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) { return fit_power(plan, n, detect) >= 1 - plan.rates.beta; };
+  return planning::smallest_sample(enough, guess, 1);
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,189 @@
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "stats/planning.h"
+#include "stats/power.h"
+#include "stats/special.h"
+
+namespace assay::stats {
+namespace {
+
+using planning::critical_tail;
+using planning::z_upper;
+
+struct Studentised {
+  double standard_error;
+  double degrees;
+};
+
+// P(reject) at a true effect, null region |theta| <= allow or theta <= allow.
+double power_of(const Studentised& scale, const ErrorRates& rates, EffectPlan effect) {
+  const double critical = student_t_quantile(critical_tail(rates), scale.degrees);
+  const double up = (effect.detect - effect.allow) / scale.standard_error;
+  double power = std::exp(noncentral_t_tails(critical, {scale.degrees, up}).upper);
+  if (rates.two_sided) {
+    const double down = (effect.detect + effect.allow) / scale.standard_error;
+    power += std::exp(noncentral_t_tails(-critical, {scale.degrees, down}).lower);
+  }
+  return std::min(power, 1.0);
+}
+
+Studentised scale_of(const MeanPlan& plan, double n) {
+  const double own = plan.standard_deviation * plan.standard_deviation / n;
+  const double total = own + plan.reference_standard_error * plan.reference_standard_error;
+  return {std::sqrt(total), (n - 1) * (total / own) * (total / own)};
+}
+
+Studentised scale_of(const TwoMeansPlan& plan, double n_x) {
+  const double n_y = n_x * plan.allocation;
+  const double vx = plan.standard_deviation_x * plan.standard_deviation_x / n_x;
+  const double vy = plan.standard_deviation_y * plan.standard_deviation_y / n_y;
+  const double total = vx + vy;
+  return {std::sqrt(total), total * total / (vx * vx / (n_x - 1) + vy * vy / (n_y - 1))};
+}
+
+void check_plan(const char* function, const MeanPlan& plan) {
+  planning::check_rates(function, plan.rates);
+  check::positive({function, "standard_deviation"}, plan.standard_deviation);
+  check::non_negative({function, "allow"}, plan.allow);
+  check::non_negative({function, "reference_standard_error"}, plan.reference_standard_error);
+}
+
+void check_plan(const char* function, const TwoMeansPlan& plan) {
+  planning::check_rates(function, plan.rates);
+  check::positive({function, "standard_deviation_x"}, plan.standard_deviation_x);
+  check::positive({function, "standard_deviation_y"}, plan.standard_deviation_y);
+  check::positive({function, "allocation"}, plan.allocation);
+  check::non_negative({function, "allow"}, plan.allow);
+}
+
+void check_size(const char* function, double n) {
+  if (!(n > 1) || !std::isfinite(n)) check::fail({function, "n"}, n, "above 1 and finite");
+}
+
+template <class Plan>
+double detectable(const char* function, const Plan& plan, double n) {
+  check_plan(function, plan);
+  check_size(function, n);
+  const Studentised scale = scale_of(plan, n);
+  const auto enough = [&](double effect) {
+    return power_of(scale, plan.rates, {plan.allow, effect}) >= 1 - plan.rates.beta;
+  };
+  return planning::smallest_effect(enough, plan.allow, scale.standard_error);
+}
+
+double z_sum(const ErrorRates& rates) {
+  return normal_quantile(critical_tail(rates)) + z_upper(rates.beta);
+}
+
+}  // namespace
+
+double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRates rates) {
+  planning::check_rates("normal_sample_size", rates);
+  planning::check_effect("normal_sample_size", effect.allow, effect.detect);
+  check::positive({"normal_sample_size", "standard_deviation"}, standard_deviation);
+  const double ratio = z_sum(rates) * standard_deviation / (effect.detect - effect.allow);
+  return ratio * ratio;
+}
+
+double student_t_power(const MeanPlan& plan, double n, double effect) {
+  check_plan("student_t_power", plan);
+  check_size("student_t_power", n);
+  check::finite({"student_t_power", "effect"}, effect);
+  return power_of(scale_of(plan, n), plan.rates, {plan.allow, effect});
+}
+
+double student_t_detectable(const MeanPlan& plan, double n) {
+  return detectable("student_t_detectable", plan, n);
+}
+
+std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double detect) {
+  check_plan("student_t_sample_size", plan);
+  planning::check_effect("student_t_sample_size", plan.allow, detect);
+  // In the limit of many samples only the reference's own error is left.
+  const double gap = detect - plan.allow;
+  const double attainable = gap / z_sum(plan.rates);
+  const double own =
+      attainable * attainable - plan.reference_standard_error * plan.reference_standard_error;
+  if (own <= 0) return std::nullopt;
+  const double guess = plan.standard_deviation * plan.standard_deviation / own;
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) {
+    return power_of(scale_of(plan, n), plan.rates, {plan.allow, detect}) >= 1 - plan.rates.beta;
+  };
+  return planning::smallest_sample(enough, guess, 2);
+}
+
+double welch_power(const TwoMeansPlan& plan, double n_x, double effect) {
+  check_plan("welch_power", plan);
+  check_size("welch_power", std::min(n_x, n_x * plan.allocation));
+  check::finite({"welch_power", "effect"}, effect);
+  return power_of(scale_of(plan, n_x), plan.rates, {plan.allow, effect});
+}
+
+double welch_detectable(const TwoMeansPlan& plan, double n_x) {
+  return detectable("welch_detectable", plan, n_x);
+}
+
+std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double detect) {
+  check_plan("welch_sample_size", plan);
+  planning::check_effect("welch_sample_size", plan.allow, detect);
+  const double sd =
+      std::hypot(plan.standard_deviation_x, plan.standard_deviation_y / std::sqrt(plan.allocation));
+  const double guess = normal_sample_size(sd, {plan.allow, detect}, plan.rates);
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) {
+    return power_of(scale_of(plan, n), plan.rates, {plan.allow, detect}) >= 1 - plan.rates.beta;
+  };
+  const double minimum = std::max(2.0, std::ceil(2 / plan.allocation));
+  return planning::smallest_sample(enough, guess, minimum);
+}
+
+// int_0^{s_max} [Phi((margin - effect) / se - t s) - Phi(-(margin + effect) / se + t s)] f(s) ds
+// with nu s^2 ~ chi-square(nu), se = sigma / sqrt(n) and s_max = margin / (t se), where the
+// acceptance region of the mean is empty. (The difference of two noncentral t tails goes negative
+// instead.)
+double equivalence_power(const EquivalencePlan& plan, double n, double effect) {
+  planning::check_rates("equivalence_power", {plan.alpha, plan.beta, false});
+  check::positive({"equivalence_power", "standard_deviation"}, plan.standard_deviation);
+  check::positive({"equivalence_power", "margin"}, plan.margin);
+  check::finite({"equivalence_power", "effect"}, effect);
+  check_size("equivalence_power", n);
+  const double degrees = n - 1;
+  const double half = degrees / 2;
+  const double se = plan.standard_deviation / std::sqrt(n);
+  const double t = student_t_quantile({Tail::upper, std::log(plan.alpha)}, degrees);
+  const auto integrand = [&](double s) {
+    if (s <= 0) return 0.0;
+    const double density = 2 * std::exp(special::log_gamma_prefix(half, half * s * s)) / s;
+    const double high = (plan.margin - effect) / se - t * s;
+    const double low = -(plan.margin + effect) / se + t * s;
+    return density *
+           (std::erfc(low / std::numbers::sqrt2) - std::erfc(high / std::numbers::sqrt2)) / 2;
+  };
+  const double log_outside = std::log(1e-18);
+  const double first =
+      std::sqrt(chi_square_quantile({Tail::lower, log_outside}, degrees) / degrees);
+  const double most = std::sqrt(chi_square_quantile({Tail::upper, log_outside}, degrees) / degrees);
+  const double last = std::min(plan.margin / (t * se), most);
+  if (!(last > first)) return 0;
+  return std::clamp(boost::math::quadrature::gauss_kronrod<double, 31>::integrate(integrand, first,
+                                                                                  last, 12, 1e-12),
+                    0.0, 1.0);
+}
+
+std::optional<std::uint64_t> equivalence_sample_size(const EquivalencePlan& plan, double effect) {
+  check::finite({"equivalence_sample_size", "effect"}, effect);
+  check::positive({"equivalence_sample_size", "margin"}, plan.margin);
+  if (!(std::abs(effect) < plan.margin)) return std::nullopt;
+  const double gap = plan.margin - std::abs(effect);
+  const double guess =
+      normal_sample_size(plan.standard_deviation, {0, gap},
+                         {plan.alpha, effect == 0 ? plan.beta / 2 : plan.beta, false});
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) { return equivalence_power(plan, n, effect) >= 1 - plan.beta; };
+  return planning::smallest_sample(enough, guess, 2);
+}
+
+}  // namespace assay::stats

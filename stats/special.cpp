@@ -1,0 +1,70 @@
+#include "stats/special.h"
+
+#include <algorithm>
+#include <boost/math/special_functions/log1p.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace assay::stats {
+
+double log_complement(double log_probability) {
+  return log_probability > -std::numbers::ln2 ? std::log(-std::expm1(log_probability))
+                                              : std::log1p(-std::exp(log_probability));
+}
+
+double log_sum(LogPair terms) {
+  const double high = std::max(terms.first, terms.second);
+  const double low = std::min(terms.first, terms.second);
+  if (std::isinf(high)) return high;
+  return high + std::log1p(std::exp(low - high));
+}
+
+namespace special {
+
+double lowest_log() { return std::numeric_limits<double>::lowest(); }
+
+double clamp_log(double log_probability) { return std::clamp(log_probability, lowest_log(), 0.0); }
+
+LogTails from_lower(double log_lower) {
+  return {clamp_log(log_lower), clamp_log(log_complement(std::min(log_lower, 0.0)))};
+}
+
+LogTails from_upper(double log_upper) {
+  return {clamp_log(log_complement(std::min(log_upper, 0.0))), clamp_log(log_upper)};
+}
+
+double stirling_error(double z) {
+  constexpr double half_log_two_pi = 0.91893853320467274178;
+  if (z < 15) return std::lgamma(z) - ((z - 0.5) * std::log(z) - z + half_log_two_pi);
+  // Asymptotic series with Bernoulli numbers; the first term left out is below 1e-17 at z = 15.
+  const double w = 1 / (z * z);
+  return (1 / 12.0 -
+          w * (1 / 360.0 -
+               w * (1 / 1260.0 - w * (1 / 1680.0 - w * (1 / 1188.0 - w * (691 / 360360.0)))))) /
+         z;
+}
+
+double log1p_minus(double z) { return boost::math::log1pmx(z); }
+
+double log_deviance(double weight, double ratio) {
+  const double excess = ratio - 1;
+  if (std::abs(excess) < 0.5) return weight * log1p_minus(excess);
+  return weight * (std::log(ratio) - excess);
+}
+
+double log_gamma_prefix(double shape, double x) {
+  return log_deviance(shape, x / shape) + 0.5 * std::log(shape / (2 * std::numbers::pi)) -
+         stirling_error(shape);
+}
+
+double log_beta_prefix(BetaShape shape, BetaPoint point) {
+  const auto [a, b] = shape;
+  const double sum = a + b;
+  return log_deviance(a, point.x * (sum / a)) + log_deviance(b, point.y * (sum / b)) +
+         0.5 * std::log(a / sum * b / (2 * std::numbers::pi)) + stirling_error(sum) -
+         stirling_error(a) - stirling_error(b);
+}
+
+}  // namespace special
+}  // namespace assay::stats
