@@ -1,0 +1,109 @@
+#pragma once
+
+// A receiver under a sky, the picture of an environment, and what stands in between: what the
+// estimators of the family share. They estimate the irradiance of each colour channel,
+//   E = integral over directions w of L(w) max(0, n . w) V(w),
+// V(w) = 1 where nothing stands in the way, else 0.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "estimators/estimator.h"
+#include "render/environment_map.h"
+#include "render/frame.h"
+#include "render/patch_integrals.h"
+#include "render/scene.h"
+
+namespace assay::environment {
+
+using render::Rgb;
+
+class Sky {
+ public:
+  /// `occluders` are in the receiver's frame.
+  Sky(render::EnvironmentMap map, const render::Vector3& normal,
+      const std::vector<render::Shape>& occluders);
+
+  const render::EnvironmentMap& map() const { return map_; }
+  const render::Frame& frame() const { return frame_; }
+  bool open() const { return !scene_; }  ///< whether there are no occluders
+
+  /// Whether nothing stands in a direction of the receiver's frame. Counts a shadow ray also under
+  /// the open sky, which a renderer cannot know beforehand.
+  bool visible(const render::Vector3& local, Cost& cost) const {
+    ++cost.shadow_rays;
+    return !scene_ || !scene_->occluded({.origin = {}, .direction = local});
+  }
+
+ private:
+  render::EnvironmentMap map_;
+  render::Frame frame_;
+  std::optional<render::Scene> scene_;
+};
+
+using SharedSky = std::shared_ptr<const Sky>;
+
+/// map, normal, position, occluders.
+std::vector<ParameterInformation> parameters();
+/// Reads them. InputError at the parameter for a picture that cannot be used.
+SharedSky read_sky(Parameters&);
+
+/// What the primaries of an estimator are.
+struct Primaries {
+  /// E[X^2] of a channel is the sum of L^2 times this over texels of radiance L.
+  std::function<double(std::size_t texel, const render::CosineMoments&)> second_moment;
+  Rgb largest;  ///< no X is above, channel by channel
+};
+
+/// The channels r, g, b. Under the open sky with mean (exact to `mean_error`) and variance.
+std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primaries);
+
+/// Mean of the three channels: what samplers of directions evaluate.
+inline double grey(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
+
+/// An estimator whose primary, Rgb(Stream&, Cost&), has three channels.
+template <class Primary>
+class RgbEstimator final : public Estimator {
+ public:
+  explicit RgbEstimator(Primary primary) : primary_(std::move(primary)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    Rgb sum{};
+    for (std::uint64_t i = 0; i < primaries; ++i) {
+      const Rgb value = primary_(random, cost);
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += value[c];
+    }
+    for (std::size_t c = 0; c < 3; ++c) out[c] = sum[c] / static_cast<double>(primaries);
+    cost.samples += primaries;
+  }
+
+ private:
+  Primary primary_;
+};
+
+template <class Primary>
+class RgbSetup final : public Setup {
+ public:
+  RgbSetup(std::vector<Channel> channels, Primary primary, NamedSampler sampler)
+      : channels_(std::move(channels)),
+        primary_(std::move(primary)),
+        sampler_(std::move(sampler)) {}
+
+  std::vector<Channel> channels() const override { return channels_; }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<RgbEstimator<Primary>>(primary_);
+  }
+  std::vector<NamedSampler> samplers() const override { return {sampler_}; }
+
+ private:
+  std::vector<Channel> channels_;
+  Primary primary_;
+  NamedSampler sampler_;
+};
+
+}  // namespace assay::environment

@@ -1,0 +1,120 @@
+// Observations that another program made, or Assay itself earlier: observation i is row i of a text
+// file (recorded/table.h). Nothing is known of their mean. `primaries` is 1: what one row was made
+// from is the other program's affair.
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "estimators/estimator.h"
+#include "recorded/table.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using SharedTable = std::shared_ptr<const recorded::Table>;
+
+/// Which columns are channels: `count` of them from `first`.
+struct Selection {
+  std::size_t first = 0;
+  std::size_t count = 1;
+};
+
+class Recorded final : public Estimator {
+ public:
+  Recorded(SharedTable table, Selection selection)
+      : table_(std::move(table)), selection_(selection) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
+    const std::uint64_t row = random.observation();
+    if (row >= table_->rows()) {
+      throw std::out_of_range("recorded: there is no observation " + std::to_string(row) +
+                              ", the file has " + std::to_string(table_->rows()) + " rows");
+    }
+    const double* const begin =
+        table_->values.data() + row * table_->columns.size() + selection_.first;
+    std::copy_n(begin, selection_.count, out.begin());
+    cost.samples += 1;
+  }
+
+ private:
+  SharedTable table_;
+  Selection selection_;
+};
+
+class RecordedSetup final : public Setup {
+ public:
+  RecordedSetup(SharedTable table, Selection selection)
+      : table_(std::move(table)), selection_(selection) {}
+
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels;
+    for (std::size_t i = 0; i < selection_.count; ++i) {
+      channels.push_back({.name = table_->columns[selection_.first + i]});
+    }
+    return channels;
+  }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<Recorded>(table_, selection_);
+  }
+  std::optional<std::uint64_t> observations() const override { return table_->rows(); }
+
+ private:
+  SharedTable table_;
+  Selection selection_;
+};
+
+Selection select(const recorded::Table& table, Parameters& parameters) {
+  const std::string column = parameters.string("column");
+  if (!parameters.given("column")) return {0, table.columns.size()};
+  const auto found = std::ranges::find(table.columns, column);
+  if (found == table.columns.end()) {
+    std::string known;
+    for (const std::string& name : table.columns) known += " `" + name + "`";
+    parameters.refuse("column", "the file has no column `" + column + "`; it has" + known);
+  }
+  return {static_cast<std::size_t>(found - table.columns.begin()), 1};
+}
+
+recorded::Table read(Parameters& parameters) {
+  const std::string file = parameters.file("file");
+  try {
+    return recorded::read_table(file);
+  } catch (const InputError& error) {
+    // A file that cannot be used at all is a mistake of the suite; what stands in it, of the file.
+    if (error.where().line != 0) throw;
+    parameters.refuse("file", "`" + file + "`: " + error.message());
+  }
+}
+
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  const auto table = std::make_shared<const recorded::Table>(read(parameters));
+  return std::make_shared<RecordedSetup>(table, select(*table, parameters));
+}
+
+}  // namespace
+
+std::vector<Entry> recorded_recorded() {
+  return {{{.name = "recorded",
+            .summary = "Observations from a text file, one a line.",
+            .description =
+                "Observation i is row i of `file`. Numbers are separated by white space or commas, "
+                "`#` begins a comment, and `# columns: a b c` names the columns, each of which is "
+                "a channel unless `column` picks one. Every row needs the same number of numbers; "
+                "`nan` and `inf` are read as such. `primaries` is 1.",
+            .parameters = {{.name = "file",
+                            .type = ParameterType::string,
+                            .summary = "the file, relative to the suite"},
+                           {.name = "column",
+                            .type = ParameterType::string,
+                            .summary = "the one column to use; all of them when absent",
+                            .fallback = "all"}},
+            .averages = false},
+           prepare}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,155 @@
+#include "render/patch_integrals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace assay::render {
+
+namespace {
+
+using std::numbers::pi;
+using Pair = std::array<double, 2>;
+
+double cubed(double x) { return x * x * x; }
+
+// Integrals over theta of sin^2, sin cos, sin^3, sin^2 cos and sin cos^2.
+struct PolarIntegrals {
+  double ss, sc, sss, ssc, scc;
+
+  explicit PolarIntegrals(Pair theta) {
+    const auto [a, b] = theta;
+    const double sine_a = std::sin(a), sine_b = std::sin(b);
+    const double cosine_a = std::cos(a), cosine_b = std::cos(b);
+    ss = (b - a) / 2 - std::cos(a + b) * std::sin(b - a) / 2;
+    sc = std::sin(a + b) * std::sin(b - a) / 2;
+    scc = (cubed(cosine_a) - cubed(cosine_b)) / 3;
+    sss = cosine_a - cosine_b - scc;
+    ssc = (cubed(sine_b) - cubed(sine_a)) / 3;
+  }
+};
+
+// n . w = P sin theta + Q cos theta along a meridian, P = nx cos phi + ny sin phi, Q = nz.
+Pair whole_patch(const Patch& patch, const Vector3& n) {
+  const PolarIntegrals polar(patch.theta);
+  const auto [c, d] = patch.phi;
+  const double width = d - c;
+  const double of_p = n.x * (std::sin(d) - std::sin(c)) + n.y * (std::cos(c) - std::cos(d));
+  const double twice = (std::sin(2 * d) - std::sin(2 * c)) / 4;
+  const double product = std::sin(d + c) * std::sin(d - c);
+  const double of_pp =
+      n.x * n.x * (width / 2 + twice) + n.y * n.y * (width / 2 - twice) + n.x * n.y * product;
+  return {of_p * polar.ss + n.z * width * polar.sc,
+          of_pp * polar.sss + 2 * of_p * n.z * polar.ssc + n.z * n.z * width * polar.scc};
+}
+
+// Both moments along the meridian at phi. In (0, pi), P sin + Q cos has one zero, where
+// (sin, cos) ~ (|Q|, -P sign Q); it is positive before it if Q > 0, after it if Q < 0.
+Pair along_meridian(Pair theta, const Vector3& n, double phi) {
+  const double p = n.x * std::cos(phi) + n.y * std::sin(phi);
+  const double q = n.z;
+  if (q == 0 && p <= 0) return {0, 0};
+  if (q != 0) {
+    const double zero = std::atan2(std::abs(q), q > 0 ? -p : p);
+    double& end = q > 0 ? theta[1] : theta[0];
+    end = std::clamp(zero, theta[0], theta[1]);
+  }
+  const PolarIntegrals polar(theta);
+  return {p * polar.ss + q * polar.sc,
+          p * p * polar.sss + 2 * p * q * polar.ssc + q * q * polar.scc};
+}
+
+// Nodes in (0, 1] of the Gauss-Legendre rule of 2 N points on [-1, 1], by Newton's method.
+template <std::size_t N>
+struct GaussLegendre {
+  std::array<double, N> node;
+  std::array<double, N> weight;
+
+  GaussLegendre() {
+    for (std::size_t i = 0; i < N; ++i) solve(i);
+  }
+  void solve(std::size_t i) {
+    constexpr double n = 2 * N;
+    double x = std::cos(pi * (static_cast<double>(i) + 0.75) / (n + 0.5));
+    double slope = 0;
+    for (int step = 0; step < 6; ++step) {
+      double before = 1, value = x;
+      for (double k = 2; k <= n; ++k) {
+        before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
+      }
+      slope = n * (x * value - before) / (x * x - 1);
+      x -= value / slope;
+    }
+    node[i] = x;
+    weight[i] = 2 / ((1 - x * x) * slope * slope);
+  }
+};
+
+template <std::size_t N, class F>
+Pair gauss_legendre(const F& f, double low, double high) {
+  static const GaussLegendre<N> rule;
+  const double middle = (low + high) / 2;
+  const double half = (high - low) / 2;
+  Pair sum{};
+  for (std::size_t i = 0; i < N; ++i) {
+    for (const double x : {-rule.node[i], rule.node[i]}) {
+      const Pair y = f(middle + half * x);
+      sum[0] += half * rule.weight[i] * y[0];
+      sum[1] += half * rule.weight[i] * y[1];
+    }
+  }
+  return sum;
+}
+
+// Azimuths inside the patch at which the horizon meets one of its parallels, with its ends and
+// pieces no wider than a quarter of a turn.
+std::vector<double> breaks(const Patch& patch, const Vector3& n) {
+  const auto [c, d] = patch.phi;
+  std::vector<double> all{c, d};
+  for (double at = c + pi / 2; at < d; at += pi / 2) all.push_back(at);
+  const double radius = std::hypot(n.x, n.y);
+  const double towards = std::atan2(n.y, n.x);
+  for (const double theta : patch.theta) {
+    // radius cos(phi - towards) sin theta + nz cos theta = 0
+    const double cosine = -n.z * std::cos(theta) / (radius * std::sin(theta));
+    if (!(std::abs(cosine) <= 1)) continue;
+    for (const double offset : {std::acos(cosine), -std::acos(cosine)}) {
+      double phi = towards + offset;
+      phi -= 2 * pi * std::floor((phi - c) / (2 * pi));
+      if (phi < d) all.push_back(phi);
+    }
+  }
+  std::ranges::sort(all);
+  return all;
+}
+
+CosineMoments crossed(const Patch& patch, const Vector3& n) {
+  const auto meridian = [&](double phi) { return along_meridian(patch.theta, n, phi); };
+  const std::vector<double> ends = breaks(patch, n);
+  CosineMoments moments;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const Pair fine = gauss_legendre<8>(meridian, ends[i], ends[i + 1]);
+    const Pair coarse = gauss_legendre<5>(meridian, ends[i], ends[i + 1]);
+    moments.first += fine[0];
+    moments.second += fine[1];
+    moments.error += std::max(std::abs(fine[0] - coarse[0]), std::abs(fine[1] - coarse[1]));
+  }
+  return moments;
+}
+
+}  // namespace
+
+CosineMoments cosine_moments(const Patch& patch, const Vector3& normal) {
+  // No point of the patch is farther from its middle than its height plus half its widest parallel.
+  const Vector3 middle = direction_in(patch, {0.5, 0.5});
+  const double radius = patch.theta[1] - patch.theta[0] + (patch.phi[1] - patch.phi[0]) / 2;
+  const double height = std::asin(std::clamp(dot(normal, middle), -1.0, 1.0));
+  if (height < -radius) return {};
+  if (height <= radius) return crossed(patch, normal);
+  const Pair exact = whole_patch(patch, normal);
+  return {.first = exact[0], .second = exact[1]};
+}
+
+}  // namespace assay::render
