@@ -19,11 +19,13 @@ constexpr int number_width = 33;
 constexpr int cost_width = 12;
 
 // A terminal renders a no-break space in its own way: copied text should hold plain ones.
-std::string plain_spaces(std::string text) {
-  static constexpr std::string_view no_break = "\u00A0";
-  for (std::size_t at = text.find(no_break); at != std::string::npos; at = text.find(no_break, at))
-    text.replace(at, no_break.size(), " ");
-  return text;
+std::string plain_spaces(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    const char32_t c = next_code_point(text, i);
+    append_code_point(result, c == 0xA0 ? U' ' : c);
+  }
+  return result;
 }
 
 std::string plain(const std::string& text) { return plain_spaces(one_line(text)); }
@@ -50,7 +52,7 @@ class Screen {
 
   void run(const Record& record) {
     for (const Suite& suite : record.suites) write(record, suite);
-    if (!record.note.empty()) paragraph("", record.note);
+    if (!record.note.empty()) paragraph(record.note);
     summary(record);
   }
   std::string take() { return std::move(out_); }
@@ -63,10 +65,15 @@ class Screen {
                             : shorten(text, options_.width) + "\n";
   }
 
-  void paragraph(const std::string& indent, const std::string& text) {
-    for (const std::string& part :
-         wrap(plain_spaces(clean(text)), options_.width - columns(indent)))
-      line(indent + part);
+  void paragraph(const std::string& text) {
+    for (const std::string& part : wrapped(text, options_.width)) line(part);
+  }
+
+  // No-break spaces keep numbers and units together until the lines are made.
+  static std::vector<std::string> wrapped(const std::string& text, int width) {
+    std::vector<std::string> lines = wrap(clean(text), width);
+    for (std::string& part : lines) part = plain_spaces(part);
+    return lines;
   }
 
   // A label in a column of its own, then lines beside it.
@@ -81,14 +88,14 @@ class Screen {
   int beside_width() const { return options_.width - label_width - 6; }
 
   void fact(const std::string& label, const std::string& text) {
-    if (!text.empty()) beside(label, wrap(plain_spaces(clean(text)), beside_width()));
+    if (!text.empty()) beside(label, wrapped(text, beside_width()));
   }
 
   void write(const Record& record, const Suite& suite) {
     const std::string file = suite.file.empty() ? "" : " (" + suite.file + ")";
     line(plain(suite.name + file), "\x1b[1m");
-    if (!suite.about.empty()) paragraph("", suite.about);
-    paragraph("", levels_text(suite, record.seed));
+    if (!suite.about.empty()) paragraph(suite.about);
+    paragraph(levels_text(suite, record.seed));
     out_ += "\n";
     if (options_.verbose) estimators(suite);
     for (const Test& test : suite.tests) write(test);

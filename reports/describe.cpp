@@ -15,18 +15,22 @@ std::string ratio_note(const Effect& effect) {
   return fmt::format(" (ratio {})", human(std::exp(*effect.estimate)));
 }
 
+bool bounded(const Number& end) { return end && std::isfinite(*end); }
+
+// "[low, high]", or the one bound of a one-sided interval.
 std::string interval_text(const Effect& effect) {
-  const auto end = [&](Number value) {
-    return value ? with_sign(*value, effect.relative) : std::string(no_number);
-  };
-  return fmt::format("[{}, {}]", end(effect.low), end(effect.high));
+  const auto end = [&](const Number& value) { return with_sign(*value, effect.relative); };
+  if (bounded(effect.low) && bounded(effect.high))
+    return fmt::format("[{}, {}]", end(effect.low), end(effect.high));
+  if (bounded(effect.low)) return fmt::format("[from {}]", end(effect.low));
+  return bounded(effect.high) ? fmt::format("[to {}]", end(effect.high)) : std::string();
 }
 
 std::string estimate_fact(const Effect& effect) {
   std::string text = fmt::format("{} {}{}", effect.quantity,
                                  with_sign(*effect.estimate, effect.relative), ratio_note(effect));
-  if (effect.low || effect.high)
-    text += fmt::format(", {} interval {}", percent(effect.confidence), interval_text(effect));
+  if (const std::string interval = interval_text(effect); !interval.empty())
+    text += fmt::format(", {} interval {}", percent(effect.confidence), interval);
   return text;
 }
 
@@ -36,9 +40,9 @@ std::string p_fact(const Test& test, const Channel& channel) {
   if (!test.tail.empty()) how += how.empty() ? test.tail : ", " + test.tail;
   if (!how.empty()) text += fmt::format(" ({})", how);
   if (channel.p_adjusted) text += fmt::format(", {} after Holm", p_text(channel.p_adjusted, {}));
-  if (test.alpha) text += fmt::format("; this test's share of alpha is {}", human(*test.alpha, 3));
+  if (test.alpha) text += fmt::format("; its share of alpha is {}", human(*test.alpha, 3));
   if (channel.p_pass)
-    text += fmt::format("; p = {} that the effect must not pass", p_text(channel.p_pass, {}));
+    text += fmt::format("; p = {} of an effect that must not pass", p_text(channel.p_pass, {}));
   return text;
 }
 
@@ -90,13 +94,13 @@ std::string expectation_fact(const Test& test) {
 
 std::string observations_fact(const Test& test) {
   std::string text;
-  const std::string channel = worst_channel(test).name;
-  for (const Sample& sample : test.samples) {
-    if (sample.channel != channel && !channel.empty()) continue;
+  for (const Sample* sample : worst_samples(test)) {
+    if (text.size() > 1000) break;
     if (!text.empty()) text += "; ";
-    text += fmt::format("{} of {} with {} primaries each", count_text(sample.secondaries),
-                        sample.estimator, count_text(sample.primaries));
-    if (sample.nonfinite > 0) text += fmt::format(", {} not finite", count_text(sample.nonfinite));
+    text += fmt::format("{} of {} with {} primaries each", count_text(sample->secondaries),
+                        sample->estimator, count_text(sample->primaries));
+    if (sample->nonfinite > 0)
+      text += fmt::format(", {} not finite", count_text(sample->nonfinite));
   }
   return text;
 }
@@ -107,11 +111,21 @@ Channel worst_channel(const Test& test) {
   return test.channels.empty() ? Channel{} : test.channels.front();
 }
 
+std::vector<const Sample*> worst_samples(const Test& test) {
+  const std::string channel = worst_channel(test).name;
+  std::vector<const Sample*> of_channel, all;
+  for (const Sample& sample : test.samples) {
+    all.push_back(&sample);
+    if (sample.channel == channel) of_channel.push_back(&sample);
+  }
+  return of_channel.empty() ? all : of_channel;
+}
+
 std::string effect_text(const Effect& effect) {
   if (!effect.estimate) return {};
-  std::string text = with_sign(*effect.estimate, effect.relative);
-  if (effect.low || effect.high) text += " " + interval_text(effect);
-  return text;
+  const std::string text = with_sign(*effect.estimate, effect.relative);
+  const std::string interval = interval_text(effect);
+  return interval.empty() ? text : fmt::format("{} {}", text, interval);
 }
 
 std::string key_number(const Test& test) {
@@ -198,8 +212,8 @@ std::vector<Fact> facts(const Test& test) {
     if (!sentence.empty()) result.emplace_back(label, std::move(sentence));
   };
   const Channel channel = worst_channel(test);
-  add("message", test.message);
   add("expected", expectation_fact(test));
+  add("message", test.message);
   add("claim", test.claim);
   add("null hypothesis", test.null_hypothesis);
   if (channel.effect.estimate) add("estimate", estimate_fact(channel.effect));
@@ -224,8 +238,8 @@ std::string plain_text(const Test& test) {
 }
 
 std::string levels_text(const Suite& suite, std::uint64_t seed) {
-  return fmt::format("alpha {}, beta {}, seed {}{}", human(suite.alpha), human(suite.beta), seed,
-                     suite.timed ? ", ended by a time budget" : "");
+  return fmt::format("alpha {} (false alarms), beta {} (misses), seed {}{}", human(suite.alpha),
+                     human(suite.beta), seed, suite.timed ? ", ended by a time budget" : "");
 }
 
 }  // namespace assay::reports

@@ -13,7 +13,11 @@ namespace assay::reports {
 /// The worst channel's numbers, or those of an untested channel where nothing was tested.
 Channel worst_channel(const Test&);
 
-/// "+0.31 % [+0.12 %, +0.5 %]"; empty where there is no estimate.
+/// The samples of the worst channel; all of them where none has its name.
+std::vector<const Sample*> worst_samples(const Test&);
+
+/// "+0.31 % [+0.12 %, +0.5 %]", "[from +0.12 %]" for a one-sided interval; empty where there is no
+/// estimate.
 std::string effect_text(const Effect&);
 
 /// The number of a test that a reader looks for first: the worst channel's effect with its
@@ -53,7 +57,7 @@ std::vector<Fact> facts(const Test&);
 /// plain text.
 std::string plain_text(const Test&);
 
-/// "alpha 0.01, beta 0.01, seed 1".
+/// "alpha 0.01 (false alarms), beta 0.01 (misses), seed 1".
 std::string levels_text(const Suite&, std::uint64_t seed);
 
 }  // namespace assay::reports

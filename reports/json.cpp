@@ -68,11 +68,16 @@ bool flat(const Json& node) {
   return true;
 }
 
-// Objects are spread over lines, arrays of numbers and small objects are not: a histogram is a
-// line.
+constexpr std::size_t longest_line = 240;
+
+// A histogram is one line, and so is a small object: an effect, a cost, a point.
+bool one_line_node(const Json& node) {
+  if (!node.is_structured() || node.empty()) return true;
+  return flat(node) && (node.is_array() || node.dump().size() <= longest_line);
+}
+
 void print(const Json& node, const std::string& indent, std::string& out) {
-  if (!node.is_structured() || node.empty() ||
-      (flat(node) && (node.is_array() || indent.size() > 5 * 2))) {
+  if (one_line_node(node)) {
     out += node.dump();
     return;
   }

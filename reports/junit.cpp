@@ -27,24 +27,24 @@ std::string property(const std::string& name, const std::string& value) {
   return fmt::format("    <property{}{}/>\n", attribute("name", name), attribute("value", value));
 }
 
-void add(std::string& out, const char* name, const Number& value) {
+void add(std::string& out, const std::string& name, const Number& value) {
   if (value) out += property(name, round_trip(*value));
 }
 
-void add(std::string& out, const char* name, const std::string& value) {
+void add(std::string& out, const std::string& name, const std::string& value) {
   if (!value.empty()) out += property(name, value);
 }
 
 std::string sample_properties(const Test& test) {
   std::string out;
-  const std::string channel = worst_channel(test).name;
-  for (const Sample& sample : test.samples) {
-    if (sample.channel != channel) continue;
+  const std::vector<const Sample*> samples = worst_samples(test);
+  for (std::size_t i = 0; i < samples.size() && i < 2; ++i) {
+    const Sample& sample = *samples[i];
     const auto key = [&sample](const char* name) {
-      return std::string(name) + "." + sample.estimator;
+      return fmt::format("{}.{}", name, sample.estimator);
     };
-    if (sample.mean) out += property(key("mean"), round_trip(*sample.mean));
-    if (sample.variance) out += property(key("variance"), round_trip(*sample.variance));
+    add(out, key("mean"), sample.mean);
+    add(out, key("variance"), sample.variance);
     out += property(key("primaries"), fmt::format("{}", sample.primaries));
     out += property(key("secondaries"), fmt::format("{}", sample.secondaries));
   }

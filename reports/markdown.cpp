@@ -36,7 +36,8 @@ std::string problem(const Test& test) {
     out += fmt::format("- {}: {}\n", label, cell(sentence, paragraph_limit));
   if (const std::string where = place(test); !where.empty())
     out += fmt::format("- where: {}\n", cell(where));
-  if (!test.replay.empty()) out += "\n" + code_block(cap(one_line(test.replay), paragraph_limit));
+  if (!test.replay.empty())
+    out += fmt::format("\n{}", code_block(cap(one_line(test.replay), paragraph_limit)));
   return out + "\n";
 }
 

@@ -95,6 +95,7 @@ std::string grouped(std::uint64_t count) {
 
 std::string duration(double seconds) {
   if (!std::isfinite(seconds)) return non_finite(seconds);
+  if (seconds == 0) return "0\u00A0s";
   if (seconds < 1) return human(1000 * seconds, 3) + no_break_space + "ms";
   if (seconds < 60) return human(seconds, 3) + no_break_space + "s";
   const double whole = std::round(seconds);

@@ -198,6 +198,7 @@ struct Suite {
   std::string name;
   std::string file;
   std::string about;
+  std::uint64_t seed = 0;  ///< of this suite's streams
   double alpha = 0;
   double beta = 0;
   bool timed = false;  ///< a budget in seconds ended sampling: exempt from bit identity

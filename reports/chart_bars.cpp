@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "reports/charts.h"
+#include "reports/number.h"
+#include "reports/svg.h"
+
+namespace assay::reports {
+namespace {
+
+constexpr double row_height = 24;
+constexpr double bar_height = 13;
+constexpr double panel_width = 285;
+constexpr double value_width = 78;
+constexpr double gap = 22;
+constexpr double top = 26;
+constexpr double log_from = 50;
+
+struct Row {
+  const EstimatorSummary* estimator;
+  const EstimatorChannel* channel;
+};
+
+std::vector<Row> rows_of(const Suite& suite, const std::string& name) {
+  std::vector<Row> rows;
+  for (const EstimatorSummary& estimator : suite.estimators) {
+    for (const EstimatorChannel& channel : estimator.channels) {
+      if (channel.name == name) rows.push_back({&estimator, &channel});
+    }
+  }
+  return rows;
+}
+
+// What one panel shows of a row.
+struct Bar {
+  Estimate estimate;
+  Number reference;
+};
+
+struct Panel {
+  const char* title;
+  const char* unit;
+  const char* style;
+  std::function<Bar(const EstimatorChannel&)> bar;
+  double left = 0;
+  bool may_be_logarithmic = false;
+};
+
+std::optional<Range> positive_range(const std::vector<Row>& rows, const Panel& panel) {
+  Extent extent;
+  for (const Row& row : rows) {
+    const Bar bar = panel.bar(*row.channel);
+    for (const Number& value : {bar.estimate.value, bar.reference}) {
+      if (value && *value > 0) extent.include(value);
+    }
+  }
+  if (extent.empty()) return std::nullopt;
+  return extent.range();
+}
+
+// Whole decades, with the least value at least a third of a decade above the axis's start.
+Range decades(Range range) {
+  const double low = std::floor(std::log10(range.low) - 0.3);
+  const double high = std::ceil(std::log10(range.high) + 0.05);
+  return {std::pow(10.0, std::max(low, -300.0)), std::pow(10.0, std::min(high, 300.0))};
+}
+
+Scale panel_scale(const std::vector<Row>& rows, const Panel& panel) {
+  const Range pixels = {panel.left, panel.left + panel_width};
+  if (panel.may_be_logarithmic) {
+    const auto positive = positive_range(rows, panel);
+    if (positive && positive->low > 0 && positive->high > log_from * positive->low)
+      return Scale({decades(*positive), pixels, Scale::Kind::logarithmic});
+  }
+  Extent extent;
+  extent.include(0.0);
+  for (const Row& row : rows) {
+    const Bar bar = panel.bar(*row.channel);
+    for (const Number& value :
+         {bar.estimate.value, bar.estimate.low, bar.estimate.high, bar.reference})
+      extent.include(value);
+  }
+  Range domain = extent.range();
+  const double margin = 0.04 * (domain.high - domain.low);
+  if (domain.high > 0) domain.high += margin;
+  if (domain.low < 0) domain.low -= margin;
+  return Scale({domain, pixels, Scale::Kind::linear});
+}
+
+void draw_bar(Svg& svg, const Panel& panel, const Scale& scale, Point row, const Bar& bar) {
+  const bool logarithmic = scale.definition().kind == Scale::Kind::logarithmic;
+  const double middle = row.y + row_height / 2;
+  const Number value = bar.estimate.value;
+  if (value && std::isfinite(*value)) {
+    const double base = scale(logarithmic ? scale.definition().domain.low : 0);
+    const double end = scale(*value);
+    svg.box({std::min(base, end), middle - bar_height / 2, std::abs(end - base), bar_height},
+            panel.style);
+    const auto& [estimate, low, high] = bar.estimate;
+    if (low || high)
+      horizontal_whisker(svg, scale, {.estimate = bar.estimate, .across = middle}, "whisker");
+  }
+  if (bar.reference && std::isfinite(*bar.reference) && !(logarithmic && *bar.reference <= 0)) {
+    const double x = scale(*bar.reference);
+    svg.line({x, row.y}, {x, row.y + row_height}, "reference");
+  }
+  svg.text({.at = {panel.left + panel_width + 8, middle + 4},
+            .content = human(value),
+            .room = value_width});
+}
+
+void draw_panel(Svg& svg, const std::vector<Row>& rows, const Panel& panel) {
+  const Scale scale = panel_scale(rows, panel);
+  const double bottom = top + row_height * static_cast<double>(rows.size());
+  const bool logarithmic = scale.definition().kind == Scale::Kind::logarithmic;
+  horizontal_axis(svg, {.scale = scale,
+                        .at = bottom,
+                        .across = {top, bottom},
+                        .title = fmt::format("{}{}", panel.unit, logarithmic ? ", log scale" : ""),
+                        .ticks = 4});
+  svg.box({panel.left, top - 18, 10, 10}, panel.style);
+  svg.text({.at = {panel.left + 16, top - 9}, .content = panel.title, .style = "title"});
+  double y = top;
+  for (const Row& row : rows) {
+    draw_bar(svg, panel, scale, {panel.left, y}, panel.bar(*row.channel));
+    y += row_height;
+  }
+  if (!logarithmic) svg.line({scale(0), top}, {scale(0), bottom}, "axis");
+}
+
+double label_width(const std::vector<Row>& rows) {
+  double widest = 60;
+  for (const Row& row : rows) widest = std::max(widest, text_width(row.estimator->name));
+  return std::min(widest, 190.0);
+}
+
+std::string label_tooltip(const EstimatorSummary& estimator) {
+  std::string text =
+      fmt::format("{}: {} {}", estimator.name, estimator.plugin, estimator.parameters);
+  if (!estimator.defect.empty()) text += fmt::format(" (mutant: {})", estimator.defect);
+  return text;
+}
+
+}  // namespace
+
+std::string estimator_bars(const Suite& suite, const std::string& channel) {
+  const std::vector<Row> rows = rows_of(suite, channel);
+  if (rows.empty()) return {};
+  const double labels = label_width(rows);
+  const Panel mean = {.title = "mean",
+                      .unit = "unit of the output",
+                      .unit = "unit of the output",
+                      .style = "mean",
+                      .bar =
+                          [](const EstimatorChannel& c) {
+                            return Bar{c.mean, c.reference};
+                          },
+                      .left = labels + 12};
+  const Panel variance = {.title = "variance",
+                          .unit = "squared unit of the output",
+                          .style = "variance",
+                          .bar =
+                              [](const EstimatorChannel& c) {
+                                return Bar{c.variance, c.reference_variance};
+                              },
+                          .left = mean.left + panel_width + value_width + gap,
+                          .may_be_logarithmic = true};
+  const double height = top + row_height * static_cast<double>(rows.size()) + 2 * line_height + 8;
+  Svg svg({variance.left + panel_width + value_width + 8, height},
+          fmt::format("Mean and variance of {} estimators of {}", rows.size(), suite.name));
+  double y = top + row_height / 2 + 4;
+  for (const Row& row : rows) {
+    svg.text({.at = {labels, y},
+              .content = row.estimator->name,
+              .anchor = Anchor::end,
+              .style = row.estimator->original.empty() ? "" : "mutant",
+              .room = labels,
+              .tooltip = label_tooltip(*row.estimator)});
+    y += row_height;
+  }
+  draw_panel(svg, rows, mean);
+  draw_panel(svg, rows, variance);
+  return svg.finish();
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,392 @@
+#include "tests/reports/example_record.h"
+
+#include <array>
+#include <cmath>
+
+namespace assay::reports {
+namespace {
+
+constexpr std::array<double, 21> normal_quantiles = {-2.6, -2.0, -1.67, -1.4, -1.2, -1.0, -0.8,
+                                                     -0.6, -0.4, -0.2,  0.0,  0.2,  0.4,  0.6,
+                                                     0.8,  1.0,  1.2,   1.4,  1.67, 2.0,  2.6};
+
+// A law by its mean, deviation and a skewness-like bend of its quantiles.
+struct Law {
+  double mean = 0;
+  double deviation = 1;
+  double bend = 0;
+};
+
+Histogram bell(const Law& law) {
+  Histogram h;
+  h.low = law.mean - 3 * law.deviation;
+  h.high = law.mean + 3 * law.deviation;
+  for (int i = 0; i < 30; ++i) {
+    const double x = (i - 14.5) / 15 - 0.35 * law.bend;
+    const double cap = x > -1 && x < 1 ? 1 - x * x : 0;
+    h.counts.push_back(static_cast<std::uint64_t>(120 * cap * cap * cap * cap));
+  }
+  h.below = 2;
+  h.above = law.bend > 0 ? 9 : 3;
+  return h;
+}
+
+std::vector<QuantilePoint> quantiles(const Law& law) {
+  std::vector<QuantilePoint> points;
+  for (const double z : normal_quantiles)
+    points.push_back({z, law.mean + law.deviation * (z + law.bend * (z * z - 1))});
+  return points;
+}
+
+Sample sample(const std::string& estimator, const Law& law) {
+  Sample s;
+  s.estimator = estimator;
+  s.plugin = "luminaire/" + estimator;
+  s.parameters = "{scene: triangle}";
+  s.channel = "value";
+  s.primaries = 64;
+  s.secondaries = 16384;
+  s.mean = law.mean;
+  s.variance = law.deviation * law.deviation;
+  s.skewness = 6 * law.bend;
+  s.kurtosis = 3 + 10 * law.bend;
+  s.minimum = law.mean - 3.1 * law.deviation;
+  s.maximum = law.mean + 3.4 * law.deviation;
+  s.nonzero = 16380;
+  s.histogram = bell(law);
+  s.quantiles = quantiles(law);
+  s.cost = {.camera_rays = 0,
+            .closest_hit_rays = 1048576,
+            .shadow_rays = 524288,
+            .samples = 1048576,
+            .seconds = 0.375};
+  return s;
+}
+
+Channel channel(const std::string& name, const Effect& effect) {
+  Channel c;
+  c.name = name;
+  c.statistic = 0.84;
+  c.distribution = {"students_t", {16383}};
+  c.p_value = 0.4;
+  c.log10_p = -0.3979400086720376;
+  c.p_adjusted = 1;
+  c.p_pass = 1.5e-7;
+  c.effect = effect;
+  c.reference = 0.481046907316;
+  return c;
+}
+
+Effect mean_effect(double estimate, double half_width) {
+  return {"relative difference of means", estimate, estimate - half_width,
+          estimate + half_width,          0.99,     true};
+}
+
+Effect ratio_effect(double estimate, double half_width) {
+  return {"ln variance ratio", estimate, estimate - half_width, estimate + half_width, 0.99, false};
+}
+
+Test base(const std::string& name, int line) {
+  Test t;
+  t.name = t.claim = name;
+  t.id = "triangle/" + name;
+  t.file = "suites/triangle.yaml";
+  t.line = line;
+  t.tags = {"main"};
+  t.method = "t";
+  t.tail = "two-sided";
+  t.null_hypothesis = "the mean equals 0.481046907316";
+  t.alpha = 0.00125;
+  t.beta = 0.01;
+  t.detect = 0.005;
+  t.allow = 0.0;
+  t.detectable = 0.0031;
+  t.power = 0.99;
+  t.gates = {{"skewness", 1.04, 1.25, "green"}, {"dominance", 0.03, 0.1, "green"}};
+  t.replay = "assay replay run.json '" + t.id + "'";
+  return t;
+}
+
+Test passing() {
+  Test t = base("mean(area) == analytic", 14);
+  t.verdict = t.expected = Verdict::pass;
+  t.ok = true;
+  t.samples = {sample("area", {0.4812, 0.031, 0.01})};
+  t.channels = {channel("value", mean_effect(0.00031, 0.00125))};
+  t.message = "no evidence of bias; a bias of 0.31 % or more is excluded";
+  return t;
+}
+
+Test proof() {
+  Test t = base("variance(area) < variance(hemisphere)", 16);
+  t.verdict = Verdict::pass;
+  t.ok = true;
+  t.method = "log-variance";
+  t.tail = "lower";
+  t.null_hypothesis = "variance(area) >= variance(hemisphere)";
+  t.detect = 0.5;
+  t.detectable = 0.12;
+  t.samples = {sample("area", {0.4812, 0.031, 0.01}), sample("hemisphere", {0.4809, 0.062, 0.08})};
+  t.channels = {channel("value", ratio_effect(-1.38, 0.06))};
+  t.channels[0].p_value = 0;
+  t.channels[0].log10_p = -1204.64;
+  t.channels[0].effect.low.reset();
+  t.channels[0].reference.reset();
+  t.message = "proved: the variance is 0.252 times as large";
+  return t;
+}
+
+Test failing() {
+  Test t = base("mean(winners) == mean(hemisphere)", 18);
+  t.verdict = Verdict::fail;
+  t.method = "welch";
+  t.null_hypothesis = "mean(winners) == mean(hemisphere)";
+  t.allow = 0.001;
+  t.samples = {sample("winners", {0.4711, 0.021, 0.0}),
+               sample("hemisphere", {0.4809, 0.062, 0.08})};
+  t.channels = {channel("value", mean_effect(-0.0204, 0.0021))};
+  t.channels[0].p_value = 2.3e-45;
+  t.channels[0].log10_p = -44.63827216398241;
+  t.channels[0].p_adjusted = 2.07e-44;
+  t.channels[0].p_pass = 1;
+  t.message = "the means differ by -2.04 %; interval [-2.25 %, -1.83 %]";
+  return t;
+}
+
+Test caught_mutant() {
+  Test t = base("mean(no_cosine) == analytic", 21);
+  t.name = "forgetting the receiver's cosine is caught";
+  t.verdict = t.expected = Verdict::fail;
+  t.ok = true;
+  t.detect = 0.05;
+  t.samples = {sample("no_cosine", {0.68, 0.05, 0.02})};
+  t.channels = {channel("value", mean_effect(0.4136, 0.004))};
+  t.channels[0].p_adjusted.reset();
+  t.message = "bias of +41.4 %; the defect is found";
+  return t;
+}
+
+Test surviving_mutant() {
+  Test t = base("mean(shared_seed) == analytic", 25);
+  t.name = "sharing a seed is caught";
+  t.verdict = Verdict::pass;
+  t.expected = Verdict::fail;
+  t.samples = {sample("shared_seed", {0.4813, 0.03, 0.0})};
+  t.channels = {channel("value", mean_effect(0.0006, 0.0012))};
+  t.message = "no evidence of bias; a bias of 0.31 % or more is excluded";
+  return t;
+}
+
+Test undecided() {
+  Test t = base("mean(heavy) == analytic", 29);
+  t.verdict = Verdict::inconclusive;
+  t.samples = {sample("heavy", {0.46, 0.4, 0.3})};
+  t.channels = {channel("value", mean_effect(-0.04, 0.055))};
+  t.channels[0].p_value = 0.064;
+  t.channels[0].log10_p = -1.1938200260161129;
+  t.gates[0] = {"skewness", 1.7, 1.25, "amber"};
+  t.looks = {{1024, -0.31, 0.7}, {4096, -0.85, 0.45}, {16384, -1.19, std::nullopt}};
+  t.message = "the budget ended; about 2.3 M more observations would decide";
+  return t;
+}
+
+Test invalid() {
+  Test t = base("variance(heavy) <= 0.07", 33);
+  t.verdict = Verdict::invalid;
+  t.method = "chi-square";
+  t.tail = "upper";
+  t.null_hypothesis = "the variance is at most 0.07";
+  t.samples = {sample("heavy", {0.46, 0.4, 0.3})};
+  t.channels = {channel("value", ratio_effect(0.21, 0.9))};
+  t.gates = {{"tail index", 0.41, 0.25, "red"}, {"dominance", 0.34, 0.1, "red"}};
+  t.message = "the fourth moment may not exist: a test of variance says nothing here";
+  return t;
+}
+
+Test broken() {
+  Test t = base("mean(rare_nan) == analytic", 37);
+  t.verdict = Verdict::error;
+  t.samples = {sample("rare_nan", {0.48, 0.03, 0.0})};
+  Sample& s = t.samples[0];
+  s.mean = s.variance = s.skewness = s.kurtosis = s.minimum = s.maximum = std::nullopt;
+  s.nonfinite = 3;
+  s.histogram = {};
+  s.quantiles.clear();
+  t.detectable = t.power = std::nullopt;
+  t.message = "3 of 16384 observations are not finite, the first is observation 411";
+  return t;
+}
+
+Test not_run() {
+  Test t = base("mean(solid_angle) == analytic", 41);
+  t.verdict = Verdict::skipped;
+  t.alpha = t.beta = t.detectable = t.power = std::nullopt;
+  t.gates.clear();
+  t.message = "belongs to another shard";
+  return t;
+}
+
+struct Entry {
+  const char* name;
+  double mean;
+  double variance;
+  const char* original = "";
+  const char* defect = "";
+};
+
+EstimatorChannel estimator_channel(const std::string& name, double mean, double variance) {
+  EstimatorChannel c;
+  c.name = name;
+  const double half = 2.6 * std::sqrt(variance / (64.0 * 16384));
+  c.mean = {mean, mean - half, mean + half};
+  c.variance = {variance, 0.94 * variance, 1.07 * variance};
+  c.reference = 0.481046907316;
+  return c;
+}
+
+EstimatorSummary summary(const Entry& entry) {
+  EstimatorSummary e;
+  e.name = entry.name;
+  e.plugin = std::string(*entry.original ? "mutants/" : "luminaire/") + entry.name;
+  e.parameters = "{scene: triangle}";
+  e.bias = "unbiased";
+  e.original = entry.original;
+  e.defect = entry.defect;
+  e.primaries = 64;
+  e.secondaries = 16384;
+  e.confidence = 0.99;
+  e.channels = {estimator_channel("value", entry.mean, entry.variance)};
+  e.cost = {.camera_rays = 12,
+            .closest_hit_rays = 1048576,
+            .shadow_rays = 1048576,
+            .samples = 1048576,
+            .seconds = 0.75};
+  return e;
+}
+
+Comparison compare(const EstimatorSummary& a, const EstimatorSummary& b, std::size_t channel) {
+  const EstimatorChannel& x = a.channels[channel];
+  const EstimatorChannel& y = b.channels[channel];
+  Comparison c;
+  c.first = a.name;
+  c.second = b.name;
+  c.channel = x.name;
+  c.means_differ = *x.mean.high < *y.mean.low || *y.mean.high < *x.mean.low;
+  c.variances_differ = *x.variance.high < *y.variance.low || *y.variance.high < *x.variance.low;
+  c.mean_p = c.means_differ ? 3.2e-12 : 0.37;
+  c.variance_p = c.variances_differ ? 1.1e-30 : 0.21;
+  if (*y.variance.value > 0) c.variance_ratio = *x.variance.value / *y.variance.value;
+  return c;
+}
+
+void compare_all(Suite& suite) {
+  for (std::size_t i = 0; i < suite.estimators.size(); ++i) {
+    for (std::size_t j = i + 1; j < suite.estimators.size(); ++j) {
+      for (std::size_t k = 0; k < suite.estimators[i].channels.size(); ++k)
+        suite.comparisons.push_back(compare(suite.estimators[i], suite.estimators[j], k));
+    }
+  }
+}
+
+Suite triangle() {
+  Suite s;
+  s.name = "triangle luminaire";
+  s.file = "suites/triangle.yaml";
+  s.about = "Irradiance from a triangle, four ways to sample it (Subr & Arvo 2007).";
+  s.alpha = 0.01;
+  s.beta = 0.01;
+  s.estimators = {summary({"hemisphere", 0.4809, 0.246}),
+                  summary({"area", 0.4812, 0.0615}),
+                  summary({"solid_angle", 0.48104, 0.0121}),
+                  summary({"winners", 0.4711, 0.0282}),
+                  summary({"heavy", 0.46, 10.24}),
+                  summary({"no_cosine", 0.68, 0.16, "area", "the receiver's cosine is missing"})};
+  s.estimators[2].channels[0].reference_variance = 0.0119;
+  compare_all(s);
+  s.tests = {passing(),   proof(),   failing(), caught_mutant(), surviving_mutant(),
+             undecided(), invalid(), broken(),  not_run()};
+  return s;
+}
+
+// Text as a careless author or a broken child process would send it.
+Suite hostile() {
+  Suite s;
+  s.name = "colours <b>&amp; \"names\"</b> | *stars* _bars_ `ticks`";
+  s.file = "suites/farben & größen.yaml";
+  s.about =
+      "Text with \x1b[31mescapes\x1b[0m, a bell \x07, half a character \xC3, "
+      "a wide 光線追跡 and a right-to-left override \xE2\x80\xAE.\nA second line.";
+  s.alpha = 0.005;
+  s.beta = 0.02;
+  s.timed = true;
+  for (const Entry& entry :
+       {Entry{
+            "an estimator with a name so long that no column of any table or chart has room for it",
+            0.4809, 0.05},
+        Entry{"光線追跡法による推定量", 0.4822, 0.04}, Entry{"a<b>&\"c\"", 0.4809, 0.0}}) {
+    EstimatorSummary e = summary(entry);
+    e.channels = {estimator_channel("R", entry.mean, entry.variance),
+                  estimator_channel("G", -entry.mean / 3, entry.variance / 2),
+                  estimator_channel("B", entry.mean / 9, entry.variance / 4)};
+    s.estimators.push_back(e);
+  }
+  compare_all(s);
+  Test t = base("mean(\"a<b>&\") == analytic | `x` *y* _z_ " + std::string(160, 'w'), 7);
+  t.verdict = Verdict::fail;
+  t.message = "]]> </failure> <script>alert(1)</script>\nsecond line\r\nthird \x01 line";
+  t.channels = {channel("R", mean_effect(0.013, 0.002)), channel("G", mean_effect(-0.004, 0.0025)),
+                channel("B", mean_effect(0.0001, 0.003))};
+  t.samples = {sample("a<b>&\"c\"", {0.4809, 0.02, 0.0})};
+  t.samples[0].channel = "R";
+  Test copy = t;
+  copy.name += " again";
+  copy.verdict = Verdict::pass;
+  copy.ok = true;
+  copy.replay = "assay check 'mean(area) == \"x  y\"' --estimator " + std::string(120, 'k') + "=1";
+  Test constant = base("mean(\"a<b>&\") == 0.5", 9);
+  constant.id = "farben/constant";
+  constant.verdict = Verdict::inconclusive;
+  constant.samples = {sample("a<b>&\"c\"", {0.5, 0.0, 0.0})};
+  constant.samples[0].channel = "R";
+  constant.channels = {channel("R", mean_effect(0, 0))};
+  constant.message = "every observation is 0.5; what was not seen could still add more than detect";
+  s.tests = {t, copy, constant};
+  return s;
+}
+
+}  // namespace
+
+Record example_record() {
+  Record r;
+  r.tool = {"assay", "0.1.0", "0123abc"};
+  r.environment = {"g++ 12.2.0", "Example CPU @ 3 GHz", "avx2", 2};
+  r.seed = 18446744073709551615u;
+  r.started = "2026-01-31T12:34:56Z";
+  r.seconds = 83.25;
+  r.note = "filtered: verdicts rest on fixed shares";
+  r.suites = {triangle(), hostile()};
+  r.suites.push_back({});
+  r.suites.back().name = "an empty suite";
+  return r;
+}
+
+Record forty_estimators() {
+  Record r = example_record();
+  r.note.clear();
+  Suite s;
+  s.name = "forty estimators";
+  s.file = "suites/forty.yaml";
+  s.alpha = s.beta = 0.01;
+  for (int i = 0; i < 40; ++i) {
+    const std::string name =
+        "technique_" + std::to_string(i) + (i % 7 == 3 ? "_with_a_longer_name" : "");
+    s.estimators.push_back(summary(
+        {name.c_str(), 0.481 + 0.0001 * (i % 3) + (i == 17 ? 0.1 : 0), 0.01 * (1 + i % 9)}));
+  }
+  compare_all(s);
+  s.tests = {passing()};
+  r.suites = {s};
+  return r;
+}
+
+}  // namespace assay::reports
