@@ -2,6 +2,9 @@
 
 // What a plugin is: static information, an immutable set-up, and estimators made from it.
 
+#include <algorithm>
+#include <array>
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -9,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -46,6 +50,7 @@ struct Channel {
   std::optional<double> variance = {};  ///< of ONE primary estimate
   double low = -std::numeric_limits<double>::infinity();  ///< no value is below
   double high = std::numeric_limits<double>::infinity();  ///< no value is above
+  double rounding = 0;       ///< values that differ by no more are the same number
   bool diagnostic = false;                                ///< tested only where a claim names it
 };
 
@@ -88,9 +93,16 @@ struct Entry {
   std::function<std::shared_ptr<const Setup>(Parameters&)> prepare;
 };
 
+/// A primary in two halves: draw(stream) makes its random choices, value(choices, cost) works out
+/// what they give and draws nothing.
+template <class Primary>
+concept TwoStepPrimary = requires(const Primary& primary, Stream& random, Cost& cost) {
+  { primary.value(primary.draw(random), cost) } -> std::convertible_to<double>;
+};
+
 /// The common case: an estimator whose secondary estimate is the mean of independent primaries.
-/// `Primary` is callable as double(Stream&) or double(Stream&, Cost&); it is a template so that a
-/// primary of a few nanoseconds is inlined into the loop.
+/// `Primary` is callable as double(Stream&) or double(Stream&, Cost&), or a TwoStepPrimary; it is a
+/// template so that a primary of a few nanoseconds is inlined into the loop.
 template <class Primary>
 class AveragingEstimator final : public Estimator {
  public:
@@ -114,6 +126,34 @@ class AveragingEstimator final : public Estimator {
   }
 
   Primary primary_;
+};
+
+/// A two-step primary makes a batch of choices before it follows them up: the processor overlaps
+/// the arithmetic of many choices, where a ray traced in between would make each wait for the one
+/// before (a shadow ray to an area light, 61 ns bare, took 137 ns one by one). Neither the order of
+/// random numbers nor that of the sum depends on the batch.
+template <TwoStepPrimary Primary>
+class AveragingEstimator<Primary> final : public Estimator {
+ public:
+  explicit AveragingEstimator(Primary primary) : primary_(std::move(primary)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    double sum = 0;
+    for (std::uint64_t done = 0; done < primaries; done += choices_.size()) {
+      const std::uint64_t count = std::min<std::uint64_t>(choices_.size(), primaries - done);
+      for (std::uint64_t i = 0; i < count; ++i) choices_[i] = primary_.draw(random);
+      for (std::uint64_t i = 0; i < count; ++i) sum += primary_.value(choices_[i], cost);
+    }
+    out[0] = sum / static_cast<double>(primaries);
+    cost.samples += primaries;
+  }
+
+ private:
+  using Choices = decltype(std::declval<const Primary&>().draw(std::declval<Stream&>()));
+
+  Primary primary_;
+  std::array<Choices, 32> choices_{};  // scratch
 };
 
 /// The set-up of an averaging estimator with one channel: a channel, a primary that is copied into

@@ -15,8 +15,7 @@ double highest_term(const Setting& setting) {
   const double least = setting.near() / resolution;
   double highest = 0;
   for (const LightTriangle& triangle : setting.triangles()) {
-    const double h = -dot(triangle.normal, triangle.a);
-    if (triangle.emits) highest = std::max(highest, h / (least * least * least));
+    highest = std::max(highest, triangle.plane_distance / (least * least * least));
   }
   return highest;
 }

@@ -24,10 +24,11 @@ struct UniformTriangle {
 };
 
 /// cos+ light_cosine+ / distance^2: the integrand per unit area for unit radiance, but for
-/// visibility.
+/// visibility. The cosines are heights over the distance.
 struct GeometryTerm {
   double operator()(const Connection& c) const {
-    return std::max(0.0, c.direction.z) * std::max(0.0, c.light_cosine) / (c.distance * c.distance);
+    return std::max(0.0, c.receiver_height()) * std::max(0.0, c.light_height) /
+           (c.squared_distance * c.squared_distance);
   }
 };
 
@@ -41,21 +42,20 @@ class AreaPrimary {
         factor_(setting_->area() * setting_->radiance()),
         term_(term) {}
 
-  double operator()(Stream& random, Cost& cost) const {
+  LightSample draw(Stream& random) const {
     double x = random.uniform();
     const double y = random.uniform();
     const LightTriangle& triangle = setting_->triangles()[shares_.pick(x)];
-    return at(triangle, Warp{}(x, y), cost);
+    return at(triangle, Warp{}(x, y));
   }
 
-  /// X for that point.
-  double at(const LightTriangle& triangle, const Barycentric& point, Cost& cost) const {
+  double value(const LightSample& sample, Cost& cost) const {
+    return setting_->received(sample, cost);
+  }
+
+  LightSample at(const LightTriangle& triangle, const Barycentric& point) const {
     const Connection connection = setting_->connect(triangle, point.u, point.v);
-    const double value = term_(connection);
-    // Where the integrand vanishes nobody needs the ray.
-    if (value == 0) return 0;
-    const bool seen = setting_->visible(connection.direction, connection.distance, cost);
-    return seen ? factor_ * value : 0;
+    return {connection.to_light, factor_ * term_(connection)};
   }
 
   const Setting& setting() const { return *setting_; }
@@ -99,7 +99,8 @@ class PointSampler final : public Sampler {
 
   double evaluate(const Point& p) const override {
     Cost uncounted;
-    return 2 * primary_.at(primary_.setting().triangles()[0], {p[0], p[1]}, uncounted);
+    const LightTriangle& triangle = primary_.setting().triangles()[0];
+    return 2 * primary_.value(primary_.at(triangle, {p[0], p[1]}), uncounted);
   }
 
  private:

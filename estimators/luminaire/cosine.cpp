@@ -24,11 +24,13 @@ struct CosineDirections {
 struct Primary {
   SharedSetting setting;
 
-  double operator()(Stream& random, Cost& cost) const {
+  render::Vector3 draw(Stream& random) const {
     const double u = random.uniform();
     const double v = random.uniform();
-    return setting->sees_light(render::cosine_hemisphere(u, v), cost) ? pi * setting->radiance()
-                                                                      : 0;
+    return render::cosine_hemisphere(u, v);
+  }
+  double value(const render::Vector3& w, Cost& cost) const {
+    return setting->sees_light(w, cost) ? pi * setting->radiance() : 0;
   }
 };
 

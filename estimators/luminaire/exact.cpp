@@ -58,7 +58,7 @@ std::optional<std::vector<Cone>> shadows(const Setting& setting) {
   const auto& occluders = setting.polygonal_occluders();
   if (!occluders || occluders->size() > most_occluders) return {};
   const LightTriangle& light = setting.triangles()[0];
-  const HalfSpace in_front{light.normal, (1 - 2 * resolution) * dot(light.normal, light.a)};
+  const HalfSpace in_front{light.normal, -(1 - 2 * resolution) * light.plane_distance};
   std::vector<Cone> cones;
   for (const Polygon& occluder : *occluders) {
     if (nearer_than(occluder, setting.near())) return {};
@@ -169,7 +169,7 @@ std::optional<ExactIntegrals> exact_integrals(const Setting& setting) {
   const LightTriangle& light = setting.triangles()[0];
   if (!light.emits) return ExactIntegrals{.area = setting.area(), .squared_geometry = 0};
   const Polygon above = render::clipped(setting.polygon(), {up, 0});
-  SquaredGeometry geometry(-dot(light.normal, light.a));
+  SquaredGeometry geometry(light.plane_distance);
   ExactIntegrals exact;
   exact.irradiance =
       outside(above, *cones, [](const Polygon& p) { return render::lambert(p, up); });

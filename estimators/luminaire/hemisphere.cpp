@@ -25,10 +25,12 @@ struct UniformDirections {
 struct Primary {
   SharedSetting setting;
 
-  double operator()(Stream& random, Cost& cost) const {
+  render::Vector3 draw(Stream& random) const {
     const double u = random.uniform();
     const double v = random.uniform();
-    const render::Vector3 w = render::uniform_hemisphere(u, v);
+    return render::uniform_hemisphere(u, v);
+  }
+  double value(const render::Vector3& w, Cost& cost) const {
     return setting->sees_light(w, cost) ? two_pi * setting->radiance() * w.z : 0;
   }
 };

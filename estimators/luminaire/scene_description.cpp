@@ -211,6 +211,16 @@ SceneDescription named(const Value& value) {
 
 }  // namespace
 
+std::vector<Occluder> read_occluders(const Value& value, const std::string& folder) {
+  return occluders(&value, folder);
+}
+
+Vector3 read_vector(const Value& value, const std::string& what) { return vector(value, what); }
+
+Vector3 read_unit_vector(const Value& value, const std::string& what) {
+  return unit_vector(value, what);
+}
+
 std::vector<std::string> built_in_scenes() {
   std::vector<std::string> names;
   for (const auto& [name, scene] : built_in()) names.push_back(name);

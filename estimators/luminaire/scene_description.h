@@ -42,6 +42,14 @@ struct SceneDescription {
 /// negative radius or radiance, and whatever read_obj() refuses.
 SceneDescription read_scene(const Value& value, const std::string& folder);
 
+/// The occluders of a scene alone: a list as under its key `occluders`. The same errors.
+std::vector<Occluder> read_occluders(const Value& value, const std::string& folder);
+
+/// A list of three finite numbers, and one that is not zero scaled to unit length. `what` names the
+/// thing in the message.
+render::Vector3 read_vector(const Value& value, const std::string& what);
+render::Vector3 read_unit_vector(const Value& value, const std::string& what);
+
 /// The built-in scenes' names: triangle, cornell_triangle, rectangle.
 std::vector<std::string> built_in_scenes();
 

@@ -48,7 +48,8 @@ LightTriangle light_triangle(const std::array<Vector3, 3>& corners, bool clockwi
   const auto& [a, b, c] = corners;
   const Vector3 area = 0.5 * cross(b - a, c - a);
   const Vector3 normal = normalised(clockwise ? -area : area);
-  return {a, b - a, c - a, normal, length(area), dot(normal, a) < 0};
+  const double plane_distance = -dot(normal, a);
+  return {a, b - a, c - a, normal, length(area), plane_distance, plane_distance > 0};
 }
 
 std::vector<LightTriangle> light_triangles(const TriangleMesh& mesh, bool clockwise) {
@@ -81,18 +82,37 @@ double near_distance(const TriangleMesh& mesh, const Location& where) {
 }
 
 Shape occluder_shape(const Occluder& occluder, const View& view) {
-  if (const auto* polygon = std::get_if<Polygon>(&occluder)) return {fan(view.of(*polygon))};
-  if (const auto* disc = std::get_if<Disc>(&occluder)) return {view.of(*disc)};
-  return {view.of(std::get<TriangleMesh>(occluder))};
+  if (const auto* polygon = std::get_if<Polygon>(&occluder)) return fan(view.of(*polygon));
+  if (const auto* disc = std::get_if<Disc>(&occluder)) return view.of(*disc);
+  return view.of(std::get<TriangleMesh>(occluder));
 }
 
-// The luminaire is shape 0. A planar one never shades itself, so shadow rays need not look at it.
-std::vector<Shape> shapes(TriangleMesh light, bool planar, const std::vector<Occluder>& occluders,
-                          const View& view) {
-  for (Vector3& p : light.vertices) p = (1 - resolution) * p;
-  std::vector<Shape> list = {{std::move(light), !planar}};
-  for (const Occluder& occluder : occluders) list.push_back(occluder_shape(occluder, view));
-  return list;
+void append(std::vector<Shape>& shapes, const std::vector<Occluder>& occluders, const View& view) {
+  for (const Occluder& occluder : occluders) shapes.push_back(occluder_shape(occluder, view));
+}
+
+TriangleMesh drawn_nearer(TriangleMesh mesh) {
+  for (Vector3& p : mesh.vertices) p = (1 - resolution) * p;
+  return mesh;
+}
+
+// The luminaire is shape 0.
+std::vector<Shape> everything(const SceneDescription& description) {
+  const View view(description.receiver);
+  std::vector<Shape> shapes = {drawn_nearer(light_mesh(description.light, view))};
+  append(shapes, description.occluders, view);
+  return shapes;
+}
+
+// A planar luminaire never shades itself.
+std::vector<Shape> blockers(const SceneDescription& description) {
+  const View view(description.receiver);
+  std::vector<Shape> shapes;
+  if (!std::holds_alternative<Polygon>(description.light.shape)) {
+    shapes.push_back(drawn_nearer(light_mesh(description.light, view)));
+  }
+  append(shapes, description.occluders, view);
+  return shapes;
 }
 
 }  // namespace
@@ -105,12 +125,21 @@ Setting::Setting(const SceneDescription& description, const Location& where)
       polygonal_occluders_(polygons_of(description.occluders, View(description.receiver))),
       area_(0),
       near_(near_distance(light_mesh(description.light, View(description.receiver)), where)),
-      scene_(shapes(light_mesh(description.light, View(description.receiver)), planar_,
-                    description.occluders, View(description.receiver))) {
+      scene_(everything(description)),
+      blockers_(blockers(description)) {
   if (planar_) {
     polygon_ = View(description.receiver).of(std::get<Polygon>(description.light.shape));
   }
   for (const LightTriangle& triangle : triangles_) area_ += triangle.area;
+}
+
+std::vector<Shape> occluder_shapes(const std::vector<Occluder>& occluders,
+                                   const Receiver& receiver) {
+  std::vector<Shape> list;
+  for (const Occluder& occluder : occluders) {
+    list.push_back(occluder_shape(occluder, View(receiver)));
+  }
+  return list;
 }
 
 ShareTable::ShareTable(const std::vector<double>& shares) {

@@ -19,11 +19,14 @@
 
 namespace assay::luminaire {
 
-/// Surfaces are told apart down to this fraction of a distance. What lies nearer to the receiver
-/// than this fraction of the way to the luminaire is not seen. The luminaire blocks rays as if it
-/// were nearer by this fraction, and shadow rays end twice as much before it: of two coplanar
-/// surfaces, a lamp and the wall it is let into, the lamp wins for every estimator. Moving a
-/// surface along the lines through the receiver changes nothing that the receiver sees.
+/// Surfaces are told apart down to this fraction of a distance.
+///
+/// What lies nearer to the receiver is not seen: for shadow rays, nearer than this fraction of the
+/// way to the point on the luminaire; for closest-hit rays, of the way to the luminaire's nearest
+/// point. The luminaire stops rays as if it were nearer by this fraction, and shadow rays end twice
+/// as much before it: of two coplanar surfaces, a lamp and the wall it is let into, the lamp wins
+/// for every estimator. Moving a surface along the lines through the receiver changes nothing that
+/// it sees.
 inline constexpr double resolution = 0x1p-14;
 
 /// A triangle of the luminaire.
@@ -33,14 +36,27 @@ struct LightTriangle {
   render::Vector3 ac;      ///< edge to the third
   render::Vector3 normal;  ///< unit, on the side that emits
   double area = 0;
-  bool emits = false;  ///< whether the side that emits faces the receiver
+  double plane_distance = 0;  ///< of the receiver above the side that emits, negative behind
+  bool emits = false;         ///< whether the side that emits faces the receiver
 };
 
 /// What joins the receiver to a point of the luminaire.
 struct Connection {
-  render::Vector3 direction;  ///< unit, towards the luminaire
-  double distance = 0;
-  double light_cosine = 0;  ///< of -direction and the light's normal; negative behind
+  render::Vector3 to_light;  ///< from the receiver to the point
+  double squared_distance = 0;
+  double light_height =
+      0;  ///< of the receiver above the luminaire's emitting side, negative behind
+
+  double receiver_height() const { return to_light.z; }
+  double distance() const { return std::sqrt(squared_distance); }
+  double receiver_cosine() const { return receiver_height() / distance(); }
+  double light_cosine() const { return light_height / distance(); }
+};
+
+/// A way from the receiver to a point of the luminaire and what it brings if nothing stands in it.
+struct LightSample {
+  render::Vector3 to_light;
+  double value = 0;
 };
 
 class Setting {
@@ -63,11 +79,10 @@ class Setting {
   /// Below this distance rays see nothing.
   double near() const { return near_; }
 
+  /// The way from the receiver to the point a + u ab + v ac of a triangle.
   Connection connect(const LightTriangle& triangle, double u, double v) const {
     const render::Vector3 y = triangle.a + u * triangle.ab + v * triangle.ac;
-    const double distance = length(y);
-    const render::Vector3 direction = y / distance;
-    return {direction, distance, -dot(direction, triangle.normal)};
+    return {y, squared_length(y), triangle.plane_distance};
   }
 
   /// Whether a ray from the receiver first hits a side of the luminaire that emits.
@@ -78,13 +93,16 @@ class Setting {
     return hit.shape == 0 && triangles_[hit.primitive].emits;
   }
 
-  /// Whether nothing stands between the receiver and a point of the luminaire.
-  bool visible(const render::Vector3& direction, double distance, Cost& cost) const {
+  /// What a light sample brings: its value, or 0 where a shadow ray is blocked. Where the value is
+  /// 0 anyway nobody needs the ray.
+  double received(const LightSample& sample, Cost& cost) const {
+    if (sample.value == 0) return 0;
     ++cost.shadow_rays;
-    return !scene_.occluded({.origin = {},
-                             .direction = direction,
-                             .near = near_,
-                             .far = distance * (1 - 2 * resolution)});
+    const bool hidden = blockers_.occluded({.origin = {},
+                                            .direction = sample.to_light,
+                                            .near = resolution,
+                                            .far = 1 - 2 * resolution});
+    return hidden ? 0 : sample.value;
   }
 
  private:
@@ -95,8 +113,13 @@ class Setting {
   std::optional<std::vector<render::Polygon>> polygonal_occluders_;
   double area_;
   double near_;
-  render::Scene scene_;
+  render::Scene scene_;     // the luminaire and the occluders
+  render::Scene blockers_;  // what can stand before the luminaire
 };
+
+/// Occluders in the receiver's frame, as shapes of a scene.
+std::vector<render::Shape> occluder_shapes(const std::vector<Occluder>& occluders,
+                                           const Receiver& receiver);
 
 /// Picks an index with probability proportional to its share.
 class ShareTable {

@@ -13,7 +13,7 @@ std::vector<LitTriangle> lit_triangles(const Setting& setting) {
   for (const LightTriangle& t : setting.triangles()) {
     if (!t.emits) continue;
     LitTriangle lit{render::SphericalTriangle(t.a, t.a + t.ab, t.a + t.ac), t.normal,
-                    -dot(t.normal, t.a)};
+                    t.plane_distance};
     // Edge on, as good as invisible: a solid angle that rounds to nothing has no directions.
     if (lit.seen.solid_angle() > 0) list.push_back(lit);
   }

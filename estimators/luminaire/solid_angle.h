@@ -39,18 +39,26 @@ class SolidAnglePrimary {
         shares_(solid_angles(triangles_)),
         factor_(shares_.total() * setting_->radiance()) {}
 
-  double operator()(Stream& random, Cost& cost) const {
-    if (triangles_.empty()) return 0;
+  LightSample draw(Stream& random) const {
+    if (triangles_.empty()) return {};
     double u = random.uniform();
     const double v = random.uniform();
     const LitTriangle& triangle = triangles_[shares_.pick(u)];
-    return along(Map{}(triangle.seen, u, v), triangle, cost);
+    return along(Map{}(triangle.seen, u, v), triangle);
   }
 
-  /// X for that direction.
-  double along(const render::Vector3& w, const LitTriangle& triangle, Cost& cost) const {
-    if (w.z <= 0) return 0;
-    return setting_->visible(w, triangle.distance(w), cost) ? factor_ * w.z : 0;
+  double value(const LightSample& sample, Cost& cost) const {
+    return setting_->received(sample, cost);
+  }
+
+  LightSample along(const render::Vector3& w, const LitTriangle& triangle) const {
+    return {triangle.distance(w) * w, factor_ * std::max(0.0, w.z)};
+  }
+
+  /// The X that goes with a direction.
+  double weight(const render::Vector3& w, const LitTriangle& triangle) const {
+    Cost uncounted;
+    return value(along(w, triangle), uncounted);
   }
 
   const std::vector<LitTriangle>& triangles() const { return triangles_; }
@@ -90,10 +98,9 @@ class SolidAngleSampler final : public Sampler {
     const std::uint32_t index = primary_.shares().pick(u);
     const LitTriangle& triangle = primary_.triangles()[index];
     const render::Vector3 w = Map{}(triangle.seen, u, v);
-    Cost uncounted;
     return {.point = point_of(w),
             .density = 1 / primary_.solid_angle(),
-            .weight = primary_.along(w, triangle, uncounted),
+            .weight = primary_.weight(w, triangle),
             .lobe = static_cast<int>(index)};
   }
 
@@ -104,8 +111,7 @@ class SolidAngleSampler final : public Sampler {
   double evaluate(const Point& point) const override {
     const render::Vector3 w = direction_of(point);
     const LitTriangle* triangle = containing(w);
-    Cost uncounted;
-    return triangle ? primary_.along(w, *triangle, uncounted) / primary_.solid_angle() : 0;
+    return triangle ? primary_.weight(w, *triangle) / primary_.solid_angle() : 0;
   }
 
   // The density jumps at the outline.
@@ -141,8 +147,7 @@ class SquareSampler final : public Sampler {
   double density(const Point&) const override { return 1; }
 
   double evaluate(const Point& point) const override {
-    Cost uncounted;
-    return primary_.along(triangle().seen.sample(point[0], point[1]), triangle(), uncounted);
+    return primary_.weight(triangle().seen.sample(point[0], point[1]), triangle());
   }
 
  private:

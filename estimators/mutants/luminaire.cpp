@@ -18,43 +18,43 @@ using render::Vector3;
 
 struct NoReceiverCosine {
   double operator()(const Connection& c) const {
-    if (c.direction.z <= 0) return 0;
-    return std::max(0.0, c.light_cosine) / (c.distance * c.distance);
+    if (c.receiver_height() <= 0) return 0;
+    return std::max(0.0, c.light_cosine()) / c.squared_distance;
   }
 };
 
 struct NoLightCosine {
   double operator()(const Connection& c) const {
-    if (c.light_cosine <= 0) return 0;
-    return std::max(0.0, c.direction.z) / (c.distance * c.distance);
+    if (c.light_height <= 0) return 0;
+    return std::max(0.0, c.receiver_cosine()) / c.squared_distance;
   }
 };
 
 struct NoChangeOfVariables {
   double operator()(const Connection& c) const {
-    return c.light_cosine > 0 ? std::max(0.0, c.direction.z) : 0;
+    return c.light_height > 0 ? std::max(0.0, c.receiver_cosine()) : 0;
   }
 };
 
 struct InverseDistance {
-  double operator()(const Connection& c) const { return GeometryTerm{}(c)*c.distance; }
+  double operator()(const Connection& c) const { return GeometryTerm{}(c)*c.distance(); }
 };
 
 struct ReversedDifference {
   double operator()(const Connection& c) const {
-    return -c.direction.z * c.light_cosine / (c.distance * c.distance);
+    return -c.receiver_cosine() * c.light_cosine() / c.squared_distance;
   }
 };
 
 struct AbsoluteReceiverCosine {
   double operator()(const Connection& c) const {
-    return std::abs(c.direction.z) * std::max(0.0, c.light_cosine) / (c.distance * c.distance);
+    return std::abs(c.receiver_cosine()) * std::max(0.0, c.light_cosine()) / c.squared_distance;
   }
 };
 
 struct TwoSidedLight {
   double operator()(const Connection& c) const {
-    return std::max(0.0, c.direction.z) * std::abs(c.light_cosine) / (c.distance * c.distance);
+    return std::max(0.0, c.receiver_cosine()) * std::abs(c.light_cosine()) / c.squared_distance;
   }
 };
 
@@ -66,7 +66,7 @@ struct OnePercentMore {
 struct SolidAngleDensity {
   double omega_over_area;
   double operator()(const Connection& c) const {
-    return c.light_cosine > 0 ? omega_over_area * std::max(0.0, c.direction.z) : 0;
+    return c.light_height > 0 ? omega_over_area * std::max(0.0, c.receiver_cosine()) : 0;
   }
 };
 
@@ -85,12 +85,13 @@ class HalfDropped {
  public:
   explicit HalfDropped(SharedSetting setting) : area_(std::move(setting)) {}
 
-  double operator()(Stream& random, Cost& cost) const {
+  LightSample draw(Stream& random) const {
     double x = random.uniform();
     const double y = random.uniform();
     const LightTriangle& triangle = area_.setting().triangles()[area_.shares().pick(x)];
-    return x + y > 1 ? 0 : area_.at(triangle, UnitSquare{}(x, y), cost);
+    return x + y > 1 ? LightSample{} : area_.at(triangle, UnitSquare{}(x, y));
   }
+  double value(const LightSample& sample, Cost& cost) const { return area_.value(sample, cost); }
 
  private:
   AreaPrimary<> area_;

@@ -10,9 +10,6 @@ namespace assay::render {
 
 namespace {
 
-constexpr unsigned seen_mask = 1;    // of closest-hit rays, and in the mask of every shape
-constexpr unsigned shadow_mask = 2;  // of shadow rays, and in the mask of the shapes that block
-
 [[noreturn]] void embree_failed(const char* message) {
   throw std::runtime_error(std::string("Embree: ") + message);
 }
@@ -108,14 +105,13 @@ RTCGeometry geometry_of(const Disc& disc, RTCDevice device) {
 
 void attach(RTCScene scene, const Shape& shape, RTCDevice device) {
   const RTCGeometry geometry =
-      std::visit([&](const auto& form) { return geometry_of(form, device); }, shape.form);
-  rtcSetGeometryMask(geometry, shape.blocks ? seen_mask | shadow_mask : seen_mask);
+      std::visit([&](const auto& form) { return geometry_of(form, device); }, shape);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
 }
 
-RTCRay embree_ray(const Ray& ray, unsigned mask) {
+RTCRay embree_ray(const Ray& ray) {
   RTCRay out;
   out.org_x = static_cast<float>(ray.origin.x);
   out.org_y = static_cast<float>(ray.origin.y);
@@ -126,7 +122,7 @@ RTCRay embree_ray(const Ray& ray, unsigned mask) {
   out.dir_z = static_cast<float>(ray.direction.z);
   out.time = 0;
   out.tfar = static_cast<float>(ray.far);
-  out.mask = mask;
+  out.mask = ~0u;
   out.id = 0;
   out.flags = 0;
   return out;
@@ -149,7 +145,7 @@ Hit Scene::closest_hit(const Ray& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query;
-  query.ray = embree_ray(ray, seen_mask);
+  query.ray = embree_ray(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene_.get(), &context, &query);
@@ -160,7 +156,7 @@ Hit Scene::closest_hit(const Ray& ray) const {
 bool Scene::occluded(const Ray& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay query = embree_ray(ray, shadow_mask);
+  RTCRay query = embree_ray(ray);
   rtcOccluded1(scene_.get(), &context, &query);
   return query.tfar < 0;
 }

@@ -23,12 +23,9 @@ struct Disc {
 };
 
 /// A shape of a scene. Both sides are hit.
-struct Shape {
-  std::variant<TriangleMesh, Disc> form;
-  bool blocks = true;  ///< whether occluded() sees it; closest_hit() always does
-};
+using Shape = std::variant<TriangleMesh, Disc>;
 
-/// The points origin + t direction with near <= t <= far. Directions have unit length.
+/// The points origin + t direction with near <= t <= far, whatever the direction's length.
 struct Ray {
   Vector3 origin;
   Vector3 direction;
@@ -40,7 +37,7 @@ struct Ray {
 struct Hit {
   std::uint32_t shape = none;      ///< index into the list the scene was made from, or none
   std::uint32_t primitive = none;  ///< triangle of the mesh
-  double distance = std::numeric_limits<double>::infinity();
+  double t = std::numeric_limits<double>::infinity();
 
   static constexpr std::uint32_t none = ~std::uint32_t{0};
 };
@@ -56,7 +53,7 @@ class Scene {
   explicit Scene(const std::vector<Shape>& shapes);
 
   Hit closest_hit(const Ray& ray) const;
-  /// Whether any shape that blocks lies on the ray.
+  /// Whether anything lies on the ray.
   bool occluded(const Ray& ray) const;
 
  private:
