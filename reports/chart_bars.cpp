@@ -153,7 +153,7 @@ std::string estimator_bars(const Suite& suite, const std::string& channel) {
   const double labels = label_width(rows);
   const Panel mean = {.title = "mean",
                       .unit = "unit of the output",
-                      .unit = "unit of the output",
+
                       .style = "mean",
                       .bar =
                           [](const EstimatorChannel& c) {

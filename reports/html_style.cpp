@@ -30,7 +30,7 @@ a { color: var(--link); }
 .facts b { color: var(--ink); font-weight: 600; overflow-wrap: anywhere; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-size: 13px; margin: 10px 0; }
-table.small { width: auto; }
+table.small { width: auto; } table.wide th { white-space: normal; }
 th, td { text-align: left; vertical-align: top; padding: 5px 8px; border-bottom: 1px solid var(--grid); }
 th { font-weight: 600; white-space: nowrap; }
 td { overflow-wrap: anywhere; }

@@ -124,7 +124,7 @@ constexpr std::size_t most_rows = 12;
 std::string sample_table(const Test& test) {
   if (test.samples.empty()) return {};
   std::string out =
-      "<div class=\"scroll\"><table><thead><tr><th>source</th><th>channel</th>"
+      "<div class=\"scroll\"><table class=\"wide\"><thead><tr><th>source</th><th>channel</th>"
       "<th class=\"number\">observations × primaries</th><th class=\"number\">mean</th>"
       "<th class=\"number\">variance</th><th class=\"number\">skewness</th><th "
       "class=\"number\">kurtosis</th><th class=\"number\">least</th><th "
