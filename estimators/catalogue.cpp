@@ -19,22 +19,21 @@ namespace {
   throw std::logic_error("the catalogue's entry `" + entry.information.name + "` " + why);
 }
 
-// Lower-case words of letters, digits and underscores; two or more of them joined by slashes.
+// Lower-case words of letters, digits and underscores, joined by slashes: luminaire/area, recorded.
 bool well_formed(std::string_view name) {
   bool word_begins = true;
-  bool slash = false;
   for (const char c : name) {
     const bool letter = c >= 'a' && c <= 'z';
     const bool later = (c >= '0' && c <= '9') || c == '_';
     if (c == '/' && !word_begins) {
-      slash = word_begins = true;
+      word_begins = true;
     } else if (letter || (later && !word_begins)) {
       word_begins = false;
     } else {
       return false;
     }
   }
-  return slash && !word_begins;
+  return !word_begins;
 }
 
 const Entry* lookup(const std::vector<Entry>& entries, std::string_view name) {

@@ -46,6 +46,11 @@ class Stream {
   /// Uniform in (0, 1): the midpoints of 2^52 cells, for logarithms and quantiles.
   double uniform_open() { return (static_cast<double>((*this)() >> 12) + 0.5) * 0x1p-52; }
 
+  /// Which observation this is: the index of a row for recorded data.
+  std::uint64_t observation() const {
+    return counter_[2] | static_cast<std::uint64_t>(counter_[3]) << 32;
+  }
+
   /// An independent stream of the same observation, the same whatever was drawn before. One level:
   /// a substream has no substreams. `index` below 2^32 - 1.
   Stream substream(std::uint32_t index) const;
