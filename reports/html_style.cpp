@@ -33,10 +33,10 @@ table { border-collapse: collapse; width: 100%; font-size: 13px; margin: 10px 0;
 table.small { width: auto; } table.wide th { white-space: normal; }
 th, td { text-align: left; vertical-align: top; padding: 5px 8px; border-bottom: 1px solid var(--grid); }
 th { font-weight: 600; white-space: nowrap; }
-td { overflow-wrap: anywhere; }
-td.name { min-width: 180px; }
-td.number, th.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; overflow-wrap: normal; }
-td.effect, td.verdict { white-space: nowrap; overflow-wrap: normal; }
+td { overflow-wrap: break-word; }
+td.name { min-width: 180px; overflow-wrap: anywhere; }
+td.number, th.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
+td.effect, td.verdict { white-space: nowrap; }
 .badge { font-weight: 600; white-space: nowrap; }
 .passed .badge { color: var(--ok); } .failed .badge { color: var(--bad); }
 .inconclusive .badge { color: var(--open); } .skipped .badge { color: var(--muted); }

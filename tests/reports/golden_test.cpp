@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "reports/console.h"
 #include "reports/file.h"
@@ -32,8 +34,10 @@ std::string contents(const std::filesystem::path& path) {
 std::string first_difference(const std::string& a, const std::string& b) {
   const auto at = static_cast<std::size_t>(
       std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
-  return "byte " + std::to_string(at) + "\nwritten:  " + a.substr(at, 120) +
-         "\napproved: " + b.substr(std::min(at, b.size()), 120);
+  std::ostringstream text;
+  text << "byte " << at << "\nwritten:  " << a.substr(at, 120)
+       << "\napproved: " << b.substr(std::min(at, b.size()), 120);
+  return text.str();
 }
 
 void compare(const char* name, const std::string& written) {

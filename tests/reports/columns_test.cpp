@@ -1,0 +1,65 @@
+#include "reports/columns.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+#include <wchar.h>
+
+#include <clocale>
+
+#include "reports/text.h"
+#include "tests/reports/random_record.h"
+
+namespace assay::reports {
+namespace {
+
+// The C library knows the width of every character: an independent table.
+TEST(Columns, NeverCountsFewerThanTheCLibrary) {
+  ASSERT_NE(std::setlocale(LC_CTYPE, "C.UTF-8"), nullptr);
+  for (char32_t c = 0x20; c <= 0x10FFFF; ++c) {
+    const int width = wcwidth(static_cast<wchar_t>(c));
+    if (width > 0) {
+      ASSERT_GE(columns(c), width) << std::hex << static_cast<std::uint32_t>(c);
+    }
+  }
+  std::setlocale(LC_CTYPE, "C");
+}
+
+TEST(Columns, CountsWhatATerminalShows) {
+  EXPECT_EQ(columns("pass"), 4);
+  EXPECT_EQ(columns("größe"), 5);
+  EXPECT_EQ(columns("光線"), 4);
+  EXPECT_EQ(columns("e\u0301"), 1);
+  EXPECT_EQ(columns("✓✗…"), 3);
+}
+
+TEST(Columns, ShorteningEndsInAnEllipsis) {
+  EXPECT_EQ(shorten("estimator", 9), "estimator");
+  EXPECT_EQ(shorten("estimator", 6), "estim…");
+  EXPECT_EQ(shorten("光線追跡", 4), "光…");
+  EXPECT_EQ(shorten("abc", 0), "");
+}
+
+TEST(Columns, WrapsAtSpacesAndKeepsLineFeeds) {
+  EXPECT_EQ(wrap("one two three", 7), (std::vector<std::string>{"one two", "three"}));
+  EXPECT_EQ(wrap("a\n\nb", 7), (std::vector<std::string>{"a", "", "b"}));
+  EXPECT_EQ(wrap("abcdefghij", 4), (std::vector<std::string>{"abcd", "efgh", "ij"}));
+  EXPECT_EQ(wrap("", 4), (std::vector<std::string>{""}));
+}
+
+TEST(Columns, CommandsCanBePastedFromSeveralLines) {
+  EXPECT_EQ(wrap_command("assay check 'a b c' --seed 1", 16),
+            (std::vector<std::string>{"assay check \\", "'a b c' --seed \\", "1"}));
+  EXPECT_EQ(wrap_command("assay run", 80), (std::vector<std::string>{"assay run"}));
+}
+
+RC_GTEST_PROP(Columns, WrappedLinesFit, ()) {
+  const int width = *rc::gen::inRange(2, 40);
+  const std::string text = clean(*any_text());
+  for (const std::string& line : wrap(text, width)) RC_ASSERT(columns(line) <= width);
+  RC_ASSERT(columns(shorten(one_line(text), width)) <= width);
+  for (const std::string& line : wrap_command(one_line(text), width + 2))
+    RC_ASSERT(columns(line) <= width + 2);
+}
+
+}  // namespace
+}  // namespace assay::reports

@@ -1,0 +1,109 @@
+#include "reports/file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+namespace assay::reports {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WriteWhole : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "assay-file-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string contents(const fs::path& path) const {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  long entries() const { return std::distance(fs::directory_iterator(folder_), {}); }
+  std::string refusal(const fs::path& path) const {
+    try {
+      write_whole(path, "text");
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "was written";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(WriteWhole, WritesAndReplaces) {
+  const fs::path path = folder_ / "report.json";
+  write_whole(path, "first");
+  const std::string second(3 << 20, 'x');
+  write_whole(path, second);
+  EXPECT_EQ(contents(path), second);
+  EXPECT_EQ(entries(), 1);
+}
+
+TEST_F(WriteWhole, FollowsALinkInsteadOfReplacingIt) {
+  write_whole(folder_ / "real", "old");
+  fs::create_symlink(folder_ / "real", folder_ / "link");
+  write_whole(folder_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(contents(folder_ / "real"), "new");
+}
+
+TEST_F(WriteWhole, WritesToAPipeWithoutReplacingIt) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = contents(pipe); });
+  write_whole(pipe, "through the pipe");
+  reader.join();
+  EXPECT_EQ(read, "through the pipe");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST_F(WriteWhole, NamesPathAndReasonOfAFailure) {
+  const fs::path missing = folder_ / "nowhere" / "report.json";
+  EXPECT_EQ(refusal(missing), "cannot write " + missing.string() + ": No such file or directory");
+  EXPECT_EQ(refusal(folder_), "cannot write " + folder_.string() + ": Is a directory");
+  const fs::path below_a_file = folder_ / "file" / "report.json";
+  write_whole(folder_ / "file", "");
+  EXPECT_EQ(refusal(below_a_file), "cannot write " + below_a_file.string() + ": Not a directory");
+  EXPECT_EQ(refusal("/dev/full"), "cannot write /dev/full: No space left on device");
+}
+
+// A folder where nobody, the superuser included, may create a file.
+TEST_F(WriteWhole, LeavesNothingBehindWhereItCannotWrite) {
+  EXPECT_EQ(refusal("/proc/self/report.json").rfind("cannot write /proc/self/report.json: ", 0),
+            0u);
+}
+
+TEST_F(WriteWhole, LeavesNothingBehindWhenTheNameIsRefused) {
+  const fs::path path = folder_ / std::string(300, 'n');
+  EXPECT_EQ(refusal(path), "cannot write " + path.string() + ": File name too long");
+  EXPECT_EQ(entries(), 0);
+}
+
+TEST_F(WriteWhole, LeavesTheOldFileWhenTheFolderIsReadOnly) {
+  const fs::path path = folder_ / "report.json";
+  write_whole(path, "old");
+  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+  const std::string result = refusal(path);
+  fs::permissions(folder_, fs::perms::owner_all);
+  // The superuser is not held back by permissions.
+  if (::geteuid() == 0) {
+    EXPECT_EQ(result, "was written");
+  } else {
+    EXPECT_EQ(result, "cannot write " + path.string() + ": Permission denied");
+    EXPECT_EQ(contents(path), "old");
+  }
+  EXPECT_EQ(entries(), 1);
+}
+
+}  // namespace
+}  // namespace assay::reports

@@ -1,0 +1,211 @@
+#include "reports/json.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "reports/html.h"
+#include "reports/read_json.h"
+#include "reports/text.h"
+#include "tests/reports/example_record.h"
+#include "tests/reports/random_record.h"
+
+namespace assay::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The message that reading the text gives.
+std::string refusal(const std::string& text) {
+  try {
+    read_json(text, "run.json");
+  } catch (const ReadError& error) {
+    return error.what();
+  }
+  return "was read";
+}
+
+std::string refusal_after(void (*spoil)(Json&)) {
+  Json tree = Json::parse(json(example_record()));
+  spoil(tree);
+  return refusal(tree.dump());
+}
+
+TEST(Json, KeysOfATestStandInTheDocumentedOrder) {
+  const Json tree = Json::parse(json(example_record()));
+  std::vector<std::string> keys;
+  for (const auto& item : tree["suites"][0]["tests"][0].items()) keys.push_back(item.key());
+  const std::vector<std::string> wanted = {
+      "name",       "id",           "claim",           "file",
+      "line",       "tags",         "verdict",         "expected",
+      "ok",         "method",       "null_hypothesis", "tail",
+      "statistic",  "distribution", "p_value",         "log10_p",
+      "p_adjusted", "p_pass",       "alpha",           "beta",
+      "effect",     "detect",       "allow",           "detectable",
+      "power",      "looks",        "gates",           "samples",
+      "channels",   "maps",         "message",         "replay"};
+  EXPECT_EQ(keys, wanted);
+}
+
+TEST(Json, ATestsOwnNumbersAreThoseOfItsWorstChannel) {
+  const Json tree = Json::parse(json(example_record()));
+  const Json& test = tree["suites"][1]["tests"][0];
+  ASSERT_EQ(test["channels"].size(), 3u);
+  for (const char* key :
+       {"statistic", "distribution", "p_value", "log10_p", "p_adjusted", "p_pass", "effect"})
+    EXPECT_EQ(test[key], test["channels"][0][key]) << key;
+}
+
+TEST(Json, MissingNumbersAreNullAndNonFiniteOnesAreNamed) {
+  Record record = example_record();
+  reports::Test& test = record.suites[0].tests[0];
+  test.detect = std::nullopt;
+  test.allow = std::numeric_limits<double>::quiet_NaN();
+  test.detectable = std::numeric_limits<double>::infinity();
+  test.power = -std::numeric_limits<double>::infinity();
+  const Json tree = Json::parse(json(record));
+  const Json& written = tree["suites"][0]["tests"][0];
+  EXPECT_TRUE(written["detect"].is_null());
+  EXPECT_EQ(written["allow"], "NaN");
+  EXPECT_EQ(written["detectable"], "Infinity");
+  EXPECT_EQ(written["power"], "-Infinity");
+  const reports::Test read = read_json(json(record), "run.json").suites[0].tests[0];
+  EXPECT_FALSE(read.detect.has_value());
+  EXPECT_TRUE(std::isnan(read.allow.value()));
+  EXPECT_EQ(read.detectable, test.detectable);
+  EXPECT_EQ(read.power, test.power);
+}
+
+TEST(Json, DoublesReadBackBitForBit) {
+  Record record = example_record();
+  const std::vector<double> values = {
+      0.1,  1.0 / 3,     std::numbers::pi,       5e-324, 1.7976931348623157e308, -0.0,
+      1e22, 123456789.0, 2.2250738585072014e-308};
+  record.suites[0].tests[0].channels[0].distribution.parameters = values;
+  const Record read = read_json(json(record), "run.json");
+  const auto& back = read.suites[0].tests[0].channels[0].distribution.parameters;
+  ASSERT_EQ(back.size(), values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(back[i], values[i]);
+    EXPECT_EQ(std::signbit(back[i]), std::signbit(values[i]));
+  }
+}
+
+// The keys that stand anywhere in the tree, by the name of their object, with whether any of them
+// has a value other than the default.
+void collect(const Json& node, const std::string& owner, std::map<std::string, bool>& keys) {
+  for (const auto& item : node.items()) {
+    const Json& value = item.value();
+    const std::string key = node.is_object() ? owner + "." + item.key() : owner;
+    const bool empty = value.is_null() || value == "" || value == 0 || value == false ||
+                       (value.is_structured() && value.empty());
+    if (node.is_object()) keys[key] |= !empty;
+    if (value.is_structured()) collect(value, node.is_object() ? item.key() : owner, keys);
+  }
+}
+
+// Text of the second suite is repaired on writing, so that it cannot read back the same.
+Record example_of_valid_text() {
+  Record record = example_record();
+  record.suites.erase(record.suites.begin() + 1);
+  record.suites[0].timed = true;
+  return record;
+}
+
+TEST(Json, ReadingGivesBackEveryMember) {
+  const Record record = example_of_valid_text();
+  EXPECT_TRUE(read_json(json(record), "run.json") == record);
+}
+
+// Without this the test above could not see a member that has no key.
+TEST(Json, EveryKeyOfTheExampleHasAValueSomewhere) {
+  std::map<std::string, bool> keys;
+  collect(Json::parse(json(example_of_valid_text())), "record", keys);
+  EXPECT_GT(keys.size(), 100u);
+  for (const auto& [key, has_value] : keys) EXPECT_TRUE(has_value || key == "tests.maps") << key;
+}
+
+TEST(Json, ASavedRunGivesTheSamePage) {
+  const Record record = example_record();
+  EXPECT_EQ(html(read_json(json(record), "run.json")), html(record));
+}
+
+RC_GTEST_PROP(Json, WritingAndReadingLoseNothing, ()) {
+  const std::string once = json(random_record());
+  RC_ASSERT(clean(once) == once);
+  RC_ASSERT(json(read_json(once, "run.json")) == once);
+}
+
+TEST(Json, WithoutTimesClearsEveryTimeAndNothingElse) {
+  const Record record = example_record();
+  Record later = record;
+  later.started = "2031-01-01T00:00:00Z";
+  later.seconds *= 2;
+  later.environment.threads = 64;
+  for (Suite& suite : later.suites) {
+    for (EstimatorSummary& estimator : suite.estimators) estimator.cost.seconds += 1;
+    for (reports::Test& test : suite.tests) {
+      for (Sample& sample : test.samples) sample.cost.seconds += 1;
+    }
+  }
+  EXPECT_NE(json(later), json(record));
+  EXPECT_EQ(json(without_times(later)), json(without_times(record)));
+  EXPECT_EQ(json(without_times(record)).find("83.25"), std::string::npos);
+  later.suites[0].tests[0].samples[0].cost.samples += 1;
+  EXPECT_NE(json(without_times(later)), json(without_times(record)));
+}
+
+TEST(ReadJson, NamesFileAndReasonForTextThatIsNotARecord) {
+  EXPECT_EQ(refusal(""), "run.json: not a whole JSON text: it ends too early");
+  EXPECT_EQ(refusal("{\n  \"a\": x}"), "run.json: not JSON: syntax error at line 2, column 8");
+  EXPECT_EQ(refusal("{}"), "run.json: not a record of assay: the key \"schema\" is missing");
+  EXPECT_EQ(refusal("[]"), "run.json: not a record of assay: the key \"schema\" is missing");
+  EXPECT_EQ(refusal("{\"a\": 1e999}"),
+            "run.json: not readable: a number is out of a double's range");
+}
+
+TEST(ReadJson, RefusesEveryTruncation) {
+  const std::string whole = json(example_record());
+  for (std::size_t length = 0; length + 1 < whole.size(); length += 997)
+    EXPECT_EQ(refusal(whole.substr(0, length)),
+              "run.json: not a whole JSON text: it ends too early")
+        << length;
+}
+
+TEST(ReadJson, RefusesAnotherVersion) {
+  EXPECT_EQ(refusal_after([](Json& tree) { tree["schema"] = 2; }),
+            "run.json: schema: written with version 2 of the record, this program reads 1");
+}
+
+TEST(ReadJson, NamesTheKeyThatIsMissingUnknownOrOfTheWrongType) {
+  EXPECT_EQ(refusal_after([](Json& tree) { tree["suites"][0]["tests"][1]["effect"].erase("low"); }),
+            "run.json: suites[0].tests[1].effect: the key \"low\" is missing");
+  EXPECT_EQ(refusal_after([](Json& tree) { tree["suites"][0]["extra"] = 1; }),
+            "run.json: suites[0]: the key \"extra\" is unknown");
+  EXPECT_EQ(refusal_after([](Json& tree) { tree["seed"] = -1; }),
+            "run.json: seed: should be a whole number from 0, but is -1");
+  EXPECT_EQ(refusal_after([](Json& tree) { tree["suites"][0]["alpha"] = nullptr; }),
+            "run.json: suites[0].alpha: should be a number, but is null");
+  EXPECT_EQ(
+      refusal_after([](Json& tree) { tree["suites"][0]["tests"][0]["verdict"] = "maybe"; }),
+      "run.json: suites[0].tests[0].verdict: should be pass, fail, inconclusive, invalid, error "
+      "or skipped, but is \"maybe\"");
+  EXPECT_EQ(refusal_after([](Json& tree) { tree["suites"][0]["tests"][0]["maps"] = {"a"}; }),
+            "run.json: suites[0].tests[0].maps: should be an empty array");
+  EXPECT_EQ(refusal("{\"schema\": 1, \"schema\": 1}"),
+            "run.json: the key \"schema\" stands twice in one object");
+}
+
+TEST(ReadJson, SurvivesDeepNesting) {
+  const std::string deep(200000, '[');
+  EXPECT_EQ(refusal(deep), "run.json: not a whole JSON text: it ends too early");
+  EXPECT_EQ(refusal("{\"schema\": 1, \"tool\": " + deep + std::string(200000, ']') + "}"),
+            "run.json: tool: should be an object, but is array");
+}
+
+}  // namespace
+}  // namespace assay::reports

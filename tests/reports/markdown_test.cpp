@@ -1,0 +1,62 @@
+#include "reports/markdown.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <sstream>
+
+#include "reports/text.h"
+#include "tests/reports/example_record.h"
+#include "tests/reports/random_record.h"
+
+namespace assay::reports {
+namespace {
+
+TEST(Markdown, FailuresComeBeforeUndecidedTestsAndTables) {
+  const std::string text = markdown(example_record());
+  const std::size_t failure = text.find("### ✗ fail: mean(winners)");
+  const std::size_t undecided = text.find("### ? inconclusive: mean(heavy)");
+  const std::size_t table = text.find("| verdict | test |");
+  ASSERT_NE(failure, std::string::npos);
+  EXPECT_LT(failure, undecided);
+  EXPECT_LT(undecided, table);
+  EXPECT_NE(text.find("assay replay run.json 'triangle/mean(winners)"), std::string::npos);
+}
+
+TEST(Markdown, ALargeRecordStaysBelowTheLimitAndSaysWhatIsMissing) {
+  Record record = example_record();
+  Suite& suite = record.suites[0];
+  const std::vector<reports::Test> tests = suite.tests;
+  while (suite.tests.size() < 9000)
+    suite.tests.insert(suite.tests.end(), tests.begin(), tests.end());
+  const std::string text = markdown(record);
+  EXPECT_LE(text.size(), markdown_limit);
+  EXPECT_GT(text.size(), markdown_limit / 2);
+  EXPECT_NE(text.find("Cut to fit: "), std::string::npos);
+  EXPECT_EQ(markdown(example_record()).find("Cut to fit"), std::string::npos);
+}
+
+RC_GTEST_PROP(Markdown, EveryTableRowHasFiveCells, ()) {
+  std::istringstream lines(markdown(random_record()));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("| ", 0) != 0) continue;
+    int bars = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == '\\')
+        ++i;  // what follows is escaped
+      else if (line[i] == '|')
+        ++bars;
+    }
+    RC_ASSERT(bars == 6);
+  }
+}
+
+RC_GTEST_PROP(Markdown, HoldsNoControlCharacterAndFitsAnyLimit, ()) {
+  const auto limit = *rc::gen::inRange<std::size_t>(300, 4000);
+  const std::string text = markdown(random_record(), limit);
+  RC_ASSERT(clean(text) == text);
+  RC_ASSERT(text.size() <= limit);
+}
+
+}  // namespace
+}  // namespace assay::reports

@@ -1,0 +1,64 @@
+#include "reports/number.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace assay::reports {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+TEST(Numbers, HumanFormHasFourDigits) {
+  EXPECT_EQ(human(0.481046907316), "0.481");
+  EXPECT_EQ(human(12345.6), "1.235e+04");
+  EXPECT_EQ(human(-3.14159), "-3.142");
+  EXPECT_EQ(human(0), "0");
+  EXPECT_EQ(human(-0.0), "0");
+  EXPECT_EQ(human(std::nullopt), "n/a");
+  EXPECT_EQ(human(std::nan("")), "NaN");
+  EXPECT_EQ(human(-infinity), "-Infinity");
+}
+
+TEST(Numbers, EffectsCarryASign) {
+  EXPECT_EQ(with_sign(0.0031, true), "+0.31\u00A0%");
+  EXPECT_EQ(with_sign(-0.25, false), "-0.25");
+  EXPECT_EQ(with_sign(0, true), "0\u00A0%");
+}
+
+TEST(Numbers, SmallPValuesComeFromTheirLogarithm) {
+  EXPECT_EQ(p_text(0.0, -1204.64), "2.3e-1205");
+  EXPECT_EQ(p_text(2.3e-45, std::nullopt), "2.3e-45");
+  EXPECT_EQ(p_text(std::nullopt, -2.0), "0.01");
+  EXPECT_EQ(p_text(0.0431, std::nullopt), "0.043");
+  EXPECT_EQ(p_text(9.97e-7, std::nullopt), "1.0e-6");
+  EXPECT_EQ(p_text(std::nullopt, std::nullopt), "n/a");
+}
+
+TEST(Numbers, APValueNearOneIsNotRoundedToOne) {
+  EXPECT_EQ(p_text(0.99996, std::nullopt), "1 - 4e-05");
+  EXPECT_EQ(p_text(1.0, std::nullopt), "1");
+}
+
+TEST(Numbers, CountsAreShortOrGrouped) {
+  EXPECT_EQ(count_text(0), "0");
+  EXPECT_EQ(count_text(9999), "9999");
+  EXPECT_EQ(count_text(10000), "10.0\u00A0k");
+  EXPECT_EQ(count_text(1048576), "1.05\u00A0M");
+  EXPECT_EQ(count_text(999999), "1.00\u00A0M");
+  EXPECT_EQ(count_text(18446744073709551615u), "18.4\u00A0E");
+  EXPECT_EQ(grouped(1048576), "1\u00A0048\u00A0576");
+  EXPECT_EQ(grouped(12), "12");
+}
+
+TEST(Numbers, DurationsChooseTheirUnit) {
+  EXPECT_EQ(duration(0), "0\u00A0s");
+  EXPECT_EQ(duration(0.0041), "4.1\u00A0ms");
+  EXPECT_EQ(duration(12.34), "12.3\u00A0s");
+  EXPECT_EQ(duration(125), "2\u00A0min\u00A05\u00A0s");
+  EXPECT_EQ(duration(12000), "3\u00A0h\u00A020\u00A0min");
+}
+
+}  // namespace
+}  // namespace assay::reports
