@@ -49,7 +49,8 @@ inline constexpr QuadratureOptions hemisphere_quadrature{1e-10, 8};
 // (quartered on the hemisphere) until the parts agree with the whole to the tolerance or the depth
 // is reached; the disagreement left is the error estimate. On the hemisphere the density is per
 // unit solid angle, without a cosine. Throws std::domain_error when a density is negative or not
-// finite.
+// finite. The estimate is blind to a jump nearer to the edge of a part than the outermost node
+// (1 % of its width): let known jumps lie on cell edges.
 CellProbabilities cell_probabilities(const IntervalGrid& grid,
                                      const std::function<double(double)>& density,
                                      QuadratureOptions options = {});

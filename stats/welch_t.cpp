@@ -64,7 +64,7 @@ double ratio_end(const Excess& excess, double centre, double first_step) {
     if (std::abs(step) > 1e300) return std::copysign(std::numeric_limits<double>::infinity(), step);
   }
   std::uintmax_t iterations = 200;
-  const auto [low, high] = std::minmax(inside, centre + step);
+  const auto [low, high] = std::minmax({inside, centre + step});  // values, not references
   const auto ends = boost::math::tools::toms748_solve(
       excess, low, high, boost::math::tools::eps_tolerance<double>(50), iterations);
   return std::midpoint(ends.first, ends.second);

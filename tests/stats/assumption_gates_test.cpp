@@ -1,0 +1,128 @@
+#include "stats/assumption_gates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <stdexcept>
+
+#include "stats/errors.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::draw_moments;
+using tests::moments_of;
+using tests::Philox;
+
+TEST(AssumptionGates, ThePilotChoosesPrimariesForVariances) {
+  // Exponential: excess kurtosis 6, so 30 primaries a secondary.
+  EXPECT_EQ(primaries_for_variance({2, 6}), 30U);
+  EXPECT_EQ(primaries_for_variance({0, -1}), 1U);
+  EXPECT_EQ(predicted_kurtosis_gate({2, 6}, 30).state, GateState::green);
+  EXPECT_EQ(predicted_kurtosis_gate({2, 6}, 29).state, GateState::red);
+}
+
+TEST(AssumptionGates, ThePilotChoosesPrimariesForMeans) {
+  // (|gamma| x^3 / (3 ln 2))^2 for the exponential at x = 3.29 is 1174 observations.
+  const PlannedTest one{2, 3.2905};
+  const double total =
+      2.0 * static_cast<double>(primaries_for_mean({2, 6}, one, {.level_factor = 2}));
+  EXPECT_NEAR(total, 1174, 3);
+  const std::uint64_t m = primaries_for_mean({2, 6}, {1000, 3.29});
+  EXPECT_EQ(predicted_skewness_gate({2, 6}, m, {1000, 3.29}).state, GateState::green);
+  EXPECT_EQ(predicted_skewness_gate({2, 6}, m - 1, {1000, 3.29}).state, GateState::red);
+}
+
+TEST(AssumptionGates, SkewnessValueIsTheFactorOfTheFormula) {
+  Moments x = draw_moments(400, [k = 0]() mutable { return std::exp(.01 * ++k); });
+  const Gate gate = skewness_gate(x, 3);
+  EXPECT_NEAR(gate.value, std::exp(x.skewness() * 27 / (3 * 20)), 1e-12);
+  EXPECT_LE(gate.low, gate.value);
+  EXPECT_EQ(gate.limit, 2);
+  // Against itself the skewness of a difference cancels.
+  EXPECT_NEAR(skewness_gate(x, x, 1, 3).value, 1, 1e-12);
+  EXPECT_GT(skewness_gate(x, x, -1, 3).value, 1.05);
+}
+
+struct Study {
+  std::uint32_t test_case;
+  std::size_t n;
+  int repetitions;
+};
+
+double red_rate(const Study& study, const std::function<double(Philox&)>& draw,
+                const std::function<Gate(const Moments&)>& gate) {
+  Philox random(study.test_case);
+  int red = 0;
+  for (int i = 0; i < study.repetitions; ++i) {
+    red += gate(draw_moments(study.n, [&] { return draw(random); })).state == GateState::red;
+  }
+  return red / static_cast<double>(study.repetitions);
+}
+
+// At a true rate of 1e-4 and 20000 repetitions 2 reds are expected; 12 or more have
+// probability 1.4e-6.
+TEST(AssumptionGates, NormalDataAreRedLessThanOnceInTenThousand) {
+  const auto normal = [](Philox& random) { return random.normal(); };
+  std::uint32_t test_case = 301;
+  for (const std::size_t n : {5UL, 10UL, 20UL, 50UL, 100UL, 400UL}) {
+    const Study study{test_case++, n, 20000};
+    const double limit = 11.5 / 20000;
+    const double skewness =
+        red_rate(study, normal, [](const Moments& x) { return skewness_gate(x, 4.42); });
+    const double dominance = red_rate(study, normal, dominance_gate);
+    const double kurtosis = red_rate(study, normal, kurtosis_gate);
+    std::cout << "  n = " << n << ": red skewness " << skewness << ", dominance " << dominance
+              << ", kurtosis " << kurtosis << "\n";
+    EXPECT_LE(skewness, limit) << n;
+    EXPECT_LE(dominance, limit) << n;
+    EXPECT_LE(kurtosis, limit) << n;
+  }
+}
+
+// The gamma laws at which the value equals the limit: reds must stay rare there too (about 1e-3;
+// the bound below is 5e-3, whose excess at a true 2e-3 has probability below 1e-5 in 20000).
+TEST(AssumptionGates, LawsAtTheLimitAreSeldomRed) {
+  // Sums of k exponentials have skewness 2 / sqrt(k) and excess kurtosis 6 / k: k = 30 has .2.
+  const auto sum_of = [](int k) {
+    return [k](Philox& random) {
+      double product = 1;
+      for (int i = 0; i < k; ++i) product *= random.uniform();
+      return -std::log(product);
+    };
+  };
+  const double kurtosis = red_rate({310, 400, 20000}, sum_of(30), kurtosis_gate);
+  // n = 100, x = 3: skewness limit 3 sqrt(100) ln 2 / 27 = .77, k = 6.7.
+  const double skewness =
+      red_rate({311, 100, 20000}, sum_of(7), [](const Moments& x) { return skewness_gate(x, 3); });
+  std::cout << "  at the limit: red kurtosis " << kurtosis << ", skewness " << skewness << "\n";
+  EXPECT_LE(kurtosis, 5e-3);
+  EXPECT_LE(skewness, 5e-3);
+}
+
+// Exact binomial: at a true rate of .99 fewer than 960 of 1000 have probability below 1e-13.
+TEST(AssumptionGates, GrossViolationsAreRed) {
+  const auto exponential = [](Philox& random) { return random.exponential(); };
+  EXPECT_GE(red_rate({320, 1000, 1000}, exponential, kurtosis_gate), .96);
+  const auto rare = [](Philox& random) { return random.uniform() < .01 ? 1.0 : 0.0; };
+  const auto strict = [](const Moments& x) { return skewness_gate(x, 4.42); };
+  EXPECT_GE(red_rate({321, 2000, 1000}, rare, strict), .96);
+  Moments spike = draw_moments(1000, [k = 0]() mutable { return std::sin(++k); });
+  spike.add(100);
+  EXPECT_EQ(dominance_gate(spike).state, GateState::red);
+}
+
+TEST(AssumptionGates, BadSamplesThrow) {
+  const Moments constant = moments_of(std::vector<double>{1, 1, 1, 1, 1});
+  EXPECT_THROW(skewness_gate(constant, 3), ZeroVariance);
+  EXPECT_THROW(dominance_gate(constant), ZeroVariance);
+  EXPECT_THROW(kurtosis_gate(constant), ZeroVariance);
+  EXPECT_THROW(skewness_gate(moments_of(std::vector<double>{1, 2, 3}), -1), std::domain_error);
+  EXPECT_THROW(primaries_for_variance({0, std::nan("")}), std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats

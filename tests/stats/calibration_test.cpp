@@ -1,0 +1,267 @@
+// Every p-value under its own null hypothesis. False-alarm rate of each test: 1e-5
+// (tests/stats/calibration.h); seed 1, the stream of each test numbered in order of writing.
+
+#include "tests/stats/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "stats/binomial.h"
+#include "stats/chi_square_fit.h"
+#include "stats/chi_square_variance.h"
+#include "stats/equivalence.h"
+#include "stats/f_ratio.h"
+#include "stats/holm.h"
+#include "stats/kolmogorov_smirnov.h"
+#include "stats/log_variance.h"
+#include "stats/student_t.h"
+#include "stats/welch_t.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::calibrate;
+using tests::Calibration;
+using tests::draw_moments;
+using tests::Experiment;
+using tests::Philox;
+using tests::sample_of;
+using tests::Shape;
+using tests::sorted;
+
+void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
+  const Calibration calibration = calibrate(experiment, draw);
+  EXPECT_TRUE(calibration.ok) << calibration.text();
+  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
+}
+
+Moments normals(Philox& random, std::size_t n, double sd = 1) {
+  return draw_moments(n, [&] { return sd * random.normal(); });
+}
+
+TEST(Calibration, StudentTOnThreeNormalValuesIsUniform) {
+  expect_calibrated({1, 40000}, [](Philox& random) {
+    return log_p_two_sided(student_t(normals(random, 3), {0}));
+  });
+}
+
+TEST(Calibration, BothTailsOfStudentTAreUniform) {
+  expect_calibrated({2}, [](Philox& r) { return student_t(normals(r, 7), {0}).log_p_lower; });
+  expect_calibrated({3}, [](Philox& r) { return student_t(normals(r, 7), {0}).log_p_upper; });
+}
+
+TEST(Calibration, StudentTAgainstANoisyReferenceIsUniform) {
+  expect_calibrated({4}, [](Philox& random) {
+    const Moments x = normals(random, 30);
+    return log_p_two_sided(student_t(x, {.2 * random.normal(), .2}));
+  });
+}
+
+TEST(Calibration, WelchWithUnequalSizesAndVariancesIsUniform) {
+  expect_calibrated({5, 40000}, [](Philox& random) {
+    const Moments x = normals(random, 10, 1.8);
+    return log_p_two_sided(welch_t(x, normals(random, 100), {}));
+  });
+}
+
+TEST(Calibration, AWelchContrastIsUniformAtItsOwnNull) {
+  expect_calibrated({6}, [](Philox& random) {
+    const Moments x = draw_moments(40, [&] { return 5.5 + 2 * random.normal(); });
+    const Moments y = draw_moments(20, [&] { return 5 + random.normal(); });
+    return welch_t(x, y, {1.1, 0}).log_p_upper;
+  });
+}
+
+TEST(Calibration, ChiSquareVarianceOnThreeNormalValuesIsUniform) {
+  expect_calibrated({7, 40000}, [](Philox& random) {
+    return chi_square_variance(normals(random, 3, 2), 4).log_p_upper;
+  });
+  expect_calibrated({8}, [](Philox& random) {
+    return log_p_two_sided(chi_square_variance(normals(random, 12), 1));
+  });
+}
+
+TEST(Calibration, FRatioOnNormalValuesIsUniform) {
+  expect_calibrated({9, 40000}, [](Philox& random) {
+    const Moments x = normals(random, 4, 3);
+    return log_p_two_sided(f_ratio(x, normals(random, 9), 9));
+  });
+  expect_calibrated({10}, [](Philox& random) {
+    const Moments x = normals(random, 20);
+    return f_ratio(x, normals(random, 5), 1).log_p_upper;
+  });
+}
+
+TEST(Calibration, LogVarianceOfNormalAndExponentialSamplesIsUniform) {
+  expect_calibrated({11, 4000}, [](Philox& random) {
+    return log_p_two_sided(log_variance(normals(random, 3000), 1));
+  });
+  expect_calibrated({12, 3000}, [](Philox& random) {
+    const Moments x = draw_moments(4000, [&] { return random.exponential(); });
+    return log_p_two_sided(log_variance(x, 1));
+  });
+}
+
+TEST(Calibration, LogVarianceRatioOfDifferentShapesIsUniform) {
+  expect_calibrated({13, 3000}, [](Philox& random) {
+    const Moments x = draw_moments(3000, [&] { return random.exponential(); });
+    const Moments y = draw_moments(3000, [&] { return random.uniform(); });
+    return log_p_two_sided(log_variance_ratio(x, y, 12));
+  });
+}
+
+TEST(Calibration, OneSampleKolmogorovSmirnovIsUniform) {
+  const ContinuousLaw uniform{[](double u) { return u; }};
+  std::uint32_t test_case = 14;
+  for (const std::size_t n : {std::size_t{1}, std::size_t{6}, std::size_t{40}, std::size_t{200}}) {
+    expect_calibrated({test_case++, n > 100 ? 4000UL : 20000UL}, [&](Philox& random) {
+      const auto values = sorted(sample_of(n, [&] { return random.uniform(); }));
+      return kolmogorov_smirnov(ks_distance(values, uniform)).log_p_upper;
+    });
+  }
+}
+
+TEST(Calibration, OneSampleKolmogorovSmirnovOnAtomsIsConservative) {
+  const ContinuousLaw clamped{[](double u) { return u < 1 ? u * .7 : 1.0; },
+                              [](double u) { return u * .7; }};
+  expect_calibrated({18, 20000, Shape::at_most_uniform}, [&](Philox& random) {
+    const auto values = sorted(sample_of(30, [&] { return std::min(1.0, random.uniform() / .7); }));
+    return kolmogorov_smirnov(ks_distance(values, clamped)).log_p_upper;
+  });
+}
+
+TEST(Calibration, TwoSampleKolmogorovSmirnovIsAtMostUniformWithAndWithoutTies) {
+  expect_calibrated({19, 20000, Shape::at_most_uniform}, [&](Philox& random) {
+    const auto x = sorted(sample_of(13, [&] { return random.normal(); }));
+    const auto y = sorted(sample_of(20, [&] { return random.normal(); }));
+    return kolmogorov_smirnov(ks_distance(x, y)).log_p_upper;
+  });
+  expect_calibrated({20, 20000, Shape::at_most_uniform}, [&](Philox& random) {
+    const auto x = sorted(sample_of(50, [&] { return random.normal(); }));
+    const auto y = sorted(sample_of(50, [&] { return random.normal(); }));
+    return kolmogorov_smirnov(ks_distance(x, y)).log_p_upper;
+  });
+  expect_calibrated({21, 20000, Shape::at_most_uniform}, [&](Philox& random) {
+    const auto x = sorted(sample_of(30, [&] { return std::max(0.0, random.normal()); }));
+    const auto y = sorted(sample_of(40, [&] { return std::max(0.0, random.normal()); }));
+    return kolmogorov_smirnov(ks_distance(x, y)).log_p_upper;
+  });
+}
+
+TEST(Calibration, KolmogorovSmirnovMarginsHoldAtTheirOwnNull) {
+  // F(u) = u^1.4 against the uniform law: the largest distance in closed form.
+  const double at = std::pow(1.4, -1 / .4);
+  const double distance = at - std::pow(at, 1.4);
+  const ContinuousLaw uniform{[](double u) { return u; }};
+  const auto powers = [](Philox& random) { return std::pow(random.uniform(), 1 / 1.4); };
+  const auto flat = [](Philox& random) { return random.uniform(); };
+  for (const bool lower : {true, false}) {
+    expect_calibrated({lower ? 22U : 23U, 4000, Shape::at_most_uniform}, [&](Philox& random) {
+      const auto x = sorted(sample_of(200, [&] { return powers(random); }));
+      const TestResult result = ks_margin(ks_distance(x, uniform), distance);
+      return lower ? result.log_p_lower : result.log_p_upper;
+    });
+    expect_calibrated({lower ? 24U : 25U, 2000, Shape::at_most_uniform}, [&](Philox& random) {
+      const auto x = sorted(sample_of(200, [&] { return powers(random); }));
+      const auto y = sorted(sample_of(300, [&] { return flat(random); }));
+      const TestResult result = ks_margin(ks_distance(x, y), distance);
+      return lower ? result.log_p_lower : result.log_p_upper;
+    });
+  }
+}
+
+// Counts of n draws from a discrete law by its cumulative probabilities.
+std::vector<std::uint64_t> counts_of(Philox& random, std::size_t n,
+                                     const std::vector<double>& probability) {
+  std::vector<std::uint64_t> counts(probability.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    double u = random.uniform();
+    std::size_t cell = 0;
+    while (cell + 1 < probability.size() && u >= probability[cell]) u -= probability[cell++];
+    ++counts[cell];
+  }
+  return counts;
+}
+
+const std::vector<double> uneven{.02, .05, .08, .1, .15, .2, .1, .1, .1, .1};
+
+TEST(Calibration, ChiSquareFitIsUniform) {
+  expect_calibrated({26, 5000}, [](Philox& random) {
+    return chi_square_fit({counts_of(random, 2000, uneven), uneven}).test.log_p_upper;
+  });
+}
+
+TEST(Calibration, ChiSquareFitEffectIsUniformAtItsOwnNull) {
+  std::vector<double> tilted = uneven;
+  tilted[5] += .03;
+  tilted[6] -= .03;
+  const double effect = std::sqrt(.03 * .03 / .2 + .03 * .03 / .1);
+  expect_calibrated({27, 4000}, [&](Philox& random) {
+    const auto fit = chi_square_fit({counts_of(random, 4000, tilted), uneven});
+    return chi_square_fit_effect(fit, effect).log_p_upper;
+  });
+}
+
+TEST(Calibration, BinomialTailsAreAtMostUniform) {
+  for (const bool lower : {true, false}) {
+    expect_calibrated({lower ? 28U : 29U, 20000, Shape::at_most_uniform}, [&](Philox& random) {
+      std::uint64_t hits = 0;
+      for (int i = 0; i < 50; ++i) hits += random.uniform() < .07;
+      const TestResult result = binomial({hits, 50}, .07);
+      return lower ? result.log_p_lower : result.log_p_upper;
+    });
+  }
+}
+
+TEST(Calibration, EquivalenceAtItsMarginIsAtMostUniform) {
+  expect_calibrated({30, 20000, Shape::at_most_uniform}, [](Philox& random) {
+    const Moments x = draw_moments(60, [&] { return .5 + random.normal(); });
+    return student_t_equivalence(x, {0}, {-.5, .5}).log_p;
+  });
+  expect_calibrated({31, 20000, Shape::at_most_uniform}, [](Philox& random) {
+    const Moments x = draw_moments(40, [&] { return 11 + random.normal(); });
+    const Moments y = draw_moments(25, [&] { return 10 + 2 * random.normal(); });
+    return welch_relative_equivalence(x, y, {-.1, .1}).log_p;
+  });
+}
+
+TEST(Calibration, TheSmallestHolmAdjustedValueOfAFamilyIsAtMostUniform) {
+  expect_calibrated({32, 20000, Shape::at_most_uniform}, [](Philox& random) {
+    std::vector<double> log_p;
+    for (int i = 0; i < 20; ++i) log_p.push_back(std::log(random.uniform()));
+    const auto adjusted = holm(log_p);
+    return *std::min_element(adjusted.begin(), adjusted.end());
+  });
+  expect_calibrated({33, 20000, Shape::at_most_uniform}, [](Philox& random) {
+    std::vector<WeightedLogP> entries;
+    for (int i = 0; i < 9; ++i) entries.push_back({std::log(random.uniform()), (i + 1) / 45.0});
+    const auto adjusted = weighted_holm(entries);
+    return *std::min_element(adjusted.begin(), adjusted.end());
+  });
+}
+
+TEST(Calibration, IntervalsCoverAsOftenAsTheySay) {
+  // The confidence at which an interval just covers the truth is 1 - p: judged through coverage at
+  // .9.
+  Philox random(34);
+  int missed = 0;
+  int missed_ratio = 0;
+  constexpr int repetitions = 5000;
+  for (int i = 0; i < repetitions; ++i) {
+    const Moments x = draw_moments(12, [&] { return 3 + random.normal(); });
+    const Moments y = draw_moments(15, [&] { return 2 + .5 * random.normal(); });
+    const Interval t = student_t_interval(x, {3}, .9);
+    missed += t.low > 0 || t.high < 0;
+    const Interval ratio = welch_ratio_interval(x, y, .9);
+    missed_ratio += ratio.low > .5 || ratio.high < .5;
+  }
+  // Normal limit of the binomial at 1e-5, two-sided: 4.42 sd = .0188.
+  EXPECT_NEAR(missed / static_cast<double>(repetitions), .1, .0188);
+  EXPECT_NEAR(missed_ratio / static_cast<double>(repetitions), .1, .0188);
+}
+
+}  // namespace
+}  // namespace assay::stats

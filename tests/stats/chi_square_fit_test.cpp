@@ -1,0 +1,91 @@
+#include "stats/chi_square_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "stats/tails.h"
+
+namespace assay::stats {
+namespace {
+
+CellCounts golden() {
+  CellCounts counts{{18, 25, 31, 22, 14, 10}, {20, 24, 30, 24, 12, 10}};
+  for (double& p : counts.probability) p /= 120;
+  return counts;
+}
+
+TEST(ChiSquareFit, GoldenValuesToThePrintedDigits) {
+  const ChiSquareFit fit = chi_square_fit(golden(), {.minimum_expected = 5});
+  EXPECT_NEAR(fit.test.statistic, .775, 1e-12);
+  EXPECT_NEAR(std::exp(fit.test.log_p_upper), .97860044, 5e-9);
+  EXPECT_EQ(fit.degrees_of_freedom, 5);
+  EXPECT_EQ(fit.effect, 0);
+}
+
+TEST(ChiSquareFit, SmallCellsAreGatheredInIndexOrderAndTheLastPoolIsFlushed) {
+  CellCounts counts{{10, 10, 100, 10, 10, 10, 10}, {}};
+  for (const double e : {12., 12., 88., 12., 12., 12., 12.}) counts.probability.push_back(e / 160);
+  const ChiSquareFit fit = chi_square_fit(counts);
+  ASSERT_EQ(fit.cells.size(), 4U);
+  EXPECT_EQ(fit.cells[0].members, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(fit.cells[1].members, (std::vector<std::size_t>{2}));
+  EXPECT_EQ(fit.cells[2].members, (std::vector<std::size_t>{3, 4}));
+  EXPECT_EQ(fit.cells[3].members, (std::vector<std::size_t>{5, 6}));
+  counts.observed.push_back(3);
+  counts.probability.push_back(0.01);
+  for (double& p : counts.probability) p /= 1.01;
+  const ChiSquareFit more = chi_square_fit(counts);
+  EXPECT_EQ(more.cells.back().members, (std::vector<std::size_t>{5, 6, 7}));
+  EXPECT_EQ(more.degrees_of_freedom, 3);
+}
+
+TEST(ChiSquareFit, PoolingDoesNotLookAtTheObservations) {
+  CellCounts a{{1, 59, 20, 40}, {.1, .4, .1, .4}};
+  CellCounts b{{59, 1, 40, 20}, {.1, .4, .1, .4}};
+  const auto cells_a = chi_square_fit(a).cells;
+  const auto cells_b = chi_square_fit(b).cells;
+  ASSERT_EQ(cells_a.size(), cells_b.size());
+  for (std::size_t i = 0; i < cells_a.size(); ++i) {
+    EXPECT_EQ(cells_a[i].members, cells_b[i].members);
+  }
+}
+
+TEST(ChiSquareFit, AnImpossibleObservationRejectsAtOnce) {
+  const CellCounts counts{{50, 49, 1}, {.5, .5, 0}};
+  const ChiSquareFit strict = chi_square_fit(counts, {.probability_tolerance = 0});
+  EXPECT_EQ(strict.impossible, 1U);
+  EXPECT_EQ(strict.test.log_p_upper, std::numeric_limits<double>::lowest());
+  const ChiSquareFit tolerant = chi_square_fit(counts, {.probability_tolerance = 1e-9});
+  EXPECT_NEAR(std::exp(tolerant.test.log_p_upper), 2e-7, 1e-12);
+}
+
+TEST(ChiSquareFit, TheEffectMovesTheNullAndTheIntervalInvertsIt) {
+  const CellCounts counts{{700, 300, 500, 500}, {.25, .25, .25, .25}};
+  const ChiSquareFit fit = chi_square_fit(counts);
+  // X2 = 2 * 200^2 / 500 = 160
+  EXPECT_NEAR(fit.test.statistic, 160, 1e-12);
+  EXPECT_NEAR(fit.effect, std::sqrt(157.0 / 2000), 1e-12);
+  EXPECT_NEAR(chi_square_fit_effect(fit, 0).log_p_upper, fit.test.log_p_upper, 1e-9);
+  const Interval interval = chi_square_fit_interval(fit, .98);
+  EXPECT_LT(interval.low, fit.effect);
+  EXPECT_GT(interval.high, fit.effect);
+  EXPECT_NEAR(chi_square_fit_effect(fit, interval.low).log_p_upper, std::log(.01), 1e-6);
+  EXPECT_NEAR(chi_square_fit_effect(fit, interval.high).log_p_lower, std::log(.01), 1e-6);
+  EXPECT_EQ(chi_square_fit_interval(chi_square_fit(golden(), {.minimum_expected = 5}), .9).low, 0);
+}
+
+TEST(ChiSquareFit, BadCellsThrow) {
+  EXPECT_THROW(chi_square_fit({{1}, {.5, .5}}), std::domain_error);
+  EXPECT_THROW(chi_square_fit({{}, {}}), std::domain_error);
+  EXPECT_THROW(chi_square_fit({{50, 50}, {.5, .4}}), std::domain_error);
+  EXPECT_THROW(chi_square_fit({{50, 50}, {1.5, -.5}}), std::domain_error);
+  EXPECT_THROW(chi_square_fit({{50, 50}, {.5, std::nan("")}}), std::domain_error);
+  EXPECT_THROW(chi_square_fit({{0, 0}, {.5, .5}}), std::domain_error);
+  EXPECT_THROW(chi_square_fit({{5, 5}, {.5, .5}}), std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats

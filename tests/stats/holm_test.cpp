@@ -1,0 +1,87 @@
+#include "stats/holm.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace assay::stats {
+namespace {
+
+std::vector<double> log_p_of(const std::vector<std::uint16_t>& numbers) {
+  std::vector<double> log_p;
+  for (const auto v : numbers) log_p.push_back(std::log((v + 1.0) / 65536.0));
+  return log_p;
+}
+
+TEST(Holm, GoldenValuesToThePrintedDigits) {
+  const std::vector<double> p{1e-4, .0042, .012, .03, .04, .21, .5};
+  const std::vector<double> expected{.0007, .0252, .06, .12, .12, .42, .5};
+  std::vector<double> log_p;
+  for (const double v : p) log_p.push_back(std::log(v));
+  const std::vector<double> adjusted = holm(log_p);
+  for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(std::exp(adjusted[i]), expected[i], 1e-12);
+}
+
+TEST(Holm, WeightsMoveTheShares) {
+  const std::vector<WeightedLogP> entries{{std::log(.01), .9}, {std::log(.01), .1}};
+  const std::vector<double> adjusted = weighted_holm(entries);
+  EXPECT_NEAR(std::exp(adjusted[0]), .01 / .9, 1e-14);
+  EXPECT_NEAR(std::exp(adjusted[1]), std::max(.01 / .9, .01), 1e-14);
+}
+
+TEST(Holm, UnspentWeightStaysUnspent) {
+  const std::vector<WeightedLogP> entries{{std::log(.01), .5}};
+  EXPECT_NEAR(std::exp(weighted_holm(entries)[0]), .02, 1e-14);
+}
+
+TEST(Holm, BadEntriesThrow) {
+  EXPECT_THROW(holm(std::vector<double>{.1}), std::domain_error);
+  EXPECT_THROW(holm(std::vector<double>{std::nan("")}), std::domain_error);
+  EXPECT_THROW(weighted_holm(std::vector<WeightedLogP>{{-1, 0}}), std::domain_error);
+  EXPECT_THROW(weighted_holm(std::vector<WeightedLogP>{{-1, .6}, {-1, .5}}), std::domain_error);
+  EXPECT_TRUE(holm(std::vector<double>{}).empty());
+}
+
+TEST(Holm, LooksAndSharesSpendTheirWeights) {
+  EXPECT_DOUBLE_EQ(log_bonferroni_share(.01, .25), std::log(.01) + std::log(.25));
+  const std::vector<WeightedLogP> looks{{std::log(.5), .25}, {std::log(.001), .25}, {0, .5}};
+  EXPECT_NEAR(std::exp(log_p_of_looks(looks)), .004, 1e-15);
+  EXPECT_EQ(log_p_of_looks(std::vector<WeightedLogP>{{0, .5}}), 0);
+}
+
+RC_GTEST_PROP(Holm, IsMonotoneAndNeverAboveBonferroni,
+              (const std::vector<std::uint16_t>& numbers)) {
+  const std::vector<double> log_p = log_p_of(numbers);
+  const std::vector<double> adjusted = holm(log_p);
+  const double m = static_cast<double>(log_p.size());
+  for (std::size_t i = 0; i < log_p.size(); ++i) {
+    RC_ASSERT(adjusted[i] >= log_p[i]);
+    RC_ASSERT(adjusted[i] <= std::min(0.0, log_p[i] + std::log(m)) + 1e-12);
+    for (std::size_t j = 0; j < log_p.size(); ++j) {
+      if (log_p[i] <= log_p[j]) RC_ASSERT(adjusted[i] <= adjusted[j]);
+    }
+  }
+}
+
+RC_GTEST_PROP(Holm, EqualWeightsAreThePlainMethod, (const std::vector<std::uint16_t>& numbers)) {
+  const std::vector<double> log_p = log_p_of(numbers);
+  std::vector<WeightedLogP> entries;
+  for (const double v : log_p) entries.push_back({v, 1.0 / static_cast<double>(log_p.size())});
+  const std::vector<double> plain = holm(log_p);
+  const std::vector<double> weighted = weighted_holm(entries);
+  for (std::size_t i = 0; i < plain.size(); ++i) RC_ASSERT(std::abs(plain[i] - weighted[i]) < 1e-9);
+}
+
+RC_GTEST_PROP(Holm, LoweringOnePValueRaisesNone, (std::vector<std::uint16_t> numbers)) {
+  RC_PRE(!numbers.empty());
+  const std::vector<double> before = holm(log_p_of(numbers));
+  numbers[0] = static_cast<std::uint16_t>(numbers[0] / 2);
+  const std::vector<double> after = holm(log_p_of(numbers));
+  for (std::size_t i = 0; i < before.size(); ++i) RC_ASSERT(after[i] <= before[i] + 1e-12);
+}
+
+}  // namespace
+}  // namespace assay::stats

@@ -1,0 +1,107 @@
+#include "stats/moments.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "stats/errors.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::golden_x;
+using tests::golden_y;
+using tests::moments_of;
+
+// Relative to the natural size of a sum of k-th powers, so that cancelling odd sums are judged
+// fairly.
+bool close(const Moments& a, const Moments& b) {
+  const double n = static_cast<double>(a.count);
+  const double sd = a.count > 0 ? std::sqrt(a.m2 / n) : 0;
+  const double size = std::max({sd, std::abs(a.mean), 1e-300});
+  const auto near = [](double u, double v, double scale) {
+    return std::abs(u - v) <= 1e-12 * scale;
+  };
+  const double spread = std::max(sd, size * 1e-3);
+  return a.count == b.count && a.nonzero == b.nonzero && near(a.mean, b.mean, size) &&
+         near(a.m2, b.m2, n * spread * spread) &&
+         near(a.m3, b.m3, n * std::sqrt(n) * std::pow(spread, 3)) &&
+         near(a.m4, b.m4, n * n * std::pow(spread, 4)) &&
+         (a.count == 0 || (a.minimum == b.minimum && a.maximum == b.maximum));
+}
+
+std::vector<double> values_of(const std::vector<int>& integers) {
+  std::vector<double> values;
+  for (const int i : integers) values.push_back(static_cast<double>(i) / 7.0);
+  return values;
+}
+
+TEST(Moments, GoldenValuesToThePrintedDigits) {
+  const Moments x = moments_of(golden_x);
+  EXPECT_NEAR(x.mean, .833, 1e-14);
+  EXPECT_NEAR(x.variance(), .562645555555556, 1e-15);
+  EXPECT_NEAR(x.skewness(), .944586223776367, 1e-14);
+  EXPECT_NEAR(x.kurtosis(), 2.89302072394759, 1e-13);
+  EXPECT_NEAR(moments_of(golden_y).kurtosis(), 3.01597829771009, 1e-13);
+  EXPECT_EQ(x.count, 10U);
+  EXPECT_EQ(x.minimum, .05);
+  EXPECT_EQ(x.maximum, 2.40);
+  EXPECT_EQ(x.nonzero, 10U);
+  EXPECT_NEAR(x.standard_error(), std::sqrt(.562645555555556 / 10), 1e-15);
+}
+
+TEST(Moments, ZeroesAreCountedApart) {
+  EXPECT_EQ(moments_of(std::vector<double>{0, 1, 0, -0.0, 2}).nonzero, 2U);
+}
+
+TEST(Moments, ALargeOffsetDoesNotCancel) {
+  const Moments x = moments_of(std::vector<double>{1e9, 1e9 + 1, 1e9 + 2});
+  EXPECT_DOUBLE_EQ(x.variance(), 1);
+}
+
+TEST(Moments, TooFewOrConstantValuesThrow) {
+  EXPECT_THROW(moments_of(std::vector<double>{1}).variance(), std::domain_error);
+  EXPECT_THROW(moments_of(std::vector<double>{1}).standard_error(), std::domain_error);
+  const Moments constant = moments_of(std::vector<double>{2, 2, 2});
+  EXPECT_EQ(constant.variance(), 0);
+  EXPECT_THROW(constant.skewness(), ZeroVariance);
+  EXPECT_THROW(constant.kurtosis(), ZeroVariance);
+}
+
+RC_GTEST_PROP(Moments, MergeEqualsOnePass, (const std::vector<int>& a, const std::vector<int>& b)) {
+  Moments merged = moments_of(values_of(a));
+  merged.merge(moments_of(values_of(b)));
+  std::vector<double> all = values_of(a);
+  const std::vector<double> rest = values_of(b);
+  all.insert(all.end(), rest.begin(), rest.end());
+  RC_ASSERT(close(moments_of(all), merged));
+}
+
+RC_GTEST_PROP(Moments, MergeIsCommutative, (const std::vector<int>& a, const std::vector<int>& b)) {
+  Moments ab = moments_of(values_of(a));
+  ab.merge(moments_of(values_of(b)));
+  Moments ba = moments_of(values_of(b));
+  ba.merge(moments_of(values_of(a)));
+  RC_ASSERT(close(ab, ba));
+}
+
+RC_GTEST_PROP(Moments, MergeIsAssociative,
+              (const std::vector<int>& a, const std::vector<int>& b, const std::vector<int>& c)) {
+  const Moments ma = moments_of(values_of(a));
+  const Moments mb = moments_of(values_of(b));
+  const Moments mc = moments_of(values_of(c));
+  Moments left = ma;
+  left.merge(mb);
+  left.merge(mc);
+  Moments tail = mb;
+  tail.merge(mc);
+  Moments right = ma;
+  right.merge(tail);
+  RC_ASSERT(close(left, right));
+}
+
+}  // namespace
+}  // namespace assay::stats

@@ -1,0 +1,156 @@
+// Predicted power against simulated rejections. False-alarm rate 1e-5 each by Hoeffding's bound:
+// |rate - power| <= sqrt(ln(2e5) / (2 R)), .0247 at R = 10000, .0391 at R = 4000.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "stats/chi_square_fit.h"
+#include "stats/chi_square_variance.h"
+#include "stats/equivalence.h"
+#include "stats/f_ratio.h"
+#include "stats/kolmogorov_smirnov.h"
+#include "stats/log_variance.h"
+#include "stats/power.h"
+#include "stats/welch_t.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::draw_moments;
+using tests::Philox;
+using tests::sample_of;
+using tests::sorted;
+
+struct Simulation {
+  std::uint32_t test_case;
+  int repetitions = 10000;
+  double alpha = .01;
+};
+
+double rate_of(const Simulation& simulation, const std::function<double(Philox&)>& draw) {
+  Philox random(simulation.test_case);
+  int rejected = 0;
+  for (int i = 0; i < simulation.repetitions; ++i)
+    rejected += draw(random) <= std::log(simulation.alpha);
+  return rejected / static_cast<double>(simulation.repetitions);
+}
+
+double bound(int repetitions) { return std::sqrt(std::log(2e5) / (2.0 * repetitions)); }
+
+const ErrorRates rates{.01, .2, true};
+
+TEST(PowerSimulation, StudentTPlannedForAnEffectFindsItAsOftenAsPredicted) {
+  const MeanPlan plan{.rates = rates};
+  const auto n = student_t_sample_size(plan, .5).value();
+  const double rate = rate_of({201}, [&](Philox& random) {
+    return log_p_two_sided(student_t(draw_moments(n, [&] { return .5 + random.normal(); }), {0}));
+  });
+  EXPECT_NEAR(rate, student_t_power(plan, static_cast<double>(n), .5), bound(10000));
+  EXPECT_GE(rate, .8 - bound(10000));
+}
+
+TEST(PowerSimulation, AnAllowedEffectIsSubtractedOnBothSides) {
+  const MeanPlan plan{.allow = .2, .rates = rates};
+  const double rate = rate_of({202}, [&](Philox& random) {
+    const Moments x = draw_moments(60, [&] { return -.6 + random.normal(); });
+    return std::min(0.0, std::log(2) + std::min(student_t(x, {.2}).log_p_upper,
+                                                student_t(x, {-.2}).log_p_lower));
+  });
+  EXPECT_NEAR(rate, student_t_power(plan, 60, .6), bound(10000));
+}
+
+TEST(PowerSimulation, AReferenceErrorCostsPowerAsPredicted) {
+  const MeanPlan plan{.reference_standard_error = .1, .rates = rates};
+  const double rate = rate_of({203}, [&](Philox& random) {
+    const Moments x = draw_moments(80, [&] { return .5 + random.normal(); });
+    return log_p_two_sided(student_t(x, {.1 * random.normal(), .1}));
+  });
+  EXPECT_NEAR(rate, student_t_power(plan, 80, .5), bound(10000));
+}
+
+TEST(PowerSimulation, WelchWithUnequalVariances) {
+  const TwoMeansPlan plan{
+      .standard_deviation_x = 1, .standard_deviation_y = 2, .allocation = 2, .rates = rates};
+  const auto n = welch_sample_size(plan, 1).value();
+  const double rate = rate_of({204}, [&](Philox& random) {
+    const Moments x = draw_moments(n, [&] { return 1 + random.normal(); });
+    const Moments y = draw_moments(2 * n, [&] { return 2 * random.normal(); });
+    return log_p_two_sided(welch_t(x, y, {}));
+  });
+  EXPECT_NEAR(rate, welch_power(plan, static_cast<double>(n), 1), bound(10000));
+}
+
+TEST(PowerSimulation, Variances) {
+  const VariancePlan plan{.rates = {.01, .2, false}};
+  const auto n = chi_square_variance_sample_size(plan, 2).value();
+  const double chi = rate_of({205}, [&](Philox& random) {
+    const double sd = std::sqrt(2);
+    return chi_square_variance(draw_moments(n, [&] { return sd * random.normal(); }), 1)
+        .log_p_upper;
+  });
+  EXPECT_NEAR(chi, chi_square_variance_power(plan, static_cast<double>(n), 2), bound(10000));
+  const double f = rate_of({206}, [&](Philox& random) {
+    const Moments x = draw_moments(30, [&] { return 1.5 * random.normal(); });
+    return f_ratio(x, draw_moments(40, [&] { return random.normal(); }), 1).log_p_upper;
+  });
+  EXPECT_NEAR(f, f_ratio_power(plan, {30, 40}, 2.25), bound(10000));
+}
+
+TEST(PowerSimulation, LogVarianceRatio) {
+  const LogVariancePlan plan{.kurtosis_x = 3, .kurtosis_y = 3, .rates = {.01, .2, true}};
+  const auto n = log_variance_sample_size(plan, 1.2).value();
+  const double rate = rate_of({207, 4000}, [&](Philox& random) {
+    const double sd = std::sqrt(1.2);
+    const Moments x = draw_moments(n, [&] { return sd * random.normal(); });
+    return log_p_two_sided(
+        log_variance_ratio(x, draw_moments(n, [&] { return random.normal(); }), 1));
+  });
+  EXPECT_NEAR(rate, log_variance_power(plan, static_cast<double>(n), 1.2), bound(4000));
+}
+
+TEST(PowerSimulation, KolmogorovSmirnovReachesItsBound) {
+  const DistancePlan plan{.rates = {.01, .2, true}};
+  const auto n = ks_sample_size(plan, .15).value();
+  const ContinuousLaw uniform{[](double u) { return u; }};
+  // Mass .15 moved from above one half to below: sup distance .15 exactly.
+  const double rate = rate_of({208, 4000}, [&](Philox& random) {
+    const auto values = sorted(sample_of(n, [&] {
+      const double u = random.uniform();
+      return u < .65 ? u / 1.3 : .5 + (u - .65) / .7;
+    }));
+    return kolmogorov_smirnov(ks_distance(values, uniform)).log_p_upper;
+  });
+  EXPECT_GE(rate, .8 - bound(4000));
+}
+
+TEST(PowerSimulation, ChiSquareFit) {
+  const std::vector<double> flat(10, .1);
+  const double effect = std::sqrt(2 * .02 * .02 / .1);
+  const FitPlan plan{.degrees_of_freedom = 9, .rates = {.01, .2, false}};
+  const auto n = chi_square_fit_sample_size(plan, effect).value();
+  const double rate = rate_of({209, 4000}, [&](Philox& random) {
+    std::vector<std::uint64_t> counts(10);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      const double u = random.uniform();
+      ++counts[u < .12 ? 0 : u < .2 ? 1 : static_cast<std::size_t>(u * 10)];
+    }
+    return chi_square_fit({counts, flat}).test.log_p_upper;
+  });
+  EXPECT_NEAR(rate, chi_square_fit_power(plan, static_cast<double>(n), effect), bound(4000));
+}
+
+TEST(PowerSimulation, Equivalence) {
+  const EquivalencePlan plan{.margin = .5, .alpha = .01, .beta = .2};
+  const auto n = equivalence_sample_size(plan, .1).value();
+  const double rate = rate_of({210}, [&](Philox& random) {
+    const Moments x = draw_moments(n, [&] { return .1 + random.normal(); });
+    return student_t_equivalence(x, {0}, {-.5, .5}).log_p;
+  });
+  EXPECT_NEAR(rate, equivalence_power(plan, static_cast<double>(n), .1), bound(10000));
+}
+
+}  // namespace
+}  // namespace assay::stats

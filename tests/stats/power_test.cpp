@@ -1,0 +1,136 @@
+#include "stats/power.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "tests/stats/table.h"
+
+namespace assay::stats {
+namespace {
+
+TEST(Power, AgreesWithR) {
+  for (const tests::Row& row : tests::read_table("power")) {
+    const ErrorRates rates{row["alpha"], .01, row["two_sided"] != 0};
+    const std::string method = row.text("method");
+    double power = -1;
+    if (method == "student_t") power = student_t_power({.rates = rates}, row["n"], row["effect"]);
+    if (method == "welch") power = welch_power({.rates = rates}, row["n"], row["effect"]);
+    if (method == "chi_square_variance") {
+      power = chi_square_variance_power({.rates = rates}, row["n"], row["effect"]);
+    }
+    if (method == "f_ratio") {
+      power = f_ratio_power({.rates = rates}, {row["n"], row["m"]}, row["effect"]);
+    }
+    if (method == "chi_square_fit") {
+      power = chi_square_fit_power({.degrees_of_freedom = row["m"], .rates = rates}, row["n"],
+                                   row["effect"]);
+    }
+    // R's own noncentral t has an absolute error of 1e-12 or so.
+    EXPECT_NEAR(power, row["power"], 1e-10) << method << " " << row["n"] << " " << row["effect"];
+  }
+}
+
+TEST(Power, GoldenValuesToThePrintedDigits) {
+  const MeanPlan one{.rates = {.01, .01, true}};
+  EXPECT_NEAR(student_t_power(one, 20, .5), .29734607767526, 1e-12);
+  const ErrorRates strict{1e-4, .01, true};
+  // Fractional sample sizes of power.t.test(delta = .1, sig.level = 1e-4, power = .99, strict =
+  // TRUE).
+  EXPECT_NEAR(student_t_power({.rates = strict}, 3872.60279626629, .1), .99, 1e-9);
+  EXPECT_NEAR(welch_power({.rates = strict}, 7733.85246178509, .1), .99, 1e-9);
+  EXPECT_NEAR(chi_square_variance_power({.rates = {.01, .01, false}}, 30, 1.5), .275382, 5e-7);
+  EXPECT_NEAR(f_ratio_power({.rates = {.01, .01, false}}, {30, 40}, 2), .371390, 5e-7);
+  const EquivalencePlan tost{.margin = .5, .alpha = .05};
+  EXPECT_NEAR(equivalence_power(tost, 12, 0), .107144, 5e-7);
+  EXPECT_NEAR(equivalence_power(tost, 50, 0), .934413, 5e-7);
+  const auto n3 = log_variance_sample_size({3, 3, 1, {1e-3, .1, true}}, 1.2);
+  EXPECT_NEAR(static_cast<double>(n3.value()), 2516, 1);
+  const auto n9 = log_variance_sample_size({9, 9, 1, {1e-3, .1, true}}, 1.2);
+  EXPECT_NEAR(static_cast<double>(n9.value()), 10062, 2);
+  EXPECT_NEAR(student_t_detectable({.rates = strict}, 10000), .0622, 5e-5);
+}
+
+TEST(Power, SampleSizesAreTheSmallestThatReachTheirPower) {
+  const ErrorRates rates{.01, .05, true};
+  const MeanPlan mean{.standard_deviation = 2, .allow = .1, .rates = rates};
+  const auto n = static_cast<double>(student_t_sample_size(mean, .5).value());
+  EXPECT_GE(student_t_power(mean, n, .5), .95);
+  EXPECT_LT(student_t_power(mean, n - 1, .5), .95);
+  EXPECT_NEAR(n, normal_sample_size(2, {.1, .5}, rates), 6);
+  const TwoMeansPlan two{.standard_deviation_x = 1, .standard_deviation_y = 3, .rates = rates};
+  const auto n2 = static_cast<double>(welch_sample_size(two, .7).value());
+  EXPECT_GE(welch_power(two, n2, .7), .95);
+  EXPECT_LT(welch_power(two, n2 - 1, .7), .95);
+  const VariancePlan variance{.allow = 1.1, .rates = {.01, .05, false}};
+  const auto n3 = static_cast<double>(f_ratio_sample_size(variance, 1.5).value());
+  EXPECT_GE(f_ratio_power(variance, {n3, n3}, 1.5), .95);
+  EXPECT_LT(f_ratio_power(variance, {n3 - 1, n3 - 1}, 1.5), .95);
+  const VariancePlan below{.below = true, .rates = {.01, .05, false}};
+  const auto n4 = static_cast<double>(chi_square_variance_sample_size(below, .5).value());
+  EXPECT_GE(chi_square_variance_power(below, n4, .5), .95);
+  EXPECT_LT(chi_square_variance_power(below, n4 - 1, .5), .95);
+  const auto n5 = static_cast<double>(ks_sample_size({.rates = rates}, .05).value());
+  EXPECT_GE(ks_power_bound({.rates = rates}, n5, .05), .95);
+  EXPECT_LT(ks_power_bound({.rates = rates}, n5 - 1, .05), .95);
+  const FitPlan fit{.degrees_of_freedom = 63, .allow = .02, .rates = rates};
+  const auto n6 = static_cast<double>(chi_square_fit_sample_size(fit, .1).value());
+  EXPECT_GE(chi_square_fit_power(fit, n6, .1), .95);
+  EXPECT_LT(chi_square_fit_power(fit, n6 - 1, .1), .95);
+  const EquivalencePlan tost{.margin = .2, .alpha = .01, .beta = .05};
+  const auto n7 = static_cast<double>(equivalence_sample_size(tost, .05).value());
+  EXPECT_GE(equivalence_power(tost, n7, .05), .95);
+  EXPECT_LT(equivalence_power(tost, n7 - 1, .05), .95);
+}
+
+TEST(Power, DetectableEffectsReachTheirPower) {
+  const ErrorRates rates{.001, .1, true};
+  const MeanPlan mean{.allow = .02, .reference_standard_error = .01, .rates = rates};
+  EXPECT_NEAR(student_t_power(mean, 400, student_t_detectable(mean, 400)), .9, 1e-9);
+  const VariancePlan variance{.rates = rates};
+  EXPECT_NEAR(f_ratio_power(variance, {200, 300}, f_ratio_detectable(variance, {200, 300})), .9,
+              1e-9);
+  EXPECT_NEAR(chi_square_variance_power(
+                  {.below = true, .rates = rates}, 200,
+                  chi_square_variance_detectable({.below = true, .rates = rates}, 200)),
+              .9, 1e-9);
+  const LogVariancePlan log_variance{.kurtosis_x = 5, .kurtosis_y = 9, .rates = rates};
+  EXPECT_NEAR(log_variance_power(log_variance, 2000, log_variance_detectable(log_variance, 2000)),
+              .9, 1e-9);
+  const FitPlan fit{.degrees_of_freedom = 9, .rates = rates};
+  EXPECT_NEAR(chi_square_fit_power(fit, 1000, chi_square_fit_detectable(fit, 1000)), .9, 1e-9);
+  EXPECT_NEAR(ks_power_bound({.rates = rates}, 1000, ks_detectable({.rates = rates}, 1000)), .9,
+              1e-9);
+  EXPECT_NEAR(ks_power_bound({.two_samples = true, .rates = rates}, 1000,
+                             ks_detectable({.two_samples = true, .rates = rates}, 1000)),
+              .9, 1e-9);
+}
+
+TEST(Power, AReferenceThatIsTooPoorAnswersNothing) {
+  const MeanPlan plan{.reference_standard_error = .1};
+  EXPECT_FALSE(student_t_sample_size(plan, .3).has_value());
+  EXPECT_TRUE(student_t_sample_size(plan, .6).has_value());
+  EXPECT_FALSE(equivalence_sample_size({.margin = .1}, .1).has_value());
+}
+
+TEST(Power, NothingToFindCostsTheLevel) {
+  EXPECT_NEAR(student_t_power({.rates = {.01, .1, true}}, 30, 0), .01, 1e-12);
+  EXPECT_NEAR(f_ratio_power({.rates = {.01, .1, true}}, {30, 20}, 1), .01, 1e-12);
+  EXPECT_NEAR(chi_square_fit_power({.degrees_of_freedom = 7, .rates = {.01, .1, false}}, 30, 0),
+              .01, 1e-12);
+}
+
+TEST(Power, BadPlansThrow) {
+  EXPECT_THROW(student_t_power({.rates = {0, .1, true}}, 10, 1), std::domain_error);
+  EXPECT_THROW(student_t_power({.standard_deviation = 0}, 10, 1), std::domain_error);
+  EXPECT_THROW(student_t_power({}, 1, 1), std::domain_error);
+  EXPECT_THROW(student_t_sample_size({.allow = .2}, .1), std::domain_error);
+  EXPECT_THROW(f_ratio_power({.allow = .5}, {10, 10}, 1), std::domain_error);
+  EXPECT_THROW(log_variance_power({.kurtosis_x = .5}, 10, 1), std::domain_error);
+  EXPECT_THROW(ks_sample_size({}, 0), std::domain_error);
+  EXPECT_THROW(chi_square_fit_power({.degrees_of_freedom = 0}, 10, 1), std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats

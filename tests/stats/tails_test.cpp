@@ -1,0 +1,162 @@
+#include "stats/tails.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "tests/stats/table.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::log_p_error;
+using tests::read_table;
+using tests::Row;
+
+template <class Tails>
+void expect_table(const std::string& name, double tolerance, const Tails& tails) {
+  for (const Row& row : read_table(name)) {
+    const LogTails computed = tails(row);
+    const std::string where =
+        name + " row " + row.text("log_lower") + " / " + row.text("log_upper");
+    EXPECT_LE(log_p_error(computed.lower, row["log_lower"]), tolerance)
+        << where << ": lower " << computed.lower;
+    EXPECT_LE(log_p_error(computed.upper, row["log_upper"]), tolerance)
+        << where << ": upper " << computed.upper;
+  }
+}
+
+TEST(Tails, NormalAgreesWithTwentyFiveDigits) {
+  expect_table("normal", 1e-12, [](const Row& r) { return normal_tails(r["x"]); });
+}
+
+TEST(Tails, StudentTAgreesWithTwentyFiveDigits) {
+  expect_table("student_t", 1e-10, [](const Row& r) { return student_t_tails(r["t"], r["nu"]); });
+}
+
+TEST(Tails, ChiSquareAgreesWithTwentyFiveDigits) {
+  expect_table("chi_square", 1e-10, [](const Row& r) { return chi_square_tails(r["x"], r["nu"]); });
+}
+
+TEST(Tails, FAgreesWithTwentyFiveDigits) {
+  expect_table("f", 1e-10, [](const Row& r) { return f_tails(r["f"], {r["nu1"], r["nu2"]}); });
+}
+
+TEST(Tails, BinomialAgreesWithTwentyFiveDigits) {
+  expect_table("binomial", 1e-10, [](const Row& r) {
+    return binomial_tails(static_cast<std::uint64_t>(r["k"]),
+                          {static_cast<std::uint64_t>(r["n"]), r["p"]});
+  });
+}
+
+TEST(Tails, NoncentralChiSquareAgreesWithTwentyFiveDigits) {
+  expect_table("noncentral_chi_square", 1e-10, [](const Row& r) {
+    return noncentral_chi_square_tails(r["x"], {r["nu"], r["ncp"]});
+  });
+}
+
+TEST(Tails, NoncentralTAgreesWithHighPrecisionQuadrature) {
+  expect_table("noncentral_t", 1e-10, [](const Row& r) {
+    return noncentral_t_tails(r["t"], {r["nu"], r["ncp"]});
+  });
+}
+
+TEST(Tails, LogarithmsStayFiniteFarBeyondTheRangeOfProbabilities) {
+  const LogTails t = student_t_tails(1000, 1e6);
+  // ln of (1 + t^2/nu)^(-nu/2), the leading factor, is -5e5 ln 2 = -346573.6.
+  EXPECT_NEAR(t.upper, -346581.1, 1);
+  EXPECT_LT(normal_tails(1e5).upper, -4.9e9);
+  for (const LogTails tails :
+       {normal_tails(1e200), student_t_tails(1e300, 3), chi_square_tails(1e300, 2),
+        f_tails(1e300, {4, 4}), chi_square_tails(0, 2), f_tails(0, {4, 4}),
+        binomial_tails(0, {10, 1.0}), noncentral_chi_square_tails(0, {2, 3})}) {
+    EXPECT_TRUE(std::isfinite(tails.lower));
+    EXPECT_TRUE(std::isfinite(tails.upper));
+    EXPECT_LE(std::max(tails.lower, tails.upper), 0);
+  }
+}
+
+TEST(Tails, FractionalDegreesOfFreedomJoinTheNormalLaw) {
+  for (const double nu : {1e12, 1e15, 1e17, 1e19}) {
+    for (const double t : {0.5, 3.0, 20.0}) {
+      EXPECT_NEAR(student_t_tails(t, nu).upper, normal_tails(t).upper, 1e-6) << nu << " " << t;
+    }
+  }
+}
+
+TEST(Tails, QuantilesInvertTheTails) {
+  for (const double log_p : {-1e-12, -0.1, -0.6931, -0.7, -3.0, -40.0, -690.0, -5000.0}) {
+    for (const Tail tail : {Tail::lower, Tail::upper}) {
+      const auto of = [&](LogTails tails) {
+        return tail == Tail::lower ? tails.lower : tails.upper;
+      };
+      const double tolerance = 1e-9;
+      const LogTail target{tail, log_p};
+      EXPECT_LE(log_p_error(of(normal_tails(normal_quantile(target))), log_p), tolerance) << log_p;
+      EXPECT_LE(log_p_error(of(student_t_tails(student_t_quantile(target, 25.5), 25.5)), log_p),
+                tolerance)
+          << log_p;
+      if (log_p > -1000) {  // with 12 degrees below, the quantile overflows from -4000 on
+        EXPECT_LE(log_p_error(of(f_tails(f_quantile(target, {30, 12}), {30, 12})), log_p),
+                  tolerance)
+            << log_p;
+      }
+      EXPECT_LE(log_p_error(of(chi_square_tails(chi_square_quantile(target, 40), 40)), log_p),
+                tolerance)
+          << log_p;
+      EXPECT_LE(log_p_error(of(noncentral_chi_square_tails(
+                                noncentral_chi_square_quantile(target, {40, 9}), {40, 9})),
+                            log_p),
+                tolerance)
+          << log_p;
+    }
+  }
+}
+
+TEST(Tails, BetaQuantileInvertsWithinTheResolutionOfItsArgument) {
+  for (const double log_p : {-0.1, -3.0, -40.0}) {
+    const double x = beta_quantile({Tail::lower, log_p}, {3, 40});
+    EXPECT_LE(log_p_error(beta_tails(x, {3, 40}).lower, log_p), 1e-9);
+  }
+}
+
+TEST(Tails, ImpossibleQuantilesAreInfinite) {
+  EXPECT_TRUE(std::isinf(student_t_quantile({Tail::upper, -5000}, 1)));
+  EXPECT_LT(student_t_quantile({Tail::lower, -5000}, 1), 0);
+}
+
+TEST(Tails, MeaninglessArgumentsThrow) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(normal_tails(bad), std::domain_error);
+    EXPECT_THROW(student_t_tails(bad, 3), std::domain_error);
+    EXPECT_THROW(student_t_tails(1, bad), std::domain_error);
+    EXPECT_THROW(chi_square_tails(bad, 3), std::domain_error);
+    EXPECT_THROW(f_tails(1, {bad, 3}), std::domain_error);
+    EXPECT_THROW(noncentral_t_tails(1, {3, bad}), std::domain_error);
+    EXPECT_THROW(noncentral_chi_square_tails(1, {3, bad}), std::domain_error);
+    EXPECT_THROW(normal_quantile({Tail::lower, bad}), std::domain_error);
+    EXPECT_THROW(beta_tails(bad, {1, 1}), std::domain_error);
+  }
+  EXPECT_THROW(student_t_tails(1, 0), std::domain_error);
+  EXPECT_THROW(normal_quantile({Tail::lower, 0}), std::domain_error);
+  EXPECT_THROW(binomial_tails(3, {2, 0.5}), std::domain_error);
+  EXPECT_THROW(log_tails({"cauchy", {}}, 1), std::domain_error);
+  EXPECT_THROW(log_tails({"F", {3}}, 1), std::domain_error);
+}
+
+TEST(Tails, LawsAreFoundByName) {
+  EXPECT_EQ(log_tails({"normal", {}}, 1.5).upper, normal_tails(1.5).upper);
+  EXPECT_EQ(log_tails({"student-t", {7}}, 1.5).upper, student_t_tails(1.5, 7).upper);
+  EXPECT_EQ(log_tails({"chi-square", {7}}, 1.5).lower, chi_square_tails(1.5, 7).lower);
+  EXPECT_EQ(log_tails({"F", {7, 8}}, 1.5).lower, f_tails(1.5, {7, 8}).lower);
+  EXPECT_EQ(log_tails({"binomial", {7, .5}}, 3).lower, binomial_tails(3, {7, .5}).lower);
+  EXPECT_NEAR(std::exp(log_tails({"kolmogorov", {10}}, .3).upper), .2705355748, 1e-10);
+  EXPECT_NEAR(std::exp(log_tails({"smirnov", {50, 60}}, .5).upper), 1.0065070832e-6, 1e-15);
+}
+
+}  // namespace
+}  // namespace assay::stats
