@@ -1,0 +1,108 @@
+#pragma once
+
+// The claim language: one line that reads as the hypothesis.
+//
+//   claim    = quantity relation side
+//   side     = [ number "*" ] quantity | number [ "+-" number ] | "analytic" | law
+//   quantity = name "(" source { "," number } ")" | "slope" "(" quantity ")"
+//   source   = estimator [ "." part ]
+//   relation = "==" | "<=" | ">=" | "<" | ">" | "within" margin "of"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "estimators/value.h"
+
+namespace assay::harness {
+
+enum class QuantityName {
+  mean, bias, variance, total_variance, worst_variance, quantile, efficiency, cost, distribution
+};
+const char* to_string(QuantityName);
+/// All of them, in the order above.
+const std::vector<QuantityName>& quantity_names();
+
+/// An estimator of the suite (or, in `check`, a plugin's name), and a part of it: a channel, a
+/// sampler, a marginal of its only sampler, or "sampler.marginal"; "" is the whole.
+struct Source {
+  std::string estimator;
+  std::string part = "";
+  Location where = {};
+  bool operator==(const Source& other) const {
+    return estimator == other.estimator && part == other.part;
+  }
+};
+
+struct Quantity {
+  QuantityName name = QuantityName::mean;
+  Source source = {};
+  std::vector<double> arguments = {};  ///< quantile: the probability
+  bool slope = false;                  ///< slope(quantity)
+  Location where = {};
+};
+
+enum class Relation { equal, at_most, at_least, less, greater, within };
+const char* to_string(Relation);  ///< "==", "<=", …, "within"
+
+/// An effect size: relative to the reference ("0.5%" is 0.005, relative) or absolute.
+struct Margin {
+  double value = 0;
+  bool relative = false;
+};
+
+struct ScaledQuantity {
+  double factor = 1;
+  Quantity quantity;
+};
+struct Constant {
+  double value = 0;
+  double standard_error = 0;
+};
+struct Analytic {};
+/// A law by name: "density" (the sampler's own), or one of Boost.Math's with its parameters.
+struct Law {
+  std::string name;
+  std::vector<double> arguments = {};
+  Location where = {};
+};
+using Side = std::variant<ScaledQuantity, Constant, Analytic, Law>;
+
+struct Claim {
+  std::string text;  ///< as the user wrote it
+  Quantity left;
+  Relation relation = Relation::equal;
+  Margin margin = {};  ///< of `within`
+  Side right;
+};
+
+/// Parses a claim. InputError with the column of the first thing that cannot be understood, what
+/// was expected there and, where a word is near a known one, that word. `where` is the place of the
+/// claim's first character.
+Claim parse_claim(std::string_view text, const Location& where);
+
+/// "0.5%" or "0.002". InputError otherwise, and where it is negative or not finite.
+Margin parse_margin(std::string_view text, const Location& where, std::string_view what);
+
+/// "0.5%" or "0.002".
+std::string to_string(const Margin&);
+
+/// "estimator" or "estimator.part".
+std::string to_string(const Source&);
+
+/// "quantile(area.red, 0.5)", "slope(bias(wis))".
+std::string to_string(const Quantity&);
+
+/// The claim as parse_claim reads it, in one spelling: numbers in shortest round-trip form, one
+/// blank around a relation. `text` has no part in it.
+std::string to_string(const Claim&);
+
+/// Parses "estimator" or "estimator.part".
+Source parse_source(std::string_view text, const Location& where);
+
+/// Whether a claim can name an estimator so: a letter or `_`, then letters, digits, `_`, `-`, `/`.
+bool is_estimator_name(std::string_view name);
+
+}  // namespace assay::harness

@@ -1,0 +1,352 @@
+#include "harness/cli.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <set>
+
+#include "harness/cli_help.h"
+#include "harness/cli_values.h"
+#include "harness/shell.h"
+#include "harness/suite_keys.h"
+#include "harness/version.h"
+
+namespace assay::harness {
+
+namespace {
+
+using Texts = std::vector<std::string>;
+
+/// Every option's text as it was typed; empty where it was not. CLI11 sorts the words, our own
+/// functions read the values, so that messages are alike everywhere.
+struct Given {
+  std::string claim, source, what, plugin, record, test, observation;
+  Texts suites, estimators, sets, reports;
+  std::string filter, seed, threads, alpha, coarsen, shard, inconclusive, colour;
+  std::string detect, allow, method, primaries, secondaries;
+  bool quiet = false;
+};
+
+CLI::App* subcommand(CLI::App& app, const std::string& name) {
+  CLI::App* sub = app.add_subcommand(name, help_of(name));
+  sub->allow_extras();
+  return sub;
+}
+
+void many(CLI::App* sub, const char* name, Texts& values, const char* kind, const char* about) {
+  sub->add_option(name, values, about)->type_name(kind)->allow_extra_args(false)->take_all();
+}
+
+void one(CLI::App* sub, const char* name, std::string& value, const char* kind, const char* about) {
+  sub->add_option(name, value, about)->type_name(kind);
+}
+
+void add_output(CLI::App* sub, Given& given) {
+  many(sub, "--report", given.reports, "KIND=PATH",
+       "console, json, junit, markdown or html to a file, - for standard output; repeatable");
+  one(sub, "--color", given.colour, "WHEN", "auto, always or never");
+}
+
+void add_running(CLI::App* sub, Given& given) {
+  one(sub, "--seed", given.seed, "N|random", "seed of all streams, instead of the suite's");
+  one(sub, "--threads", given.threads, "N", "worker threads; all cores unless given");
+  one(sub, "--alpha", given.alpha, "A", "probability of a false alarm over the suite, in (0, 0.5]");
+  one(sub, "--inconclusive", given.inconclusive, "fail|pass",
+      "count undecided tests as failed or as passed in the exit code");
+  sub->add_flag("--quiet", given.quiet, "no progress");
+  add_output(sub, given);
+}
+
+void add_estimators(CLI::App* sub, Given& given) {
+  many(sub, "--estimator", given.estimators, "NAME=PLUGIN[,key=value]...",
+       "an estimator with parameters; repeatable");
+  one(sub, "--primaries", given.primaries, "N", "primary estimates of an observation");
+  one(sub, "--secondaries", given.secondaries, "M", "number of observations");
+}
+
+void define_run(CLI::App& app, Given& given) {
+  CLI::App* sub = subcommand(app, "run");
+  sub->add_option("SUITE", given.suites, "suite files")->type_name("");
+  one(sub, "--filter", given.filter, "GLOB", "only tests whose id matches; * and ? are wild");
+  one(sub, "--coarsen", given.coarsen, "F", "multiply every `detect` by F");
+  many(sub, "--set", given.sets, "estimator.key=value", "set a parameter; repeatable");
+  one(sub, "--shard", given.shard, "I/N", "only the I-th of N parts of the tests");
+  add_running(sub, given);
+}
+
+void define_check(CLI::App& app, Given& given) {
+  CLI::App* sub = subcommand(app, "check");
+  sub->add_option("CLAIM", given.claim, "the claim, in quotes")->type_name("");
+  one(sub, "--detect", given.detect, "X", "the effect that must not pass, as 0.5% or 0.002");
+  one(sub, "--allow", given.allow, "X", "the effect that may be there");
+  one(sub, "--test", given.method, "METHOD", "force a method");
+  add_estimators(sub, given);
+  add_running(sub, given);
+}
+
+void define_others(CLI::App& app, Given& given) {
+  CLI::App* sample = subcommand(app, "sample");
+  sample->add_option("SOURCE", given.source, "an estimator, or a part of it")->type_name("");
+  add_estimators(sample, given);
+  one(sample, "--seed", given.seed, "N|random", "seed of the stream");
+
+  CLI::App* list = subcommand(app, "list");
+  list->add_option("WHAT", given.what, "plugins or tests")->type_name("");
+  list->add_option("SUITE", given.suites, "suite files, for tests")->type_name("");
+
+  CLI::App* describe = subcommand(app, "describe");
+  describe->add_option("PLUGIN", given.plugin, "a name from `assay list plugins`")->type_name("");
+
+  CLI::App* replay = subcommand(app, "replay");
+  replay->add_option("RUN.json", given.record, "a saved run")->type_name("");
+  replay->add_option("TEST", given.test, "a test's id or name")->type_name("");
+  replay->add_option("OBSERVATION", given.observation, "one observation alone, from 0")
+      ->type_name("");
+
+  CLI::App* report = subcommand(app, "report");
+  report->add_option("RUN.json", given.record, "a saved run")->type_name("");
+  add_output(report, given);
+}
+
+Texts option_names(const CLI::App& app) {
+  Texts names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+Texts subcommand_names(const CLI::App& app) {
+  Texts names;
+  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+  return names;
+}
+
+[[noreturn]] void usage_error(const std::string& why) { throw InputError({}, why); }
+
+void refuse_extras(const CLI::App& sub) {
+  for (const std::string& extra : sub.remaining()) {
+    const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
+    if (!extra.starts_with("-")) {
+      usage_error(fmt::format("`{}` is one argument too many; {}", extra, help));
+    }
+    const std::string name = extra.substr(0, extra.find('='));
+    const std::string near = nearest(name, option_names(sub));
+    usage_error(fmt::format("`assay {}` has no option `{}`; {}", sub.get_name(), name,
+                            near.empty() ? help : fmt::format("did you mean `{}`?", near)));
+  }
+}
+
+const CLI::App& chosen(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  for (const std::string& extra : app.remaining()) {
+    if (extra.starts_with("-")) {
+      usage_error(
+          fmt::format("unknown option `{}`; options stand after the command, see `assay "
+                      "--help`",
+                      extra));
+    }
+    usage_error(
+        fmt::format("unknown command `{}`{}", extra, suggestion(extra, subcommand_names(app))));
+  }
+  if (parsed.empty()) usage_error("no command; see `assay --help`");
+  return *parsed.front();
+}
+
+void require(const std::string& value, const char* what, const CLI::App& sub) {
+  if (value.empty()) {
+    usage_error(fmt::format("`assay {}` needs {}; see `assay {} --help`", sub.get_name(), what,
+                            sub.get_name()));
+  }
+}
+
+std::optional<std::string> if_given(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(text);
+}
+
+std::optional<std::uint64_t> count_if_given(const std::string& text, const char* option,
+                                            std::uint64_t least) {
+  return text.empty() ? std::nullopt : std::optional(parse_count(text, option, least));
+}
+
+void refuse_same_path(const std::vector<ReportRequest>& reports) {
+  std::set<std::string> paths;
+  for (const ReportRequest& report : reports) {
+    if (paths.insert(report.path).second) continue;
+    usage_error(report.path == "-" ? "two reports to standard output"
+                                   : fmt::format("two reports to `{}`", report.path));
+  }
+}
+
+Output output(const Given& given) {
+  Output output{.quiet = given.quiet};
+  for (const std::string& report : given.reports) output.reports.push_back(parse_report(report));
+  refuse_same_path(output.reports);
+  if (!given.colour.empty()) output.colour = parse_colour(given.colour);
+  if (!given.inconclusive.empty()) output.inconclusive = parse_inconclusive(given.inconclusive);
+  return output;
+}
+
+RunOptions options(const Given& given) {
+  constexpr std::uint64_t most_threads = 4096;
+  RunOptions options;
+  if (!given.seed.empty()) options.seed = parse_seed(given.seed);
+  if (!given.threads.empty()) {
+    options.threads =
+        static_cast<unsigned>(std::min(parse_count(given.threads, "--threads", 1), most_threads));
+  }
+  if (!given.alpha.empty()) options.alpha = parse_rate(given.alpha, "--alpha");
+  if (!given.coarsen.empty()) options.coarsen = parse_positive(given.coarsen, "--coarsen");
+  if (!given.shard.empty()) options.shard = parse_shard(given.shard);
+  options.filter = given.filter;
+  return options;
+}
+
+/// The command with the options that change what is sampled and how it is judged. A random seed
+/// stands in it as the number that was drawn; a filter is for whoever replays to add.
+class Replayable {
+ public:
+  explicit Replayable(const std::string& command) : text_("assay " + command) {}
+
+  void add(const std::string& argument) { text_ += " " + shell_quoted(argument); }
+  void add(const char* option, const std::string& value) {
+    if (!value.empty()) text_ += fmt::format(" {} {}", option, shell_quoted(value));
+  }
+  void add(const char* option, const Texts& values) {
+    for (const std::string& value : values) add(option, value);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string seed_text(const RunOptions& options) {
+  return options.seed ? std::to_string(*options.seed) : "";
+}
+
+std::string replayable_run(const Given& given, const RunOptions& options) {
+  Replayable line("run");
+  for (const std::string& suite : given.suites) line.add(suite);
+  line.add("--set", given.sets);
+  line.add("--alpha", given.alpha);
+  line.add("--seed", seed_text(options));
+  line.add("--coarsen", given.coarsen);
+  return line.text();
+}
+
+std::string replayable_check(const Given& given, const RunOptions& options) {
+  Replayable line("check");
+  line.add(given.claim);
+  line.add("--estimator", given.estimators);
+  line.add("--detect", given.detect);
+  line.add("--allow", given.allow);
+  line.add("--test", given.method);
+  line.add("--primaries", given.primaries);
+  line.add("--secondaries", given.secondaries);
+  line.add("--alpha", given.alpha);
+  line.add("--seed", seed_text(options));
+  return line.text();
+}
+
+Command run_command(const Given& given, const CLI::App& sub) {
+  require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
+  RunCommand command{given.suites, given.sets, options(given), output(given)};
+  command.options.command = replayable_run(given, command.options);
+  return command;
+}
+
+Command check_command(const Given& given, const CLI::App& sub) {
+  require(given.claim, "a claim", sub);
+  CheckCommand command{.arguments = {.claim = given.claim,
+                                     .estimators = given.estimators,
+                                     .detect = if_given(given.detect),
+                                     .allow = if_given(given.allow),
+                                     .method = if_given(given.method)},
+                       .options = options(given),
+                       .output = output(given)};
+  command.arguments.primaries = count_if_given(given.primaries, "--primaries", 1);
+  command.arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 2);
+  if (command.options.alpha) command.arguments.alpha = *command.options.alpha;
+  command.options.command = replayable_check(given, command.options);
+  return command;
+}
+
+Command sample_command(const Given& given, const CLI::App& sub) {
+  require(given.source, "an estimator", sub);
+  SampleArguments arguments{.source = given.source, .estimators = given.estimators};
+  arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 1).value_or(10);
+  arguments.primaries = count_if_given(given.primaries, "--primaries", 1).value_or(1);
+  if (!given.seed.empty()) arguments.seed = parse_seed(given.seed);
+  return arguments;
+}
+
+Command list_command(const Given& given, const CLI::App& sub) {
+  require(given.what, "`plugins` or `tests`", sub);
+  const bool tests = choice(Value::scalar(given.what), "what is listed", {"plugins", "tests"}) == 1;
+  if (tests) require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
+  if (!tests && !given.suites.empty()) usage_error("`assay list plugins` takes no suite");
+  return ListCommand{tests, given.suites};
+}
+
+Command replay_command(const Given& given, const CLI::App& sub) {
+  require(given.record, "a saved run", sub);
+  require(given.test, "a test", sub);
+  return ReplayArguments{given.record, given.test,
+                         count_if_given(given.observation, "the observation", 0)};
+}
+
+Command report_command(const Given& given, const CLI::App& sub) {
+  require(given.record, "a saved run", sub);
+  return ReportCommand{given.record, output(given)};
+}
+
+Command describe_command(const Given& given, const CLI::App& sub) {
+  require(given.plugin, "a plugin", sub);
+  return DescribeCommand{given.plugin};
+}
+
+Command command_of(const Given& given, const CLI::App& sub) {
+  const std::string& name = sub.get_name();
+  if (name == "run") return run_command(given, sub);
+  if (name == "check") return check_command(given, sub);
+  if (name == "sample") return sample_command(given, sub);
+  if (name == "list") return list_command(given, sub);
+  if (name == "describe") return describe_command(given, sub);
+  if (name == "replay") return replay_command(given, sub);
+  return report_command(given, sub);
+}
+
+std::string help(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  return parsed.empty() ? general_help() : parsed.front()->help("assay");
+}
+
+}  // namespace
+
+Command parse_command_line(const std::vector<std::string>& arguments) {
+  Given given;
+  CLI::App app("", "assay");
+  app.require_subcommand(0, 1);
+  app.allow_extras();
+  bool version_asked = false;
+  app.add_flag("--version", version_asked);
+  define_run(app, given);
+  define_check(app, given);
+  define_others(app, given);
+  try {
+    // CLI11 takes the words from the back.
+    app.parse(Texts(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    return TextCommand{help(app)};
+  } catch (const CLI::ParseError& e) {
+    usage_error(e.what());
+  }
+  if (version_asked) return TextCommand{fmt::format("assay {} ({})\n", version(), commit())};
+  const CLI::App& sub = chosen(app);
+  refuse_extras(sub);
+  return command_of(given, sub);
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,53 @@
+#pragma once
+
+// The command line as data. Parsing has no effects; program.h acts on what it returns.
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harness/commands.h"
+#include "harness/shell.h"
+
+namespace assay::harness {
+
+struct RunCommand {
+  std::vector<std::string> suites;
+  std::vector<std::string> assignments;  ///< of --set
+  RunOptions options;
+  Output output;
+};
+
+struct CheckCommand {
+  CheckArguments arguments;
+  RunOptions options;
+  Output output;
+};
+
+struct ListCommand {
+  bool tests = false;  ///< else plugins
+  std::vector<std::string> suites;
+};
+
+struct DescribeCommand {
+  std::string plugin;
+};
+
+struct ReportCommand {
+  std::string file;
+  Output output;
+};
+
+/// --help, --version: text for standard output.
+struct TextCommand {
+  std::string text;
+};
+
+using Command = std::variant<RunCommand, CheckCommand, SampleArguments, ListCommand,
+                             DescribeCommand, ReplayArguments, ReportCommand, TextCommand>;
+
+/// Parses the arguments after the program's name. InputError, with what was meant where that can be
+/// guessed, for anything that is not exactly as `--help` says.
+Command parse_command_line(const std::vector<std::string>& arguments);
+
+}  // namespace assay::harness

@@ -1,0 +1,93 @@
+#include "harness/cli_values.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <limits>
+#include <system_error>
+
+#include "harness/suite_keys.h"
+
+namespace assay::harness {
+
+namespace {
+
+/// Readings of suites say "it is `x`" at a place; an option has none.
+Value given(const std::string& text) { return Value::scalar(text); }
+
+std::uint64_t random_seed() {
+  std::uint64_t seed = 0;
+  if (getrandom(&seed, sizeof seed, 0) != static_cast<ssize_t>(sizeof seed)) {
+    throw std::system_error(errno, std::generic_category(), "no random seed from the system");
+  }
+  return seed;
+}
+
+unsigned shard_number(const std::string& text) {
+  const std::uint64_t number = parse_count(text, "a number of --shard", 1);
+  if (number > std::numeric_limits<unsigned>::max()) throw InputError({}, "--shard is too large");
+  return static_cast<unsigned>(number);
+}
+
+}  // namespace
+
+std::uint64_t parse_count(const std::string& text, const char* option, std::uint64_t least) {
+  return count_from(given(text), option, least);
+}
+
+double parse_rate(const std::string& text, const char* option) {
+  return error_rate(given(text), option);
+}
+
+double parse_positive(const std::string& text, const char* option) {
+  return positive_number(given(text), option);
+}
+
+std::uint64_t parse_seed(const std::string& text) {
+  if (text == "random") return random_seed();
+  try {
+    return parse_count(text, "--seed", 0);
+  } catch (const InputError&) {
+    throw InputError({},
+                     fmt::format("--seed must be a whole number, 0 or more, or `random`, but it "
+                                 "is `{}`",
+                                 text));
+  }
+}
+
+std::pair<unsigned, unsigned> parse_shard(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) {
+    throw InputError({}, fmt::format("--shard must be I/N, as in 2/5, but it is `{}`", text));
+  }
+  const unsigned index = shard_number(text.substr(0, slash));
+  const unsigned shards = shard_number(text.substr(slash + 1));
+  if (index > shards) {
+    throw InputError({},
+                     fmt::format("--shard {}: there is no shard {} of {}", text, index, shards));
+  }
+  return {index, shards};
+}
+
+ReportRequest parse_report(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals + 1 == text.size()) {
+    throw InputError({}, fmt::format("--report must be KIND=PATH, as in html=run.html, but it is "
+                                     "`{}`",
+                                     text));
+  }
+  const std::string kind = text.substr(0, equals);
+  choice(given(kind), "the kind of --report", {"console", "json", "junit", "markdown", "html"});
+  return {kind, text.substr(equals + 1)};
+}
+
+Colour parse_colour(const std::string& text) {
+  return static_cast<Colour>(choice(given(text), "--color", {"auto", "always", "never"}));
+}
+
+InconclusivePolicy parse_inconclusive(const std::string& text) {
+  const std::size_t index = choice(given(text), "--inconclusive", {"fail", "pass"});
+  return index == 0 ? InconclusivePolicy::fail : InconclusivePolicy::pass;
+}
+
+}  // namespace assay::harness

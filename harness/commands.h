@@ -1,0 +1,50 @@
+#pragma once
+
+// What the subcommands do, apart from parsing their arguments. Each returns an exit code.
+
+#include <string>
+#include <vector>
+
+#include "harness/run.h"
+
+namespace assay::harness {
+
+/// `--report KIND=PATH`; PATH "-" is standard output.
+struct ReportRequest {
+  std::string kind;
+  std::string path;
+};
+
+enum class Colour { automatic, always, never };
+
+struct Output {
+  std::vector<ReportRequest> reports = {};
+  Colour colour = Colour::automatic;
+  InconclusivePolicy inconclusive = InconclusivePolicy::report;
+  bool quiet = false;  ///< no progress
+};
+
+int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
+int report_saved_run(const std::string& file, const Output& output);
+
+struct ReplayArguments {
+  std::string record;                             ///< RUN.json
+  std::string test;                               ///< id or name
+  std::optional<std::uint64_t> observation = {};  ///< one of them, else the whole test
+};
+int replay(const ReplayArguments&);
+
+struct SampleArguments {
+  std::string source;                             ///< as in a claim: estimator or plugin, with part
+  std::vector<std::string> estimators = {};
+  std::uint64_t secondaries = 10;
+  std::uint64_t primaries = 1;
+  std::uint64_t seed = 1;
+};
+int sample(const SampleArguments&);
+
+int list_plugins();
+int list_tests(const std::vector<Suite>& suites);
+int describe(const std::string& plugin);
+
+}  // namespace assay::harness

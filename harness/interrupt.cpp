@@ -1,0 +1,29 @@
+#include "harness/interrupt.h"
+
+#include <atomic>
+#include <csignal>
+
+namespace assay::harness {
+
+namespace {
+
+std::atomic<bool> asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may write nothing else");
+
+extern "C" void note_interrupt(int) { asked.store(true); }
+
+}  // namespace
+
+void watch_interrupts() {
+  asked.store(false);
+  struct sigaction action {};
+  action.sa_handler = note_interrupt;
+  sigemptyset(&action.sa_mask);
+  // The handler is removed as it runs, so that a second Ctrl-C always works.
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigaction(SIGINT, &action, nullptr);
+}
+
+bool interrupted() { return asked.load(); }
+
+}  // namespace assay::harness

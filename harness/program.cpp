@@ -1,0 +1,90 @@
+#include "harness/program.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <stdexcept>
+
+#include "harness/cli.h"
+#include "harness/failure.h"
+#include "harness/interrupt.h"
+
+namespace assay::harness {
+
+namespace {
+
+constexpr int trouble = 2;
+constexpr int stopped = 130;
+
+std::vector<Suite> load(const std::vector<std::string>& files) {
+  std::vector<Suite> suites;
+  for (const std::string& file : files) suites.push_back(load_suite(file));
+  return suites;
+}
+
+int act(const RunCommand& command) {
+  std::vector<Suite> suites = load(command.suites);
+  for (const std::string& text : command.assignments) set_parameter(suites, text);
+  return run_suites(suites, command.options, command.output);
+}
+
+int act(const CheckCommand& command) {
+  return run_suites({suite_of_claim(command.arguments)}, command.options, command.output);
+}
+
+int act(const SampleArguments& arguments) { return sample(arguments); }
+
+int act(const ListCommand& command) {
+  return command.tests ? list_tests(load(command.suites)) : list_plugins();
+}
+
+int act(const DescribeCommand& command) { return describe(command.plugin); }
+
+int act(const ReplayArguments& arguments) { return replay(arguments); }
+
+int act(const ReportCommand& command) { return report_saved_run(command.file, command.output); }
+
+int act(const TextCommand& command) {
+  fmt::print("{}", command.text);
+  return 0;
+}
+
+/// The text that columns of the place `claim` refer to.
+std::string claim_of(const Command& command) {
+  if (const auto* check = std::get_if<CheckCommand>(&command)) return check->arguments.claim;
+  if (const auto* sample = std::get_if<SampleArguments>(&command)) return sample->source;
+  return "";
+}
+
+/// Output that could not be written (a full disk, a closed pipe) must not look like success.
+int flushed(int code) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
+  fmt::print(stderr, "assay: standard output could not be written\n");
+  return code == 0 ? trouble : code;
+}
+
+int guarded(const std::vector<std::string>& arguments, Command& command) {
+  command = parse_command_line(arguments);
+  watch_interrupts();
+  const int code = std::visit([](const auto& c) { return act(c); }, command);
+  return interrupted() ? stopped : flushed(code);
+}
+
+}  // namespace
+
+int program(const std::vector<std::string>& arguments) {
+  Command command;
+  try {
+    return guarded(arguments, command);
+  } catch (const InputError& e) {
+    fmt::print(stderr, "assay: {}", failure_text(e, claim_of(command)));
+  } catch (const std::runtime_error& e) {
+    // The world's fault: a full disk, a file that went away.
+    fmt::print(stderr, "assay: {}\n", e.what());
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "assay: internal error: {}\n", e.what());
+  }
+  return interrupted() ? stopped : trouble;
+}
+
+}  // namespace assay::harness

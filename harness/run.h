@@ -1,0 +1,38 @@
+#pragma once
+
+// From suites to a record: pilot, plan, sampling, the family decision, verdicts.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/progress.h"
+#include "harness/suite.h"
+#include "reports/record.h"
+
+namespace assay::harness {
+
+struct RunOptions {
+  std::optional<std::uint64_t> seed = {};  ///< else the suite's, else 1
+  unsigned threads = 0;                    ///< 0: all cores
+  std::optional<double> alpha = {};        ///< instead of every suite's
+  double coarsen = 1;                      ///< multiplies every `detect`
+  std::string filter = "";                 ///< glob on test ids; "" selects all
+  std::optional<std::pair<unsigned, unsigned>> shard = {};  ///< I of N, I from 1
+  std::string command = "";                ///< how to run the same again, for replay lines
+};
+
+/// Runs the selected tests of the suites. InputError for anything found wrong before sampling.
+reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress);
+
+enum class InconclusivePolicy { report, fail, pass };
+
+/// 0 every test ok; 1 at least one not; 3 nothing failed but something is inconclusive; 4 nothing
+/// ran; 77 all skipped.
+int exit_code(const reports::Record&, InconclusivePolicy);
+
+/// Whether a glob (`*`, `?`) matches the whole of a text.
+bool matches(std::string_view glob, std::string_view text);
+
+}  // namespace assay::harness

@@ -1,0 +1,152 @@
+#include "harness/suite.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+#include "estimators/catalogue.h"
+#include "harness/suite_entries.h"
+#include "harness/suite_keys.h"
+#include "harness/text_file.h"
+#include "harness/yaml.h"
+
+namespace assay::harness {
+
+namespace {
+
+std::string folder_of(const std::string& file) {
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+void read_head(const Keys& keys, Suite& suite) {
+  suite.name = one_line(keys.require("suite"), "`suite`");
+  if (const Value* v = keys.find("about")) suite.about = v->string("`about`");
+  if (const Value* v = keys.find("alpha")) suite.alpha = error_rate(*v, "`alpha`");
+  if (const Value* v = keys.find("beta")) suite.beta = error_rate(*v, "`beta`");
+  if (const Value* v = keys.find("seed")) suite.seed = v->count("`seed`");
+}
+
+Value read_scenes(const Keys& keys) {
+  const Value* scenes = keys.find("scenes");
+  if (!scenes) return {};
+  if (scenes->kind() != Value::Kind::map) {
+    throw InputError(scenes->where(), "`scenes` must be a map of names to scenes");
+  }
+  for (const auto& [name, scene] : scenes->members()) {
+    if (scene.kind() != Value::Kind::map) {
+      throw InputError(scene.where(), fmt::format("the scene `{}` must be a map", name));
+    }
+  }
+  return *scenes;
+}
+
+void read_estimators(const Document& document, const Value& map, Suite& suite) {
+  if (map.kind() != Value::Kind::map || map.members().empty()) {
+    throw InputError(map.where(),
+                     "`estimators` must be a map of at least one name to its plugin, as in `area: "
+                     "{plugin: luminaire/area}`");
+  }
+  for (const auto& [name, value] : map.members()) {
+    suite.estimators.push_back(read_estimator(document, name, value, suite.scenes));
+  }
+}
+
+const EstimatorEntry* find_estimator(const Suite& suite, const std::string& name) {
+  for (const EstimatorEntry& estimator : suite.estimators) {
+    if (estimator.name == name) return &estimator;
+  }
+  return nullptr;
+}
+
+void require_estimator(const Suite& suite, const Source& source) {
+  if (find_estimator(suite, source.estimator)) return;
+  std::vector<std::string> names;
+  for (const EstimatorEntry& estimator : suite.estimators) names.push_back(estimator.name);
+  throw InputError(source.where, fmt::format("the suite has no estimator `{}`{}", source.estimator,
+                                             suggestion(source.estimator, names)));
+}
+
+void check_sweep(const Suite& suite, const TestEntry& test) {
+  if (!test.over || test.over->parameter == "primaries") return;
+  const EstimatorEntry& estimator = *find_estimator(suite, test.claim.left.source.estimator);
+  const Entry& plugin = find_plugin(estimator.plugin, estimator.where);
+  std::vector<std::string> names{"primaries"};
+  for (const ParameterInformation& p : plugin.information.parameters) names.push_back(p.name);
+  for (const std::string& name : names) {
+    if (name == test.over->parameter) return;
+  }
+  throw InputError(
+      test.over->values[0].where(),
+      fmt::format("`{}` ({}) has no parameter `{}`{}", estimator.name, estimator.plugin,
+                  test.over->parameter, suggestion(test.over->parameter, names)));
+}
+
+void read_tests(const Document& document, const Value& list, Suite& suite) {
+  if (list.kind() != Value::Kind::list || list.items().empty()) {
+    throw InputError(list.where(),
+                     "`tests` must be a list of at least one test, as in `- claim: mean(area) == "
+                     "analytic`");
+  }
+  std::map<std::string, Location> names;
+  for (const Value& item : list.items()) {
+    TestEntry test = read_test(document, item);
+    test.id = suite.stem + "/" + test.name;
+    for (const Source& source : sources_of(test.claim)) require_estimator(suite, source);
+    if (test.reference) require_estimator(suite, *test.reference);
+    check_sweep(suite, test);
+    const auto [first, is_new] = names.emplace(test.name, test.where);
+    if (!is_new) {
+      throw InputError(test.where,
+                       fmt::format("a second test named `{}`; the first is at {}:{}; give one of "
+                                   "them a `name`",
+                                   test.name, first->second.line, first->second.column));
+    }
+    suite.tests.push_back(std::move(test));
+  }
+}
+
+}  // namespace
+
+std::vector<Source> sources_of(const Claim& claim) {
+  std::vector<Source> sources{claim.left.source};
+  if (const auto* right = std::get_if<ScaledQuantity>(&claim.right)) {
+    sources.push_back(right->quantity.source);
+  }
+  return sources;
+}
+
+Suite load_suite(const std::string& file) {
+  const Document document = read_yaml_file(file);
+  const Keys keys(document, document.root(), "a suite",
+                  {"suite", "about", "alpha", "beta", "seed", "scenes", "estimators", "tests"});
+  Suite suite;
+  suite.file = file;
+  suite.stem = std::filesystem::path(file).stem().string();
+  suite.folder = folder_of(file);
+  read_head(keys, suite);
+  suite.scenes = read_scenes(keys);
+  read_estimators(document, keys.require("estimators"), suite);
+  read_tests(document, keys.require("tests"), suite);
+  return suite;
+}
+
+std::string excerpt(const Location& where) {
+  if (where.line < 1 || where.file.empty()) return "";
+  try {
+    const std::string text = read_text_file(where.file);
+    const std::vector<std::string_view> lines = lines_of(text);
+    const auto index = static_cast<std::size_t>(where.line) - 1;
+    // A file that ends too early is blamed on the line after its last.
+    const bool exists = index < lines.size();
+    if (!exists && index > lines.size()) return "";
+    std::string_view line = exists ? lines[index] : std::string_view{};
+    if (index == 0 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    return caret_below(line, where.column);
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,45 @@
+#pragma once
+
+// Reading maps of a suite strictly.
+
+#include <string>
+#include <vector>
+
+#include "harness/yaml.h"
+
+namespace assay::harness {
+
+/// A map of a suite file of which all keys are known. Refuses unknown ones when it is made.
+class Keys {
+ public:
+  /// `what` names the map in messages: "a suite", "a test".
+  Keys(const Document& document, const Value& map, std::string what,
+       const std::vector<std::string>& known);
+
+  const Value* find(std::string_view key) const { return map_.find(key); }
+  /// InputError at the map when the key is not there.
+  const Value& require(std::string_view key) const;
+  Location where(const Value& member) const { return document_.key(member); }
+
+ private:
+  const Document& document_;
+  const Value& map_;
+  std::string what_;
+};
+
+/// "; did you mean `x`?", or "; " and the candidates where none is near.
+std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
+
+/// Finite numbers in a range that `what` must have; InputError at the value.
+double positive_number(const Value& value, std::string_view what);
+double error_rate(const Value& value, std::string_view what);  ///< in (0, 0.5]
+std::uint64_t count_from(const Value& value, std::string_view what, std::uint64_t least);
+
+/// Text that is not empty and has one line.
+std::string one_line(const Value& value, std::string_view what);
+
+/// The index of a text among those allowed.
+std::size_t choice(const Value& value, std::string_view what,
+                   const std::vector<std::string>& allowed);
+
+}  // namespace assay::harness

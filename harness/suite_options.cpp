@@ -1,0 +1,224 @@
+// Suites from the command line: `assay check`, `--estimator`, `--set`.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "estimators/catalogue.h"
+#include "harness/suite.h"
+#include "harness/suite_entries.h"
+#include "harness/suite_keys.h"
+#include "harness/yaml.h"
+
+namespace assay::harness {
+
+namespace {
+
+/// `text` before and after the first `separator`; nullopt without one.
+std::optional<std::pair<std::string, std::string>> cut(const std::string& text, char separator) {
+  const std::size_t at = text.find(separator);
+  if (at == std::string::npos) return {};
+  return std::pair{text.substr(0, at), text.substr(at + 1)};
+}
+
+void require_parameter(const std::string& plugin, const std::string& key, const Location& where) {
+  std::vector<std::string> names;
+  for (const auto& parameter : find_plugin(plugin, where).information.parameters) {
+    names.push_back(parameter.name);
+  }
+  names.push_back("primaries");
+  if (std::ranges::find(names, key) != names.end()) return;
+  throw InputError(where,
+                   fmt::format("{} has no parameter `{}`{}", plugin, key, suggestion(key, names)));
+}
+
+/// The map with one member replaced or added.
+Value with_member(const Value& map, const std::string& key, const Value& value) {
+  std::vector<Value::Member> members = map.members();
+  const auto found = std::ranges::find(members, key, &Value::Member::first);
+  if (found == members.end()) {
+    members.emplace_back(key, value);
+  } else {
+    found->second = value;
+  }
+  return Value::map(std::move(members), map.where());
+}
+
+void assign(EstimatorEntry& estimator, const std::string& key, const Value& value) {
+  require_parameter(estimator.plugin, key, value.where());
+  if (key == "primaries") {
+    estimator.primaries = read_primaries(value, "`primaries`");
+  } else {
+    estimator.parameters = with_member(estimator.parameters, key, value);
+  }
+}
+
+/// One piece of --set.
+struct Assignment {
+  std::string estimator;
+  std::string key;
+  Value value;
+};
+
+Assignment parse_assignment(const std::string& piece) {
+  const Location where{"--set " + piece, 0, 0};
+  const auto sides = cut(piece, '=');
+  const auto path = sides ? cut(sides->first, '.') : std::nullopt;
+  if (!path || path->first.empty() || path->second.empty()) {
+    throw InputError(where,
+                     "expected estimator.key=value; a value with commas stands in brackets "
+                     "or quotes");
+  }
+  return {path->first, path->second, read_flow(sides->second, where)};
+}
+
+void assign_everywhere(std::vector<Suite>& suites, const Assignment& assignment) {
+  std::vector<std::string> names;
+  bool found = false;
+  for (Suite& suite : suites) {
+    for (EstimatorEntry& estimator : suite.estimators) {
+      names.push_back(estimator.name);
+      if (estimator.name != assignment.estimator) continue;
+      found = true;
+      const bool scene = assignment.key == "scene";
+      assign(estimator, assignment.key,
+             scene ? scene_or(assignment.value, suite.scenes) : assignment.value);
+    }
+  }
+  if (found) return;
+  throw InputError(assignment.value.where(),
+                   fmt::format("no suite has an estimator `{}`{}", assignment.estimator,
+                               suggestion(assignment.estimator, names)));
+}
+
+std::optional<EstimatorEntry> entry_named(const std::vector<EstimatorEntry>& entries,
+                                          const std::string& name) {
+  for (const EstimatorEntry& entry : entries) {
+    if (entry.name == name) return entry;
+  }
+  return {};
+}
+
+std::vector<EstimatorEntry> parse_options(const std::vector<std::string>& options) {
+  std::vector<EstimatorEntry> entries;
+  for (const std::string& option : options) {
+    EstimatorEntry entry = parse_estimator_option(option);
+    if (entry_named(entries, entry.name)) {
+      throw InputError(entry.where, fmt::format("a second estimator named `{}`", entry.name));
+    }
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+EstimatorEntry plugin_itself(const Source& source) {
+  const Entry& plugin = find_plugin(source.estimator, source.where);
+  return {.name = source.estimator,
+          .plugin = plugin.information.name,
+          .parameters = Value::map({}, source.where),
+          .primaries = {},
+          .where = source.where};
+}
+
+EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>& given) {
+  if (const auto entry = entry_named(given, source.estimator)) return *entry;
+  std::vector<std::string> names;
+  for (const EstimatorEntry& entry : given) names.push_back(entry.name);
+  const std::string near = nearest(source.estimator, names);
+  if (near.empty()) return plugin_itself(source);
+  throw InputError(source.where, fmt::format("no --estimator is named `{}`; did you mean `{}`?",
+                                             source.estimator, near));
+}
+
+void refuse_unused(const std::vector<EstimatorEntry>& given,
+                   const std::vector<EstimatorEntry>& used) {
+  for (const EstimatorEntry& entry : given) {
+    if (entry_named(used, entry.name)) continue;
+    throw InputError(entry.where, fmt::format("nothing names the estimator `{}`", entry.name));
+  }
+}
+
+std::optional<Margin> margin_option(const std::optional<std::string>& text, const char* option) {
+  if (!text) return {};
+  return parse_margin(*text, {}, option);
+}
+
+}  // namespace
+
+void set_parameter(std::vector<Suite>& suites, const std::string& assignment) {
+  for (const std::string& piece : split_outside_brackets(assignment)) {
+    assign_everywhere(suites, parse_assignment(piece));
+  }
+}
+
+EstimatorEntry parse_estimator_option(const std::string& text) {
+  const Location where{"--estimator " + text, 0, 0};
+  const std::vector<std::string> pieces = split_outside_brackets(text);
+  const auto head = cut(pieces[0], '=');
+  if (!head) throw InputError(where, "expected NAME=PLUGIN[,key=value]…");
+  if (!is_estimator_name(head->first)) {
+    throw InputError(where, fmt::format("`{}` cannot name an estimator: a letter, then letters, "
+                                        "digits, `_`, `-` and `/`",
+                                        head->first));
+  }
+  EstimatorEntry entry{.name = head->first,
+                       .plugin = find_plugin(head->second, where).information.name,
+                       .parameters = Value::map({}, where),
+                       .primaries = {},
+                       .where = where};
+  std::vector<std::string> seen;
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    const auto sides = cut(pieces[i], '=');
+    if (!sides) {
+      throw InputError(where, fmt::format("`{}` is not key=value; a value with commas stands in "
+                                          "brackets or quotes",
+                                          pieces[i]));
+    }
+    if (std::ranges::find(seen, sides->first) != seen.end()) {
+      throw InputError(where, fmt::format("`{}` is given twice", sides->first));
+    }
+    seen.push_back(sides->first);
+    assign(entry, sides->first, read_flow(sides->second, where));
+  }
+  return entry;
+}
+
+std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
+                                          const std::vector<std::string>& options,
+                                          std::optional<std::uint64_t> primaries) {
+  const std::vector<EstimatorEntry> given = parse_options(options);
+  std::vector<EstimatorEntry> used;
+  for (const Source& source : sources) {
+    if (entry_named(used, source.estimator)) continue;
+    used.push_back(entry_for(source, given));
+    if (primaries) used.back().primaries = primaries;
+  }
+  refuse_unused(given, used);
+  return used;
+}
+
+Suite suite_of_claim(const CheckArguments& arguments) {
+  const Location where{"claim", 1, 1};
+  TestEntry test{.claim = parse_claim(arguments.claim, where), .where = where};
+  test.name = test.claim.text;
+  test.id = "check/" + test.name;
+  test.detect = margin_option(arguments.detect, "--detect");
+  test.allow = margin_option(arguments.allow, "--allow");
+  test.secondaries = arguments.secondaries;
+  if (arguments.method) {
+    test.method =
+        method_names()[choice(Value::scalar(*arguments.method), "--test", method_names())];
+  }
+  check_test(test, [&](std::string_view key) { return key == "claim" ? where : Location{}; });
+  Suite suite;
+  suite.name = "check";
+  suite.stem = "check";
+  suite.folder = ".";
+  suite.alpha = arguments.alpha;
+  suite.estimators =
+      estimators_of(sources_of(test.claim), arguments.estimators, arguments.primaries);
+  suite.tests.push_back(std::move(test));
+  return suite;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,227 @@
+#include "harness/cli.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "estimators/stream.h"
+#include "harness/version.h"
+#include "refusal.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+template <class Kind>
+Kind parsed(const std::vector<std::string>& arguments) {
+  return std::get<Kind>(parse_command_line(arguments));
+}
+
+std::string refused(const std::vector<std::string>& arguments) {
+  return refusal([&] { parse_command_line(arguments); });
+}
+
+TEST(CommandLine, RunsSuitesWithEveryOption) {
+  const auto command = parsed<RunCommand>({"run",      "a.yaml",     "b.yaml",
+                                           "--filter", "*/mean*",    "--seed",
+                                           "7",        "--threads",  "2",
+                                           "--alpha",  "0.05",       "--coarsen",
+                                           "4",        "--set",      "x.n=1",
+                                           "--set",    "x.v=[1, 2]", "--shard",
+                                           "2/5",      "--report",   "json=run.json",
+                                           "--report", "html=-",     "--inconclusive",
+                                           "fail",     "--color",    "never",
+                                           "--quiet"});
+  EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
+  EXPECT_THAT(command.assignments, ElementsAre("x.n=1", "x.v=[1, 2]"));
+  EXPECT_EQ(command.options.filter, "*/mean*");
+  EXPECT_EQ(command.options.seed, 7U);
+  EXPECT_EQ(command.options.threads, 2U);
+  EXPECT_EQ(command.options.alpha, 0.05);
+  EXPECT_EQ(command.options.coarsen, 4);
+  EXPECT_EQ(command.options.shard, (std::pair{2U, 5U}));
+  ASSERT_EQ(command.output.reports.size(), 2U);
+  EXPECT_EQ(command.output.reports[0].kind, "json");
+  EXPECT_EQ(command.output.reports[1].path, "-");
+  EXPECT_EQ(command.output.inconclusive, InconclusivePolicy::fail);
+  EXPECT_EQ(command.output.colour, Colour::never);
+  EXPECT_TRUE(command.output.quiet);
+  EXPECT_EQ(command.options.command,
+            "assay run a.yaml b.yaml --set x.n=1 --set 'x.v=[1, 2]' --alpha 0.05 --seed 7 "
+            "--coarsen 4");
+}
+
+TEST(CommandLine, RepeatedOptionsTakeOneValueEach) {
+  const auto command = parsed<RunCommand>({"run", "--set", "x.n=1", "a.yaml", "b.yaml"});
+  EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
+  EXPECT_THAT(command.assignments, ElementsAre("x.n=1"));
+}
+
+TEST(CommandLine, ChecksAClaim) {
+  const auto command = parsed<CheckCommand>(
+      {"check", "mean(a) == analytic", "--estimator", "a=luminaire/area,scene={x: [1, 2]}",
+       "--detect", "0.5%", "--allow", "1e-6", "--test", "t", "--primaries", "1e2", "--secondaries",
+       "1000", "--alpha", "0.02", "--seed", "3"});
+  EXPECT_EQ(command.arguments.claim, "mean(a) == analytic");
+  EXPECT_THAT(command.arguments.estimators, ElementsAre("a=luminaire/area,scene={x: [1, 2]}"));
+  EXPECT_EQ(command.arguments.detect, "0.5%");
+  EXPECT_EQ(command.arguments.allow, "1e-6");
+  EXPECT_EQ(command.arguments.method, "t");
+  EXPECT_EQ(command.arguments.primaries, 100U);
+  EXPECT_EQ(command.arguments.secondaries, 1000U);
+  EXPECT_EQ(command.arguments.alpha, 0.02);
+  EXPECT_EQ(command.options.command,
+            "assay check 'mean(a) == analytic' --estimator 'a=luminaire/area,scene={x: [1, 2]}' "
+            "--detect 0.5% --allow 1e-6 --test t --primaries 1e2 --secondaries 1000 --alpha 0.02 "
+            "--seed 3");
+}
+
+TEST(CommandLine, SamplesListsDescribesReplaysAndReports) {
+  const auto sample = parsed<SampleArguments>(
+      {"sample", "luminaire/area.irradiance", "--secondaries", "5", "--seed", "9"});
+  EXPECT_EQ(sample.source, "luminaire/area.irradiance");
+  EXPECT_EQ(sample.secondaries, 5U);
+  EXPECT_EQ(sample.primaries, 1U);
+  EXPECT_EQ(sample.seed, 9U);
+  EXPECT_FALSE(parsed<ListCommand>({"list", "plugins"}).tests);
+  EXPECT_THAT(parsed<ListCommand>({"list", "tests", "a.yaml"}).suites, ElementsAre("a.yaml"));
+  EXPECT_EQ(parsed<DescribeCommand>({"describe", "luminaire/area"}).plugin, "luminaire/area");
+  const auto replay = parsed<ReplayArguments>({"replay", "run.json", "s/t", "0"});
+  EXPECT_EQ(replay.record, "run.json");
+  EXPECT_EQ(replay.test, "s/t");
+  EXPECT_EQ(replay.observation, 0U);
+  EXPECT_EQ(parsed<ReplayArguments>({"replay", "run.json", "s/t"}).observation, std::nullopt);
+  EXPECT_EQ(parsed<ReportCommand>({"report", "run.json", "--report", "html=a"}).file, "run.json");
+}
+
+TEST(CommandLine, ARandomSeedIsFreshAndIsWrittenDown) {
+  const auto first = parsed<RunCommand>({"run", "a.yaml", "--seed", "random"});
+  const auto second = parsed<RunCommand>({"run", "a.yaml", "--seed", "random"});
+  // Equal with probability 2^-64.
+  EXPECT_NE(first.options.seed, second.options.seed);
+  EXPECT_EQ(first.options.command,
+            "assay run a.yaml --seed " + std::to_string(*first.options.seed));
+}
+
+TEST(CommandLine, HelpLeadsWithExamples) {
+  for (const char* name : {"run", "check", "sample", "list", "describe", "replay", "report"}) {
+    const std::string help = parsed<TextCommand>({name, "--help"}).text;
+    const std::size_t examples = help.find("Examples:\n  assay " + std::string(name));
+    ASSERT_NE(examples, std::string::npos) << help;
+    EXPECT_LT(examples, help.find("Usage:")) << help;
+    EXPECT_THAT(help, HasSubstr(std::string("assay ") + name + " ["));
+    EXPECT_THAT(parsed<TextCommand>({"--help"}).text, HasSubstr(std::string("  ") + name + " "));
+  }
+  EXPECT_THAT(parsed<TextCommand>({"-h"}).text, HasSubstr("Exit codes:"));
+}
+
+TEST(CommandLine, TellsItsVersionAndCommit) {
+  EXPECT_EQ(parsed<TextCommand>({"--version"}).text,
+            "assay " + version() + " (" + commit() + ")\n");
+  EXPECT_FALSE(commit().empty());
+}
+
+TEST(CommandLine, SuggestsWhatWasMeant) {
+  EXPECT_EQ(refused({"rnu", "a.yaml"}), "unknown command `rnu`; did you mean `run`?");
+  EXPECT_EQ(refused({"run", "a.yaml", "--sede", "3"}),
+            "`assay run` has no option `--sede`; did you mean `--seed`?");
+  EXPECT_EQ(refused({"run", "a.yaml", "--sede=3"}),
+            "`assay run` has no option `--sede`; did you mean `--seed`?");
+  EXPECT_EQ(refused({"run", "a.yaml", "--report", "juint=x"}),
+            "the kind of --report cannot be `juint`; did you mean `junit`?");
+  EXPECT_EQ(refused({"run", "a.yaml", "--color", "nver"}),
+            "--color cannot be `nver`; did you mean `never`?");
+  EXPECT_EQ(refused({"list", "plugin"}),
+            "what is listed cannot be `plugin`; did you mean "
+            "`plugins`?");
+}
+
+TEST(CommandLine, OffersNothingOfLaterVersions) {
+  for (const char* name : {"plan", "calibrate", "merge", "images"}) {
+    EXPECT_THAT(refused({name}), StartsWith("unknown command `"));
+  }
+  EXPECT_THAT(refused({"run", "a.yaml", "--ledger", "f"}),
+              StartsWith("`assay run` has no option `--ledger`"));
+}
+
+TEST(CommandLine, NamesWhatIsMissingOrTooMuch) {
+  EXPECT_EQ(refused({}), "no command; see `assay --help`");
+  EXPECT_EQ(refused({"run"}), "`assay run` needs a suite file; see `assay run --help`");
+  EXPECT_EQ(refused({"check"}), "`assay check` needs a claim; see `assay check --help`");
+  EXPECT_EQ(refused({"check", "mean(a)", "==", "3"}),
+            "`==` is one argument too many; see `assay check --help`");
+  EXPECT_EQ(refused({"list"}), "`assay list` needs `plugins` or `tests`; see `assay list --help`");
+  EXPECT_EQ(refused({"list", "tests"}), "`assay list` needs a suite file; see `assay list --help`");
+  EXPECT_EQ(refused({"list", "plugins", "a.yaml"}), "`assay list plugins` takes no suite");
+  EXPECT_EQ(refused({"describe"}), "`assay describe` needs a plugin; see `assay describe --help`");
+  EXPECT_EQ(refused({"replay", "r.json"}),
+            "`assay replay` needs a test; see `assay replay --help`");
+  EXPECT_EQ(refused({"--seed", "3", "run", "a.yaml"}),
+            "unknown option `--seed`; options stand after the command, see `assay --help`");
+  EXPECT_THAT(refused({"run", "a.yaml", "--seed"}), HasSubstr("--seed"));
+}
+
+TEST(CommandLine, RefusesValuesOutOfRange) {
+  const auto run = [](const std::string& option, const std::string& value) {
+    return refused({"run", "a.yaml", option, value});
+  };
+  EXPECT_EQ(run("--seed", "-1"),
+            "--seed must be a whole number, 0 or more, or `random`, but it is `-1`");
+  EXPECT_EQ(run("--seed", "18446744073709551616"),
+            "--seed must be a whole number, 0 or more, or `random`, but it is "
+            "`18446744073709551616`");
+  EXPECT_EQ(run("--threads", "0"), "--threads must be at least 1, but it is 0");
+  EXPECT_EQ(run("--alpha", "0.6"), "--alpha must be above 0 and at most 0.5, but it is 0.6");
+  EXPECT_EQ(run("--alpha", "0"), "--alpha must be above 0 and at most 0.5, but it is 0");
+  EXPECT_EQ(run("--alpha", "nan"), "--alpha must be above 0 and at most 0.5, but it is nan");
+  EXPECT_EQ(run("--coarsen", "0"), "--coarsen must be above 0 and finite, but it is 0");
+  EXPECT_EQ(run("--coarsen", "inf"), "--coarsen must be above 0 and finite, but it is inf");
+  EXPECT_EQ(run("--shard", "3"), "--shard must be I/N, as in 2/5, but it is `3`");
+  EXPECT_EQ(run("--shard", "3/2"), "--shard 3/2: there is no shard 3 of 2");
+  EXPECT_EQ(run("--shard", "0/2"), "a number of --shard must be at least 1, but it is 0");
+  EXPECT_EQ(run("--report", "html"),
+            "--report must be KIND=PATH, as in html=run.html, but it is `html`");
+  EXPECT_EQ(run("--inconclusive", "maybe"),
+            "--inconclusive cannot be `maybe`; there is: fail, pass");
+  EXPECT_EQ(refused({"check", "mean(a) == 1", "--secondaries", "1"}),
+            "--secondaries must be at least 2, but it is 1");
+}
+
+TEST(CommandLine, RefusesTwoReportsInOnePlace) {
+  EXPECT_EQ(refused({"run", "a.yaml", "--report", "json=x", "--report", "html=x"}),
+            "two reports to `x`");
+  EXPECT_EQ(refused({"run", "a.yaml", "--report", "json=-", "--report", "html=-"}),
+            "two reports to standard output");
+}
+
+TEST(ShellQuoted, ReadsBackInAShell) {
+  EXPECT_EQ(shell_quoted("a/b-c_1.yaml"), "a/b-c_1.yaml");
+  EXPECT_EQ(shell_quoted(""), "''");
+  EXPECT_EQ(shell_quoted("mean(a) == 1"), "'mean(a) == 1'");
+  EXPECT_EQ(shell_quoted("it's"), "'it'\\''s'");
+}
+
+// Any words are a command or an InputError: what CLI11 throws never gets out.
+TEST(CommandLineFuzz, AnyWordsAreReadOrRefused) {
+  const std::vector<std::string> words{
+      "run", "check",  "list",     "tests",  "--set",    "--set=a.b=1", "-x",
+      "--",  "-",      "--report", "json=x", "--seed",   "3",           "[1,2]",
+      "",    "a=b",    "--help",   "-h",     "sample",   "report",      "--alpha",
+      "0.1", "replay", "%%",       "--no",   "--version"};
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    Stream random({4}, i);
+    std::vector<std::string> arguments(random() % 6);
+    for (std::string& word : arguments) word = words[random() % words.size()];
+    try {
+      parse_command_line(arguments);
+    } catch (const InputError& e) {
+      EXPECT_FALSE(e.message().empty());
+      EXPECT_EQ(e.message().find('\n'), std::string::npos) << e.message();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,89 @@
+#include "harness/describe.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "estimators/catalogue.h"
+#include "harness/commands.h"
+#include "refusal.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string manual_of(const std::string& plugin) {
+  return manual(find_plugin(plugin, {}), catalogue());
+}
+
+TEST(Describe, TellsWhatIsKnownExactly) {
+  const std::string text = manual_of("analytic/dart_throwing");
+  EXPECT_THAT(text, testing::StartsWith("analytic/dart_throwing\n"));
+  EXPECT_THAT(text, HasSubstr("area: mean 3.14159265359, variance of a primary 2.69676621"));
+  EXPECT_THAT(text, HasSubstr("values in [0, 4]"));
+  EXPECT_THAT(text, HasSubstr("bias        unbiased"));
+}
+
+TEST(Describe, ListsParametersSamplersAndMutants) {
+  const std::string text = manual_of("luminaire/area");
+  EXPECT_THAT(text, HasSubstr("scene: structure"));
+  EXPECT_THAT(text, HasSubstr("samplers\n"));
+  for (const Entry& entry : catalogue()) {
+    const bool listed = entry.information.original == "luminaire/area";
+    const std::string line = "  " + entry.information.name + ":";
+    EXPECT_THAT(text, listed ? testing::Matcher<std::string>(HasSubstr(line))
+                             : testing::Matcher<std::string>(Not(HasSubstr(line))));
+  }
+}
+
+TEST(Describe, NamesTheOriginalAndTheDefectOfAMutant) {
+  const auto mutant = std::ranges::find_if(
+      catalogue(), [](const Entry& e) { return !e.information.original.empty(); });
+  ASSERT_NE(mutant, catalogue().end());
+  const std::string text = manual(*mutant, catalogue());
+  EXPECT_THAT(text, HasSubstr("mutant of   " + mutant->information.original + "\n"));
+  EXPECT_THAT(text, HasSubstr("defect      "));
+}
+
+TEST(Describe, SaysWhyChannelsAreNotKnownYet) {
+  Entry entry{.information = {.name = "a/b",
+                              .summary = "Needs a number.",
+                              .parameters = {{.name = "n",
+                                              .summary = "how many",
+                                              .unit = "m",
+                                              .low = 0,
+                                              .low_excluded = true}}},
+              .prepare = [](Parameters&) { return std::shared_ptr<const assay::Setup>{}; }};
+  const std::string text = manual(entry, {});
+  EXPECT_THAT(text, HasSubstr("n: number, (0, inf), m, required"));
+  EXPECT_THAT(text, HasSubstr("channels: known once its parameters are given"));
+}
+
+TEST(Describe, KeepsEveryManualWithinAHundredColumns) {
+  for (const Entry& entry : catalogue()) {
+    std::istringstream lines(manual(entry, catalogue()));
+    for (std::string line; std::getline(lines, line);) {
+      const auto columns = std::ranges::count_if(
+          line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; });
+      EXPECT_LE(columns, 100) << line;
+    }
+  }
+}
+
+TEST(Describe, SuggestsTheNearestPlugin) {
+  EXPECT_EQ(refusal([] { describe("area"); }),
+            "there is no plugin `area`; did you mean `luminaire/area`?");
+}
+
+TEST(Wrapped, BreaksAtBlanksAndKeepsLineEnds) {
+  EXPECT_EQ(wrapped("one two three\nfour", 9, 1), " one two\n three\n four\n");
+  EXPECT_EQ(wrapped("unbreakable", 5, 0), "unbreakable\n");
+  EXPECT_EQ(wrapped("", 5, 0), "");
+}
+
+}  // namespace
+}  // namespace assay::harness
