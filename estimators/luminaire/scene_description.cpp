@@ -185,13 +185,12 @@ std::vector<Occluder> occluders(const Value* value, const std::string& folder) {
 }
 
 const std::vector<std::pair<std::string, SceneDescription>>& built_in() {
-  static const double h = std::sqrt(3.0) / 2;
   static const Receiver upward{{0, 0, 0}, {0, 0, 1}};
   static const Polygon triangle = {{.2, -.4, 1}, {1.6, .3, 1.4}, {-.3, 1.2, 1.1}};
   static const Polygon rectangle = {{-.8, -.6, 1}, {-.8, .8, 1}, {.9, .8, 1}, {.9, -.6, 1}};
-  // Cornell University, CS 667, homework 4: `tri-lum-normal`.
+  // Cornell University, CS 667, homework 4: `tri-lum-normal`, an equilateral triangle to 4 digits.
   static const Receiver along_y{{0, 0, 0}, {0, 1, 0}};
-  static const Polygon cornell = {{0, 5, 1}, {-h, 5, -.5}, {h, 5, -.5}};
+  static const Polygon cornell = {{0, 5, 1}, {-.866, 5, -.5}, {.866, 5, -.5}};
   static const std::vector<std::pair<std::string, SceneDescription>> scenes = {
       {"triangle", {upward, {triangle, 1, true}, {}}},
       {"cornell_triangle", {along_y, {cornell, 20, is_clockwise(cornell, {0, -1, 0})}, {}}},

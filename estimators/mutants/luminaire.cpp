@@ -42,19 +42,21 @@ struct InverseDistance {
 
 struct ReversedDifference {
   double operator()(const Connection& c) const {
-    return -c.receiver_cosine() * c.light_cosine() / c.squared_distance;
+    return -c.receiver_height() * c.light_height / (c.squared_distance * c.squared_distance);
   }
 };
 
 struct AbsoluteReceiverCosine {
   double operator()(const Connection& c) const {
-    return std::abs(c.receiver_cosine()) * std::max(0.0, c.light_cosine()) / c.squared_distance;
+    return std::abs(c.receiver_height()) * std::max(0.0, c.light_height) /
+           (c.squared_distance * c.squared_distance);
   }
 };
 
 struct TwoSidedLight {
   double operator()(const Connection& c) const {
-    return std::max(0.0, c.receiver_cosine()) * std::abs(c.light_cosine()) / c.squared_distance;
+    return std::max(0.0, c.receiver_height()) * std::abs(c.light_height) /
+           (c.squared_distance * c.squared_distance);
   }
 };
 

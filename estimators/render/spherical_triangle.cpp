@@ -21,30 +21,25 @@ SphericalTriangle::SphericalTriangle(const Vector3& a, const Vector3& b, const V
       c_(normalised(c)),
       towards_c_(perpendicular_part(a_, c_)),
       solid_angle_(render::solid_angle(a_, b_, c_)),
-      cos_ab_(dot(a_, b_)) {
+      cot_half_ab_(1 / std::tan(angle_between(a_, b_) / 2)) {
   const double alpha = angle_between(perpendicular_part(a_, b_), towards_c_);
   cos_alpha_ = std::cos(alpha);
   sin_alpha_ = std::sin(alpha);
 }
 
 Vector3 SphericalTriangle::edge_point(double u) const {
-  // With the angle at b of the part triangle phi - alpha: s = sin(phi), t = cos(phi), where the
-  // angles of the part sum to pi + u solid_angle (Arvo 1995, equations 2 to 4).
-  const double excess = u * solid_angle_;
-  const double sine = -std::sin(excess);
-  const double cosine = -std::cos(excess);
-  const double s = sine * cos_alpha_ - cosine * sin_alpha_;
-  const double t = cosine * cos_alpha_ + sine * sin_alpha_;
-  const double k1 = t + cos_alpha_;
-  const double k2 = s - sin_alpha_ * cos_ab_;
-  const double q = (k2 + (k2 * t - k1 * s) * cos_alpha_) / ((k2 * s + k1 * t) * sin_alpha_);
-  const double cos_b = std::clamp(q, -1.0, 1.0);
-  return cos_b * a_ + std::sqrt(1 - cos_b * cos_b) * towards_c_;
+  const double half_excess = u * solid_angle_ / 2;
+  const double sine = std::sin(half_excess);
+  const double cosine = std::cos(half_excess);
+  const double tangent = sine * cot_half_ab_ / (sin_alpha_ * cosine - cos_alpha_ * sine);
+  const double scale = 1 / (1 + tangent * tangent);
+  return ((1 - tangent * tangent) * scale) * a_ + (2 * tangent * scale) * towards_c_;
 }
 
 Vector3 SphericalTriangle::arc_point(const Vector3& c_prime, double v) const {
-  const double z = 1 - v * (1 - dot(c_prime, b_));
-  return z * b_ + std::sqrt(std::max(0.0, 1 - z * z)) * perpendicular_part(b_, c_prime);
+  // 1 - cos, as half a squared chord: near b the cosine itself would keep no digit of it.
+  const double fall = v * squared_length(c_prime - b_) / 2;
+  return (1 - fall) * b_ + std::sqrt(fall * (2 - fall)) * perpendicular_part(b_, c_prime);
 }
 
 std::array<double, 2> SphericalTriangle::coordinates(const Vector3& w) const {

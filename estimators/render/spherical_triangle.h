@@ -12,8 +12,13 @@ namespace assay::render {
 /// Arvo (1995), "Stratified sampling of spherical triangles".
 ///
 /// A point is found in two steps: point c' on the arc from a to c cuts off the fraction u of the
-/// solid angle beside edge ab; on the arc from b to c' the cosine is uniform. The relative error of
-/// a density is about 1e-16 / solid_angle().
+/// solid angle beside edge ab; on the arc from b to c' the cosine is uniform.
+///
+/// The first step uses the excess E of a triangle with two sides and the angle between them,
+///   tan(E / 2) = tan(ab / 2) tan(ac' / 2) sin(alpha) / (1 + tan(ab / 2) tan(ac' / 2) cos(alpha))
+/// (Todhunter 1886, Spherical Trigonometry, article 103), solved for tan(ac' / 2). It is Arvo's
+/// map; his equation for cos(ac') says the same with differences that lose half the digits in thin
+/// triangles.
 class SphericalTriangle {
  public:
   /// Vertices seen from the origin, of any length, either way round; not in one plane with it.
@@ -43,9 +48,9 @@ class SphericalTriangle {
   Vector3 c_;
   Vector3 towards_c_;  // the unit tangent at a of the arc from a to c
   double solid_angle_;
+  double cot_half_ab_;
   double cos_alpha_;
   double sin_alpha_;
-  double cos_ab_;
 };
 
 }  // namespace assay::render

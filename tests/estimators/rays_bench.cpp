@@ -1,0 +1,227 @@
+// How much an estimator costs beside the bare calls of Embree that it must make.
+//
+// A rectangle shines on a receiver past a sphere of 2,000 triangles. For shadow rays and for
+// closest-hit rays the program times the estimator's primaries, and the same number of bare calls
+// on a like scene along directions made beforehand. Rows: nanoseconds a primary, a bare ray, and
+// rays a second relative to bare.
+
+#include <embree3/rtcore.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <numbers>
+#include <vector>
+
+#include "estimators/catalogue.h"
+#include "estimators/flow.h"
+#include "render/hemisphere.h"
+#include "render/scene.h"
+#include "render/triangle_mesh.h"
+
+namespace {
+
+using namespace assay;
+using render::Vector3;
+
+constexpr Vector3 centre = {0.3, 0.2, 0.5};
+constexpr double radius = 0.25;
+constexpr unsigned meridians = 40;
+constexpr unsigned parallels = 26;  // 2 * 40 * 25 = 2,000 triangles
+
+std::filesystem::path write_sphere() {
+  const auto file = std::filesystem::temp_directory_path() / "assay_rays_bench.obj";
+  std::ofstream out(file);
+  const auto vertex = [&](double z, double r, double v) {
+    const double phi = 2 * std::numbers::pi * v;
+    out << "v " << centre.x + r * std::cos(phi) << ' ' << centre.y + r * std::sin(phi) << ' '
+        << centre.z + z << '\n';
+  };
+  vertex(radius, 0, 0);
+  vertex(-radius, 0, 0);
+  for (unsigned i = 1; i < parallels; ++i) {
+    const double theta = std::numbers::pi * i / parallels;
+    for (unsigned j = 0; j < meridians; ++j) {
+      vertex(radius * std::cos(theta), radius * std::sin(theta), double(j) / meridians);
+    }
+  }
+  const auto at = [](unsigned i, unsigned j) { return 3 + (i - 1) * meridians + j % meridians; };
+  for (unsigned j = 0; j < meridians; ++j) {
+    out << "f 1 " << at(1, j) << ' ' << at(1, j + 1) << '\n';
+    out << "f 2 " << at(parallels - 1, j + 1) << ' ' << at(parallels - 1, j) << '\n';
+    for (unsigned i = 1; i + 1 < parallels; ++i) {
+      out << "f " << at(i, j) << ' ' << at(i + 1, j) << ' ' << at(i + 1, j + 1) << ' '
+          << at(i, j + 1) << '\n';
+    }
+  }
+  return file;
+}
+
+double nanoseconds(std::uint64_t count, const std::function<void()>& work) {
+  double best = 1e300;
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - start;
+    best = std::min(best, spent.count() / static_cast<double>(count));
+  }
+  return best;
+}
+
+double primary_time(const char* plugin, const Value& scene) {
+  constexpr std::uint64_t observations = 4000;
+  constexpr std::uint64_t primaries = 256;
+  const Entry& entry = find_plugin(plugin, {});
+  Parameters parameters(plugin, entry.information.parameters, Value::map({{"scene", scene}}), "");
+  const auto estimator = entry.prepare(parameters)->make();
+  const StreamKey key = stream_key(1, plugin, parameters.canonical(), 0);
+  double sum = 0;
+  const double time = nanoseconds(observations * primaries, [&] {
+    for (std::uint64_t i = 0; i < observations; ++i) {
+      Stream random(key, i);
+      double value = 0;
+      Cost cost;
+      estimator->secondary(random, primaries, {&value, 1}, cost);
+      sum += value;
+    }
+  });
+  if (!std::isfinite(sum)) std::puts("not finite");
+  return time;
+}
+
+// Embree called directly, with the device and scene settings of render/scene.cpp.
+class Bare {
+ public:
+  explicit Bare(const std::vector<render::TriangleMesh>& meshes)
+      : device_(rtcNewDevice(("isa=" + render::isa() + ",threads=1").c_str())),
+        scene_(rtcNewScene(device_)) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+    for (const render::TriangleMesh& mesh : meshes) attach(mesh);
+    rtcCommitScene(scene_);
+  }
+  ~Bare() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  Bare(const Bare&) = delete;
+  Bare& operator=(const Bare&) = delete;
+
+  double occluded_time(const std::vector<RTCRay>& rays) const {
+    constexpr std::uint64_t count = 1'000'000;
+    unsigned hits = 0;
+    const double time = nanoseconds(count, [&] {
+      for (std::uint64_t i = 0; i < count; ++i) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRay ray = rays[i % rays.size()];
+        rtcOccluded1(scene_, &context, &ray);
+        hits += ray.tfar < 0;
+      }
+    });
+    if (hits == 0) std::puts("nothing hit");
+    return time;
+  }
+
+  double intersect_time(const std::vector<RTCRay>& rays) const {
+    constexpr std::uint64_t count = 1'000'000;
+    unsigned hits = 0;
+    const double time = nanoseconds(count, [&] {
+      for (std::uint64_t i = 0; i < count; ++i) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRayHit query;
+        query.ray = rays[i % rays.size()];
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene_, &context, &query);
+        hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+      }
+    });
+    if (hits == 0) std::puts("nothing hit");
+    return time;
+  }
+
+ private:
+  void attach(const render::TriangleMesh& mesh) {
+    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.vertices.size()));
+    for (const Vector3& p : mesh.vertices) {
+      for (const double x : {p.x, p.y, p.z}) *v++ = static_cast<float>(x);
+    }
+    auto* t = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
+    for (const auto& triangle : mesh.triangles) t = std::copy(triangle.begin(), triangle.end(), t);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+RTCRay bare_ray(const Vector3& direction, double far) {
+  RTCRay ray{};
+  ray.dir_x = static_cast<float>(direction.x);
+  ray.dir_y = static_cast<float>(direction.y);
+  ray.dir_z = static_cast<float>(direction.z);
+  ray.tnear = 1e-4f;
+  ray.tfar = static_cast<float>(far);
+  ray.mask = ~0u;
+  return ray;
+}
+
+std::vector<RTCRay> rays_by(const std::function<RTCRay(double, double)>& make) {
+  std::vector<RTCRay> rays;
+  Stream random(stream_key(1, "rays_bench", "", 0), 0);
+  while (rays.size() < (1u << 18)) {
+    const double u = random.uniform();
+    const double v = random.uniform();
+    rays.push_back(make(u, v));
+  }
+  return rays;
+}
+
+void print(const char* plugin, double primary, double bare) {
+  std::printf("%-24s %6.1f ns a primary  %6.1f ns a bare ray  ratio %.2f\n", plugin, primary, bare,
+              bare / primary);
+}
+
+}  // namespace
+
+int main() {
+  const std::filesystem::path sphere = write_sphere();
+  const Value scene = parse_flow(
+      "{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {polygon: [[-.8, -.6, 1], "
+      "[.9, -.6, 1], [.9, .8, 1], [-.8, .8, 1]], radiance: 1}, occluders: [{obj: " +
+      sphere.string() + "}]}");
+  const render::TriangleMesh occluder = render::read_obj(sphere);
+  const render::TriangleMesh light =
+      render::fan({{-.8, -.6, 1}, {.9, -.6, 1}, {.9, .8, 1}, {-.8, .8, 1}});
+  std::printf("isa %s, %zu occluding triangles\n", render::isa().c_str(),
+              occluder.triangles.size());
+
+  const auto to_light = rays_by([](double u, double v) {
+    const Vector3 y = {-.8 + 1.7 * u, -.6 + 1.4 * v, 1};
+    return bare_ray(normalised(y), length(y) * 0.9998);
+  });
+  const double shadow = Bare({occluder}).occluded_time(to_light);
+  print("luminaire/area", primary_time("luminaire/area", scene), shadow);
+  print("luminaire/solid_angle", primary_time("luminaire/solid_angle", scene), shadow);
+
+  const Bare both({light, occluder});
+  const auto cosine = rays_by(
+      [](double u, double v) { return bare_ray(render::cosine_hemisphere(u, v), INFINITY); });
+  print("luminaire/cosine", primary_time("luminaire/cosine", scene), both.intersect_time(cosine));
+  const auto uniform = rays_by(
+      [](double u, double v) { return bare_ray(render::uniform_hemisphere(u, v), INFINITY); });
+  print("luminaire/hemisphere", primary_time("luminaire/hemisphere", scene),
+        both.intersect_time(uniform));
+  std::filesystem::remove(sphere);
+}

@@ -1,0 +1,69 @@
+#include "render/scene.h"
+
+#include <gtest/gtest.h>
+
+#include "estimators/stream.h"
+#include "render/hemisphere.h"
+
+namespace assay::render {
+namespace {
+
+const TriangleMesh floor_above = fan({{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}});
+const TriangleMesh further = fan({{-9, -9, 2}, {9, -9, 2}, {9, 9, 2}, {-9, 9, 2}});
+
+TEST(Scene, TheClosestShapeIsHit) {
+  const Scene scene({further, floor_above});
+  const Hit hit = scene.closest_hit({.origin = {}, .direction = {0.1, 0.2, 1}});
+  EXPECT_EQ(hit.shape, 1u);
+  EXPECT_NEAR(hit.t, 1, 1e-6);
+  EXPECT_EQ(scene.closest_hit({.origin = {}, .direction = {1, 0, .6}}).shape, 0u);
+  EXPECT_EQ(scene.closest_hit({.origin = {}, .direction = {0, 0, -1}}).shape, Hit::none);
+}
+
+TEST(Scene, BothSidesAreHit) {
+  EXPECT_EQ(Scene({floor_above}).closest_hit({.origin = {0, 0, 3}, .direction = {0, 0, -1}}).shape,
+            0u);
+}
+
+TEST(Scene, OcclusionEndsAtTheFarEnd) {
+  const Scene scene({floor_above});
+  EXPECT_TRUE(scene.occluded({.origin = {}, .direction = {0, 0, 1}, .near = 0, .far = 1.01}));
+  EXPECT_FALSE(scene.occluded({.origin = {}, .direction = {0, 0, 1}, .near = 0, .far = .99}));
+  EXPECT_FALSE(scene.occluded({.origin = {}, .direction = {0, 0, 1}, .near = 1.01}));
+}
+
+TEST(Scene, AnEmptySceneIsEmpty) {
+  const Scene scene({});
+  EXPECT_FALSE(scene.occluded({.origin = {}, .direction = {0, 0, 1}}));
+  EXPECT_EQ(scene.closest_hit({.origin = {}, .direction = {0, 0, 1}}).shape, Hit::none);
+}
+
+TEST(Scene, ADiscIsRoundAndTwoSided) {
+  const Scene scene({Disc{{0, 0, 2}, {0, 0, 1}, 1}});
+  EXPECT_TRUE(scene.occluded({.origin = {.99, 0, 0}, .direction = {0, 0, 1}}));
+  EXPECT_TRUE(scene.occluded({.origin = {.7, .7, 0}, .direction = {0, 0, 1}}));
+  EXPECT_FALSE(scene.occluded({.origin = {.72, .72, 0}, .direction = {0, 0, 1}}));
+  EXPECT_TRUE(scene.occluded({.origin = {.5, 0, 4}, .direction = {0, 0, -1}}));
+}
+
+TEST(Scene, NoRaySlipsThroughTheEdgesOfAClosedMesh) {
+  const std::vector<Vector3> v = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                  {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+  const TriangleMesh octahedron{
+      v, {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+  const Scene scene({octahedron});
+  Stream random({1}, 0);
+  for (int i = 0; i < 100000; ++i) {
+    // Half of the rays aim at the edges, where they would slip through.
+    Vector3 w = uniform_hemisphere(random.uniform(), random.uniform());
+    if (i % 2 == 0) w.x = 0;
+    EXPECT_NE(scene.closest_hit({.origin = {}, .direction = w}).shape, Hit::none);
+  }
+}
+
+TEST(Scene, NamesTheInstructionSetItIsPinnedTo) {
+  EXPECT_TRUE(isa() == "avx2" || isa() == "sse4.2");
+}
+
+}  // namespace
+}  // namespace assay::render
