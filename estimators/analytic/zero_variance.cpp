@@ -19,10 +19,12 @@ std::shared_ptr<const Setup> prepare(Parameters&) {
   const double mean = analytic::integral();
   // Two roundings, and those of the sum of primaries.
   constexpr double rounding = 0x1p-40;
-  return averaging(
-      Channel{
-          .mean = mean, .variance = 0, .low = mean * (1 - rounding), .high = mean * (1 + rounding)},
-      primary);
+  return averaging(Channel{.mean = mean,
+                           .variance = 0,
+                           .low = mean * (1 - rounding),
+                           .high = mean * (1 + rounding),
+                           .rounding = 2 * mean * rounding},
+                   primary);
 }
 
 }  // namespace

@@ -102,8 +102,11 @@ Prepared by_brdf(SharedBrdf brdf, const render::BrdfIntegrals& i) {
 
 // f cos_o / (f cos_o / albedo): the albedo whatever is drawn, to rounding.
 Prepared by_brdf_cosine(SharedBrdf brdf, const render::BrdfIntegrals& i) {
-  Channel constant = channel(i, i.albedo * i.albedo, i.albedo * (1 + 0x1p-48));
-  constant.low = i.albedo * (1 - 0x1p-48);
+  // Of the weight a few units in the last place, of the sum of many primaries more.
+  const double rounding = i.albedo * 0x1p-40;
+  Channel constant = channel(i, i.albedo * i.albedo, i.albedo + rounding);
+  constant.low = i.albedo - rounding;
+  constant.rounding = 2 * rounding;
   return {constant, std::make_shared<RejectionSampler>(brdf, Target::brdf_cosine, i.albedo)};
 }
 

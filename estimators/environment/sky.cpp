@@ -71,8 +71,10 @@ std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primar
   // The rounding of a sum of n terms that are not negative is at most n 2^-53 of it.
   const double rounding = static_cast<double>(map.size()) * 0x1p-53;
   for (std::size_t c = 0; c < 3; ++c) {
+    // A uniform sky gives equal numbers to the cosine sampler, but for the rounding of their sums.
+    channels[c].rounding = primaries.largest[c] * 0x1p-40;
     channels[c].low = 0;
-    channels[c].high = primaries.largest[c];
+    channels[c].high = primaries.largest[c] + channels[c].rounding;
     if (!sky.open()) continue;
     channels[c].mean = mean[c];
     channels[c].mean_error = error[c] + rounding * mean[c];

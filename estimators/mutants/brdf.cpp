@@ -88,10 +88,26 @@ class Redrawn final : public Sampler {
   std::shared_ptr<const Sampler> original_;
 };
 
+// All of the original's parameters, so that the key of the streams is the same; the defects are in
+// the published sampler, which is the only choice.
+std::vector<ParameterInformation> with_sampler(std::vector<ParameterInformation> parameters) {
+  ParameterInformation sampler = brdf::sampler_parameter();
+  sampler.summary = "the one that has the defect";
+  sampler.choices = {"published"};
+  parameters.push_back(std::move(sampler));
+  return parameters;
+}
+
 // What the author claims: the original's mean. Nothing is claimed of the range and the variance.
 Channel claimed(const render::HalfVectorBrdf& original) {
   const Channel channel = brdf::published_channel(original);
   return {.name = channel.name, .mean = channel.mean, .mean_error = channel.mean_error};
+}
+
+std::shared_ptr<const Setup> mutated(Parameters& given, const render::HalfVectorBrdf& original,
+                                     std::shared_ptr<const Sampler> sampler) {
+  given.string("sampler");
+  return brdf::albedo(claimed(original), std::move(sampler));
 }
 
 struct Defect {
@@ -107,7 +123,7 @@ Information information(std::string original, Defect defect,
                          " estimates it with sampler: published, "
                          "but: " +
                          defect.what,
-          .parameters = std::move(parameters),
+          .parameters = with_sampler(std::move(parameters)),
           .original = std::move(original),
           .defect = std::move(defect.what)};
 }
@@ -117,7 +133,7 @@ Entry ward(Defect defect) {
   return {information("brdf/ward", std::move(defect), brdf::ward_parameters()),
           [](Parameters& given) {
             auto mutant = std::make_shared<Mutant>(brdf::ward<Mutant>(given));
-            return brdf::albedo(claimed(brdf::ward(given)), brdf::published_sampler(mutant));
+            return mutated(given, brdf::ward(given), brdf::published_sampler(mutant));
           }};
 }
 
@@ -127,26 +143,26 @@ Entry ashikhmin_shirley(Defect defect) {
                       brdf::ashikhmin_shirley_parameters()),
           [](Parameters& given) {
             auto mutant = std::make_shared<Mutant>(brdf::ashikhmin_shirley<Mutant>(given));
-            return brdf::albedo(claimed(brdf::ashikhmin_shirley(given)),
-                                brdf::published_sampler(mutant));
+            return mutated(given, brdf::ashikhmin_shirley(given), brdf::published_sampler(mutant));
           }};
 }
 
-std::shared_ptr<const Setup> redrawn(brdf::SharedBrdf original) {
-  return brdf::albedo(claimed(*original),
-                      std::make_shared<Redrawn>(brdf::published_sampler(original)));
+std::shared_ptr<const Setup> redrawn(Parameters& given, brdf::SharedBrdf original) {
+  return mutated(given, *original, std::make_shared<Redrawn>(brdf::published_sampler(original)));
 }
 
 Entry ward_redrawn(Defect defect) {
-  return {information("brdf/ward", std::move(defect), brdf::ward_parameters()),
-          [](Parameters& given) { return redrawn(std::make_shared<Ward>(brdf::ward(given))); }};
+  return {
+      information("brdf/ward", std::move(defect), brdf::ward_parameters()),
+      [](Parameters& given) { return redrawn(given, std::make_shared<Ward>(brdf::ward(given))); }};
 }
 
 Entry ashikhmin_shirley_redrawn(Defect defect) {
   return {information("brdf/ashikhmin_shirley", std::move(defect),
                       brdf::ashikhmin_shirley_parameters()),
           [](Parameters& given) {
-            return redrawn(std::make_shared<AshikhminShirley>(brdf::ashikhmin_shirley(given)));
+            return redrawn(given,
+                           std::make_shared<AshikhminShirley>(brdf::ashikhmin_shirley(given)));
           }};
 }
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 #include <vector>
+
+#include "render/quadrature.h"
 
 namespace assay::render {
 
@@ -61,82 +62,36 @@ Pair along_meridian(Pair theta, const Vector3& n, double phi) {
           p * p * polar.sss + 2 * p * q * polar.ssc + q * q * polar.scc};
 }
 
-// Nodes in (0, 1] of the Gauss-Legendre rule of 2 N points on [-1, 1], by Newton's method.
-template <std::size_t N>
-struct GaussLegendre {
-  std::array<double, N> node;
-  std::array<double, N> weight;
-
-  GaussLegendre() {
-    for (std::size_t i = 0; i < N; ++i) solve(i);
-  }
-  void solve(std::size_t i) {
-    constexpr double n = 2 * N;
-    double x = std::cos(pi * (static_cast<double>(i) + 0.75) / (n + 0.5));
-    double slope = 0;
-    for (int step = 0; step < 6; ++step) {
-      double before = 1, value = x;
-      for (double k = 2; k <= n; ++k) {
-        before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
-      }
-      slope = n * (x * value - before) / (x * x - 1);
-      x -= value / slope;
-    }
-    node[i] = x;
-    weight[i] = 2 / ((1 - x * x) * slope * slope);
-  }
-};
-
-template <std::size_t N, class F>
-Pair gauss_legendre(const F& f, double low, double high) {
-  static const GaussLegendre<N> rule;
-  const double middle = (low + high) / 2;
-  const double half = (high - low) / 2;
-  Pair sum{};
-  for (std::size_t i = 0; i < N; ++i) {
-    for (const double x : {-rule.node[i], rule.node[i]}) {
-      const Pair y = f(middle + half * x);
-      sum[0] += half * rule.weight[i] * y[0];
-      sum[1] += half * rule.weight[i] * y[1];
-    }
-  }
-  return sum;
-}
-
-// Azimuths inside the patch at which the horizon meets one of its parallels, with its ends and
-// pieces no wider than a quarter of a turn.
+// The ends of the patch in azimuth and between them those azimuths at which the horizon meets one
+// of its parallels, or is steepest: near a vertical horizon it runs from pole to pole there.
 std::vector<double> breaks(const Patch& patch, const Vector3& n) {
   const auto [c, d] = patch.phi;
   std::vector<double> all{c, d};
-  for (double at = c + pi / 2; at < d; at += pi / 2) all.push_back(at);
   const double radius = std::hypot(n.x, n.y);
   const double towards = std::atan2(n.y, n.x);
-  for (const double theta : patch.theta) {
-    // radius cos(phi - towards) sin theta + nz cos theta = 0
-    const double cosine = -n.z * std::cos(theta) / (radius * std::sin(theta));
-    if (!(std::abs(cosine) <= 1)) continue;
+  const auto add = [&](double cosine) {
+    if (!(std::abs(cosine) <= 1)) return;
     for (const double offset : {std::acos(cosine), -std::acos(cosine)}) {
-      double phi = towards + offset;
-      phi -= 2 * pi * std::floor((phi - c) / (2 * pi));
-      if (phi < d) all.push_back(phi);
+      const double phi = towards + offset;
+      const double turned = phi - 2 * pi * std::floor((phi - c) / (2 * pi));
+      if (turned < d) all.push_back(turned);
     }
+  };
+  // radius cos(phi - towards) sin theta + nz cos theta = 0
+  for (const double theta : patch.theta) {
+    add(-n.z * std::cos(theta) / (radius * std::sin(theta)));
   }
-  std::ranges::sort(all);
+  add(0);
   return all;
 }
 
 CosineMoments crossed(const Patch& patch, const Vector3& n) {
+  std::vector<double> ends = breaks(patch, n);
   const auto meridian = [&](double phi) { return along_meridian(patch.theta, n, phi); };
-  const std::vector<double> ends = breaks(patch, n);
-  CosineMoments moments;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const Pair fine = gauss_legendre<8>(meridian, ends[i], ends[i + 1]);
-    const Pair coarse = gauss_legendre<5>(meridian, ends[i], ends[i + 1]);
-    moments.first += fine[0];
-    moments.second += fine[1];
-    moments.error += std::max(std::abs(fine[0] - coarse[0]), std::abs(fine[1] - coarse[1]));
-  }
-  return moments;
+  const Integrals<2> total = tanh_sinh_pieces<2>(meridian, ends, 1e-12);
+  return {.first = total.value[0],
+          .second = total.value[1],
+          .error = std::max(total.error[0], total.error[1])};
 }
 
 }  // namespace

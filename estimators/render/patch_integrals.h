@@ -12,9 +12,8 @@ struct CosineMoments {
 };
 
 /// In closed form where the patch is wholly above or below the horizon of the unit vector
-/// `normal`; where the horizon may cross it, in closed form along each meridian and by
-/// Gauss-Legendre quadrature over the azimuth, between the points where the horizon enters and
-/// leaves.
+/// `normal`; where the horizon may cross it, in closed form along each meridian and by quadrature
+/// over the azimuth, between the points where the horizon enters and leaves.
 CosineMoments cosine_moments(const Patch&, const Vector3& normal);
 
 }  // namespace assay::render

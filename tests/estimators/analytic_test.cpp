@@ -1,0 +1,196 @@
+// The teaching estimators: what they declare against sums worked out here and against sampling.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/estimators/draws.h"
+
+namespace assay {
+namespace {
+
+using namespace assay::draws;
+
+const double e3 = std::exp(3.0);
+const double integral = (e3 - 1) / 3;
+
+double f(double x) { return std::exp(3 * x); }
+double q(double x) { return 5 * std::pow(1 + x, 4) / 31; }
+
+// Simpson's rule on [0, 1], error below 1e-10 for what stands here.
+template <class F>
+double simpson(const F& g) {
+  constexpr int n = 2000;
+  double sum = g(0.0) + g(1.0);
+  for (int i = 1; i < n; ++i) sum += (i % 2 == 1 ? 4 : 2) * g(i / double{n});
+  return sum / (3 * n);
+}
+
+Channel channel(const char* plugin, const char* parameters = "null") {
+  return prepare(plugin, parameters).setup->channels()[0];
+}
+
+TEST(Analytic, VariancesAreThoseOfQuadrature) {
+  const auto square = [&](auto g) { return simpson(g) - integral * integral; };
+  EXPECT_NEAR(*channel("analytic/exponential_uniform").variance,
+              square([](double x) { return f(x) * f(x); }), 1e-8);
+  EXPECT_NEAR(*channel("analytic/exponential_importance").variance,
+              square([](double x) { return f(x) * f(x) / q(x); }), 1e-8);
+  EXPECT_NEAR(*channel("analytic/antithetic").variance,
+              square([](double x) { return std::pow((f(x) + f(1 - x)) / 2, 2); }), 1e-8);
+  EXPECT_NEAR(*channel("analytic/control_variate").variance, square([](double x) {
+    return std::pow(f(x) - 2.3 * (1 + 3 * x + 4.5 * x * x - 4), 2);
+  }),
+              1e-8);
+  EXPECT_NEAR(*channel("analytic/control_variate", "{coefficient: 0}").variance,
+              *channel("analytic/exponential_uniform").variance, 1e-12);
+  EXPECT_NEAR(*channel("analytic/stratified", "{strata: 1}").variance,
+              *channel("analytic/exponential_uniform").variance, 1e-12);
+}
+
+TEST(Analytic, StratifiedVarianceIsTheMeanOfTheStrata) {
+  double sum = 0;
+  for (int j = 0; j < 4; ++j) {
+    const auto in_stratum = [j](double x) { return f((j + x) / 4); };
+    const double mean = simpson(in_stratum);
+    sum += simpson([&](double x) { return std::pow(in_stratum(x) - mean, 2); });
+  }
+  EXPECT_NEAR(*channel("analytic/stratified", "{strata: 4}").variance, sum / 16, 1e-9);
+}
+
+TEST(Analytic, MeansAreClosedForms) {
+  for (const char* plugin : {"exponential_uniform", "exponential_importance", "control_variate",
+                             "stratified", "antithetic", "ratio", "zero_variance"}) {
+    EXPECT_DOUBLE_EQ(*channel((std::string("analytic/") + plugin).c_str()).mean, integral);
+  }
+  EXPECT_DOUBLE_EQ(*channel("analytic/heavy_tail", "{index: 3}").mean, 1.5);
+  EXPECT_DOUBLE_EQ(*channel("analytic/heavy_tail", "{index: 3}").variance, 0.75);
+  EXPECT_FALSE(channel("analytic/heavy_tail", "{index: 2}").variance.has_value());
+  EXPECT_DOUBLE_EQ(*channel("analytic/rare_spike").mean, 0.51);
+  EXPECT_DOUBLE_EQ(*channel("analytic/two_level").mean, 17.0 / 6);
+}
+
+struct Sampled {
+  const char* plugin;
+  const char* parameters = "null";
+  std::uint64_t primaries = 1;
+};
+
+// False alarm: two comparisons at 1e-6 for each channel of each line.
+TEST(Analytic, SampledMeansAndVariancesAreTheDeclaredOnes) {
+  for (const Sampled& s : {Sampled{"analytic/dart_throwing"},
+                           {"analytic/exponential_uniform"},
+                           {"analytic/exponential_uniform", "null", 7},
+                           {"analytic/exponential_importance"},
+                           {"analytic/control_variate"},
+                           {"analytic/control_variate", "{coefficient: -1}"},
+                           {"analytic/stratified"},
+                           {"analytic/stratified", "{strata: 3}", 2},
+                           {"analytic/antithetic"},
+                           {"analytic/heavy_tail", "{index: 12}"},
+                           {"analytic/rare_spike", "{probability: 0.01, height: 3}"},
+                           {"analytic/normal"},
+                           {"analytic/normal", "{mean: -3, deviation: 0.5}", 5},
+                           {"analytic/two_level"},
+                           {"analytic/two_level", "{splitting: 0.4}"},
+                           {"analytic/two_level", "{splitting: 2.5}"}}) {
+    const auto plugin = prepare(s.plugin, s.parameters);
+    const auto samples = observe(plugin, 200000, s.primaries);
+    const auto channels = plugin.setup->channels();
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const Sample& sample = samples[c];
+      const double n = static_cast<double>(s.primaries);
+      // A constant channel (the children of whole splitting) has neither error.
+      EXPECT_NEAR(sample.mean(), *channels[c].mean, five * sample.mean_error() + 1e-14) << s.plugin;
+      EXPECT_NEAR(n * sample.variance(), *channels[c].variance,
+                  five * n * sample.variance_error() + 1e-14)
+          << s.plugin;
+      EXPECT_GE(*std::ranges::min_element(sample.values), channels[c].low) << s.plugin;
+      EXPECT_LE(*std::ranges::max_element(sample.values), channels[c].high) << s.plugin;
+    }
+  }
+}
+
+TEST(Analytic, ZeroVarianceIsConstantToRounding) {
+  const auto plugin = prepare("analytic/zero_variance");
+  const Channel declared = plugin.setup->channels()[0];
+  for (const std::uint64_t primaries : {std::uint64_t{1}, std::uint64_t{100}}) {
+    const Sample sample = observe(plugin, 10000, primaries)[0];
+    EXPECT_GE(*std::ranges::min_element(sample.values), declared.low);
+    EXPECT_LE(*std::ranges::max_element(sample.values), declared.high);
+  }
+  EXPECT_NE(observe(plugin, 100)[0].variance(), 0) << "rounding shows, which is the point";
+}
+
+// n bias -> I Var g - Cov(f, g) = -0.50012; the next order is some 1 / n of it. False alarm 1e-6.
+TEST(Analytic, RatioBiasFallsLikeOneOverPrimaries) {
+  const double of_g = simpson([](double x) { return q(x) * q(x); }) - 1;
+  const double covariance = simpson([](double x) { return f(x) * q(x); }) - integral;
+  const double limit = integral * of_g - covariance;
+  EXPECT_NEAR(limit, -0.50012, 5e-6);
+  const auto plugin = prepare("analytic/ratio");
+  EXPECT_EQ(plugin.information.bias, BiasClass::inverse_primaries);
+  EXPECT_FALSE(plugin.information.averages);
+  const double n = 16;
+  const Sample sample = observe(plugin, 400000, 16)[0];
+  EXPECT_NEAR(n * (sample.mean() - integral), limit, 0.05 + five * n * sample.mean_error());
+  EXPECT_GE(*std::ranges::min_element(sample.values), plugin.setup->channels()[0].low);
+  EXPECT_LE(*std::ranges::max_element(sample.values), plugin.setup->channels()[0].high);
+}
+
+TEST(Analytic, ARareSpikeStaysUnseenInAShortRun) {
+  const Sample sample = observe(prepare("analytic/rare_spike", "{probability: 0}"), 1000)[0];
+  EXPECT_EQ(sample.values, std::vector<double>(1000, 0.5));
+}
+
+// False alarm 1e-6.
+TEST(Analytic, ImportanceSamplerFollowsItsDensity) {
+  const auto plugin = prepare("analytic/exponential_importance");
+  const auto named = plugin.setup->samplers().at(0);
+  EXPECT_EQ(named.name, "x");
+  std::vector<double> counts(50);
+  constexpr int draws = 100000;
+  for (std::uint64_t i = 0; i < draws; ++i) {
+    Stream random(plugin.key, i);
+    const SamplerDraw draw = named.sampler->sample(random);
+    EXPECT_DOUBLE_EQ(draw.weight * draw.density, f(draw.point[0]));
+    counts[static_cast<std::size_t>(std::min(49.0, 50 * draw.point[0]))] += 1;
+  }
+  Pearson pearson;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const auto cumulative = [](double x) { return (std::pow(1 + x, 5) - 1) / 31; };
+    const double low = static_cast<double>(i) / 50;
+    pearson.add(counts[i], draws * (cumulative(low + 0.02) - cumulative(low)));
+  }
+  EXPECT_TRUE(pearson.passes()) << pearson.statistic;
+}
+
+TEST(AnalyticMutants, ScaledIsItsOriginalTimesTheFactor) {
+  const auto mutant = prepare("mutants/scaled");
+  const auto original = prepare("analytic/exponential_uniform");
+  EXPECT_EQ(mutant.key, original.key);
+  const Sample a = observe(mutant, 100)[0];
+  const Sample b = observe(original, 100)[0];
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_DOUBLE_EQ(a.values[i], 1.01 * b.values[i]);
+}
+
+// Binomial(10000, 0.01): 100 +- five standard deviations of 9.95.
+TEST(AnalyticMutants, RareNanSpoilsItsShareAndNothingElse) {
+  const auto mutant = prepare("mutants/rare_nan", "{probability: 0.01}");
+  const auto original = prepare("analytic/normal");
+  EXPECT_EQ(mutant.key, original.key);
+  const Sample a = observe(mutant, 10000)[0];
+  const Sample b = observe(original, 10000)[0];
+  int spoilt = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    if (std::isnan(a.values[i])) {
+      ++spoilt;
+    } else {
+      EXPECT_EQ(a.values[i], b.values[i]);
+    }
+  }
+  EXPECT_NEAR(spoilt, 100, five * 9.95);
+}
+
+}  // namespace
+}  // namespace assay

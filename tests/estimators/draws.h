@@ -1,0 +1,116 @@
+#pragma once
+
+// Drawing from plugins by name, and plain statistics to judge the draws by. Bounds are for a false
+// alarm of 1e-6 a comparison; keys are those of seed 1.
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimators/catalogue.h"
+#include "estimators/flow.h"
+
+namespace assay::draws {
+
+/// Standard normal quantile of two-sided probability 1e-6.
+inline constexpr double five = 4.892;
+
+/// Observations of one channel.
+struct Sample {
+  std::vector<double> values;
+
+  double size() const { return static_cast<double>(values.size()); }
+  double mean() const { return moment(0, 1); }
+  double variance() const { return moment(mean(), 2) * size() / (size() - 1); }
+  double mean_error() const { return std::sqrt(variance() / size()); }
+  /// From the fourth central moment.
+  double variance_error() const {
+    const double square = moment(mean(), 2);
+    return std::sqrt((moment(mean(), 4) - square * square) / size());
+  }
+
+ private:
+  double moment(double about, int power) const {
+    double sum = 0;
+    for (const double x : values) sum += std::pow(x - about, power);
+    return sum / size();
+  }
+};
+
+/// A prepared plugin and the key of its streams.
+struct Prepared {
+  std::shared_ptr<const Setup> setup;
+  StreamKey key;
+  Information information;
+};
+
+/// `parameters` is a flow map; files are relative to `folder`.
+inline Prepared prepare(const std::string& plugin, const std::string& parameters = "null",
+                        const std::string& folder = "") {
+  const Entry& entry = find_plugin(plugin, {});
+  Parameters given(plugin, entry.information.parameters, parse_flow(parameters), folder);
+  auto setup = entry.prepare(given);
+  given.require_all_read();
+  // A mutant's key is its original's, with the parameters that the original has.
+  std::string name = plugin;
+  std::string canonical = given.canonical();
+  if (!entry.information.original.empty()) {
+    name = entry.information.original;
+    std::vector<std::string> names;
+    for (const auto& p : find_plugin(name, {}).information.parameters) names.push_back(p.name);
+    canonical = given.canonical(names);
+  }
+  return {std::move(setup), stream_key(1, name, canonical, 0), entry.information};
+}
+
+/// Observations 0, 1, ... of every channel.
+inline std::vector<Sample> observe(const Prepared& plugin, std::uint64_t count,
+                                   std::uint64_t primaries = 1) {
+  std::vector<double> out(plugin.setup->channels().size());
+  std::vector<Sample> samples(out.size());
+  const auto estimator = plugin.setup->make();
+  Cost cost;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Stream random(plugin.key, i);
+    estimator->secondary(random, primaries, out, cost);
+    for (std::size_t c = 0; c < out.size(); ++c) samples[c].values.push_back(out[c]);
+  }
+  return samples;
+}
+
+/// Upper quantile of chi-square at 1e-6, after Wilson and Hilferty (1931).
+inline double chi_square_bound(double freedom) {
+  const double a = 2 / (9 * freedom);
+  const double root = 1 - a + 4.753 * std::sqrt(a);
+  return freedom * root * root * root;
+}
+
+/// Pearson's statistic of counts against expectations, cells below 20 expected pooled.
+struct Pearson {
+  double statistic = 0;
+  double freedom = -1;
+  double pooled_count = 0;
+  double pooled_expected = 0;
+
+  void add(double count, double expected) {
+    if (expected < 20) {
+      pooled_count += count;
+      pooled_expected += expected;
+      return;
+    }
+    statistic += (count - expected) * (count - expected) / expected;
+    freedom += 1;
+  }
+  /// Whether the statistic is within the bound; the pooled cell counts if it is large enough.
+  bool passes() {
+    if (pooled_expected >= 20) {
+      const double count = pooled_count, expected = pooled_expected;
+      pooled_count = pooled_expected = 0;
+      add(count, expected);
+    }
+    return statistic < chi_square_bound(freedom);
+  }
+};
+
+}  // namespace assay::draws
