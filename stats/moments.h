@@ -43,8 +43,11 @@ inline void Moments::add(double value) {
   const double before = static_cast<double>(count);
   ++count;
   const double n = before + 1;
+  // The reciprocal does not wait for the mean: the chain from one value to the next has no
+  // division.
+  const double inverse = 1 / n;
   const double delta = value - mean;
-  const double step = delta / n;
+  const double step = delta * inverse;
   const double step2 = step * step;
   const double term = delta * step * before;
   m4 += term * step2 * (n * n - 3 * n + 3) + 6 * step2 * m2 - 4 * step * m3;

@@ -64,41 +64,35 @@ double edge(const PoissonMixture& mixture, double centre, int direction) {
 }
 
 // Sum from one edge to the other in the direction in which the central tail grows, by
-// Q(a+1, y) = Q(a, y) + y^a e^-y / Gamma(a+1) upwards and P(a-1, y) = P(a, y) + y^(a-1) e^-y /
-// Gamma(a) downwards: positive terms only. Both factors are held relative to their starting values.
+//   Q(a+1, y) = Q(a, y) + y^a e^-y / Gamma(a+1)  upwards,
+//   P(a-1, y) = P(a, y) + y^(a-1) e^-y / Gamma(a)  downwards: positive terms only.
+// Carried along are the products weight x tail and weight x increment over the largest term, which
+// stay in range however small the tail; the factors alone would not.
 double log_mixture(const PoissonMixture& mixture) {
   const double centre = mode(mixture);
   const double low = edge(mixture, centre, -1);
   const double high = edge(mixture, centre, +1);
   const bool up = mixture.tail == Tail::upper;
-  // Reference scales at the mode keep the products in range however small the tail.
-  const double weight_scale = mixture.log_weight(centre);
-  const double central_scale = mixture.log_central(centre);
-  double j = up ? low : high;
-  double weight = std::exp(mixture.log_weight(j) - weight_scale);
-  double central = std::exp(mixture.log_central(j) - central_scale);
+  const double peak = mixture.log_term(centre);
   const double y = mixture.half_x;
-  // The increment between a and a + 1: y^a e^-y / Gamma(a + 1).
-  const double first = mixture.half_degrees + (up ? j : j - 1);
-  double increment =
-      first > 0 ? std::exp(special::log_gamma_prefix(first, y) - std::log(first) - central_scale)
-                : 0;
-  double sum = weight * central;
-  for (; up ? j < high : j > low;) {
-    central += increment;
+  double j = up ? low : high;
+  double term = std::exp(mixture.log_term(j) - peak);
+  const double shape = mixture.half_degrees + (up ? j : j - 1);
+  double increment = shape > 0
+                         ? std::exp(mixture.log_weight(j) + special::log_gamma_prefix(shape, y) -
+                                    std::log(shape) - peak)
+                         : 0;
+  double sum = term;
+  while (up ? j < high : j > low) {
     const double a = mixture.half_degrees + j;
-    if (up) {
-      increment *= y / (a + 1);
-      weight *= mixture.rate / (j + 1);
-      j += 1;
-    } else {
-      increment *= (a - 1) / y;
-      weight *= j / mixture.rate;
-      j -= 1;
-    }
-    sum += weight * central;
+    const double weight_ratio = up ? mixture.rate / (j + 1) : j / mixture.rate;
+    const double tail_ratio = up ? y / (a + 1) : (a - 1) / y;
+    term = weight_ratio * (term + increment);
+    increment *= weight_ratio * tail_ratio;
+    sum += term;
+    j += up ? 1 : -1;
   }
-  return weight_scale + central_scale + std::log(sum);
+  return peak + std::log(sum);
 }
 
 // ---- Noncentral t: an integral over the chi law of s

@@ -78,6 +78,18 @@ TEST(Tails, LogarithmsStayFiniteFarBeyondTheRangeOfProbabilities) {
   }
 }
 
+TEST(Tails, NoncentralTailsStayAccurateWhereTheirFactorsLeaveTheRangeOfDoubles) {
+  // nu = 2: the density is e^(-(x + ncp) / 2) I0(sqrt(ncp x)) / 2, so the log tail's slope is
+  // known: d ln P / dx -> -1/2 + sqrt(ncp / x) / 2 - 1 / (4 x) + …
+  const Noncentral law{2, 9};
+  const double slope = (noncentral_chi_square_tails(1.001e6, law).upper -
+                        noncentral_chi_square_tails(0.999e6, law).upper) /
+                       2000;
+  EXPECT_NEAR(slope, -.5 + std::sqrt(9e-6) / 2, 1e-6);
+  EXPECT_LT(noncentral_chi_square_tails(1e8, law).upper, -4.9e7);
+  EXPECT_LT(noncentral_chi_square_tails(1e-200, {40, 9}).lower, -9000);
+}
+
 TEST(Tails, FractionalDegreesOfFreedomJoinTheNormalLaw) {
   for (const double nu : {1e12, 1e15, 1e17, 1e19}) {
     for (const double t : {0.5, 3.0, 20.0}) {
