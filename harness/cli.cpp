@@ -203,8 +203,8 @@ RunOptions options(const Given& given) {
   return options;
 }
 
-/// The command with the options that change what is sampled and how it is judged. A random seed
-/// stands in it as the number that was drawn; a filter is for whoever replays to add.
+/// The command with the options that change what is sampled and how it is judged. The
+/// seed that was used and a filter are for the record to add.
 class Replayable {
  public:
   explicit Replayable(const std::string& command) : text_("assay " + command) {}
@@ -222,21 +222,16 @@ class Replayable {
   std::string text_;
 };
 
-std::string seed_text(const RunOptions& options) {
-  return options.seed ? std::to_string(*options.seed) : "";
-}
-
-std::string replayable_run(const Given& given, const RunOptions& options) {
+std::string replayable_run(const Given& given) {
   Replayable line("run");
   for (const std::string& suite : given.suites) line.add(suite);
   line.add("--set", given.sets);
   line.add("--alpha", given.alpha);
-  line.add("--seed", seed_text(options));
   line.add("--coarsen", given.coarsen);
   return line.text();
 }
 
-std::string replayable_check(const Given& given, const RunOptions& options) {
+std::string replayable_check(const Given& given) {
   Replayable line("check");
   line.add(given.claim);
   line.add("--estimator", given.estimators);
@@ -246,14 +241,13 @@ std::string replayable_check(const Given& given, const RunOptions& options) {
   line.add("--primaries", given.primaries);
   line.add("--secondaries", given.secondaries);
   line.add("--alpha", given.alpha);
-  line.add("--seed", seed_text(options));
   return line.text();
 }
 
 Command run_command(const Given& given, const CLI::App& sub) {
   require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
   RunCommand command{given.suites, given.sets, options(given), output(given)};
-  command.options.command = replayable_run(given, command.options);
+  command.options.command = replayable_run(given);
   return command;
 }
 
@@ -269,7 +263,7 @@ Command check_command(const Given& given, const CLI::App& sub) {
   command.arguments.primaries = count_if_given(given.primaries, "--primaries", 1);
   command.arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 2);
   if (command.options.alpha) command.arguments.alpha = *command.options.alpha;
-  command.options.command = replayable_check(given, command.options);
+  command.options.command = replayable_check(given);
   return command;
 }
 
@@ -318,9 +312,18 @@ Command command_of(const Given& given, const CLI::App& sub) {
   return report_command(given, sub);
 }
 
-std::string help(const CLI::App& app) {
+/// Arguments are asked for by our own messages; that most must be there is for the usage line
+/// alone.
+std::string help(CLI::App& app) {
   const auto parsed = app.get_subcommands();
-  return parsed.empty() ? general_help() : parsed.front()->help("assay");
+  if (parsed.empty()) return general_help();
+  CLI::App& sub = *parsed.front();
+  for (CLI::Option* option : sub.get_options()) {
+    const std::string name = option->get_name(true);
+    const bool optional = name == "OBSERVATION" || (name == "SUITE" && sub.get_name() == "list");
+    if (option->get_positional() && !optional) option->required();
+  }
+  return sub.help("assay");
 }
 
 }  // namespace

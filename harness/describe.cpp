@@ -20,6 +20,11 @@ std::size_t columns(std::string_view text) {
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; }));
 }
 
+/// The first line begins at `indent`, the others at `hanging`.
+std::string hanging(const std::string& text, std::size_t indent, std::size_t hanging) {
+  return std::string(indent, ' ') + wrapped(text, page_width, hanging).substr(hanging);
+}
+
 std::string wrapped_line(std::string_view text, std::size_t width, std::size_t indent) {
   const std::string margin(indent, ' ');
   std::string out;
@@ -102,12 +107,12 @@ std::string field(const char* name, const std::string& text) {
 }
 
 std::string parameter_text(const ParameterInformation& p) {
-  std::string head = fmt::format("  {}: {}", p.name, type_name(p.type));
+  std::string head = fmt::format("{}: {}", p.name, type_name(p.type));
   const std::string range = range_text(p);
   if (!range.empty()) head += ", " + range;
   if (!p.unit.empty()) head += ", " + p.unit;
   head += p.fallback.empty() ? ", required" : ", default " + p.fallback;
-  return wrapped(head.substr(2), page_width, 2) + wrapped(p.summary, page_width, 6);
+  return hanging(head, 2, 6) + wrapped(p.summary, page_width, 6);
 }
 
 std::string parameters_text(const Information& information) {
@@ -129,14 +134,14 @@ std::string channel_text(const Channel& channel) {
     text += fmt::format(", values in [{:.6g}, {:.6g}]", channel.low, channel.high);
   }
   if (channel.diagnostic) text += ", diagnostic (tested only where a claim names it)";
-  return wrapped(text, page_width, 2);
+  return hanging(text, 2, 6);
 }
 
 std::string sampler_text(const NamedSampler& named) {
   std::string text =
       fmt::format("{}: {}; marginals", named.name, domain_name(named.sampler->domain()));
   for (const Marginal& marginal : marginals(named.sampler->domain())) text += " " + marginal.name;
-  return wrapped(text, page_width, 2);
+  return hanging(text, 2, 6);
 }
 
 std::string setup_text(const Setup& setup) {
@@ -170,7 +175,7 @@ std::string mutants_text(const Information& information, const std::vector<Entry
   std::string out;
   for (const Entry& entry : entries) {
     if (entry.information.original != information.name) continue;
-    out += wrapped(entry.information.name + ": " + entry.information.defect, page_width, 2);
+    out += hanging(entry.information.name + ": " + entry.information.defect, 2, 6);
   }
   return out.empty() ? "" : "\nmutants of it\n" + out;
 }

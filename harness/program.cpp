@@ -52,7 +52,6 @@ int act(const TextCommand& command) {
 /// The text that columns of the place `claim` refer to.
 std::string claim_of(const Command& command) {
   if (const auto* check = std::get_if<CheckCommand>(&command)) return check->arguments.claim;
-  if (const auto* sample = std::get_if<SampleArguments>(&command)) return sample->source;
   return "";
 }
 
