@@ -78,7 +78,7 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
 .only-problems tr.passed, .only-problems details.passed, .only-problems tr.skipped, .only-problems details.skipped { display: none; }
 @media (max-width: 620px) { dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 6px; } }
 @media print { body { max-width: none; padding: 0; font-size: 11px; } .tools { display: none; }
-  table, .facts, dl, figcaption { font-size: 10px; } h2 { break-after: avoid; } h3 { break-after: avoid; }
+  table, .facts, dl, figcaption, .key { font-size: 10px !important; } .claim { font-size: 9px; } h2 { break-after: avoid; } h3 { break-after: avoid; }
   figure, tr, pre { break-inside: avoid; } .scroll { overflow: visible; }
   details::details-content { content-visibility: visible; display: block; height: auto; }
   .chart { -webkit-print-color-adjust: exact; print-color-adjust: exact; } }
