@@ -26,7 +26,6 @@ GateState state_of(const Gate& gate, double green_up_to) {
 double upper_z(double probability) { return normal_quantile({Tail::upper, std::log(probability)}); }
 
 // ---- Normal-data quantiles of g1 and b2
-// ---------------------------------------------------------------
 
 // The |g1| that normal samples of n exceed with probability 1e-4: D'Agostino (1970), n >= 8.
 // Smaller samples cannot tell, their g1 being capped at (n - 2) / sqrt(n - 1).
@@ -57,7 +56,6 @@ double normal_kurtosis_quantile(double n) {
 }
 
 // ---- How much wider g1 and b2 spread for a gamma law of given shape
-// -------------------------------------
 
 // Standardised moments 3 to 8 of a gamma law, from its cumulants kappa_r = (r - 1)! (g / 2)^(r -
 // 2).
@@ -99,7 +97,6 @@ double kurtosis_widening(double excess) {
 }
 
 // ---- Skewness of a contrast
-// ----------------------------------------------------------------------------
 
 // One sample's share in 2a = (1/3) sum psi^3 / (sum psi^2)^1.5, and what normal data would make of
 // it.

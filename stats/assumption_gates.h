@@ -22,7 +22,6 @@ struct Gate {
 };
 
 // ---- On the pilot's primaries: choose how many make a secondary
-// ------------------------------------
 
 // Shape of one primary. Means of m have skewness / sqrt(m) and excess_kurtosis / m.
 struct PrimaryShape {
@@ -54,7 +53,6 @@ Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, Planne
                              ShapeLimits limits = {});
 
 // ---- On the test's own data: can only invalidate
-// ----------------------------------------------------
 
 // Value: exp(2 |a| x^3), the factor by which the worse tail of a Studentised mean at critical value
 // x departs from nominal, 2 |a| = |g1| / (3 sqrt n) (self-normalised moderate deviations: Jing,

@@ -16,7 +16,6 @@ namespace assay::stats {
 namespace {
 
 // ---- One-sided, Birnbaum & Tingey: d sum_j C(n, j) (d + j/n)^(j-1) (1 - d - j/n)^(n-j)
-// ---------------
 
 struct OneSidedTerm {
   double n;
@@ -56,7 +55,6 @@ double log_one_sided_sum(const OneSidedTerm& term, double last) {
 }
 
 // ---- Two-sided
-// ---------------------------------------------------------------------------------------
 
 // P(D >= d) = 2 P(D+ >= d) - P(both sides cross). The second is 2 e^(-8 z^2) - 2 e^(-18 z^2) at
 // z = sqrt(n) d + 1 / (6 sqrt n) to the leading order in 1/n (Pelz & Good's shift).

@@ -14,7 +14,6 @@ namespace {
 constexpr double negligible = 46;
 
 // ---- Noncentral chi-square: a Poisson mixture of central laws
-// ---------------------------------------
 
 // P(X >= x) = sum_j Poisson(j; ncp/2) Q(nu/2 + j, x/2), and P for the lower tail. Both factors are
 // log-concave in j, so the terms have one mode and can be bracketed by bisection.
@@ -96,7 +95,6 @@ double log_mixture(const PoissonMixture& mixture) {
 }
 
 // ---- Noncentral t: an integral over the chi law of s
-// -------------------------------------------------
 
 // ln of the integrand of P(T >= t) = int P(Z >= t s - delta) f(s) ds over u = ln s, where
 // nu s^2 ~ chi-square: f(u) = 2 (nu/2)^(nu/2) / Gamma(nu/2) exp(nu u - nu e^(2u) / 2).

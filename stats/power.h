@@ -42,7 +42,6 @@ double student_t_detectable(const MeanPlan& plan, double n);
 std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double detect);
 
 // ---- Two means: Welch's t, n_y = n_x * allocation
-// -------------------------------------------------
 struct TwoMeansPlan {
   double standard_deviation_x = 1;
   double standard_deviation_y = 1;  // times the contrast's scale
@@ -119,7 +118,6 @@ double ks_detectable(const DistancePlan& plan, double n);
 std::optional<std::uint64_t> ks_sample_size(const DistancePlan& plan, double detect);
 
 // ---- Chi-square fit: noncentral chi-square, ncp = n w^2
-// -------------------------------------------
 struct FitPlan {
   double degrees_of_freedom = 1;
   double allow = 0;  // effect size w

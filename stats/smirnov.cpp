@@ -16,7 +16,6 @@ namespace {
 constexpr double largest_lattice = 1e8;
 
 // ---- m = n: P = 2 sum_i (-1)^(i-1) C(2n, n - i k) / C(2n, n)
-// ------------------------------------------
 
 // ln C(2n, n - r) / C(2n, n), in deviance form: absolute error of a few ulps of the result.
 double log_relative_binomial(double n, double r) {
@@ -46,7 +45,6 @@ double log_equal_sizes(std::uint64_t steps, std::uint64_t n) {
 }
 
 // ---- m != n: v(i, j) = P(a path to (i, j) has touched the boundary)
-// -----------------------------------
 
 // 1 outside |i/m - j/n| < d, else (i v(i-1, j) + j v(i, j-1)) / (i + j). Only sums of positive
 // terms. `Real` holds `one` in place of 1, so that the smallest of all path probabilities is in
@@ -58,6 +56,9 @@ Real touching_probability(const LatticeDistance& distance, Real one) {
   const auto column_step = static_cast<std::int64_t>(distance.m / common);
   const auto bound = static_cast<std::int64_t>(distance.steps);
   std::vector<Real> row(distance.n + 1, one);
+  // A table of reciprocals keeps the division out of the chain from one column to the next.
+  std::vector<Real> reciprocal(distance.m + distance.n + 1, Real{0});
+  for (std::size_t k = 1; k < reciprocal.size(); ++k) reciprocal[k] = 1 / static_cast<Real>(k);
   for (std::uint64_t i = 0; i <= distance.m; ++i) {
     std::int64_t gap = static_cast<std::int64_t>(i) * row_step;
     Real left = 0;
@@ -67,9 +68,8 @@ Real touching_probability(const LatticeDistance& distance, Real one) {
       } else if (i + j == 0) {
         left = 0;
       } else {
-        const Real a = static_cast<Real>(i);
-        const Real b = static_cast<Real>(j);
-        left = (a * row[j] + b * left) / (a + b);
+        const Real weight = reciprocal[i + j];
+        left = static_cast<Real>(i) * weight * row[j] + static_cast<Real>(j) * weight * left;
       }
       row[j] = left;
     }
@@ -78,8 +78,14 @@ Real touching_probability(const LatticeDistance& distance, Real one) {
 }
 
 double log_lattice(const LatticeDistance& distance) {
-  const double p = touching_probability<double>(distance, 1.0);
-  if (p > 1e-250) return std::log(p);
+  const double m = static_cast<double>(distance.m);
+  const double n = static_cast<double>(distance.n);
+  // The limit law tells whether a double will do; denormal numbers would be slow as well as wrong.
+  const double expected = log_kolmogorov_limit(std::sqrt(m / (m + n) * n) * distance.value());
+  if (expected > -400) {
+    const double p = touching_probability<double>(distance, 1.0);
+    if (p > 1e-250) return std::log(p);
+  }
   // C(m + n, m) is below 2^20001 for m n <= 1e8 (and m or n = 1 gives no small p): with 1 raised to
   // 2^16000 a long double's range covers it.
   constexpr int raised = 16000;
