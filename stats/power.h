@@ -28,7 +28,7 @@ struct EffectPlan {
 double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRates rates);
 
 // ---- Mean against a reference: Student's t
-// ------------------------------------------------------- Null |theta| <= allow (two-sided) or
+// Null |theta| <= allow (two-sided) or
 // theta <= allow. Noncentral t, exact for normal data; with reference_standard_error the degrees of
 // freedom are Welch-Satterthwaite's at the planned variance.
 struct MeanPlan {
@@ -54,7 +54,7 @@ double welch_detectable(const TwoMeansPlan& plan, double n_x);
 std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double detect);
 
 // ---- Two one-sided tests of a mean
-// ---------------------------------------------------------------- P(pass) when theta = effect:
+// P(pass) when theta = effect:
 // exact, integral over the chi law of s of the normal probability of the acceptance region (Owen
 // 1965; Phillips 1990). Margin symmetric about 0.
 struct EquivalencePlan {
@@ -67,7 +67,7 @@ double equivalence_power(const EquivalencePlan& plan, double n, double effect);
 std::optional<std::uint64_t> equivalence_sample_size(const EquivalencePlan& plan, double effect);
 
 // ---- Variances
-// ------------------------------------------------------------------------------------ Effects are
+// Effects are
 // ratios (variance over the null variance, or variance x over variance y). The null is ratio <=
 // allow, or ratio in [1/allow, allow] when two-sided; allow >= 1. Mirror a claim about small ratios
 // by exchanging the samples (F) or by `below` (chi-square): then effects are ratios < 1 and the
@@ -104,7 +104,7 @@ double log_variance_detectable(const LogVariancePlan& plan, double n);
 std::optional<std::uint64_t> log_variance_sample_size(const LogVariancePlan& plan, double detect);
 
 // ---- Distances between laws: Kolmogorov-Smirnov
-// --------------------------------------------------- Lower bound of the power: P(D < d_alpha) <=
+// Lower bound of the power: P(D < d_alpha) <=
 // exp(-2 n (distance - allow - d_alpha)^2) (Hoeffding at the point of largest difference), d_alpha
 // from the exact law. Two samples of n each: `two_samples`. Always one-tailed: rates.two_sided is
 // ignored.
