@@ -9,8 +9,8 @@
 
 #include "render/alias_table.h"
 #include "render/patch_integrals.h"
-#include "tests/estimators/exr.h"
 #include "tests/estimators/draws.h"
+#include "tests/estimators/exr.h"
 #include "tests/estimators/sky.h"
 
 namespace assay {
