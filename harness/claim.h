@@ -19,7 +19,15 @@
 namespace assay::harness {
 
 enum class QuantityName {
-  mean, bias, variance, total_variance, worst_variance, quantile, efficiency, cost, distribution
+  mean,
+  bias,
+  variance,
+  total_variance,
+  worst_variance,
+  quantile,
+  efficiency,
+  cost,
+  distribution
 };
 const char* to_string(QuantityName);
 /// All of them, in the order above.

@@ -35,7 +35,7 @@ struct ReplayArguments {
 int replay(const ReplayArguments&);
 
 struct SampleArguments {
-  std::string source;                             ///< as in a claim: estimator or plugin, with part
+  std::string source;  ///< as in a claim: estimator or plugin, with part
   std::vector<std::string> estimators = {};
   std::uint64_t secondaries = 10;
   std::uint64_t primaries = 1;

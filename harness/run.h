@@ -14,17 +14,18 @@
 namespace assay::harness {
 
 struct RunOptions {
-  std::optional<std::uint64_t> seed = {};  ///< else the suite's, else 1
-  unsigned threads = 0;                    ///< 0: all cores
-  std::optional<double> alpha = {};        ///< instead of every suite's
-  double coarsen = 1;                      ///< multiplies every `detect`
-  std::string filter = "";                 ///< glob on test ids; "" selects all
+  std::optional<std::uint64_t> seed = {};                   ///< else the suite's, else 1
+  unsigned threads = 0;                                     ///< 0: all cores
+  std::optional<double> alpha = {};                         ///< instead of every suite's
+  double coarsen = 1;                                       ///< multiplies every `detect`
+  std::string filter = "";                                  ///< glob on test ids; "" selects all
   std::optional<std::pair<unsigned, unsigned>> shard = {};  ///< I of N, I from 1
-  std::string command = "";                ///< how to run the same again, for replay lines
+  std::string command = "";  ///< how to run the same again, for replay lines
 };
 
 /// Runs the selected tests of the suites. InputError for anything found wrong before sampling.
-reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress);
+reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
+                    Progress& progress);
 
 enum class InconclusivePolicy { report, fail, pass };
 

@@ -18,8 +18,8 @@ enum class Expectation { pass, fail, invalid };
 struct EstimatorEntry {
   std::string name = {};
   std::string plugin = {};
-  Value parameters = {};                         ///< a map; plugin and primaries are taken out
-  std::optional<std::uint64_t> primaries = {};   ///< nullopt: auto, chosen from the pilot
+  Value parameters = {};                        ///< a map; plugin and primaries are taken out
+  std::optional<std::uint64_t> primaries = {};  ///< nullopt: auto, chosen from the pilot
   Location where = {};
 };
 
@@ -65,20 +65,21 @@ struct Suite {
   double alpha = 0.01;
   double beta = 0.01;
   std::optional<std::uint64_t> seed = {};
-  Value scenes = {};  ///< map of `scenes:`, for --set; their names are already replaced in `estimators`
+  Value scenes =
+      {};  ///< map of `scenes:`, for --set; their names are already replaced in `estimators`
   std::vector<EstimatorEntry> estimators = {};
   std::vector<TestEntry> tests = {};
 };
 
 /// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite:
 /// syntax, an unknown, duplicate or misspelt key, a wrong type, a merge key, an estimator a claim
-/// names and the suite lacks, a plugin that does not exist, a duplicate test name, `detect` not above
-/// `allow`, … Parameters of plugins are checked when they are prepared. Named scenes of `scenes:` are
-/// put in place of their names.
+/// names and the suite lacks, a plugin that does not exist, a duplicate test name, `detect` not
+/// above `allow`, … Parameters of plugins are checked when they are prepared. Named scenes of
+/// `scenes:` are put in place of their names.
 Suite load_suite(const std::string& file);
 
-/// The suite of a single claim from the command line. Each of `estimators` is "NAME=PLUGIN[,key=value]…"
-/// with YAML flow values; a plugin named in the claim needs none.
+/// The suite of a single claim from the command line. Each of `estimators` is
+/// "NAME=PLUGIN[,key=value]…" with YAML flow values; a plugin named in the claim needs none.
 struct CheckArguments {
   std::string claim;
   std::vector<std::string> estimators = {};

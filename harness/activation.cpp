@@ -1,0 +1,71 @@
+#include "harness/activation.h"
+
+#include <algorithm>
+
+#include "harness/sampler_setup.h"
+
+namespace assay::harness {
+namespace {
+
+/// The original's sampler of that name, or its only one.
+const Sampler* sampler_of(const Setup& setup, const std::string& name,
+                          std::vector<NamedSampler>& keep) {
+  keep = setup.samplers();
+  for (const NamedSampler& named : keep) {
+    if (named.name == name) return named.sampler.get();
+  }
+  return keep.size() == 1 ? keep[0].sampler.get() : nullptr;
+}
+
+bool same_draw(const SamplerDraw& one, const SamplerDraw& other) {
+  return one.point == other.point && one.density == other.density && one.weight == other.weight &&
+         one.lobe == other.lobe && one.valid == other.valid;
+}
+
+bool draws_differ(const Subject& subject, const Pool& pool, std::uint64_t observations) {
+  const auto& mine = dynamic_cast<const SamplerSetup&>(*subject.setup).sampler();
+  std::vector<NamedSampler> keep;
+  const Sampler* original = sampler_of(*subject.estimator->original, subject.purpose, keep);
+  if (original == nullptr) return true;
+  const FlushDenormals flush;
+  for (std::uint64_t i = 0; i < observations; ++i) {
+    Stream one(pool.key(), i);
+    Stream other(pool.key(), i);
+    if (!same_draw(mine.sample(one), original->sample(other))) return true;
+  }
+  return false;
+}
+
+bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t observations) {
+  const Setup& original = *subject.estimator->original;
+  const std::vector<Channel> mine = subject.setup->channels();
+  const std::vector<Channel> theirs = original.channels();
+  if (mine.size() != theirs.size()) return true;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    if (mine[i].mean != theirs[i].mean) return true;
+  }
+  const FlushDenormals flush;
+  const std::unique_ptr<Estimator> one = subject.setup->make();
+  const std::unique_ptr<Estimator> other = original.make();
+  std::vector<double> a(mine.size());
+  std::vector<double> b(theirs.size());
+  Cost unused;
+  for (std::uint64_t i = 0; i < observations; ++i) {
+    Stream first(pool.key(), i);
+    Stream second(pool.key(), i);
+    one->secondary(first, pool.primaries(), a, unused);
+    other->secondary(second, pool.primaries(), b, unused);
+    if (!std::equal(a.begin(), a.end(), b.begin())) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool was_activated(const Subject& subject, const Pool& pool, std::uint64_t observations) {
+  if (!subject.estimator->original) return true;
+  return subject.purpose.empty() ? estimates_differ(subject, pool, observations)
+                                 : draws_differ(subject, pool, observations);
+}
+
+}  // namespace assay::harness

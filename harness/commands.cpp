@@ -1,0 +1,81 @@
+#include "harness/commands.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "harness/progress_terminal.h"
+#include "harness/replay.h"
+#include "reports/console.h"
+#include "reports/file.h"
+#include "reports/html.h"
+#include "reports/json.h"
+#include "reports/junit.h"
+#include "reports/markdown.h"
+
+namespace assay::harness {
+namespace {
+
+bool is_set(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
+
+/// --color wins; then NO_COLOR, FORCE_COLOR; then whether it is a terminal that knows colours.
+bool use_colour(Colour colour, std::FILE* stream) {
+  if (colour != Colour::automatic) return colour == Colour::always;
+  if (is_set("NO_COLOR")) return false;
+  if (is_set("FORCE_COLOR") || is_set("CLICOLOR_FORCE")) return true;
+  const char* terminal = std::getenv("TERM");
+  const bool dumb = terminal == nullptr || std::string(terminal) == "dumb";
+  return !dumb && isatty(fileno(stream)) != 0;
+}
+
+std::string written(const reports::Record& record, const std::string& kind, bool colour) {
+  if (kind == "json") return reports::json(record);
+  if (kind == "junit") return reports::junit(record);
+  if (kind == "markdown") return reports::markdown(record);
+  if (kind == "html") return reports::html(record);
+  return reports::console(record, {.colour = colour});
+}
+
+/// Every report asked for. Files first: what standard output shows has then been written.
+void write_reports(const reports::Record& record, const Output& output) {
+  std::string to_stdout;
+  bool console_placed = false;
+  for (const ReportRequest& request : output.reports) {
+    console_placed = console_placed || request.kind == "console";
+    const bool standard = request.path == "-";
+    const bool colour = standard && use_colour(output.colour, stdout);
+    const std::string text = written(record, request.kind, colour);
+    if (standard) {
+      to_stdout += text;
+    } else {
+      reports::write_whole(request.path, text);
+    }
+  }
+  if (!console_placed) {
+    std::FILE* stream = to_stdout.empty() ? stdout : stderr;
+    fmt::print(stream, "{}", written(record, "console", use_colour(output.colour, stream)));
+  }
+  fmt::print("{}", to_stdout);
+}
+
+}  // namespace
+
+int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
+  const std::unique_ptr<Progress> progress = make_progress(output.quiet);
+  const reports::Record record = run(suites, options, *progress);
+  write_reports(record, output);
+  return exit_code(record, output.inconclusive);
+}
+
+int report_saved_run(const std::string& file, const Output& output) {
+  write_reports(read_record(file), output);
+  return 0;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,32 @@
+#pragma once
+
+// Samples without spread: there is no standard error to test with, and what was never seen may
+// still be there.
+
+#include <span>
+#include <string>
+
+#include "harness/family.h"
+#include "harness/outcome.h"
+
+namespace assay::harness {
+
+/// Whether the values differ by no more than the channel's declared rounding.
+bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
+                 const stats::Moments& moments);
+
+struct ConstantVerdict {
+  reports::Verdict verdict;
+  std::string message;
+};
+
+/// The verdict of a mean claim whose samples are all constant. An unseen value has probability at
+/// most q with (1 - q)^n = level, so that the mean is within q * (declared range) of the constant:
+/// exact binomial. Equal to the reference: pass if classical, or if that bound at beta stays below
+/// `detect`; else inconclusive. Different: fail only if the bound at alpha excludes `allow`; else
+/// invalid.
+ConstantVerdict judge_constant(const Question& question, std::size_t channel,
+                               std::span<const ChannelData> data, const Regions& regions,
+                               const ErrorShare& share);
+
+}  // namespace assay::harness

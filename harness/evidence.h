@@ -1,0 +1,26 @@
+#pragma once
+
+// What the data say about theta, the number a claim is about, whatever the method: a test of any
+// value of theta, in both directions, and an interval. Verdicts are made of nothing else.
+
+#include <functional>
+#include <string>
+
+#include "stats/test_result.h"
+
+namespace assay::harness {
+
+struct Evidence {
+  double estimate = 0;  ///< of theta
+  /// Tests "theta is this value": log_p_upper is the p-value of "theta <= value", log_p_lower that
+  /// of "theta >= value".
+  std::function<stats::TestResult(double)> at;
+  /// Two-sided interval of theta.
+  std::function<stats::Interval(double)> interval;
+  std::string quantity;   ///< what theta is, in words
+  bool relative = false;  ///< shown in per cent
+  bool ratio = false;     ///< theta is the logarithm of a ratio
+  bool distance = false;  ///< theta cannot be negative: `==` has one direction
+};
+
+}  // namespace assay::harness

@@ -1,0 +1,342 @@
+#include "harness/method.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/law_cdf.h"
+#include "harness/sampler_setup.h"
+#include "stats/chi_square_fit.h"
+#include "stats/chi_square_variance.h"
+#include "stats/f_ratio.h"
+#include "stats/kolmogorov_smirnov.h"
+#include "stats/log_variance.h"
+#include "stats/student_t.h"
+#include "stats/welch_t.h"
+
+namespace assay::harness {
+namespace {
+
+using stats::Interval;
+using stats::Moments;
+using stats::TestResult;
+
+double per_primary(const Question& question, std::size_t subject, const ChannelData& data) {
+  return question.subjects[subject].averages ? static_cast<double>(data.primaries) : 1;
+}
+
+Interval map_ends(const Interval& interval, const std::function<double(double)>& map) {
+  const double one = map(interval.low);
+  const double other = map(interval.high);
+  return {std::min(one, other), std::max(one, other), interval.confidence};
+}
+
+/// theta = (E x - r) / |r|, or E x - r.
+Evidence mean_against_number(const Question& question, std::size_t channel, const Moments& x) {
+  const Constant& reference = question.references[channel];
+  const bool relative = is_relative(question, channel);
+  const double unit = relative ? std::abs(reference.value) : 1;
+  const double slope = relative ? std::copysign(1, reference.value) : 0;
+  const auto at = [=](double theta) {
+    return stats::student_t(
+        x, {.value = reference.value + theta * unit,
+            .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
+  };
+  const auto interval = [=](double confidence) {
+    return map_ends(
+        stats::student_t_interval(x, {reference.value, reference.standard_error}, confidence),
+        [=](double d) { return d / unit; });
+  };
+  return {.estimate = (x.mean - reference.value) / unit,
+          .at = at,
+          .interval = interval,
+          .quantity =
+              relative ? "relative difference from the reference" : "difference from the reference",
+          .relative = relative};
+}
+
+/// theta = (E x - c E y) / |c E y|, tested as a contrast, or E x - c E y.
+Evidence mean_against_mean(const Question& question, std::size_t channel, const Moments& x,
+                           const Moments& y) {
+  const double factor = question.factor;
+  const double other = factor * y.mean;
+  if (!is_relative(question, channel)) {
+    const auto at = [=](double theta) {
+      return stats::welch_t(x, y, {.scale = factor, .offset = theta});
+    };
+    const auto interval = [=](double confidence) {
+      Moments scaled = y;  // of factor * y: only count, mean and m2 enter
+      scaled.mean *= factor;
+      scaled.m2 *= factor * factor;
+      return stats::welch_t_interval(x, scaled, confidence);
+    };
+    return {.estimate = x.mean - other,
+            .at = at,
+            .interval = interval,
+            .quantity = "difference of means"};
+  }
+  const double sign = std::copysign(1, other);
+  const auto at = [=](double theta) {
+    return stats::welch_t(x, y, {.scale = factor * (1 + sign * theta), .offset = 0});
+  };
+  const auto interval = [=](double confidence) {
+    return map_ends(stats::welch_ratio_interval(x, y, confidence),
+                    [=](double ratio) { return sign * ((1 + ratio) / factor - 1); });
+  };
+  return {.estimate = sign * (x.mean / other - 1),
+          .at = at,
+          .interval = interval,
+          .quantity = "relative difference of means",
+          .relative = true};
+}
+
+/// theta = ln(Var x per primary / v0).
+Evidence variance_against_number(const Method& method, const Question& question,
+                                 std::size_t channel, const ChannelData& data) {
+  const Moments x = data.moments;
+  const double null = question.references[channel].value / per_primary(question, 0, data);
+  const bool chi_square = method.name == "chi-square";
+  const auto at = [=](double theta) {
+    const double variance = null * std::exp(theta);
+    return chi_square ? stats::chi_square_variance(x, variance) : stats::log_variance(x, variance);
+  };
+  const auto interval = [=](double confidence) {
+    if (!chi_square) return stats::log_variance_interval(x, null, confidence);
+    return map_ends(stats::chi_square_variance_interval(x, confidence),
+                    [=](double variance) { return std::log(variance / null); });
+  };
+  return {.estimate = std::log(x.variance() / null),
+          .at = at,
+          .interval = interval,
+          .quantity = "variance over the reference",
+          .ratio = true};
+}
+
+/// theta = ln(Var x / (c Var y)), each per primary.
+Evidence variance_against_variance(const Method& method, const Question& question,
+                                   std::span<const ChannelData> data) {
+  const Moments x = data[0].moments;
+  const Moments y = data[1].moments;
+  const double null =
+      question.factor * per_primary(question, 1, data[1]) / per_primary(question, 0, data[0]);
+  const bool f = method.name == "F";
+  const auto at = [=](double theta) {
+    const double ratio = null * std::exp(theta);
+    return f ? stats::f_ratio(x, y, ratio) : stats::log_variance_ratio(x, y, ratio);
+  };
+  const auto interval = [=](double confidence) {
+    if (f) {
+      return map_ends(stats::f_ratio_interval(x, y, confidence),
+                      [=](double ratio) { return std::log(ratio / null); });
+    }
+    return map_ends(stats::log_variance_ratio_interval(x, y, confidence),
+                    [=](double ln_ratio) { return ln_ratio - std::log(null); });
+  };
+  return {.estimate = std::log(x.variance() / y.variance() / null),
+          .at = at,
+          .interval = interval,
+          .quantity = "ratio of variances",
+          .ratio = true};
+}
+
+std::vector<double> sorted_points(const Question& question, std::size_t subject,
+                                  std::size_t channel, std::span<const double> values) {
+  std::vector<double> points(values.begin(), values.end());
+  const Subject& side = question.subjects[subject];
+  if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
+    const double none = no_point(draws->marginals()[side.channels[channel]]);
+    std::erase(points, none);
+  }
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+/// theta = the sup distance, from either number of samples.
+template <class Distance>
+Evidence from_distance(const Distance& distance, double value) {
+  const auto at = [distance](double theta) {
+    return theta == 0 ? stats::kolmogorov_smirnov(distance)
+                      : stats::ks_margin(distance, std::max(0.0, theta));
+  };
+  const auto interval = [distance](double confidence) {
+    return stats::ks_interval(distance, confidence);
+  };
+  return {.estimate = value,
+          .at = at,
+          .interval = interval,
+          .quantity = "largest distance of distribution functions",
+          .distance = true};
+}
+
+Evidence law_against_law(const Question& question, std::size_t channel,
+                         std::span<const ChannelData> data) {
+  const std::vector<double> x = sorted_points(question, 0, channel, data[0].values);
+  const std::vector<double> y = sorted_points(question, 1, channel, data[1].values);
+  const stats::TwoSampleDistance distance = stats::ks_distance(x, y);
+  return from_distance(distance, distance.distance());
+}
+
+stats::ContinuousLaw reference_law(const Question& question, std::size_t channel) {
+  if (question.kind == QuestionKind::fit_to_law) {
+    return {.cdf = law_cdf(question.law), .left_limit = {}};
+  }
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+  return {.cdf = draws.marginal_cdf(question.channel_name(channel)), .left_limit = {}};
+}
+
+Evidence values_against_law(const Question& question, std::size_t channel,
+                            const ChannelData& data) {
+  const std::vector<double> x = sorted_points(question, 0, channel, data.values);
+  const stats::OneSampleDistance distance = stats::ks_distance(x, reference_law(question, channel));
+  return from_distance(distance, distance.distance);
+}
+
+/// theta = w, Cohen's effect size over the cells.
+Evidence cells_against_density(const Question& question, const ChannelData& data) {
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+  const stats::CellProbabilities& grid = draws.cells().grid;
+  stats::CellCounts counts{.observed = {data.cells.begin(), data.cells.end()},
+                           .probability = grid.probability};
+  counts.probability.push_back(std::max(0.0, 1 - grid.total));
+  const stats::ChiSquareFit fit = stats::chi_square_fit(
+      counts, {.probability_tolerance = std::max(1e-9, 2 * grid.total_error)});
+  const auto at = [fit](double theta) {
+    return theta == 0 ? fit.test : stats::chi_square_fit_effect(fit, std::max(0.0, theta));
+  };
+  const auto interval = [fit](double confidence) {
+    return stats::chi_square_fit_interval(fit, confidence);
+  };
+  return {.estimate = fit.effect,
+          .at = at,
+          .interval = interval,
+          .quantity = "effect size w over the cells",
+          .distance = true};
+}
+
+std::string quantity_text(const Quantity& quantity) {
+  const std::string part = quantity.source.part.empty() ? "" : "." + quantity.source.part;
+  return fmt::format("{}({}{})", to_string(quantity.name), quantity.source.estimator, part);
+}
+
+std::string side_text(const Question& question, std::size_t channel) {
+  const Claim& claim = question.test->claim;
+  if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
+    return (other->factor == 1 ? "" : fmt::format("{} * ", other->factor)) +
+           quantity_text(other->quantity);
+  }
+  if (!question.references.empty()) return fmt::format("{}", question.references[channel].value);
+  if (question.kind == QuestionKind::fit_to_density) return "its declared density";
+  return question.law.name;
+}
+
+std::string relation_text(const TestEntry& test) {
+  switch (test.claim.relation) {
+    case Relation::equal:
+      return "=";
+    case Relation::less:
+      return "<=";
+    case Relation::greater:
+      return ">=";
+    case Relation::at_most:
+    case Relation::at_least:
+      return to_string(test.claim.relation);
+    case Relation::within:
+      break;
+  }
+  return fmt::format("within {} of", to_string(test.claim.margin));
+}
+
+}  // namespace
+
+std::vector<Method> methods_for(const Question& question) {
+  const bool within = question.test->claim.relation == Relation::within;
+  switch (question.kind) {
+    case QuestionKind::mean_of_one:
+      if (within) return {{"tost", Keeps::moments}};
+      return {{"t", Keeps::moments}};
+    case QuestionKind::mean_of_two:
+      if (within) return {{"tost", Keeps::moments}};
+      return {{"welch", Keeps::moments}};
+    case QuestionKind::variance_of_one:
+      return {{"chi-square", Keeps::moments}, {"log-variance", Keeps::moments}};
+    case QuestionKind::variance_of_two:
+      return {{"F", Keeps::moments}, {"log-variance", Keeps::moments}};
+    case QuestionKind::fit_to_density: {
+      const Subject& draws = question.subjects[0];
+      const bool whole = draws.setup->channels()[draws.channels[0]].name == cell_channel;
+      if (whole) return {{"chi-square-fit", Keeps::cells}};
+      return {{"ks", Keeps::values}};
+    }
+    case QuestionKind::fit_to_law:
+    case QuestionKind::same_law:
+      return {{"ks", Keeps::values}};
+  }
+  return {};
+}
+
+Method find_method(const Question& question, const std::string& name) {
+  std::string known;
+  for (const Method& method : methods_for(question)) {
+    if (method.name == name) return method;
+    known += (known.empty() ? "`" : ", `") + method.name + "`";
+  }
+  throw InputError(question.test->where,
+                   fmt::format("`test: {}` does not answer this claim; {} does", name, known));
+}
+
+std::string null_hypothesis(const Method&, const Question& question, std::size_t channel) {
+  const TestEntry& test = *question.test;
+  std::string text = fmt::format("{} {} {}", quantity_text(test.claim.left), relation_text(test),
+                                 side_text(question, channel));
+  if (question.channel_count() > 1) {
+    text += fmt::format(" in channel {}", question.channel_name(channel));
+  }
+  if (test.allow && test.allow->value > 0)
+    text += fmt::format(", up to {}", to_string(*test.allow));
+  return text;
+}
+
+bool is_relative(const Question& question, std::size_t channel) {
+  const TestEntry& test = *question.test;
+  if (question.kind != QuestionKind::mean_of_one && question.kind != QuestionKind::mean_of_two) {
+    return false;
+  }
+  const bool absolute = (test.detect && !test.detect->relative) ||
+                        (test.allow && !test.allow->relative && test.allow->value > 0) ||
+                        (test.claim.relation == Relation::within && !test.claim.margin.relative);
+  return !absolute &&
+         (question.kind == QuestionKind::mean_of_two || question.references[channel].value != 0);
+}
+
+double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin) {
+  const bool variance = question.kind == QuestionKind::variance_of_one ||
+                        question.kind == QuestionKind::variance_of_two;
+  if (!variance) return margin.value;
+  if (margin.relative) return std::log1p(margin.value);
+  return std::log1p(margin.value / question.references[channel].value);
+}
+
+Evidence evidence_of(const Method& method, const Question& question, std::size_t channel,
+                     std::span<const ChannelData> data) {
+  switch (question.kind) {
+    case QuestionKind::mean_of_one:
+      return mean_against_number(question, channel, data[0].moments);
+    case QuestionKind::mean_of_two:
+      return mean_against_mean(question, channel, data[0].moments, data[1].moments);
+    case QuestionKind::variance_of_one:
+      return variance_against_number(method, question, channel, data[0]);
+    case QuestionKind::variance_of_two:
+      return variance_against_variance(method, question, data);
+    case QuestionKind::fit_to_density:
+      if (method.name == "chi-square-fit") return cells_against_density(question, data[0]);
+      return values_against_law(question, channel, data[0]);
+    case QuestionKind::fit_to_law:
+      return values_against_law(question, channel, data[0]);
+    case QuestionKind::same_law:
+      return law_against_law(question, channel, data);
+  }
+  throw std::logic_error("a question of no kind");
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,51 @@
+#pragma once
+
+// The methods by name: which there are for a question, what null hypothesis each tests, and the
+// evidence it draws from data.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/evidence.h"
+#include "harness/question.h"
+#include "harness/summary.h"
+
+namespace assay::harness {
+
+/// One subject's data of one channel.
+struct ChannelData {
+  std::uint64_t primaries = 1;
+  stats::Moments moments = {};
+  std::span<const double> values = {};  ///< where the method needs them
+  std::span<const std::uint64_t> cells = {};
+};
+
+/// What a method needs kept of its observations.
+enum class Keeps { moments, values, cells };
+
+struct Method {
+  std::string name;  ///< as in suites and records
+  Keeps keeps;
+};
+
+/// The methods that answer a question, the default first; `test:` may force any of them.
+std::vector<Method> methods_for(const Question& question);
+
+/// The method of that name. InputError at the test's place when it does not answer the question.
+Method find_method(const Question& question, const std::string& name);
+
+/// The null hypothesis in words and symbols.
+std::string null_hypothesis(const Method& method, const Question& question, std::size_t channel);
+
+/// Whether theta of a channel is in units of the reference.
+bool is_relative(const Question& question, std::size_t channel);
+
+/// A margin of the claim on theta's own scale: ln(1 + x) for a ratio of variances.
+double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin);
+
+/// The evidence on theta of one channel. `data` is one or two subjects'.
+Evidence evidence_of(const Method& method, const Question& question, std::size_t channel,
+                     std::span<const ChannelData> data);
+
+}  // namespace assay::harness

@@ -1,0 +1,158 @@
+#include "harness/narrate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/tails.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+std::string p_text(double log_p) {
+  const double exponent = log_p / std::log(10.0);
+  if (exponent > -4) return fmt::format("p = {:.2g}", std::exp(log_p));
+  const double whole = std::floor(exponent);
+  return fmt::format("p = {:.1f}e{:.0f}", std::pow(10, exponent - whole), whole);
+}
+
+/// "0.31 %" without a sign; a ratio as the factor it is.
+std::string size_text(double theta, const Evidence& evidence) {
+  if (evidence.relative) return fmt::format("{:.3g} %", 100 * std::abs(theta));
+  if (evidence.ratio) return fmt::format("a factor of {:.4g}", std::exp(std::abs(theta)));
+  return fmt::format("{:.3g}", std::abs(theta));
+}
+
+std::string interval_text(const ChannelOutcome& channel, double confidence) {
+  const stats::Interval interval = channel.evidence.interval(confidence);
+  return fmt::format("[{}, {}]", show_theta(interval.low, channel.evidence),
+                     show_theta(interval.high, channel.evidence));
+}
+
+std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return outcome.question.channel_count() > 1 ? " in channel " + channel.name : "";
+}
+
+const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
+  return *std::max_element(outcome.channels.begin(), outcome.channels.end(),
+                           [](const ChannelOutcome& a, const ChannelOutcome& b) {
+                             return a.decision.log_p_forbidden < b.decision.log_p_forbidden;
+                           });
+}
+
+/// The largest effect in the claim's forbidden direction that is not excluded at beta.
+double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const stats::Interval interval = channel.evidence.interval(1 - 2 * outcome.place.share.beta);
+  switch (outcome.plan.regions[0].relation) {
+    case Relation::at_most:
+    case Relation::less:
+      return interval.high;
+    case Relation::at_least:
+    case Relation::greater:
+      return interval.low;
+    case Relation::equal:
+    case Relation::within:
+      break;
+  }
+  return std::max(std::abs(interval.low), std::abs(interval.high));
+}
+
+std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  if (!outcome.plan.regions[0].has_forbidden()) {
+    std::string text = "no evidence against the claim";
+    if (channel.detectable) {
+      text += fmt::format("; {} or more would have been found with probability {:g}",
+                          size_text(*channel.detectable, channel.evidence),
+                          1 - outcome.place.share.beta);
+    }
+    return text;
+  }
+  return fmt::format("no evidence against the claim; {} or more is excluded",
+                     size_text(excluded_beyond(outcome, channel), channel.evidence));
+}
+
+std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return fmt::format("shown: {} is {} {} ({})", channel.evidence.quantity,
+                     show_theta(channel.evidence.estimate, channel.evidence),
+                     interval_text(channel, 1 - 2 * outcome.place.share.beta),
+                     p_text(channel.decision.log_p_forbidden) + " against the contrary");
+}
+
+std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return fmt::format("{} is {} {}{}, {}", channel.evidence.quantity,
+                     show_theta(channel.evidence.estimate, channel.evidence),
+                     interval_text(channel, 1 - outcome.place.share.alpha),
+                     in_channel(outcome, channel), p_text(channel.decision.log_p_claimed));
+}
+
+/// How far theta is from the edge of the forbidden region, the reference's own error apart.
+double distance_to_forbidden(const Regions& regions, double estimate) {
+  switch (regions.relation) {
+    case Relation::equal:
+      return regions.detect.value_or(0) - std::abs(estimate);
+    case Relation::within:
+      return regions.within - std::abs(estimate);
+    case Relation::at_most:
+      return regions.detect.value_or(0) - estimate;
+    case Relation::at_least:
+      return regions.detect.value_or(0) + estimate;
+    case Relation::less:
+      return -estimate;
+    case Relation::greater:
+      return estimate;
+  }
+  return 0;
+}
+
+/// n grows with the square of how much narrower the interval must become.
+std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const double beta = outcome.place.share.beta;
+  const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
+  const double half = (interval.high - interval.low) / 2;
+  const double room = distance_to_forbidden(outcome.plan.regions[0], channel.evidence.estimate);
+  if (!(half > 0) || !std::isfinite(half) || !(room > 0)) {
+    return "the estimate lies where the claim must not pass, yet not clearly so";
+  }
+  const double z = stats::normal_quantile({stats::Tail::upper, std::log(beta)});
+  const double factor = std::pow((1 + 1.0 / z) * half / room, 2);
+  return fmt::format("about {:.2g} secondaries would decide if the estimate stands",
+                     std::max(1.1, factor) * static_cast<double>(outcome.plan.secondaries));
+}
+
+std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return fmt::format("{} is {} {}{}: neither shown nor refuted; {}", channel.evidence.quantity,
+                     show_theta(channel.evidence.estimate, channel.evidence),
+                     interval_text(channel, 1 - 2 * outcome.place.share.beta),
+                     in_channel(outcome, channel), what_would_decide(outcome, channel));
+}
+
+}  // namespace
+
+std::string show_theta(double theta, const Evidence& evidence) {
+  if (evidence.relative) return fmt::format("{:+.3g} %", 100 * theta);
+  if (evidence.ratio) return fmt::format("x {:.4g}", std::exp(theta));
+  return fmt::format("{:.4g}", theta);
+}
+
+std::string narrate(const TestOutcome& outcome) {
+  if (outcome.channels.empty()) return "";
+  const ChannelOutcome& worst = outcome.channels.front();
+  switch (outcome.verdict) {
+    case Verdict::fail:
+      return failed(outcome, worst);
+    case Verdict::inconclusive:
+      return undecided(outcome, least_excluded(outcome));
+    case Verdict::pass:
+      break;
+    default:
+      return "";
+  }
+  const ChannelOutcome& least = least_excluded(outcome);
+  return outcome.plan.regions[0].proof() ? passed_proof(outcome, least)
+                                         : passed_alarm(outcome, least);
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,116 @@
+#include "harness/pool.h"
+
+#include <fmt/format.h>
+#include <immintrin.h>
+
+#include <algorithm>
+#include <bit>
+#include <ctime>
+#include <limits>
+#include <stdexcept>
+
+namespace assay::harness {
+namespace {
+
+// A block is some milliseconds of work at a microsecond a primary: long against the cost of handing
+// it out, short against a run.
+constexpr std::uint64_t primaries_per_block = 16384;
+constexpr std::uint64_t least_block = 8;
+constexpr std::uint64_t most_block = 4096;
+constexpr std::uint64_t most_observations = std::numeric_limits<std::uint64_t>::max();
+
+// _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON
+constexpr unsigned flush_bits = 0x8040;
+
+double thread_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace
+
+FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | flush_bits); }
+FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
+
+Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries)
+    : setup_(std::move(setup)),
+      key_(key),
+      primaries_(primaries),
+      block_size_(
+          std::bit_floor(std::clamp(primaries_per_block / primaries, least_block, most_block))),
+      plan_(setup_->channels().size()) {}
+
+const Summary& Pool::prefix(std::uint64_t count) const { return prefixes_.at(count); }
+
+std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
+  const std::vector<double>& kept = values_.at(channel);
+  return {kept.data(), std::min<std::size_t>(kept.size(), count)};
+}
+
+std::uint64_t Pool::block_end(std::uint64_t first) const {
+  return std::min(first + block_size_, setup_->observations().value_or(most_observations));
+}
+
+Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const {
+  Block block{.whole = Summary(plan_),
+              .values = std::vector<std::vector<double>>(plan_.size()),
+              .partial = {},
+              .trouble = {}};
+  std::vector<double> out(plan_.size());
+  auto mark = prefixes_.upper_bound(first);
+  const double start = thread_seconds();
+  std::uint64_t index = first;
+  const FlushDenormals flush;
+  try {
+    for (; index < last; ++index) {
+      Stream random(key_, index);
+      estimator.secondary(random, primaries_, out, block.whole.cost);
+      for (std::size_t c = 0; c < out.size(); ++c) {
+        add_observation(block.whole.channels[c], out[c], index);
+        if (index < plan_[c].keep) block.values[c].push_back(out[c]);
+      }
+      ++block.whole.count;
+      if (mark != prefixes_.end() && index + 1 == mark->first) {
+        block.partial.emplace_back(mark->first, block.whole);
+        block.partial.back().second.seconds = thread_seconds() - start;
+        ++mark;
+      }
+    }
+  } catch (const std::exception& error) {
+    block.trouble = fmt::format("observation {}: {}", index, error.what());
+  }
+  block.whole.seconds = thread_seconds() - start;
+  return block;
+}
+
+void Pool::fold(Block&& block) {
+  if (!started_) {
+    running_ = Summary(plan_);
+    values_.resize(plan_.size());
+    started_ = true;
+  }
+  if (!trouble_.empty()) return;
+  for (auto& [count, partial] : block.partial) {
+    Summary prefix = running_;
+    prefix.append(partial);
+    prefixes_.at(count) = std::move(prefix);
+  }
+  running_.append(block.whole);
+  for (std::size_t c = 0; c < values_.size(); ++c) {
+    values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
+  }
+  trouble_ = std::move(block.trouble);
+}
+
+std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,
+                                     std::uint64_t index) {
+  const FlushDenormals flush;
+  std::vector<double> out(setup.channels().size());
+  Stream random(key, index);
+  Cost cost;
+  setup.make()->secondary(random, primaries, out, cost);
+  return out;
+}
+
+}  // namespace assay::harness

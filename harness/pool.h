@@ -1,0 +1,91 @@
+#pragma once
+
+// A pool of observations: one stream key, one number of primaries, drawn in blocks. Every test on
+// the same estimator, parameters and primaries reads a prefix of the same pool.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "estimators/estimator.h"
+#include "harness/summary.h"
+
+namespace assay::harness {
+
+/// Sets the processor to flush denormals to zero while it lives. Rays are traced that way, and bits
+/// must not depend on which thread drew them.
+class FlushDenormals {
+ public:
+  FlushDenormals();
+  ~FlushDenormals();
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned saved_;
+};
+
+class Pool {
+ public:
+  Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries);
+
+  std::shared_ptr<const Setup> setup() const { return setup_; }
+  StreamKey key() const { return key_; }
+  std::uint64_t primaries() const { return primaries_; }
+
+  /// What to keep; before anything is drawn.
+  void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
+  std::vector<ChannelPlan>& plan() { return plan_; }
+
+  /// A test will read observations [0, count).
+  void request(std::uint64_t count) { prefixes_.try_emplace(count); }
+  /// The most that is requested.
+  std::uint64_t requested() const { return prefixes_.empty() ? 0 : prefixes_.rbegin()->first; }
+
+  /// The summary of the first `count` observations, once drawn; `count` as requested.
+  const Summary& prefix(std::uint64_t count) const;
+  /// The first values of a channel, at most `count` and as many as were to be kept.
+  std::span<const double> values(std::size_t channel, std::uint64_t count) const;
+  /// Why drawing ended early: an estimator threw. Empty when it did not.
+  const std::string& trouble() const { return trouble_; }
+
+  // The scheduler's side. Observations per block are a function of `primaries` alone.
+  std::uint64_t block_size() const { return block_size_; }
+  /// Where the block that begins at `first` ends. Blocks are drawn whole, even where less was
+  /// requested: a later look then continues as if it had been one run.
+  std::uint64_t block_end(std::uint64_t first) const;
+
+  /// A drawn block, and copies of it at the requested counts that lie inside.
+  struct Block {
+    Summary whole;
+    std::vector<std::vector<double>> values;  ///< of each channel, where they are kept
+    std::vector<std::pair<std::uint64_t, Summary>> partial;
+    std::string trouble;
+  };
+  /// Draws observations [first, last) of one block with a worker's estimator. Thread-safe.
+  Block draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const;
+  /// Takes the next block, in order.
+  void fold(Block&& block);
+  std::uint64_t drawn() const { return running_.count; }
+
+ private:
+  std::shared_ptr<const Setup> setup_;
+  StreamKey key_;
+  std::uint64_t primaries_;
+  std::uint64_t block_size_;
+  std::vector<ChannelPlan> plan_;
+  std::map<std::uint64_t, Summary> prefixes_;
+  Summary running_;
+  std::vector<std::vector<double>> values_;
+  bool started_ = false;
+  std::string trouble_;
+};
+
+/// One observation alone, all channels.
+std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,
+                                     std::uint64_t index);
+
+}  // namespace assay::harness

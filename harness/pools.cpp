@@ -1,0 +1,131 @@
+#include "harness/pools.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/sampler_setup.h"
+
+namespace assay::harness {
+namespace {
+
+// Values stored of every channel: for the normal quantile plot.
+constexpr std::uint64_t plotted_values = 2000;
+// The histogram spans this many standard deviations to each side, within the channel's range.
+constexpr double histogram_deviations = 5;
+
+struct Range {
+  double low;
+  double high;
+};
+
+/// Bounds of a histogram that holds both ends.
+ChannelPlan with_histogram(Range range) {
+  ChannelPlan plan{.keep = plotted_values};
+  if (!(range.low < range.high)) return plan;
+  plan.histogram_low = range.low;
+  plan.histogram_high = std::nextafter(range.high, std::numeric_limits<double>::infinity());
+  return plan;
+}
+
+Range expected_range(const Channel& channel, const stats::Moments& pilot, double averaged) {
+  const double reach = histogram_deviations * std::sqrt(pilot.variance() / averaged);
+  return {std::max({channel.low, pilot.minimum, pilot.mean - reach}),
+          std::min({channel.high, pilot.maximum, pilot.mean + reach})};
+}
+
+/// Of bounded data: read through once.
+std::vector<Range> data_ranges(const Setup& setup, std::uint64_t rows) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<Range> ranges(setup.channels().size(), {infinity, -infinity});
+  for (std::uint64_t row = 0; row < rows; ++row) {
+    const std::vector<double> values = draw_observation(setup, {}, 1, row);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) continue;
+      ranges[i] = {std::min(ranges[i].low, values[i]), std::max(ranges[i].high, values[i])};
+    }
+  }
+  return ranges;
+}
+
+std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
+  std::vector<ChannelPlan> plan;
+  for (const Marginal& marginal : setup.marginals()) {
+    plan.push_back(with_histogram({marginal.low, marginal.high}));
+  }
+  plan.push_back({.cells = setup.cells().size()});
+  return plan;
+}
+
+std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimator& estimator,
+                                        const Pilots& pilots) {
+  std::vector<ChannelPlan> plan;
+  const std::vector<Channel> channels = pool.setup()->channels();
+  if (const auto rows = pool.setup()->observations()) {
+    for (const Range& range : data_ranges(*pool.setup(), *rows)) {
+      plan.push_back(with_histogram(range));
+    }
+    return plan;
+  }
+  const Pilot& pilot = pilots.at(estimator.name);
+  const double averaged =
+      estimator.entry->information.averages ? static_cast<double>(pool.primaries()) : 1;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!pilot.trouble.empty() || pilot.channels[i].count < 2) {
+      plan.push_back({.keep = plotted_values});
+    } else {
+      plan.push_back(with_histogram(expected_range(channels[i], pilot.channels[i], averaged)));
+    }
+  }
+  return plan;
+}
+
+}  // namespace
+
+std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t seed,
+                                          const Pilots& pilots) {
+  const StreamKey key = key_of(wanted.estimator, seed, wanted.copy, wanted.purpose);
+  const Identity identity{wanted.estimator.entry->information.name, wanted.estimator.parameters,
+                          wanted.purpose, key.bits, wanted.primaries};
+  std::shared_ptr<Pool>& pool = pools_[identity];
+  if (pool) return pool;
+  pool = std::make_shared<Pool>(wanted.setup, key, wanted.primaries);
+  const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());
+  pool->plan() =
+      draws != nullptr ? sampler_plan(*draws) : estimator_plan(*pool, wanted.estimator, pilots);
+  all_.push_back(pool);
+  return pool;
+}
+
+std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t subject,
+                                         const Plan& plan, std::uint64_t seed,
+                                         const Pilots& pilots) {
+  const Subject& side = question.subjects[subject];
+  const std::shared_ptr<Pool> pool = find_or_make({.estimator = *side.estimator,
+                                                   .setup = side.setup,
+                                                   .purpose = side.purpose,
+                                                   .copy = side.copy,
+                                                   .primaries = plan.primaries[subject]},
+                                                  seed, pilots);
+  if (plan.method.keeps == Keeps::values) {
+    for (const std::size_t channel : side.channels) {
+      std::uint64_t& keep = pool->plan()[channel].keep;
+      keep = std::max(keep, plan.secondaries);
+    }
+  }
+  pool->request(plan.secondaries);
+  return pool;
+}
+
+std::shared_ptr<Pool> Pools::for_picture(const PreparedEstimator& estimator,
+                                         std::uint64_t primaries, std::uint64_t seed,
+                                         const Pilots& pilots) {
+  return find_or_make({.estimator = estimator,
+                       .setup = estimator.setup,
+                       .purpose = "",
+                       .copy = 0,
+                       .primaries = primaries},
+                      seed, pilots);
+}
+
+}  // namespace assay::harness

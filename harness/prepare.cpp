@@ -1,0 +1,72 @@
+#include "harness/prepare.h"
+
+#include "estimators/catalogue.h"
+
+namespace assay::harness {
+namespace {
+
+std::shared_ptr<const Setup> set_up(const Entry& entry, Parameters& parameters) {
+  std::shared_ptr<const Setup> setup = entry.prepare(parameters);
+  parameters.require_all_read();
+  return setup;
+}
+
+/// The part of a mutant's parameters that its original knows.
+Value only(const Value& given, const std::vector<std::string>& names) {
+  std::vector<Value::Member> kept;
+  for (const Value::Member& member : given.members()) {
+    if (std::find(names.begin(), names.end(), member.first) != names.end()) kept.push_back(member);
+  }
+  return Value::map(std::move(kept), given.where());
+}
+
+}  // namespace
+
+std::vector<std::string> parameter_names(const Information& information) {
+  std::vector<std::string> names;
+  for (const ParameterInformation& parameter : information.parameters) {
+    names.push_back(parameter.name);
+  }
+  return names;
+}
+
+PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder) {
+  const Entry& plugin = find_plugin(entry.plugin, entry.where);
+  Parameters parameters(entry.plugin, plugin.information.parameters, entry.parameters, folder);
+  PreparedEstimator prepared{.name = entry.name,
+                             .entry = &plugin,
+                             .setup = set_up(plugin, parameters),
+                             .parameters = parameters.canonical(),
+                             .key_plugin = entry.plugin,
+                             .key_parameters = parameters.canonical(),
+                             .primaries = entry.primaries,
+                             .original = nullptr,
+                             .where = entry.where};
+  if (!plugin.information.original.empty()) {
+    const Entry& original = find_plugin(plugin.information.original, entry.where);
+    const std::vector<std::string> names = parameter_names(original.information);
+    Parameters theirs(original.information.name, original.information.parameters,
+                      only(entry.parameters, names), folder);
+    prepared.original = set_up(original, theirs);
+    prepared.key_plugin = original.information.name;
+    prepared.key_parameters = theirs.canonical();
+  }
+  return prepared;
+}
+
+std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite) {
+  std::map<std::string, PreparedEstimator> prepared;
+  for (const EstimatorEntry& entry : suite.estimators) {
+    prepared.emplace(entry.name, prepare(entry, suite.folder));
+  }
+  return prepared;
+}
+
+StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::uint32_t copy,
+                 const std::string& purpose) {
+  const std::string plugin =
+      purpose.empty() ? estimator.key_plugin : estimator.key_plugin + "#" + purpose;
+  return stream_key(seed, plugin, estimator.key_parameters, copy);
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,185 @@
+#include "harness/record_of.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/picture.h"
+#include "harness/quantiles.h"
+#include "harness/shell.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Number;
+
+Number number(double value) { return std::isfinite(value) ? Number(value) : Number(); }
+
+/// The probability of a natural logarithm; the least double stands for what underflows.
+Number probability(double log_p) {
+  return std::max(std::exp(log_p), std::numeric_limits<double>::denorm_min());
+}
+
+Number log10_of(double log_p) { return log_p / std::log(10.0); }
+
+reports::Verdict expected_verdict(Expectation expect) {
+  switch (expect) {
+    case Expectation::pass:
+      return reports::Verdict::pass;
+    case Expectation::fail:
+      return reports::Verdict::fail;
+    case Expectation::invalid:
+      break;
+  }
+  return reports::Verdict::invalid;
+}
+
+reports::Histogram histogram_of(const Histogram& histogram) {
+  return {.low = histogram.low,
+          .high = histogram.high,
+          .counts = histogram.counts,
+          .below = histogram.below,
+          .above = histogram.above};
+}
+
+reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t channel) {
+  const Subject& side = work.outcome.question.subjects[subject];
+  const std::uint64_t count = work.outcome.plan.secondaries;
+  const std::size_t index = side.channels[channel];
+  const Summary& summary = work.pools[subject]->prefix(count);
+  const ChannelSummary& kept = summary.channels[index];
+  const stats::Moments& moments = kept.moments;
+  const bool spread = moments.count > 1 && moments.m2 > 0;
+  reports::Sample sample{.estimator = side.estimator->name,
+                         .plugin = side.estimator->entry->information.name,
+                         .parameters = side.estimator->parameters,
+                         .channel = side.setup->channels()[index].name,
+                         .primaries = work.outcome.plan.primaries[subject],
+                         .secondaries = count};
+  if (moments.count > 0) {
+    sample.mean = number(moments.mean);
+    sample.minimum = number(moments.minimum);
+    sample.maximum = number(moments.maximum);
+  }
+  if (moments.count > 1) sample.variance = number(moments.variance());
+  if (spread) {
+    sample.skewness = number(moments.skewness());
+    sample.kurtosis = number(moments.kurtosis());
+  }
+  sample.nonzero = moments.nonzero;
+  sample.nonfinite = kept.nonfinite;
+  sample.histogram = histogram_of(kept.histogram);
+  if (spread && kept.cells.empty()) {
+    sample.quantiles = quantile_points(work.pools[subject]->values(index, count));
+  }
+  sample.cost = cost_of(summary);
+  return sample;
+}
+
+std::vector<reports::Sample> samples_of(const TestWork& work) {
+  std::vector<reports::Sample> samples;
+  for (std::size_t channel = 0; channel < work.outcome.question.channel_count(); ++channel) {
+    for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
+      if (work.pools[subject]->trouble().empty()) {
+        samples.push_back(sample_of(work, subject, channel));
+      }
+    }
+  }
+  return samples;
+}
+
+reports::Channel channel_of(const ChannelOutcome& outcome, bool adjusted, const Regions& regions) {
+  reports::Channel channel{.name = outcome.name,
+                           .statistic = number(outcome.at_null.statistic),
+                           .distribution = {.family = outcome.at_null.distribution.family,
+                                            .parameters = outcome.at_null.distribution.parameters},
+                           .p_value = probability(outcome.decision.log_p_claimed),
+                           .log10_p = log10_of(outcome.decision.log_p_claimed)};
+  if (adjusted) channel.p_adjusted = probability(outcome.log_p_adjusted);
+  if (regions.has_forbidden()) channel.p_pass = probability(outcome.decision.log_p_forbidden);
+  channel.effect = outcome.effect;
+  if (outcome.reference) channel.reference = number(*outcome.reference);
+  return channel;
+}
+
+Number margin(const Regions& regions) {
+  if (regions.relation == Relation::within) return regions.within;
+  return regions.detect ? Number(*regions.detect) : Number();
+}
+
+std::string id_filter(const std::string& id) { return " --filter " + shell_quoted(id); }
+
+}  // namespace
+
+reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm) {
+  const TestOutcome& outcome = work.outcome;
+  const TestEntry& entry = *outcome.question.test;
+  const Regions& regions = outcome.plan.regions[0];
+  reports::Test test{.name = entry.name,
+                     .id = entry.id,
+                     .claim = entry.claim.text,
+                     .file = file,
+                     .line = entry.where.line,
+                     .tags = entry.tags,
+                     .verdict = outcome.verdict,
+                     .expected = expected_verdict(entry.expect)};
+  test.ok = test.verdict == test.expected;
+  test.method = outcome.plan.method.name;
+  test.null_hypothesis = null_hypothesis(outcome.plan.method, outcome.question, 0);
+  const bool distance = !outcome.channels.empty() && outcome.channels[0].evidence.distance;
+  test.tail = distance ? "upper" : tail(regions);
+  test.alpha = outcome.place.share.alpha;
+  test.beta = outcome.place.share.beta;
+  test.detect = margin(regions);
+  test.allow = regions.allow;
+  test.power = outcome.plan.power;
+  test.gates = outcome.plan.gates;
+  test.samples = samples_of(work);
+  for (const ChannelOutcome& channel : outcome.channels) {
+    test.channels.push_back(channel_of(channel, holm && outcome.place.inside, regions));
+  }
+  if (!outcome.channels.empty()) {
+    test.detectable = outcome.channels.front().detectable;
+    test.looks = {{.secondaries = outcome.plan.secondaries,
+                   .log10_p = test.channels.front().log10_p,
+                   .p_pass = test.channels.front().p_pass}};
+  }
+  test.message = outcome.message;
+  return test;
+}
+
+reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
+                          const RunOptions& options) {
+  reports::Record record{.tool = this_tool(), .environment = this_environment(options.threads)};
+  record.seed = runs.empty() ? options.seed.value_or(1) : runs.front()->seed;
+  bool whole = true;
+  for (const auto& run : runs) {
+    reports::Suite suite{.name = run->suite.name,
+                         .file = run->suite.file,
+                         .about = run->suite.about,
+                         .seed = run->seed,
+                         .alpha = run->suite.alpha,
+                         .beta = run->suite.beta};
+    for (const TestWork& work : run->tests) {
+      suite.tests.push_back(record_of_test(work, run->suite.file, run->holm));
+      suite.tests.back().replay =
+          options.command.empty()
+              ? ""
+              : options.command + fmt::format(" --seed {}", run->seed) +
+                    (run->suite.file.empty() ? "" : id_filter(suite.tests.back().id));
+    }
+    whole = whole && run->holm;
+    add_pictures(*run, suite);
+    record.suites.push_back(std::move(suite));
+  }
+  if (!whole) {
+    record.note =
+        "not every test of the suites ran: verdicts rest on each test's fixed share of "
+        "alpha, without Holm's adjustment";
+  }
+  return record;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,215 @@
+#include "harness/replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "harness/commands.h"
+#include "harness/evaluate.h"
+#include "harness/pools.h"
+#include "harness/progress_terminal.h"
+#include "harness/record_of.h"
+#include "harness/scheduler.h"
+#include "harness/yaml.h"
+#include "reports/read_json.h"
+
+namespace assay::harness {
+namespace {
+
+/// A recorded test found in its record.
+struct Recorded {
+  const reports::Suite& suite;
+  const reports::Test& test;
+  std::uint64_t seed;
+};
+
+Recorded find_test(const reports::Record& record, const ReplayArguments& arguments) {
+  std::vector<std::string> ids;
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      if (test.id == arguments.test || test.name == arguments.test) {
+        return {suite, test, record.seed};
+      }
+      ids.push_back(test.id);
+    }
+  }
+  const std::string near = nearest(arguments.test, ids);
+  throw InputError({.file = arguments.record},
+                   fmt::format("no test `{}` in this run{}", arguments.test,
+                               near.empty() ? "; `assay report RUN.json` shows them all"
+                                            : "; did you mean `" + near + "`?"));
+}
+
+/// The suite of this one test, rebuilt from the record alone.
+Suite suite_of(const Recorded& recorded) {
+  const std::filesystem::path folder = std::filesystem::path(recorded.suite.file).parent_path();
+  Suite suite{.name = recorded.suite.name,
+              .file = recorded.suite.file,
+              .folder = folder.empty() ? "." : folder.string(),
+              .alpha = recorded.suite.alpha,
+              .beta = recorded.suite.beta};
+  for (const reports::Sample& sample : recorded.test.samples) {
+    const bool known =
+        std::any_of(suite.estimators.begin(), suite.estimators.end(),
+                    [&](const EstimatorEntry& entry) { return entry.name == sample.estimator; });
+    if (known) continue;
+    const Location where{.file = recorded.suite.file};
+    suite.estimators.push_back({.name = sample.estimator,
+                                .plugin = sample.plugin,
+                                .parameters = read_flow(sample.parameters, where),
+                                .primaries = sample.primaries,
+                                .where = where});
+  }
+  const auto margin = [](const reports::Number& value, bool relative) -> std::optional<Margin> {
+    if (!value) return std::nullopt;
+    return Margin{.value = *value, .relative = relative};
+  };
+  const bool relative =
+      !recorded.test.channels.empty() && recorded.test.channels[0].effect.relative;
+  TestEntry test{.name = recorded.test.name,
+                 .id = recorded.test.id,
+                 .claim = parse_claim(recorded.test.claim, {.file = recorded.suite.file}),
+                 .detect = margin(recorded.test.detect, relative),
+                 .allow = margin(recorded.test.allow, relative),
+                 .method = recorded.test.method};
+  test.where.file = recorded.suite.file;
+  suite.tests.push_back(std::move(test));
+  return suite;
+}
+
+/// The plan as it was: nothing is chosen anew, so no pilot is drawn.
+Plan recorded_plan(const Question& question, const reports::Test& test) {
+  Plan plan{.method = find_method(question, test.method),
+            .primaries = {},
+            .secondaries = test.samples.front().secondaries};
+  for (const Subject& subject : question.subjects) {
+    const auto sample = std::find_if(
+        test.samples.begin(), test.samples.end(),
+        [&](const reports::Sample& s) { return s.estimator == subject.estimator->name; });
+    plan.primaries.push_back(sample->primaries);
+  }
+  const Relation relation = question.test->claim.relation;
+  const bool within = relation == Relation::within;
+  Regions regions{.relation = relation, .allow = test.allow.value_or(0)};
+  if (within) {
+    regions.within = test.detect.value_or(0);
+  } else if (test.detect) {
+    regions.detect = *test.detect;
+  }
+  plan.regions.assign(question.channel_count(), regions);
+  return plan;
+}
+
+/// The test made ready to be drawn, with everything it refers to.
+struct Rebuilt {
+  Suite suite;
+  std::map<std::string, PreparedEstimator> estimators;
+  Pools pools;
+  TestWork work;
+};
+
+std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded) {
+  auto rebuilt = std::make_unique<Rebuilt>();
+  rebuilt->suite = suite_of(recorded);
+  rebuilt->estimators = prepare_all(rebuilt->suite);
+  Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators);
+  Plan plan = recorded_plan(question, recorded.test);
+  rebuilt->work.outcome = {
+      .question = std::move(question),
+      .place = {.inside = false,
+                .share = {.alpha = recorded.test.alpha.value_or(rebuilt->suite.alpha),
+                          .beta = recorded.test.beta.value_or(rebuilt->suite.beta)}},
+      .plan = std::move(plan)};
+  TestWork& work = rebuilt->work;
+  for (std::size_t i = 0; i < work.outcome.question.subjects.size(); ++i) {
+    work.pools.push_back(
+        rebuilt->pools.for_subject(work.outcome.question, i, work.outcome.plan, recorded.seed, {}));
+  }
+  return rebuilt;
+}
+
+void print_observation(const TestWork& work, std::uint64_t index) {
+  if (index >= work.outcome.plan.secondaries) {
+    throw InputError({}, fmt::format("observation {} was not drawn: the test used 0 to {}", index,
+                                     work.outcome.plan.secondaries - 1));
+  }
+  for (std::size_t i = 0; i < work.pools.size(); ++i) {
+    const Pool& pool = *work.pools[i];
+    const std::vector<double> values =
+        draw_observation(*pool.setup(), pool.key(), pool.primaries(), index);
+    const std::vector<Channel> channels = pool.setup()->channels();
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      fmt::print("{}.{}  observation {}: {}\n", work.outcome.question.subjects[i].estimator->name,
+                 channels[c].name, index, values[c]);
+    }
+  }
+}
+
+std::string shown(const reports::Number& value) {
+  return value ? fmt::format("{}", *value) : "none";
+}
+
+bool same_line(const char* what, const reports::Number& now, const reports::Number& then) {
+  const bool same = now == then;
+  fmt::print("  {:<10} {}{}\n", what, shown(now),
+             same ? "" : fmt::format("   (recorded: {})", shown(then)));
+  return same;
+}
+
+/// Prints the numbers drawn now; whether they are the recorded ones to the last bit.
+bool print_comparison(const reports::Test& now, const reports::Test& then) {
+  bool same = true;
+  fmt::print("{}\n{}\n", then.id, then.claim);
+  for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
+    fmt::print("{}.{}: {} secondaries of {} primaries\n", now.samples[i].estimator,
+               now.samples[i].channel, now.samples[i].secondaries, now.samples[i].primaries);
+    same &= same_line("mean", now.samples[i].mean, then.samples[i].mean);
+    same &= same_line("variance", now.samples[i].variance, then.samples[i].variance);
+  }
+  for (std::size_t i = 0; i < now.channels.size() && i < then.channels.size(); ++i) {
+    fmt::print("test {} on {}\n", now.method, now.channels[i].name);
+    same &= same_line("statistic", now.channels[i].statistic, then.channels[i].statistic);
+    same &= same_line("log10 p", now.channels[i].log10_p, then.channels[i].log10_p);
+  }
+  same &= now.channels.size() == then.channels.size();
+  return same;
+}
+
+}  // namespace
+
+reports::Record read_record(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw InputError({.file = file}, "cannot be read; give a report of kind json");
+  return reports::read_json(text.str(), file);
+}
+
+int replay(const ReplayArguments& arguments) {
+  const reports::Record record = read_record(arguments.record);
+  const Recorded recorded = find_test(record, arguments);
+  if (recorded.test.samples.empty()) {
+    throw InputError(
+        {.file = arguments.record},
+        fmt::format("test `{}` recorded no samples: {}", recorded.test.id, recorded.test.message));
+  }
+  const std::unique_ptr<Rebuilt> rebuilt = rebuild(recorded);
+  if (arguments.observation) {
+    print_observation(rebuilt->work, *arguments.observation);
+    return 0;
+  }
+  const std::unique_ptr<Progress> progress = make_progress(false);
+  draw_all(rebuilt->pools.all(), {}, *progress);
+  evaluate(rebuilt->work);
+  const reports::Test now = record_of_test(rebuilt->work, recorded.suite.file, false);
+  const bool same = print_comparison(now, recorded.test);
+  fmt::print("{}\n", same ? "the same numbers as recorded"
+                          : "NOT the numbers recorded: another version, machine or input file?");
+  return same ? 0 : 1;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/commands.h"
+#include "harness/interrupt.h"
+#include "harness/pool.h"
+#include "harness/prepare.h"
+#include "harness/sampler_setup.h"
+
+namespace assay::harness {
+namespace {
+
+/// What a source names: an estimator's channels, or the marginals of one of its samplers.
+struct Sampled {
+  std::shared_ptr<const Setup> setup;
+  std::string purpose = "";
+  std::vector<std::size_t> columns = {};
+};
+
+void add_columns(Sampled& sampled, const std::string& name) {
+  const std::vector<Channel> channels = sampled.setup->channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (name.empty() ? channels[i].name != cell_channel : channels[i].name == name) {
+      sampled.columns.push_back(i);
+    }
+  }
+}
+
+Sampled sampled_by(const PreparedEstimator& estimator, const Source& source) {
+  Sampled sampled{.setup = estimator.setup};
+  add_columns(sampled, source.part);
+  if (!sampled.columns.empty()) return sampled;
+  const auto dot = source.part.find('.');
+  for (const NamedSampler& named : estimator.setup->samplers()) {
+    if (named.name != source.part.substr(0, dot)) continue;
+    sampled = {.setup = sampler_setup(named, source.where), .purpose = named.name};
+    add_columns(sampled, dot == std::string::npos ? "" : source.part.substr(dot + 1));
+  }
+  if (!sampled.columns.empty()) return sampled;
+  throw InputError(source.where,
+                   fmt::format("`{}` has no part `{}`; `assay describe {}` lists them",
+                               source.estimator, source.part, estimator.entry->information.name));
+}
+
+}  // namespace
+
+int sample(const SampleArguments& arguments) {
+  const Source source = parse_source(arguments.source, {"claim", 1, 1});
+  const std::vector<EstimatorEntry> entries =
+      estimators_of({source}, arguments.estimators, arguments.primaries);
+  const PreparedEstimator estimator = prepare(entries.front(), ".");
+  const Sampled sampled = sampled_by(estimator, source);
+  const StreamKey key = key_of(estimator, arguments.seed, 0, sampled.purpose);
+
+  std::vector<std::string> names;
+  const std::vector<Channel> channels = sampled.setup->channels();
+  for (const std::size_t column : sampled.columns) names.push_back(channels[column].name);
+  fmt::print("# {} {} of {} primaries, seed {}\n# columns: {}\n", estimator.entry->information.name,
+             estimator.parameters, arguments.primaries, arguments.seed, fmt::join(names, " "));
+  const std::uint64_t rows = std::min(
+      arguments.secondaries, sampled.setup->observations().value_or(arguments.secondaries));
+  const std::unique_ptr<Estimator> worker = sampled.setup->make();
+  const FlushDenormals flush;
+  std::vector<double> out(channels.size());
+  for (std::uint64_t row = 0; row < rows && !interrupted(); ++row) {
+    Stream random(key, row);
+    Cost unused;
+    worker->secondary(random, arguments.primaries, out, unused);
+    std::string line;
+    for (const std::size_t column : sampled.columns) {
+      line += fmt::format("{}{}", line.empty() ? "" : " ", out[column]);
+    }
+    fmt::print("{}\n", line);
+  }
+  return 0;
+}
+
+}  // namespace assay::harness

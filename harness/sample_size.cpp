@@ -1,0 +1,267 @@
+#include "harness/sample_size.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/constant.h"
+#include "harness/sampler_setup.h"
+#include "stats/power.h"
+#include "stats/tails.h"
+
+namespace assay::harness {
+namespace {
+
+// Fewer say nothing about their own shape.
+constexpr std::uint64_t least_secondaries = 100;
+// Upper limit of a pilot's variance: exceeded once in a thousand pilots.
+constexpr double pilot_quantile = 3.09;
+
+double upper_variance(const stats::Moments& pilot) {
+  const double n = static_cast<double>(pilot.count);
+  const double error = std::sqrt(std::max(0.0, pilot.kurtosis() - 1) / n);
+  return pilot.variance() * std::exp(pilot_quantile * error);
+}
+
+double averaged(const Question& question, const Plan& plan, std::size_t subject) {
+  return question.subjects[subject].averages ? static_cast<double>(plan.primaries[subject]) : 1;
+}
+
+const stats::Moments& pilot_of(const Question& question, std::size_t subject, std::size_t channel,
+                               const Pilots& pilots) {
+  const Subject& side = question.subjects[subject];
+  return pilots.at(side.estimator->name).channels[side.channels[channel]];
+}
+
+bool of_means(const Question& question) {
+  return question.kind == QuestionKind::mean_of_one || question.kind == QuestionKind::mean_of_two;
+}
+
+bool of_variances(const Question& question) {
+  return question.kind == QuestionKind::variance_of_one ||
+         question.kind == QuestionKind::variance_of_two;
+}
+
+double unit_of(const Question& question, std::size_t channel, double other_mean) {
+  if (!is_relative(question, channel)) return 1;
+  return std::abs(question.of_two() ? question.factor * other_mean
+                                    : question.references[channel].value);
+}
+
+double secondary_kurtosis(const stats::Moments& pilot, double primaries) {
+  return 3 + (pilot.kurtosis() - 3) / primaries;
+}
+
+/// From the pilot; nullopt where it has no spread.
+std::optional<PlannedChannel> planned_channel(const Question& question, std::size_t channel,
+                                              const Pilots& pilots, const Plan& plan) {
+  const stats::Moments& first = pilot_of(question, 0, channel, pilots);
+  PlannedChannel planned;
+  if (is_constant(question, 0, channel, first)) return std::nullopt;
+  planned.standard_deviation = std::sqrt(upper_variance(first) / averaged(question, plan, 0));
+  planned.kurtosis = secondary_kurtosis(first, averaged(question, plan, 0));
+  double other_mean = 0;
+  if (question.of_two()) {
+    const stats::Moments& second = pilot_of(question, 1, channel, pilots);
+    if (is_constant(question, 1, channel, second)) return std::nullopt;
+    other_mean = second.mean;
+    planned.other_deviation =
+        std::abs(question.factor) * std::sqrt(upper_variance(second) / averaged(question, plan, 1));
+    planned.other_kurtosis = secondary_kurtosis(second, averaged(question, plan, 1));
+  } else if (!question.references.empty()) {
+    planned.reference_error = question.references[channel].standard_error;
+  }
+  planned.unit = unit_of(question, channel, other_mean);
+  return planned;
+}
+
+stats::ErrorRates rates_of(const ErrorShare& share, const Regions& regions) {
+  if (regions.relation == Relation::less || regions.relation == Relation::greater) {
+    // A proof: rejecting the forbidden region is what takes samples, and it is done at beta.
+    return {.alpha = share.beta, .beta = share.beta, .two_sided = false};
+  }
+  return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
+}
+
+std::optional<std::uint64_t> for_means(const Question& question, const stats::ErrorRates& rates,
+                                       const Regions& regions, const PlannedChannel& channel) {
+  const double detect = *regions.detect * channel.unit;
+  if (question.of_two()) {
+    return stats::welch_sample_size({.standard_deviation_x = channel.standard_deviation,
+                                     .standard_deviation_y = channel.other_deviation,
+                                     .allow = regions.allow * channel.unit,
+                                     .rates = rates},
+                                    detect);
+  }
+  return stats::student_t_sample_size({.standard_deviation = channel.standard_deviation,
+                                       .allow = regions.allow * channel.unit,
+                                       .reference_standard_error = channel.reference_error,
+                                       .rates = rates},
+                                      detect);
+}
+
+/// Both one-sided tests at beta must reject when theta = 0, each missing with beta / 2.
+std::uint64_t for_equivalence(const ErrorShare& share, const Regions& regions,
+                              const PlannedChannel& channel) {
+  const double deviation = std::hypot(channel.standard_deviation, channel.other_deviation);
+  const double z = stats::normal_quantile({stats::Tail::upper, std::log(share.beta)}) +
+                   stats::normal_quantile({stats::Tail::upper, std::log(share.beta / 2)});
+  const double root = z * deviation / (regions.within * channel.unit);
+  return static_cast<std::uint64_t>(std::ceil(root * root)) + 2;
+}
+
+stats::LogVariancePlan variance_plan(const stats::ErrorRates& rates, double allow,
+                                     const PlannedChannel& channel) {
+  return {.kurtosis_x = channel.kurtosis,
+          .kurtosis_y = channel.other_kurtosis,
+          .allow = std::exp(allow),
+          .rates = rates};
+}
+
+std::optional<std::uint64_t> one_channel(const Question& question, std::size_t index,
+                                         const ErrorShare& share, const Pilots& pilots,
+                                         const Plan& plan) {
+  const Regions& regions = plan.regions[index];
+  const bool equivalence = regions.relation == Relation::within;
+  const std::optional<PlannedChannel> channel = planned_channel(question, index, pilots, plan);
+  if (!channel || (!equivalence && !regions.detect)) return std::nullopt;
+  const stats::ErrorRates rates = rates_of(share, regions);
+  if (of_variances(question)) {
+    const double margin = equivalence ? regions.within : *regions.detect;
+    return stats::log_variance_sample_size(variance_plan(rates, regions.allow, *channel),
+                                           std::exp(margin));
+  }
+  if (equivalence) return for_equivalence(share, regions, *channel);
+  return for_means(question, rates, regions, *channel);
+}
+
+stats::DistancePlan distance_plan(const Question& question, const ErrorShare& share, double allow) {
+  return {.two_samples = question.of_two(),
+          .allow = allow,
+          .rates = {.alpha = share.alpha, .beta = share.beta, .two_sided = false}};
+}
+
+stats::FitPlan fit_plan(const Question& question, const ErrorShare& share, double allow) {
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+  return {.degrees_of_freedom = static_cast<double>(draws.cells().size() - 1),
+          .allow = allow,
+          .rates = {.alpha = share.alpha, .beta = share.beta, .two_sided = false}};
+}
+
+std::optional<std::uint64_t> for_laws(const Question& question, const ErrorShare& share,
+                                      const Plan& plan) {
+  const Regions& regions = plan.regions[0];
+  if (!regions.detect) return std::nullopt;
+  if (plan.method.keeps == Keeps::cells) {
+    return stats::chi_square_fit_sample_size(fit_plan(question, share, regions.allow),
+                                             *regions.detect);
+  }
+  return stats::ks_sample_size(distance_plan(question, share, regions.allow), *regions.detect);
+}
+
+bool all_piloted(const Question& question, const Pilots& pilots) {
+  return std::all_of(question.subjects.begin(), question.subjects.end(), [&](const Subject& s) {
+    const auto found = pilots.find(s.estimator->name);
+    return found != pilots.end() && found->second.trouble.empty();
+  });
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> planned_secondaries(const Question& question, const ErrorShare& share,
+                                                 const Pilots& pilots, const Plan& plan) {
+  if (!of_means(question) && !of_variances(question)) return for_laws(question, share, plan);
+  if (!all_piloted(question, pilots)) return std::nullopt;
+  std::optional<std::uint64_t> most;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    const auto count = one_channel(question, channel, share, pilots, plan);
+    if (count) most = std::max({most.value_or(0), *count, least_secondaries});
+  }
+  return most;
+}
+
+std::optional<double> detectable_effect(const Question& question, const ErrorShare& share,
+                                        const Plan& plan, const PlannedChannel& channel) {
+  const double n = static_cast<double>(plan.secondaries);
+  const Regions& regions = plan.regions[0];
+  const stats::ErrorRates rates{
+      .alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
+  double found = 0;
+  if (question.kind == QuestionKind::mean_of_one) {
+    found = stats::student_t_detectable({.standard_deviation = channel.standard_deviation,
+                                         .allow = regions.allow * channel.unit,
+                                         .reference_standard_error = channel.reference_error,
+                                         .rates = rates},
+                                        n) /
+            channel.unit;
+  } else if (question.kind == QuestionKind::mean_of_two) {
+    found = stats::welch_detectable({.standard_deviation_x = channel.standard_deviation,
+                                     .standard_deviation_y = channel.other_deviation,
+                                     .allow = regions.allow * channel.unit,
+                                     .rates = rates},
+                                    n) /
+            channel.unit;
+  } else if (of_variances(question)) {
+    found =
+        std::log(stats::log_variance_detectable(variance_plan(rates, regions.allow, channel), n));
+  } else if (plan.method.keeps == Keeps::cells) {
+    found = stats::chi_square_fit_detectable(fit_plan(question, share, regions.allow), n);
+  } else {
+    found = stats::ks_detectable(distance_plan(question, share, regions.allow), n);
+  }
+  if (!std::isfinite(found)) return std::nullopt;
+  return found;
+}
+
+std::optional<double> power_at(const Question& question, const ErrorShare& share, const Plan& plan,
+                               const PlannedChannel& channel, double effect) {
+  const double n = static_cast<double>(plan.secondaries);
+  const Regions& regions = plan.regions[0];
+  const stats::ErrorRates rates = rates_of(share, regions);
+  switch (question.kind) {
+    case QuestionKind::mean_of_one:
+      return stats::student_t_power({.standard_deviation = channel.standard_deviation,
+                                     .allow = regions.allow * channel.unit,
+                                     .reference_standard_error = channel.reference_error,
+                                     .rates = rates},
+                                    n, effect * channel.unit);
+    case QuestionKind::mean_of_two:
+      return stats::welch_power({.standard_deviation_x = channel.standard_deviation,
+                                 .standard_deviation_y = channel.other_deviation,
+                                 .allow = regions.allow * channel.unit,
+                                 .rates = rates},
+                                n, effect * channel.unit);
+    case QuestionKind::variance_of_one:
+    case QuestionKind::variance_of_two:
+      return stats::log_variance_power(variance_plan(rates, regions.allow, channel), n,
+                                       std::exp(effect));
+    case QuestionKind::fit_to_density:
+      if (plan.method.keeps == Keeps::cells) {
+        return stats::chi_square_fit_power(fit_plan(question, share, regions.allow), n, effect);
+      }
+      [[fallthrough]];
+    case QuestionKind::fit_to_law:
+    case QuestionKind::same_law:
+      return stats::ks_power_bound(distance_plan(question, share, regions.allow), n, effect);
+  }
+  return std::nullopt;
+}
+
+PlannedChannel observed_channel(const Question& question, std::size_t channel,
+                                std::span<const ChannelData> data) {
+  PlannedChannel observed;
+  if (!of_means(question) && !of_variances(question)) return observed;
+  observed.standard_deviation = data[0].moments.standard_deviation();
+  observed.kurtosis = data[0].moments.kurtosis();
+  double other_mean = 0;
+  if (question.of_two()) {
+    other_mean = data[1].moments.mean;
+    observed.other_deviation = std::abs(question.factor) * data[1].moments.standard_deviation();
+    observed.other_kurtosis = data[1].moments.kurtosis();
+  } else {
+    observed.reference_error = question.references[channel].standard_error;
+  }
+  observed.unit = unit_of(question, channel, other_mean);
+  return observed;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "harness/outcome.h"
+#include "harness/pilot.h"
+
+namespace assay::harness {
+
+/// What planning takes a channel's law to be: a secondary's standard deviation and kurtosis at the
+/// upper limit of what the pilot allows, and the value margins are relative to.
+struct PlannedChannel {
+  double standard_deviation = 0;
+  double other_deviation = 0;  ///< of the second subject, times the factor
+  double kurtosis = 3;
+  double other_kurtosis = 1;  ///< 1: there is no second subject
+  double unit = 1;            ///< theta times this is in the estimator's unit
+  double reference_error = 0;
+};
+
+/// Secondaries of each subject that find `detect` (or prove `within`) with this share of alpha and
+/// beta in every channel; nullopt where nothing asks for a number: no `detect`, or no pilot.
+std::optional<std::uint64_t> planned_secondaries(const Question& question, const ErrorShare& share,
+                                                 const Pilots& pilots, const Plan& plan);
+
+/// The least theta that a test of n secondaries finds with probability 1 - beta.
+std::optional<double> detectable_effect(const Question& question, const ErrorShare& share,
+                                        const Plan& plan, const PlannedChannel& channel);
+
+/// The probability of finding `effect`.
+std::optional<double> power_at(const Question& question, const ErrorShare& share, const Plan& plan,
+                               const PlannedChannel& channel, double effect);
+
+/// The same from the test's own data, for what is reported about its n.
+PlannedChannel observed_channel(const Question& question, std::size_t channel,
+                                std::span<const ChannelData> data);
+
+}  // namespace assay::harness

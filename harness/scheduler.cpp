@@ -1,0 +1,112 @@
+#include "harness/scheduler.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_pipeline.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "harness/interrupt.h"
+
+namespace assay::harness {
+namespace {
+
+struct Task {
+  std::size_t pool;
+  std::uint64_t first;
+  std::uint64_t last;
+};
+
+struct Drawn {
+  std::size_t pool;
+  std::shared_ptr<Pool::Block> block;  // shared: a pipeline's items are copied
+};
+
+/// The blocks still to draw, pool by pool.
+class TaskList {
+ public:
+  explicit TaskList(const std::vector<std::shared_ptr<Pool>>& pools) : pools_(pools) {
+    if (!pools_.empty()) next_ = pools_[0]->drawn();
+  }
+
+  bool next(Task& task) {
+    while (pool_ < pools_.size() && next_ >= pools_[pool_]->requested()) {
+      if (++pool_ < pools_.size()) next_ = pools_[pool_]->drawn();
+    }
+    if (pool_ == pools_.size()) return false;
+    const Pool& pool = *pools_[pool_];
+    task = {pool_, next_, pool.block_end(next_)};
+    next_ = task.last;
+    return true;
+  }
+
+ private:
+  const std::vector<std::shared_ptr<Pool>>& pools_;
+  std::size_t pool_ = 0;
+  std::uint64_t next_ = 0;
+};
+
+/// A worker's estimators, made when it first needs one.
+class Workers {
+ public:
+  explicit Workers(const std::vector<std::shared_ptr<Pool>>& pools) : pools_(pools) {}
+
+  Estimator& estimator(std::size_t pool) {
+    auto& mine = estimators_.local();
+    mine.resize(pools_.size());
+    if (!mine[pool]) mine[pool] = pools_[pool]->setup()->make();
+    return *mine[pool];
+  }
+
+ private:
+  const std::vector<std::shared_ptr<Pool>>& pools_;
+  tbb::enumerable_thread_specific<std::vector<std::unique_ptr<Estimator>>> estimators_;
+};
+
+std::uint64_t work(const Pool& pool, std::uint64_t observations) {
+  return observations * pool.primaries();
+}
+
+}  // namespace
+
+void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& drawing,
+              Progress& progress) {
+  const unsigned count = drawing.threads != 0
+                             ? drawing.threads
+                             : static_cast<unsigned>(tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
+  std::uint64_t total = 0;
+  for (const auto& pool : pools) total += work(*pool, pool->requested() - pool->drawn());
+  progress.begin(drawing.phase, total);
+
+  TaskList tasks(pools);
+  Workers workers(pools);
+  std::uint64_t done = 0;
+  const auto hand_out = [&](tbb::flow_control& control) {
+    Task task{};
+    if (interrupted() || !tasks.next(task)) control.stop();
+    return task;
+  };
+  const auto draw = [&](const Task& task) {
+    return Drawn{task.pool, std::make_shared<Pool::Block>(pools[task.pool]->draw(
+                                workers.estimator(task.pool), task.first, task.last))};
+  };
+  const auto fold = [&](const Drawn& drawn) {
+    done += work(*pools[drawn.pool], drawn.block->whole.count);
+    pools[drawn.pool]->fold(std::move(*drawn.block));
+    progress.advance(done);
+  };
+  // An arena of its own: the limit above holds also where the calling thread is in another.
+  tbb::task_arena arena(static_cast<int>(count));
+  arena.execute([&] {
+    tbb::parallel_pipeline(
+        8 * count, tbb::make_filter<void, Task>(tbb::filter_mode::serial_in_order, hand_out) &
+                       tbb::make_filter<Task, Drawn>(tbb::filter_mode::parallel, draw) &
+                       tbb::make_filter<Drawn, void>(tbb::filter_mode::serial_in_order, fold));
+  });
+  progress.end();
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,82 @@
+#pragma once
+
+// What is kept of many observations: moments, a histogram, counts of cells. Mergeable and of fixed
+// size.
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "estimators/cost.h"
+#include "stats/moments.h"
+
+namespace assay::harness {
+
+/// Counts in equal bins of [low, high); what lies outside is counted at its side.
+struct Histogram {
+  double low = 0;
+  double high = 0;
+  std::vector<std::uint64_t> counts = {};
+  std::uint64_t below = 0;
+  std::uint64_t above = 0;
+
+  void add(double value) {
+    if (value < low) {
+      ++below;
+    } else if (value >= high) {
+      ++above;
+    } else {
+      const auto bins = static_cast<double>(counts.size());
+      const auto bin = static_cast<std::size_t>((value - low) / (high - low) * bins);
+      ++counts[bin < counts.size() ? bin : counts.size() - 1];
+    }
+  }
+  void merge(const Histogram& other);
+};
+
+/// What to keep of one channel.
+struct ChannelPlan {
+  double histogram_low = 0;  ///< equal bounds: no histogram
+  double histogram_high = 0;
+  std::uint64_t keep = 0;  ///< the values of the first `keep` observations are stored
+  std::size_t cells = 0;   ///< the channel's values are cell numbers 0 … cells - 1 to be counted
+};
+
+inline constexpr std::size_t histogram_bins = 60;
+
+/// One channel of a run of consecutive observations.
+struct ChannelSummary {
+  stats::Moments moments = {};  ///< of the finite values
+  Histogram histogram = {};
+  std::vector<std::uint64_t> cells = {};
+  std::uint64_t nonfinite = 0;
+  std::uint64_t first_nonfinite = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Observations [0, count) of a pool, or those of one block.
+struct Summary {
+  std::uint64_t count = 0;
+  std::vector<ChannelSummary> channels = {};
+  Cost cost = {};
+  double seconds = 0;  ///< CPU seconds of drawing
+
+  explicit Summary(std::span<const ChannelPlan> plan = {});
+  /// Appends the observations that follow: in block order, so that the result is a function of the
+  /// blocks and not of who drew them.
+  void append(const Summary& next);
+};
+
+/// Takes one channel's value of observation `index` into the summary.
+inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index) {
+  if (!(value - value == 0)) {  // not finite
+    if (summary.nonfinite++ == 0) summary.first_nonfinite = index;
+  } else {
+    summary.moments.add(value);
+    if (!summary.histogram.counts.empty()) summary.histogram.add(value);
+    if (!summary.cells.empty()) ++summary.cells[static_cast<std::size_t>(value)];
+  }
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, runs suites and says where the report is.
+#   bash suites/run.sh [SUITE...]      default: the suites of the main case
+# Exit code: that of `assay run` (0: every verdict as expected).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source suites/install.sh
+
+install_packages suites/packages.txt
+build_project build assay
+
+if [ $# -eq 0 ]; then
+  set -- suites/luminaire.yaml suites/luminaire-mutants.yaml suites/brdf.yaml \
+    suites/brdf-mutants.yaml suites/environment.yaml
+fi
+mkdir -p build/report
+code=0
+build/harness/assay run "$@" --report console=- --report html=build/report/report.html \
+  --report json=build/report/report.json --report junit=build/report/junit.xml \
+  --report markdown=build/report/report.md || code=$?
+# 0, 1 and 3 are verdicts; with anything else there is no report.
+case $code in
+  0 | 1 | 3) echo "report: $PWD/build/report/report.html" >&2 ;;
+esac
+exit $code
