@@ -139,6 +139,17 @@ TEST(Charts, WideVariancesAreDrawnOnALogarithmicAxisThatSaysSo) {
   EXPECT_EQ(estimator_bars(suite, "value").find("log scale"), std::string::npos);
 }
 
+// area's variance is a quarter of hemisphere's (0.0615 to 0.246): its row stands below the
+// diagonal.
+TEST(Charts, PairsBelowTheDiagonalReadRowAgainstColumn) {
+  const std::string svg = pair_matrix(example_record().suites[0], "value");
+  EXPECT_NE(svg.find("variance of area against hemisphere: &lt; smaller, 0.25×"),
+            std::string::npos);
+  EXPECT_NE(svg.find("variance of heavy against area: &gt; larger, 167×"), std::string::npos);
+  EXPECT_NE(svg.find("mean of hemisphere against area: = agree"), std::string::npos);
+  EXPECT_EQ(svg.find("variance of hemisphere against area"), std::string::npos);
+}
+
 TEST(Charts, NothingIsDrawnFromNothing) {
   EXPECT_EQ(estimator_bars(Suite{}, "value"), "");
   EXPECT_EQ(pair_matrix(Suite{}, "value"), "");
