@@ -131,6 +131,17 @@ reports::Effect effect_of(const Evidence& evidence, const ErrorShare& share) {
           .relative = evidence.relative};
 }
 
+/// The least power over the channels: at `detect`; of `within`, of showing a theta of 0.
+void note_power(TestOutcome& outcome, std::size_t channel, std::span<const ChannelData> data) {
+  const Regions& regions = outcome.plan.regions[channel];
+  const bool equivalence = regions.relation == Relation::within;
+  if (!equivalence && !regions.detect) return;
+  const std::optional<double> power = power_at(outcome.question, outcome.place.share, outcome.plan,
+                                               observed_channel(outcome.question, channel, data),
+                                               equivalence ? 0 : *regions.detect);
+  if (power) outcome.plan.power = std::min(*power, outcome.plan.power.value_or(1));
+}
+
 ChannelOutcome channel_outcome(const TestOutcome& outcome, std::size_t channel,
                                std::span<const ChannelData> data) {
   const Question& question = outcome.question;
@@ -190,6 +201,7 @@ void evaluate_channels(TestWork& work, Settled& settled) {
       outcome.plan.gates.push_back(std::move(gate));
     }
     outcome.channels.push_back(channel_outcome(outcome, channel, data));
+    note_power(outcome, channel, data);
   }
   std::stable_sort(outcome.channels.begin(), outcome.channels.end(),
                    [](const ChannelOutcome& a, const ChannelOutcome& b) {

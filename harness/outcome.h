@@ -22,7 +22,7 @@ struct Plan {
   std::uint64_t secondaries = 0;         ///< of each subject
   std::vector<Regions> regions;          ///< of each channel
   std::vector<reports::Gate> gates = {};
-  std::optional<double> power = {};  ///< at `detect`, as planned
+  std::optional<double> power = {};  ///< at `detect`, with the spread that was found
   std::string invalid = "";          ///< why no method is valid, if none is
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "harness/constant.h"
 #include "harness/sample_size.h"
@@ -181,14 +182,7 @@ std::uint64_t available(const Question& question) {
 std::uint64_t choose_secondaries(const Question& question, const FamilyPlace& place,
                                  const Pilots& pilots, Plan& plan) {
   const std::uint64_t most = available(question);
-  if (question.test->secondaries) {
-    if (*question.test->secondaries > most) {
-      throw InputError(question.test->where,
-                       fmt::format("`secondaries: {}` is more than the {} observations there are",
-                                   *question.test->secondaries, most));
-    }
-    return *question.test->secondaries;
-  }
+  if (question.test->secondaries) return *question.test->secondaries;
   if (most < std::numeric_limits<std::uint64_t>::max()) return most;
   std::uint64_t count =
       planned_secondaries(question, place.share, pilots, plan).value_or(classical_secondaries);
@@ -199,6 +193,15 @@ std::uint64_t choose_secondaries(const Question& question, const FamilyPlace& pl
   }
   if (plan.method.name == "log-variance") count = std::max(count, log_variance_secondaries);
   return count;
+}
+
+/// The most observations that a budget in primaries pays for, all subjects together.
+std::uint64_t within_budget(const Question& question, const Plan& plan, std::uint64_t count) {
+  const std::optional<Budget>& budget = question.test->budget;
+  if (!budget || !budget->primaries) return count;
+  const std::uint64_t each =
+      std::accumulate(plan.primaries.begin(), plan.primaries.end(), std::uint64_t{0});
+  return std::clamp<std::uint64_t>(*budget->primaries / each, 2, count);
 }
 
 std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen) {
@@ -260,7 +263,8 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
   }
   if (about_variance(question)) choose_variance_method(question, place, pilots, plan);
-  plan.secondaries = choose_secondaries(question, place, pilots, plan);
+  plan.secondaries =
+      within_budget(question, plan, choose_secondaries(question, place, pilots, plan));
   if (about_mean(question)) add_skewness_gates(question, place, pilots, plan);
   return plan;
 }

@@ -238,6 +238,22 @@ void check_margins(const Question& question) {
   }
 }
 
+/// What the suite asks of a test that cannot be had from these sources.
+void check_sizes(const Question& question) {
+  const TestEntry& test = *question.test;
+  if (test.budget && test.budget->seconds) {
+    throw InputError(test.where, "this version has no budgets in seconds; give one in primaries");
+  }
+  for (const Subject& subject : question.subjects) {
+    const auto rows = subject.setup->observations();
+    if (rows && test.secondaries && *test.secondaries > *rows) {
+      throw InputError(test.where, fmt::format("`secondaries: {}` is more than the {} observations "
+                                               "that `{}` has",
+                                               *test.secondaries, *rows, subject.estimator->name));
+    }
+  }
+}
+
 }  // namespace
 
 std::string Question::channel_name(std::size_t channel) const {
@@ -260,6 +276,7 @@ Question ask(const TestEntry& test, const Estimators& estimators) {
     separate_streams(question);
   }
   check_margins(question);
+  check_sizes(question);
   return question;
 }
 

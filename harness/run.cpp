@@ -130,7 +130,10 @@ reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
     run->suite = adjusted(suite, options);
     run->seed = options.seed.value_or(suite.seed.value_or(1));
     run->estimators = prepare_all(run->suite);
-    for (const TestEntry& test : run->suite.tests) ask(test, run->estimators);
+    for (const TestEntry& test : run->suite.tests) {
+      const Question question = ask(test, run->estimators);
+      if (test.method) find_method(question, *test.method);
+    }
     runs.push_back(std::move(run));
   }
   Pools pools;

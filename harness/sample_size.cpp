@@ -217,6 +217,14 @@ std::optional<double> power_at(const Question& question, const ErrorShare& share
   const double n = static_cast<double>(plan.secondaries);
   const Regions& regions = plan.regions[0];
   const stats::ErrorRates rates = rates_of(share, regions);
+  if (regions.relation == Relation::within && of_means(question)) {
+    return stats::equivalence_power(
+        {.standard_deviation = std::hypot(channel.standard_deviation, channel.other_deviation),
+         .margin = regions.within * channel.unit,
+         .alpha = share.beta,
+         .beta = share.beta},
+        n, effect * channel.unit);
+  }
   switch (question.kind) {
     case QuestionKind::mean_of_one:
       return stats::student_t_power({.standard_deviation = channel.standard_deviation,

@@ -28,7 +28,8 @@ std::optional<std::uint64_t> planned_secondaries(const Question& question, const
 std::optional<double> detectable_effect(const Question& question, const ErrorShare& share,
                                         const Plan& plan, const PlannedChannel& channel);
 
-/// The probability of finding `effect`.
+/// The probability of failing the claim when theta is `effect`; of `<` and `>` the probability of
+/// passing it with that advantage, of `within` that of passing it when theta is `effect`.
 std::optional<double> power_at(const Question& question, const ErrorShare& share, const Plan& plan,
                                const PlannedChannel& channel, double effect);
 

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Benchmarks, on a machine that does nothing else. Last results: harness/README.md and
+# estimators/README.md.
+#   bash tests/bench.sh            engine, rays, Kolmogorov-Smirnov
+#   bash tests/bench.sh build      a clean build, and the rebuild after touching one estimator
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source suites/install.sh
+
+install_packages suites/packages.txt tests/packages.txt
+if [ "${1:-}" = build ]; then
+  folder=$(mktemp -d)
+  trap 'rm -rf "$folder"' EXIT
+  cmake -G Ninja -S . -B "$folder" >/dev/null
+  echo "clean build of everything:"
+  time cmake --build "$folder" >/dev/null
+  touch estimators/luminaire/area.cpp
+  echo "rebuild of assay after touching one estimator:"
+  time cmake --build "$folder" --target assay >/dev/null
+  exit
+fi
+build_project build engine_bench ks_bench rays_bench
+build/tests/bench/engine_bench
+build/tests/estimators/rays_bench
+build/tests/bench/ks_bench
