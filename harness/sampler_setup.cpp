@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <numbers>
 
 namespace assay::harness {
 namespace {
@@ -13,7 +13,12 @@ namespace {
 // points are pooled by the test.
 constexpr stats::HemisphereGrid hemisphere_grid{.cos_theta_cells = 16, .phi_cells = 32};
 constexpr std::size_t interval_cells = 64;
+// Tables of a marginal: so fine that the chord between two points is within 1e-4 of the law, and
+// cut across into strips, because quadrature of a long thin cell halves it along its short side as
+// well.
 constexpr std::size_t marginal_cells = 1024;
+constexpr std::size_t marginal_strips = 16;
+constexpr double marginal_tolerance = 1e-7;
 
 stats::IntervalGrid interval_grid(const Sampler& sampler, std::size_t cells) {
   return {.low = sampler.bounds()[0], .high = sampler.bounds()[1], .cells = cells};
@@ -125,13 +130,17 @@ std::function<double(double)> SamplerSetup::marginal_cdf(const std::string& marg
                      .probability,
                  sampler.bounds()[0], sampler.bounds()[1]);
   }
-  const auto density = density_on_hemisphere(sampler);
-  if (marginal == "phi") {
-    const stats::HemisphereGrid grid{.cos_theta_cells = 1, .phi_cells = marginal_cells};
-    return table(stats::cell_probabilities(grid, density).probability, 0, 2 * std::acos(-1.0));
+  const bool azimuth = marginal == "phi";
+  const stats::HemisphereGrid grid{.cos_theta_cells = azimuth ? marginal_strips : marginal_cells,
+                                   .phi_cells = azimuth ? marginal_cells : marginal_strips};
+  const stats::CellProbabilities cells = stats::cell_probabilities(
+      grid, density_on_hemisphere(sampler), {.tolerance = marginal_tolerance});
+  std::vector<double> sums(marginal_cells);
+  for (std::size_t cell = 0; cell < cells.probability.size(); ++cell) {
+    sums[azimuth ? cell % marginal_cells : cell / marginal_strips] += cells.probability[cell];
   }
-  const stats::HemisphereGrid grid{.cos_theta_cells = marginal_cells, .phi_cells = 1};
-  const auto of_cosine = table(stats::cell_probabilities(grid, density).probability, 0, 1);
+  if (azimuth) return table(sums, 0, 2 * std::numbers::pi);
+  const auto of_cosine = table(sums, 0, 1);
   return [of_cosine](double theta) { return 1 - of_cosine(std::cos(theta)); };
 }
 
