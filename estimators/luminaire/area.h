@@ -55,7 +55,7 @@ class AreaPrimary {
 
   LightSample at(const LightTriangle& triangle, const Barycentric& point) const {
     const Connection connection = setting_->connect(triangle, point.u, point.v);
-    return {connection.to_light, factor_ * term_(connection)};
+    return {shadow_ray(connection.to_light), factor_ * term_(connection)};
   }
 
   const Setting& setting() const { return *setting_; }

@@ -24,13 +24,13 @@ struct CosineDirections {
 struct Primary {
   SharedSetting setting;
 
-  render::Vector3 draw(Stream& random) const {
+  render::Ray draw(Stream& random) const {
     const double u = random.uniform();
     const double v = random.uniform();
-    return render::cosine_hemisphere(u, v);
+    return setting->ray(render::cosine_hemisphere(u, v));
   }
-  double value(const render::Vector3& w, Cost& cost) const {
-    return setting->sees_light(w, cost) ? pi * setting->radiance() : 0;
+  double value(const render::Ray& ray, Cost& cost) const {
+    return setting->sees_light(ray, cost) ? pi * setting->radiance() : 0;
   }
 };
 

@@ -34,7 +34,7 @@ class DirectionSampler final : public Sampler {
 
   double evaluate(const Point& point) const override {
     Cost uncounted;
-    const bool lit = setting_->sees_light(direction_of(point), uncounted);
+    const bool lit = setting_->sees_light(setting_->ray(direction_of(point)), uncounted);
     return lit ? setting_->radiance() * point[2] : 0;
   }
 

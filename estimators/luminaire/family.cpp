@@ -34,7 +34,7 @@ Information information(std::string name, std::string summary, std::string descr
 }
 
 Information mutant_information(std::string name, std::string original, std::string defect) {
-  Information out = information(std::move(name), "A mutant of " + original + ".",
+  Information out = information(std::move(name), original + " that " + defect,
                                 "The estimator " + original + " with one defect: " + defect);
   out.original = std::move(original);
   out.defect = std::move(defect);

@@ -25,13 +25,13 @@ struct UniformDirections {
 struct Primary {
   SharedSetting setting;
 
-  render::Vector3 draw(Stream& random) const {
+  render::Ray draw(Stream& random) const {
     const double u = random.uniform();
     const double v = random.uniform();
-    return render::uniform_hemisphere(u, v);
+    return setting->ray(render::uniform_hemisphere(u, v));
   }
-  double value(const render::Vector3& w, Cost& cost) const {
-    return setting->sees_light(w, cost) ? two_pi * setting->radiance() * w.z : 0;
+  double value(const render::Ray& ray, Cost& cost) const {
+    return setting->sees_light(ray, cost) ? two_pi * setting->radiance() * ray.direction.z : 0;
   }
 };
 

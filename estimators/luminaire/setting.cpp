@@ -143,15 +143,18 @@ std::vector<Shape> occluder_shapes(const std::vector<Occluder>& occluders,
 }
 
 ShareTable::ShareTable(const std::vector<double>& shares) {
-  for (const double share : shares) ends_.push_back(total_ += share);
+  for (const double share : shares) total_ += share;
+  double sum = 0;
+  for (const double share : shares) {
+    const double begin = sum / total_;
+    const double end = (sum += share) / total_;
+    shares_.push_back({begin, end, 1 / (end - begin)});
+  }
 }
 
-std::uint32_t ShareTable::pick_of_many(double& x) const {
-  const double place = x * total_;
-  const auto end = std::upper_bound(ends_.begin(), ends_.end() - 1, place);
-  const double begin = end == ends_.begin() ? 0 : *(end - 1);
-  x = std::min((place - begin) / (*end - begin), 1.0);
-  return static_cast<std::uint32_t>(end - ends_.begin());
+std::uint32_t ShareTable::find_of_many(double x) const {
+  const auto share = std::ranges::upper_bound(shares_, x, {}, &Share::end);
+  return static_cast<std::uint32_t>(share - shares_.begin());
 }
 
 }  // namespace assay::luminaire

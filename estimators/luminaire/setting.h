@@ -55,9 +55,14 @@ struct Connection {
 
 /// A way from the receiver to a point of the luminaire and what it brings if nothing stands in it.
 struct LightSample {
-  render::Vector3 to_light;
+  render::Ray ray;
   double value = 0;
 };
+
+/// The shadow ray from the receiver to a point of the luminaire.
+inline render::Ray shadow_ray(const render::Vector3& to_light) {
+  return {.origin = {}, .direction = to_light, .near = resolution, .far = 1 - 2 * resolution};
+}
 
 class Setting {
  public:
@@ -85,11 +90,15 @@ class Setting {
     return {y, squared_length(y), triangle.plane_distance};
   }
 
+  /// The ray from the receiver along a unit vector.
+  render::Ray ray(const render::Vector3& direction) const {
+    return {.origin = {}, .direction = direction, .near = near_};
+  }
+
   /// Whether a ray from the receiver first hits a side of the luminaire that emits.
-  bool sees_light(const render::Vector3& direction, Cost& cost) const {
+  bool sees_light(const render::Ray& ray, Cost& cost) const {
     ++cost.closest_hit_rays;
-    const render::Hit hit =
-        scene_.closest_hit({.origin = {}, .direction = direction, .near = near_});
+    const render::Hit hit = scene_.closest_hit(ray);
     return hit.shape == 0 && triangles_[hit.primitive].emits;
   }
 
@@ -98,11 +107,7 @@ class Setting {
   double received(const LightSample& sample, Cost& cost) const {
     if (sample.value == 0) return 0;
     ++cost.shadow_rays;
-    const bool hidden = blockers_.occluded({.origin = {},
-                                            .direction = sample.to_light,
-                                            .near = resolution,
-                                            .far = 1 - 2 * resolution});
-    return hidden ? 0 : sample.value;
+    return blockers_.occluded(sample.ray) ? 0 : sample.value;
   }
 
  private:
@@ -130,14 +135,28 @@ class ShareTable {
   /// Maps x uniform in [0, 1) to an index and to x uniform again: its place within the share. With
   /// one index x stays what it is.
   std::uint32_t pick(double& x) const {
-    if (ends_.size() == 1) return 0;
-    return pick_of_many(x);
+    if (shares_.size() == 1) return 0;
+    const std::uint32_t index = find(x);
+    x = std::min((x - shares_[index].begin) * shares_[index].scale, 1.0);
+    return index;
   }
 
  private:
-  std::uint32_t pick_of_many(double& x) const;
+  struct Share {
+    double begin;  // as a fraction of the total
+    double end;
+    double scale;  // 1 / (end - begin)
+  };
 
-  std::vector<double> ends_;
+  std::uint32_t find(double x) const {
+    if (shares_.size() > 8) return find_of_many(x);
+    std::uint32_t index = 0;
+    while (x >= shares_[index].end) ++index;
+    return index;
+  }
+  std::uint32_t find_of_many(double x) const;
+
+  std::vector<Share> shares_;
   double total_ = 0;
 };
 

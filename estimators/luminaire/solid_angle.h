@@ -52,7 +52,7 @@ class SolidAnglePrimary {
   }
 
   LightSample along(const render::Vector3& w, const LitTriangle& triangle) const {
-    return {triangle.distance(w) * w, factor_ * std::max(0.0, w.z)};
+    return {shadow_ray(triangle.distance(w) * w), factor_ * std::max(0.0, w.z)};
   }
 
   /// The X that goes with a direction.
