@@ -50,8 +50,8 @@ struct Channel {
   std::optional<double> variance = {};  ///< of ONE primary estimate
   double low = -std::numeric_limits<double>::infinity();  ///< no value is below
   double high = std::numeric_limits<double>::infinity();  ///< no value is above
-  double rounding = 0;       ///< values that differ by no more are the same number
-  bool diagnostic = false;                                ///< tested only where a claim names it
+  double rounding = 0;      ///< values that differ by no more are the same number
+  bool diagnostic = false;  ///< tested only where a claim names it
 };
 
 /// A sampler under the name by which claims reach it.

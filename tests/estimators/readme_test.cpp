@@ -1,0 +1,29 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace assay {
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(ASSAY_SOURCE_DIR "/estimators/" + path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(EstimatorsReadme, ShowsAnExampleThatIsCompiled) {
+  const std::string readme = text_of("README.md");
+  const std::string fence = "```cpp\n";
+  const std::size_t begin = readme.find(fence);
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t from = begin + fence.size();
+  const std::string example = readme.substr(from, readme.find("```", from) - from);
+  EXPECT_GT(example.size(), 500u);
+  EXPECT_NE(text_of("analytic/dart_throwing.cpp").find(example), std::string::npos);
+}
+
+}  // namespace
+}  // namespace assay
