@@ -34,12 +34,17 @@ bool use_colour(Colour colour, std::FILE* stream) {
   return !dumb && isatty(fileno(stream)) != 0;
 }
 
+/// One test alone, as of `check`, is shown in full.
+bool is_single(const reports::Record& record) {
+  return record.suites.size() == 1 && record.suites[0].tests.size() == 1;
+}
+
 std::string written(const reports::Record& record, const std::string& kind, bool colour) {
   if (kind == "json") return reports::json(record);
   if (kind == "junit") return reports::junit(record);
   if (kind == "markdown") return reports::markdown(record);
   if (kind == "html") return reports::html(record);
-  return reports::console(record, {.colour = colour});
+  return reports::console(record, {.colour = colour, .verbose = is_single(record)});
 }
 
 /// Every report asked for. Files first: what standard output shows has then been written.

@@ -32,7 +32,7 @@ Recorded find_test(const reports::Record& record, const ReplayArguments& argumen
   for (const reports::Suite& suite : record.suites) {
     for (const reports::Test& test : suite.tests) {
       if (test.id == arguments.test || test.name == arguments.test) {
-        return {suite, test, record.seed};
+        return {suite, test, suite.seed};
       }
       ids.push_back(test.id);
     }

@@ -17,6 +17,7 @@ constexpr int label_width = 17;
 constexpr int verdict_width = 12;
 constexpr int number_width = 33;
 constexpr int cost_width = 12;
+constexpr std::size_t name_lines = 3;
 
 // A terminal renders a no-break space in its own way: copied text should hold plain ones.
 std::string plain_spaces(const std::string& text) {
@@ -51,7 +52,7 @@ class Screen {
   }
 
   void run(const Record& record) {
-    for (const Suite& suite : record.suites) write(record, suite);
+    for (const Suite& suite : record.suites) write(suite);
     if (!record.note.empty()) paragraph(record.note);
     summary(record);
   }
@@ -91,11 +92,11 @@ class Screen {
     if (!text.empty()) beside(label, wrapped(text, beside_width()));
   }
 
-  void write(const Record& record, const Suite& suite) {
+  void write(const Suite& suite) {
     const std::string file = suite.file.empty() ? "" : " (" + suite.file + ")";
     line(plain(suite.name + file), "\x1b[1m");
     if (!suite.about.empty()) paragraph(suite.about);
-    paragraph(levels_text(suite, record.seed));
+    paragraph(levels_text(suite));
     out_ += "\n";
     if (options_.verbose) estimators(suite);
     for (const Test& test : suite.tests) write(test);
@@ -107,13 +108,19 @@ class Screen {
     std::string start = "  " + mark(result) + " ";
     start += pad_right(to_string(test.verdict), verdict_width) + " ";
     const int room = options_.width - columns(start) - number_width - cost_width - 2;
-    const std::string name = pad_right(shorten(plain(test.name), std::max(room, 8)), room);
+    std::vector<std::string> name = wrapped(one_line(test.name), std::max(room, 8));
+    while (name.size() > name_lines) {
+      name[name.size() - 2] = shorten(name[name.size() - 2] + " " + name.back(), std::max(room, 8));
+      name.pop_back();
+    }
     const std::string number =
         pad_right(shorten(plain(key_number(test)), number_width), number_width);
     const std::string cost = shorten(plain(cost_text(total_cost(test))), cost_width);
-    std::string text = start + name + " " + number + " " + cost;
+    std::string text = start + pad_right(name.front(), room) + " " + number + " " + cost;
     text.erase(text.find_last_not_of(' ') + 1);
     line(text, colour_of(result));
+    const std::string below(static_cast<std::size_t>(columns(start)), ' ');
+    for (std::size_t i = 1; i < name.size(); ++i) line(below + name[i], colour_of(result));
     if (result == Outcome::failed || result == Outcome::inconclusive || options_.verbose)
       explain(test);
   }

@@ -237,9 +237,9 @@ std::string plain_text(const Test& test) {
   return text;
 }
 
-std::string levels_text(const Suite& suite, std::uint64_t seed) {
+std::string levels_text(const Suite& suite) {
   return fmt::format("alpha {} (false alarms), beta {} (misses), seed {}{}", human(suite.alpha),
-                     human(suite.beta), seed, suite.timed ? ", ended by a time budget" : "");
+                     human(suite.beta), suite.seed, suite.timed ? ", ended by a time budget" : "");
 }
 
 }  // namespace assay::reports

@@ -58,6 +58,6 @@ std::vector<Fact> facts(const Test&);
 std::string plain_text(const Test&);
 
 /// "alpha 0.01 (false alarms), beta 0.01 (misses), seed 1".
-std::string levels_text(const Suite&, std::uint64_t seed);
+std::string levels_text(const Suite& suite);
 
 }  // namespace assay::reports

@@ -204,6 +204,7 @@ void fields(Archive& a, T& suite) {
   a("name", suite.name);
   a("file", suite.file);
   a("about", suite.about);
+  a("seed", suite.seed);
   a("alpha", suite.alpha);
   a("beta", suite.beta);
   a("timed", suite.timed);

@@ -122,7 +122,7 @@ std::string suite_section(const Record& record, std::size_t index) {
       fmt::format("<h2 id=\"s{}\">{}</h2>\n", index, escape_xml(one_line(suite.name)));
   if (!suite.about.empty()) out += fmt::format("<p>{}</p>\n", escape_xml(suite.about));
   out += fmt::format("<div class=\"facts\"><span>{}</span><span>{}</span><span>{}</span></div>\n",
-                     escape_xml(one_line(suite.file)), escape_xml(levels_text(suite, record.seed)),
+                     escape_xml(one_line(suite.file)), escape_xml(levels_text(suite)),
                      tally_sentence(tally(suite)));
   out += pictures(suite);
   if (!suite.tests.empty()) out += "<h3>Tests</h3>\n";

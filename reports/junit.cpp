@@ -159,7 +159,7 @@ struct Counts {
 
 std::string suite_properties(const Record& record, const Suite& suite) {
   std::string out;
-  add(out, "seed", fmt::format("{}", record.seed));
+  add(out, "seed", fmt::format("{}", suite.seed));
   add(out, "alpha", Number(suite.alpha));
   add(out, "beta", Number(suite.beta));
   add(out, "tool", record.tool.name);

@@ -47,10 +47,10 @@ std::string row(const Test& test) {
                      duration(total_cost(test).seconds));
 }
 
-std::string suite_heading(const Record& record, const Suite& suite) {
+std::string suite_heading(const Suite& suite) {
   std::string out = fmt::format("## {}\n\n", cell(suite.name));
   if (!suite.about.empty()) out += cell(suite.about, paragraph_limit) + "\n\n";
-  return out + cell(levels_text(suite, record.seed)) + "\n\n" +
+  return out + cell(levels_text(suite)) + "\n\n" +
          "| verdict | test | effect | cost | time |\n|---|---|---|---|---|\n";
 }
 
@@ -94,7 +94,7 @@ int add_problems(const Record& record, Outcome kind, Page& page) {
 
 int add_table(const Record& record, const Suite& suite, Page& page) {
   if (suite.tests.empty()) return 0;
-  if (!page.add(suite_heading(record, suite))) return static_cast<int>(suite.tests.size());
+  if (!page.add(suite_heading(suite))) return static_cast<int>(suite.tests.size());
   int missing = 0;
   for (const Test& test : suite.tests) {
     if (!page.add(row(test))) ++missing;

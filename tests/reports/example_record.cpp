@@ -293,6 +293,7 @@ Suite triangle() {
   s.name = "triangle luminaire";
   s.file = "suites/triangle.yaml";
   s.about = "Irradiance from a triangle, four ways to sample it (Subr & Arvo 2007).";
+  s.seed = 18446744073709551615u;
   s.alpha = 0.01;
   s.beta = 0.01;
   s.estimators = {summary({"hemisphere", 0.4809, 0.246}),
@@ -316,6 +317,7 @@ Suite hostile() {
   s.about =
       "Text with \x1b[31mescapes\x1b[0m, a bell \x07, half a character \xC3, "
       "a wide 光線追跡 and a right-to-left override \xE2\x80\xAE.\nA second line.";
+  s.seed = 18446744073709551615u;
   s.alpha = 0.005;
   s.beta = 0.02;
   s.timed = true;
@@ -376,6 +378,7 @@ Record forty_estimators() {
   Suite s;
   s.name = "forty estimators";
   s.file = "suites/forty.yaml";
+  s.seed = 1;
   s.alpha = s.beta = 0.01;
   for (int i = 0; i < 40; ++i) {
     const std::string name =
