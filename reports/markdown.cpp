@@ -92,7 +92,7 @@ int add_problems(const Record& record, Outcome kind, Page& page) {
   return missing;
 }
 
-int add_table(const Record& record, const Suite& suite, Page& page) {
+int add_table(const Suite& suite, Page& page) {
   if (suite.tests.empty()) return 0;
   if (!page.add(suite_heading(suite))) return static_cast<int>(suite.tests.size());
   int missing = 0;
@@ -111,7 +111,7 @@ std::string markdown(const Record& record, std::size_t limit) {
   int problems = add_problems(record, Outcome::failed, page);
   problems += add_problems(record, Outcome::inconclusive, page);
   int rows = 0;
-  for (const Suite& suite : record.suites) rows += add_table(record, suite, page);
+  for (const Suite& suite : record.suites) rows += add_table(suite, page);
   std::string out = page.take();
   if (problems > 0 || rows > 0)
     out += fmt::format(
