@@ -12,20 +12,10 @@ namespace {
 
 using reports::Verdict;
 
-const Channel& channel_of(const std::vector<Channel>& channels, const Subject& subject,
-                          std::size_t channel) {
-  return channels[subject.channels[channel]];
-}
-
 /// Largest probability that n observations can have left unseen, at this level.
 double unseen(double level, std::uint64_t count) {
   return -std::expm1(std::log(level) / static_cast<double>(count));
 }
-
-struct Bound {
-  double below = 0;  ///< the mean is at least constant - below
-  double above = 0;  ///< and at most constant + above
-};
 
 /// How far a reference with an error of its own may be off, at this level.
 double reach_of(const Constant& reference, double level) {
@@ -34,97 +24,160 @@ double reach_of(const Constant& reference, double level) {
          stats::normal_quantile({stats::Tail::upper, std::log(level / 2)});
 }
 
-Bound mean_bound(const Channel& channel, const ChannelData& data, double level) {
+/// A difference of means and how far unseen values may take it either way.
+struct Difference {
+  double value = 0;
+  double below = 0;
+  double above = 0;
+  double scale = 1;  ///< of theta: 1, or the reference
+};
+
+/// Of one mean, from what the channel's declared range allows.
+Difference mean_of(const Channel& channel, const ChannelData& data, double level) {
   const double q = unseen(level, data.moments.count);
-  return {.below = q * (data.moments.mean - channel.low),
-          .above = q * (channel.high - data.moments.mean)};
+  const double mean = data.moments.mean;
+  return {.value = mean,
+          .below = q * std::max(0.0, mean - channel.low) + channel.rounding,
+          .above = q * std::max(0.0, channel.high - mean) + channel.rounding};
 }
 
-/// Of the difference between subjects (or from the number), on theta's scale.
-struct Difference {
-  double value;
-  double scale;     ///< of theta: 1, or the reference
-  double rounding;  ///< and error of the reference: what is no difference
-  Bound bound;
-};
+Channel channel_of(const Question& question, std::size_t subject, std::size_t channel) {
+  const Subject& side = question.subjects[subject];
+  return side.setup->channels()[side.channels[channel]];
+}
+
+Difference from_number(const Question& question, std::size_t channel, const ChannelData& data,
+                       double level) {
+  const Constant& reference = question.references[channel];
+  // The level is shared between the unseen values and the reference's own error.
+  const double part = reference.standard_error > 0 ? level / 2 : level;
+  const double reach = reach_of(reference, part);
+  const Difference mean = mean_of(channel_of(question, 0, channel), data, part);
+  return {.value = mean.value - reference.value,
+          .below = mean.below + reach,
+          .above = mean.above + reach,
+          .scale = is_relative(question, channel) ? std::abs(reference.value) : 1};
+}
+
+Difference from_other(const Question& question, std::size_t channel,
+                      std::span<const ChannelData> data, double level) {
+  const Difference one = mean_of(channel_of(question, 0, channel), data[0], level / 2);
+  const Difference two = mean_of(channel_of(question, 1, channel), data[1], level / 2);
+  const double factor = std::abs(question.factor);
+  const bool same_sign = question.factor > 0;
+  const double reference = question.factor * two.value;
+  return {.value = one.value - reference,
+          .below = one.below + factor * (same_sign ? two.above : two.below),
+          .above = one.above + factor * (same_sign ? two.below : two.above),
+          .scale = is_relative(question, channel) ? std::abs(reference) : 1};
+}
 
 Difference difference_of(const Question& question, std::size_t channel,
                          std::span<const ChannelData> data, double level) {
-  const std::vector<Channel> first = question.subjects[0].setup->channels();
-  const Channel& mine = channel_of(first, question.subjects[0], channel);
-  const Bound one = mean_bound(mine, data[0], question.of_two() ? level / 2 : level);
-  if (!question.of_two()) {
-    const Constant& reference = question.references[channel];
-    const double reach = reach_of(reference, level);
-    return {.value = data[0].moments.mean - reference.value,
-            .scale = is_relative(question, channel) ? std::abs(reference.value) : 1,
-            .rounding = mine.rounding + reach,
-            .bound = {.below = one.below + reach, .above = one.above + reach}};
-  }
-  const std::vector<Channel> second = question.subjects[1].setup->channels();
-  const Channel& theirs = channel_of(second, question.subjects[1], channel);
-  const Bound two = mean_bound(theirs, data[1], level / 2);
-  const double reference = question.factor * data[1].moments.mean;
-  const double factor = std::abs(question.factor);
-  return {
-      .value = data[0].moments.mean - reference,
-      .scale = is_relative(question, channel) ? std::abs(reference) : 1,
-      .rounding = mine.rounding + factor * theirs.rounding,
-      .bound = {.below = one.below + factor * two.above, .above = one.above + factor * two.below}};
+  return question.of_two() ? from_other(question, channel, data, level)
+                           : from_number(question, channel, data[0], level);
 }
 
-ConstantVerdict equal(const Difference& difference, const Regions& regions,
-                      const ErrorShare& share) {
-  const double most = std::max(difference.bound.below, difference.bound.above) / difference.scale;
-  const double margin =
-      regions.relation == Relation::within ? regions.within : regions.detect.value_or(0);
+/// The difference as it was seen, but for rounding.
+Difference as_seen(const Question& question, std::size_t channel, Difference difference) {
+  double rounding = channel_of(question, 0, channel).rounding;
+  if (question.of_two()) {
+    rounding += std::abs(question.factor) * channel_of(question, 1, channel).rounding;
+  }
+  difference.below = rounding;
+  difference.above = rounding;
+  return difference;
+}
+
+/// All values that theta may have.
+struct Span {
+  double low;
+  double high;
+};
+
+Span theta_of(const Difference& difference) {
+  return {.low = (difference.value - difference.below) / difference.scale,
+          .high = (difference.value + difference.above) / difference.scale};
+}
+
+bool meets_claimed(const Span& theta, const Regions& regions) {
+  switch (regions.relation) {
+    case Relation::equal:
+      return theta.low <= regions.allow && theta.high >= -regions.allow;
+    case Relation::at_most:
+      return theta.low <= regions.allow;
+    case Relation::at_least:
+      return theta.high >= -regions.allow;
+    case Relation::less:
+      return theta.low < 0;
+    case Relation::greater:
+      return theta.high > 0;
+    case Relation::within:
+      break;
+  }
+  return theta.low < regions.within && theta.high > -regions.within;
+}
+
+bool meets_forbidden(const Span& theta, const Regions& regions) {
+  switch (regions.relation) {
+    case Relation::equal:
+      return regions.detect && (theta.high >= *regions.detect || theta.low <= -*regions.detect);
+    case Relation::at_most:
+      return regions.detect && theta.high >= *regions.detect;
+    case Relation::at_least:
+      return regions.detect && theta.low <= -*regions.detect;
+    case Relation::less:
+      return theta.high >= 0;
+    case Relation::greater:
+      return theta.low <= 0;
+    case Relation::within:
+      break;
+  }
+  return theta.high >= regions.within || theta.low <= -regions.within;
+}
+
+ConstantVerdict agreeing(const Difference& at_beta, const Regions& regions, double beta) {
   if (!regions.has_forbidden()) {
     return {Verdict::pass,
-            "every observation equals the reference; values never seen are not ruled out"};
+            "every observation is the same and as claimed; values never seen are not ruled out"};
   }
-  if (margin > 0 && most < margin) {
+  if (!meets_forbidden(theta_of(at_beta), regions)) {
     return {Verdict::pass,
-            fmt::format("every observation equals the reference; with the declared range, values "
-                        "never seen could move the mean by at most {:.3g} (at level {:g})",
-                        most * difference.scale, share.beta)};
+            fmt::format("every observation is the same and as claimed; with the declared range, "
+                        "values never seen could move the mean by at most {:.3g} (at level {:g})",
+                        std::max(at_beta.below, at_beta.above), beta)};
   }
   return {Verdict::inconclusive,
-          "every observation equals the reference, and no declared range bounds what values never "
-          "seen could add; declare the range or give more observations"};
+          "every observation is the same and as claimed, but no declared range bounds closely "
+          "enough what values never seen could add; declare the range or give more observations"};
 }
 
 }  // namespace
 
 bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
                  const stats::Moments& moments) {
-  const Subject& side = question.subjects[subject];
-  const std::vector<Channel> channels = side.setup->channels();
-  return moments.maximum - moments.minimum <= 2 * channel_of(channels, side, channel).rounding;
+  return moments.maximum - moments.minimum <= 2 * channel_of(question, subject, channel).rounding;
 }
 
 ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                                std::span<const ChannelData> data, const Regions& regions,
                                const ErrorShare& share) {
   const Difference at_beta = difference_of(question, channel, data, share.beta);
-  if (std::abs(at_beta.value) <= at_beta.rounding) return equal(at_beta, regions, share);
+  if (meets_claimed(theta_of(as_seen(question, channel, at_beta)), regions)) {
+    return agreeing(at_beta, regions, share.beta);
+  }
   const Difference at_alpha = difference_of(question, channel, data, share.alpha);
-  const double low = (at_alpha.value - at_alpha.bound.below) / at_alpha.scale;
-  const double high = (at_alpha.value + at_alpha.bound.above) / at_alpha.scale;
-  const double allow = regions.relation == Relation::within ? regions.within : regions.allow;
-  const bool above = low > allow && regions.relation != Relation::at_least &&
-                     regions.relation != Relation::greater;
-  const bool below =
-      high < -allow && regions.relation != Relation::at_most && regions.relation != Relation::less;
-  if (above || below) {
+  const double mean = data[0].moments.mean;
+  if (!meets_claimed(theta_of(at_alpha), regions)) {
     return {Verdict::fail, fmt::format("every observation is {:.10g}, and with the declared range "
                                        "values never seen cannot make up the difference",
-                                       data[0].moments.mean)};
+                                       mean)};
   }
   return {Verdict::invalid,
           fmt::format("every observation is {:.10g}, which differs from the reference by {:.3g}; "
                       "without a spread there is no test, and a rare value may be unseen: declare "
                       "the range, or take more observations",
-                      data[0].moments.mean, at_alpha.value)};
+                      mean, at_alpha.value)};
 }
 
 }  // namespace assay::harness

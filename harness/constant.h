@@ -22,8 +22,9 @@ struct ConstantVerdict {
 
 /// The verdict of a mean claim whose samples are all constant. An unseen value has probability at
 /// most q with (1 - q)^n = level, so that the mean is within q * (declared range) of the constant:
-/// exact binomial. Equal to the reference: pass if classical, or if that bound at beta stays below
-/// `detect`; else inconclusive. Different: fail only if the bound at alpha excludes `allow`; else
+/// exact binomial. Where the constant is as claimed (equal to the reference, or in the claimed
+/// region): pass if there is no forbidden region, or if the bound at beta excludes it; else
+/// inconclusive. Where it is not: fail only if the bound at alpha excludes the claimed region; else
 /// invalid.
 ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                                std::span<const ChannelData> data, const Regions& regions,

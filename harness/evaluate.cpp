@@ -32,10 +32,10 @@ const Summary& summary_of(const TestWork& work, std::size_t subject) {
 bool could_be_drawn(TestWork& work) {
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
     const Subject& side = work.outcome.question.subjects[subject];
-    const std::string& trouble = work.pools[subject]->trouble();
-    if (!trouble.empty()) {
+    const Pool& pool = *work.pools[subject];
+    if (!pool.has(work.outcome.plan.secondaries)) {
       settle(work.outcome, Verdict::error,
-             fmt::format("`{}` stopped at {}", side.estimator->name, trouble));
+             fmt::format("`{}` stopped at {}", side.estimator->name, pool.trouble()));
       return false;
     }
     for (const std::size_t channel : side.channels) {
@@ -57,6 +57,11 @@ bool about_means(const Question& question) {
   return question.kind == QuestionKind::mean_of_one || question.kind == QuestionKind::mean_of_two;
 }
 
+bool about_variances(const Question& question) {
+  return question.kind == QuestionKind::variance_of_one ||
+         question.kind == QuestionKind::variance_of_two;
+}
+
 /// A density whose integral exceeds 1 is none, whatever its samples do.
 bool density_is_proper(TestOutcome& outcome) {
   if (outcome.question.kind != QuestionKind::fit_to_density) return true;
@@ -69,6 +74,20 @@ bool density_is_proper(TestOutcome& outcome) {
                      "{:.1g}): more than 1, so no sampler can follow it",
                      grid.total, grid.total_error));
   return false;
+}
+
+/// A reason why a variance cannot be tested: a sample without spread.
+std::string lack_of_spread(const Question& question, std::size_t channel,
+                           std::span<const ChannelData> data) {
+  for (std::size_t subject = 0; subject < data.size(); ++subject) {
+    if (is_constant(question, subject, channel, data[subject].moments)) {
+      return fmt::format(
+          "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
+          "nothing of a variance, and a rare value may be unseen; take more observations",
+          question.subjects[subject].estimator->name, data[subject].moments.mean);
+    }
+  }
+  return "";
 }
 
 bool all_constant(const Question& question, std::size_t channel,
@@ -196,6 +215,13 @@ void evaluate_channels(TestWork& work, Settled& settled) {
       settled.constants.push_back(judge_constant(
           question, channel, data, outcome.plan.regions[channel], outcome.place.share));
       continue;
+    }
+    if (about_variances(question)) {
+      const std::string reason = lack_of_spread(question, channel, data);
+      if (!reason.empty()) {
+        settled.constants.push_back({Verdict::invalid, reason});
+        continue;
+      }
     }
     for (reports::Gate& gate : data_gates(outcome, channel, data)) {
       outcome.plan.gates.push_back(std::move(gate));

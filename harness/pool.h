@@ -51,6 +51,8 @@ class Pool {
   std::span<const double> values(std::size_t channel, std::uint64_t count) const;
   /// Why drawing ended early: an estimator threw. Empty when it did not.
   const std::string& trouble() const { return trouble_; }
+  /// Whether the first `count` observations, once drawn, are there: no trouble came before.
+  bool has(std::uint64_t count) const { return trouble_.empty() || count <= drawn(); }
 
   // The scheduler's side. Observations per block are a function of `primaries` alone.
   std::uint64_t block_size() const { return block_size_; }

@@ -9,8 +9,6 @@
 namespace assay::harness {
 namespace {
 
-// Values stored of every channel: for the normal quantile plot.
-constexpr std::uint64_t plotted_values = 2000;
 // The histogram spans this many standard deviations to each side, within the channel's range.
 constexpr double histogram_deviations = 5;
 
@@ -67,7 +65,8 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
     }
     return plan;
   }
-  const Pilot& pilot = pilots.at(estimator.name);
+  const auto found = pilots.find(estimator.name);  // a replay has none
+  const Pilot pilot = found != pilots.end() ? found->second : Pilot{.trouble = "no pilot"};
   const double averaged =
       estimator.entry->information.averages ? static_cast<double>(pool.primaries()) : 1;
   for (std::size_t i = 0; i < channels.size(); ++i) {

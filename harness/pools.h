@@ -12,6 +12,9 @@
 
 namespace assay::harness {
 
+/// Values stored of every channel: for the normal quantile plot.
+inline constexpr std::uint64_t plotted_values = 2000;
+
 /// All pools of a run: tests that draw the same stream from the same plugin share one.
 class Pools {
  public:

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "harness/picture.h"
+#include "harness/pools.h"
 #include "harness/quantiles.h"
 #include "harness/shell.h"
 
@@ -72,7 +73,8 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
   sample.nonfinite = kept.nonfinite;
   sample.histogram = histogram_of(kept.histogram);
   if (spread && kept.cells.empty()) {
-    sample.quantiles = quantile_points(work.pools[subject]->values(index, count));
+    sample.quantiles =
+        quantile_points(work.pools[subject]->values(index, std::min(count, plotted_values)));
   }
   sample.cost = cost_of(summary);
   return sample;
@@ -82,7 +84,7 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
   std::vector<reports::Sample> samples;
   for (std::size_t channel = 0; channel < work.outcome.question.channel_count(); ++channel) {
     for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
-      if (work.pools[subject]->trouble().empty()) {
+      if (work.pools[subject]->has(work.outcome.plan.secondaries)) {
         samples.push_back(sample_of(work, subject, channel));
       }
     }

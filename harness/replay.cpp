@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "estimators/catalogue.h"
 #include "harness/commands.h"
 #include "harness/evaluate.h"
 #include "harness/pools.h"
@@ -44,6 +45,29 @@ Recorded find_test(const reports::Record& record, const ReplayArguments& argumen
                                             : "; did you mean `" + near + "`?"));
 }
 
+/// Canonical parameters ("name=value,…") as a suite would give them. Text parameters are written
+/// with a colon before them; null and a text's fallback stand for what was not given.
+Value parameters_of(const reports::Sample& sample, const Location& where) {
+  const std::vector<ParameterInformation>& declared =
+      find_plugin(sample.plugin, where).information.parameters;
+  std::vector<Value::Member> members;
+  if (sample.parameters.empty()) return Value::map({}, where);
+  for (const std::string& piece : split_outside_brackets(sample.parameters)) {
+    const std::size_t equals = piece.find('=');
+    const std::string name = piece.substr(0, equals);
+    Value value = read_flow(piece.substr(equals + 1), where);
+    const auto known = std::find_if(declared.begin(), declared.end(),
+                                    [&](const auto& parameter) { return parameter.name == name; });
+    if (known == declared.end() || value.kind() == Value::Kind::null) continue;
+    if (known->type == ParameterType::string) {
+      value = Value::scalar(value.text().substr(1), where);
+      if (value.text() == known->fallback) continue;
+    }
+    members.emplace_back(name, std::move(value));
+  }
+  return Value::map(std::move(members), where);
+}
+
 /// The suite of this one test, rebuilt from the record alone.
 Suite suite_of(const Recorded& recorded) {
   const std::filesystem::path folder = std::filesystem::path(recorded.suite.file).parent_path();
@@ -60,22 +84,22 @@ Suite suite_of(const Recorded& recorded) {
     const Location where{.file = recorded.suite.file};
     suite.estimators.push_back({.name = sample.estimator,
                                 .plugin = sample.plugin,
-                                .parameters = read_flow(sample.parameters, where),
+                                .parameters = parameters_of(sample, where),
                                 .primaries = sample.primaries,
                                 .where = where});
   }
-  const auto margin = [](const reports::Number& value, bool relative) -> std::optional<Margin> {
-    if (!value) return std::nullopt;
-    return Margin{.value = *value, .relative = relative};
-  };
-  const bool relative =
-      !recorded.test.channels.empty() && recorded.test.channels[0].effect.relative;
   TestEntry test{.name = recorded.test.name,
                  .id = recorded.test.id,
                  .claim = parse_claim(recorded.test.claim, {.file = recorded.suite.file}),
-                 .detect = margin(recorded.test.detect, relative),
-                 .allow = margin(recorded.test.allow, relative),
                  .method = recorded.test.method};
+  // Margins are recorded on theta's scale; here they only tell whether means are compared in units
+  // of the reference. The plan has the numbers.
+  if (test.claim.left.name == QuantityName::mean && test.claim.relation != Relation::within) {
+    const bool relative =
+        !recorded.test.channels.empty() && recorded.test.channels[0].effect.relative;
+    if (recorded.test.detect) test.detect = Margin{*recorded.test.detect, relative};
+    if (recorded.test.allow) test.allow = Margin{*recorded.test.allow, relative};
+  }
   test.where.file = recorded.suite.file;
   suite.tests.push_back(std::move(test));
   return suite;
@@ -175,7 +199,7 @@ bool print_comparison(const reports::Test& now, const reports::Test& then) {
     same &= same_line("statistic", now.channels[i].statistic, then.channels[i].statistic);
     same &= same_line("log10 p", now.channels[i].log10_p, then.channels[i].log10_p);
   }
-  same &= now.channels.size() == then.channels.size();
+  same &= now.channels.size() == then.channels.size() && now.samples.size() == then.samples.size();
   return same;
 }
 

@@ -70,6 +70,11 @@ void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& us
   }
 }
 
+/// Pools are short then, and must not be read.
+void stop_if_interrupted() {
+  if (interrupted()) throw std::runtime_error("interrupted; nothing is written");
+}
+
 void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress& progress) {
   std::vector<Question> questions;
   std::vector<bool> chosen;
@@ -81,6 +86,7 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   const std::vector<FamilyPlace> place = places(run.suite, questions);
   const auto used = used_by(questions, chosen, run);
   const Pilots pilots = run_pilots(used, {.seed = run.seed, .threads = options.threads}, progress);
+  stop_if_interrupted();
   const Primaries primaries = choose_primaries(questions, place, pilots);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!chosen[i]) continue;
@@ -139,7 +145,7 @@ reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
   Pools pools;
   for (auto& run : runs) plan_suite(*run, options, pools, progress);
   draw_all(pools.all(), {.threads = options.threads, .phase = "sampling"}, progress);
-  if (interrupted()) throw std::runtime_error("interrupted; nothing is written");
+  stop_if_interrupted();
   for (auto& run : runs) judge_suite(*run, options);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   reports::Record record = record_of(runs, options);
