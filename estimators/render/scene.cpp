@@ -1,6 +1,7 @@
 #include "render/scene.h"
 
 #include <embree3/rtcore.h>
+#include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -14,12 +15,12 @@ namespace {
   throw std::runtime_error(std::string("Embree: ") + message);
 }
 
-// One device for the process: it pins the instruction set, and builds on the calling thread so that
-// a scene's tree does not depend on the number of processors.
+// One device for the process: it pins the instruction set. Its own `threads` setting must stay away:
+// Embree would limit oneTBB to that number in the whole process for as long as the device lives.
 class Device {
  public:
   Device() : isa_(__builtin_cpu_supports("avx2") ? "avx2" : "sse4.2") {
-    const std::string settings = "isa=" + isa_ + ",threads=1,set_affinity=0";
+    const std::string settings = "isa=" + isa_ + ",set_affinity=0";
     handle_ = rtcNewDevice(settings.c_str());
     if (!handle_) embree_failed("no device could be made");
   }
@@ -137,7 +138,11 @@ Scene::Scene(const std::vector<Shape>& shapes) {
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
   for (const Shape& shape : shapes) attach(scene_.get(), shape, device->handle());
-  rtcCommitScene(scene_.get());
+  {
+    // Built on the calling thread, so that the tree does not depend on the number of processors.
+    const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+    rtcCommitScene(scene_.get());
+  }
   device->check();
 }
 

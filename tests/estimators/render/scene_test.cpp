@@ -1,6 +1,7 @@
 #include "render/scene.h"
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 
 #include "estimators/stream.h"
 #include "render/hemisphere.h"
@@ -59,6 +60,13 @@ TEST(Scene, NoRaySlipsThroughTheEdgesOfAClosedMesh) {
     if (i % 2 == 0) w.x = 0;
     EXPECT_NE(scene.closest_hit({.origin = {}, .direction = w}).shape, Hit::none);
   }
+}
+
+TEST(Scene, LeavesTheThreadsToWhoeverDraws) {
+  // Embree's own `threads` setting would limit oneTBB in the whole process.
+  const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
+  const Scene scene({floor_above});
+  EXPECT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), 4u);
 }
 
 TEST(Scene, NamesTheInstructionSetItIsPinnedTo) {
