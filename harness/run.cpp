@@ -36,13 +36,14 @@ Suite adjusted(Suite suite, const RunOptions& options) {
   return suite;
 }
 
-/// Estimators by name that a set of questions is about.
+/// Estimators that a set of questions is about, in the suite's order.
 std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& questions,
                                               const std::vector<bool>& chosen,
                                               const SuiteRun& run) {
   std::vector<const PreparedEstimator*> used;
   const bool all = std::all_of(chosen.begin(), chosen.end(), [](bool c) { return c; });
-  for (const auto& [name, estimator] : run.estimators) {
+  for (const EstimatorEntry& entry : run.suite.estimators) {
+    const PreparedEstimator& estimator = run.estimators.at(entry.name);
     bool wanted = all;
     for (std::size_t i = 0; i < questions.size(); ++i) {
       for (const Subject& subject : questions[i].subjects) {

@@ -30,7 +30,7 @@ std::string estimate_fact(const Effect& effect) {
   std::string text = fmt::format("{} {}{}", effect.quantity,
                                  with_sign(*effect.estimate, effect.relative), ratio_note(effect));
   if (const std::string interval = interval_text(effect); !interval.empty())
-    text += fmt::format(", {} interval {}", percent(effect.confidence), interval);
+    text += fmt::format(", {} interval {}", confidence_text(effect.confidence), interval);
   return text;
 }
 

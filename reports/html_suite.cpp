@@ -25,8 +25,9 @@ std::vector<std::string> channel_names(const Suite& suite) {
   return names;
 }
 
-std::string confidence_text(const Suite& suite) {
-  return suite.estimators.empty() ? std::string() : percent(suite.estimators.front().confidence);
+std::string confidence_of(const Suite& suite) {
+  return suite.estimators.empty() ? std::string()
+                                  : confidence_text(suite.estimators.front().confidence);
 }
 
 std::string bars_caption(const Suite& suite) {
@@ -35,7 +36,7 @@ std::string bars_caption(const Suite& suite) {
       "estimator does not average). Whiskers: {} intervals. Dashed lines: exact values where "
       "known. "
       "Names in italics are mutants.",
-      confidence_text(suite));
+      confidence_of(suite));
 }
 
 std::string pairs_caption(const Suite& suite) {

@@ -35,7 +35,7 @@ std::vector<const Sample*> drawn_samples(const Test& test) {
 std::string interval_caption(const Test& test) {
   const Effect effect = worst_channel(test).effect;
   std::string text = fmt::format("The effect with its {} interval, against zero (solid line)",
-                                 percent(effect.confidence));
+                                 confidence_text(effect.confidence));
   if (test.detect) text += ", what must be noticed (dashed, ±detect)";
   if (test.allow.value_or(0) > 0) text += ", what is allowed (shaded)";
   if (test.channels.size() > most_in_interval_chart)

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace assay::reports {
 namespace {
@@ -49,6 +51,12 @@ std::string percent(double fraction) {
   return human(100 * fraction, 3) + no_break_space + "%";
 }
 
+std::string confidence_text(double confidence) {
+  if (!(confidence > 0 && confidence < 1)) return percent(confidence);
+  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(1 - confidence))) - 2);
+  return fmt::format("{:.{}f}{}%", 100 * confidence, decimals, no_break_space);
+}
+
 std::string with_sign(double value, bool relative) {
   const std::string text = magnitude(value, relative);
   return value > 0 ? "+" + text : text;
@@ -62,6 +70,8 @@ std::string p_text(Number p, Number log10_p) {
   if (log10_p && std::isfinite(*log10_p) && *log10_p < -4) return from_log10(*log10_p);
   if (!p) return log10_p ? p_text(std::pow(10.0, *log10_p), std::nullopt) : no_number;
   if (!std::isfinite(*p)) return non_finite(*p);
+  // What underflowed is stored as the least number there is.
+  if (*p > 0 && *p < std::numeric_limits<double>::min()) return "below 1e-307";
   if (*p > 0 && *p < 1e-4) return from_log10(std::log10(*p));
   // Two digits would turn 0.9996 into 1: a p-value near one is itself a finding.
   return *p > 0.99 && *p < 1 ? fmt::format("1 - {:.1g}", 1 - *p) : fmt::format("{:.2g}", *p);

@@ -23,6 +23,10 @@ std::string human(Number value);
 /// A fraction as per cent with three significant digits: 0.00312 gives "0.312 %".
 std::string percent(double fraction);
 
+/// A confidence as per cent with as many decimals as tell it from 100: 0.99 gives "99 %", 0.999825
+/// gives "99.98 %".
+std::string confidence_text(double confidence);
+
 /// human() or percent(), with a sign always: +0.31 %.
 std::string with_sign(double value, bool relative);
 

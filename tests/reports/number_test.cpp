@@ -60,5 +60,17 @@ TEST(Numbers, DurationsChooseTheirUnit) {
   EXPECT_EQ(duration(12000), "3\u00A0h\u00A020\u00A0min");
 }
 
+TEST(Numbers, AConfidenceNearOneKeepsTheDigitsThatTellItFromOne) {
+  EXPECT_EQ(confidence_text(0.95), "95\u00A0%");
+  EXPECT_EQ(confidence_text(0.99), "99\u00A0%");
+  EXPECT_EQ(confidence_text(0.999825), "99.98\u00A0%");
+  EXPECT_EQ(confidence_text(1 - 4e-6), "99.9996\u00A0%");
+}
+
+TEST(Numbers, AnUnderflownPValueIsABound) {
+  EXPECT_EQ(p_text(5e-324, {}), "below 1e-307");
+  EXPECT_EQ(p_text(5e-324, -1204.64), "2.3e-1205");
+}
+
 }  // namespace
 }  // namespace assay::reports
