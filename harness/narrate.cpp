@@ -107,6 +107,19 @@ double distance_to_forbidden(const Regions& regions, double estimate) {
   return 0;
 }
 
+/// The standard error of the reference on theta's scale: what no number of samples takes away.
+double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const Question& question = outcome.question;
+  if (question.kind != QuestionKind::mean_of_one) return 0;
+  for (std::size_t i = 0; i < question.channel_count(); ++i) {
+    if (question.channel_name(i) != channel.name) continue;
+    const Constant& reference = question.references[i];
+    const double unit = is_relative(question, i) ? std::abs(reference.value) : 1;
+    return reference.standard_error / unit;
+  }
+  return 0;
+}
+
 /// n grows with the square of how much narrower the interval must become.
 std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const double beta = outcome.place.share.beta;
@@ -117,7 +130,15 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
     return "the estimate lies where the claim must not pass, yet not clearly so";
   }
   const double z = stats::normal_quantile({stats::Tail::upper, std::log(beta)});
-  const double factor = std::pow((1 + 1.0 / z) * half / room, 2);
+  // Half the interval is z standard errors; those of the samples must shrink to what the
+  // reference's leaves of the room, with one more of them to spare.
+  const double fixed = reference_error(outcome, channel);
+  const double sampled = half * half / (z * z) - fixed * fixed;
+  const double wanted = std::pow(room / (z + 1), 2) - fixed * fixed;
+  if (!(wanted > 0)) {
+    return "no number of samples would decide: the reference's own error forbids it";
+  }
+  const double factor = std::max(0.0, sampled) / wanted;
   return fmt::format("about {:.2g} secondaries would decide if the estimate stands",
                      std::max(1.1, factor) * static_cast<double>(outcome.plan.secondaries));
 }

@@ -143,6 +143,10 @@ std::vector<Constant> references(const Claim& claim, const Subject& subject) {
   const std::vector<Channel> channels = subject.setup->channels();
   for (const std::size_t i : subject.channels) {
     if (const auto* constant = std::get_if<Constant>(&claim.right)) {
+      if (claim.left.name == QuantityName::variance && constant->standard_error > 0) {
+        throw InputError(claim.left.where,
+                         "a variance is tested against an exact number: `+-` has no method here");
+      }
       numbers.push_back(*constant);
     } else if (claim.left.name == QuantityName::variance) {
       numbers.push_back(analytic_variance(channels[i], claim.left.source));

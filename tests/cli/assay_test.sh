@@ -1,0 +1,243 @@
+#!/usr/bin/env bash
+# Drives the program as a user does: exit codes, what goes to which stream, files, other readers.
+#   assay_test.sh ASSAY SOURCE_FOLDER TEST        TEST is one of the functions test_… below
+# Runs in a temporary folder of its own and says what was wrong.
+set -uo pipefail
+
+assay=$1
+source_folder=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+unset NO_COLOR FORCE_COLOR CLICOLOR_FORCE
+
+fail() {
+  printf 'FAILED: %s\n' "$*"
+  for file in out err; do
+    printf -- '--- %s\n' "$file"
+    head -c 4000 "$work/$file" 2>/dev/null
+  done
+  exit 1
+}
+
+# expect CODE ARGUMENT…: runs assay into the files `out` and `err`.
+expect() {
+  local wanted=$1 code=0
+  shift
+  "$assay" "$@" >out 2>err </dev/null || code=$?
+  [ "$code" -eq "$wanted" ] || fail "assay $* ended with $code, not $wanted"
+}
+
+contains() { grep -qF -- "$2" "$1" || fail "no \`$2\` in $1"; }
+lacks() { ! grep -qF -- "$2" "$1" || fail "\`$2\` in $1"; }
+empty() { [ ! -s "$1" ] || fail "$1 is not empty"; }
+
+write_suite() {
+  printf '%s\n' 'suite: small' 'estimators:' \
+    '  normal: {plugin: analytic/normal, mean: 2, primaries: 1}' \
+    '  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}' 'tests:' "${@:2}" >"$1"
+}
+
+good='  - {name: good, claim: mean(normal) == 2, detect: 20%}'
+wrong='  - {name: wrong, claim: mean(normal) == 3}'
+open='  - {name: open, claim: mean(normal) == 2, detect: 1%, secondaries: 100}'
+long='  - {name: long, claim: mean(hemisphere) == analytic, secondaries: 100000000}'
+
+test_good_suite_is_0() {
+  write_suite good.yaml "$good"
+  expect 0 run good.yaml
+  [ "$(tail -n 1 out)" = '1 passed, 0 failed, 0 skipped' ] || fail 'the last line is no tally'
+}
+
+test_failing_suite_is_1() {
+  write_suite fails.yaml "$good" "$wrong"
+  expect 1 run fails.yaml
+  contains out '1 passed, 1 failed, 0 skipped'
+  contains out 'fails/wrong'
+}
+
+test_bad_suite_is_2_with_its_place() {
+  write_suite bad.yaml '  - {claim: mean(normal) == 2, detct: 1%}'
+  expect 2 run bad.yaml
+  empty out
+  contains err 'bad.yaml:6:32: '
+  contains err 'detect'
+}
+
+test_every_bad_suite_is_2_with_its_place() {
+  local file
+  for file in "$source_folder"/tests/suites/bad_*.yaml; do
+    expect 2 run "$file"
+    empty out
+    grep -qE "$(basename "$file"):[0-9]+:[0-9]+: " err || fail "no place of the mistake in $file"
+  done
+}
+
+test_mistake_on_the_command_line_is_2() {
+  expect 2 run --fliter x good.yaml
+  empty out
+  contains err '--filter'
+  expect 2 run
+  expect 2 run no-such-suite.yaml
+  contains err 'no-such-suite.yaml'
+}
+
+test_undecided_is_3_or_as_asked() {
+  write_suite open.yaml "$good" "$open"
+  expect 3 run open.yaml
+  contains out '1 passed, 0 failed, 1 skipped'
+  expect 1 run open.yaml --inconclusive fail
+  expect 0 run open.yaml --inconclusive pass
+}
+
+test_filter_that_matches_nothing_is_4() {
+  write_suite good.yaml "$good"
+  expect 4 run good.yaml --filter 'good/nothing'
+}
+
+test_interrupted_is_130_and_leaves_no_report() {
+  write_suite long.yaml "$long"
+  local code=0
+  timeout --foreground --preserve-status --signal=INT 2 \
+    "$assay" run long.yaml --report json=run.json --report html=run.html >out 2>err || code=$?
+  [ "$code" -eq 130 ] || fail "ended with $code, not 130"
+  empty out
+  [ "$(find . -name '*run.*' | wc -l)" -eq 0 ] || fail "a report is left: $(ls -A)"
+}
+
+test_report_that_cannot_be_written_is_2() {
+  write_suite good.yaml "$good"
+  expect 2 run good.yaml --report json=missing/run.json
+  contains err 'missing/run.json'
+  : >file
+  expect 2 run good.yaml --report json=file/run.json
+  [ "$(find . -name '*run.json*' | wc -l)" -eq 0 ] || fail "something was left: $(ls -A)"
+}
+
+test_report_replaces_the_old_file_whole() {
+  write_suite good.yaml "$good"
+  head -c 1000000 /dev/zero >run.json
+  expect 0 run good.yaml --report json=run.json
+  python3 -m json.tool run.json >/dev/null || fail 'not JSON'
+  [ "$(find . -name '*run.json*' | wc -l)" -eq 1 ] || fail "a temporary file is left: $(ls -A)"
+}
+
+test_json_on_standard_output_is_all_there_is() {
+  write_suite good.yaml "$good"
+  expect 0 run good.yaml --report json=-
+  python3 -m json.tool out >/dev/null || fail 'standard output is not JSON'
+  contains err '1 passed, 0 failed, 0 skipped'
+}
+
+test_reports_are_what_other_programs_read() {
+  write_suite all.yaml "$good" "$wrong" "$open" '  - {name: "<&>", claim: mean(normal) <= 3}'
+  expect 1 run all.yaml --report json=run.json --report junit=run.xml --report html=run.html
+  xmllint --noout --nonet run.xml || fail 'JUnit is not well formed'
+  xmllint --noout --nonet run.html || fail 'HTML is not well formed'
+  local tests=$source_folder/tests/reports
+  /usr/bin/python3 "$tests/check_junit.py" run.xml run.json || fail 'junitparser'
+  /usr/bin/python3 "$tests/check_schema.py" "$source_folder/reports/record.schema.json" run.json ||
+    fail 'the record does not follow its schema'
+}
+
+test_sampled_file_is_checked_as_recorded() {
+  expect 0 sample analytic/normal --secondaries 2000
+  cp out data.txt
+  expect 0 check 'mean(recorded) == 0' --estimator 'recorded=recorded,file=data.txt'
+  expect 1 check 'mean(recorded) == 0.5' --estimator 'recorded=recorded,file=data.txt'
+  expect 2 check 'mean(recorded) == 0' --secondaries 2001 \
+    --estimator 'recorded=recorded,file=data.txt'
+  contains err '2000'
+}
+
+test_check_names_a_plugin_directly() {
+  expect 0 check 'mean(luminaire/area) == 0.481046907316' --detect 5%
+  expect 1 check 'mean(luminaire/area) == 0.6' --detect 5%
+  expect 2 check 'mean(luminaire/aera) == 0.48'
+  contains err 'luminaire/area'
+}
+
+test_replay_gives_the_same_numbers() {
+  write_suite good.yaml "$good" "$wrong"
+  expect 1 run good.yaml --seed 12 --report json=run.json
+  expect 0 replay run.json good/wrong
+  contains out 'the same numbers as recorded'
+  expect 0 replay run.json wrong 3
+  contains out 'observation 3: '
+  expect 2 replay run.json good/wrnog
+  contains err 'good/wrong'
+}
+
+test_replay_line_of_the_report_gives_the_same_numbers() {
+  write_suite good.yaml "$good" "$wrong"
+  expect 1 run good.yaml --report json=run.json
+  local line
+  line=$(python3 -c 'import json
+print(json.load(open("run.json"))["suites"][0]["tests"][1]["replay"])')
+  eval "\"$assay\" ${line#assay } --report json=again.json" >out 2>err
+  python3 - <<'PY' || fail "\`$line\` gives other numbers"
+import json
+one, again = (json.load(open(f))["suites"][0]["tests"] for f in ("run.json", "again.json"))
+assert len(again) == 1 and again[0]["id"] == one[1]["id"]
+assert again[0]["log10_p"] == one[1]["log10_p"] and again[0]["statistic"] == one[1]["statistic"]
+PY
+}
+
+test_saved_run_gives_other_reports() {
+  write_suite good.yaml "$good"
+  expect 0 run good.yaml --report json=run.json --report markdown=run.md
+  expect 0 report run.json --report markdown=-
+  cmp -s out run.md || fail 'the Markdown of the saved run differs'
+}
+
+test_threads_do_not_change_a_bit() {
+  write_suite all.yaml "$good" "$wrong" '  - {claim: mean(hemisphere) == analytic, detect: 5%}'
+  expect 1 run all.yaml --threads 1 --report json=one.json
+  expect 1 run all.yaml --threads 2 --report json=two.json
+  local times='s/"(started|seconds|threads)": *("[^"]*"|[-+0-9.e]+)/"\1": 0/g'
+  cmp -s <(sed -E "$times" one.json) <(sed -E "$times" two.json) || fail 'the records differ'
+}
+
+test_console_is_no_wider_than_100() {
+  write_suite all.yaml "$good" "$wrong" "$open" \
+    '  - {name: "a name so long that it can by no means stand on one line of a console of a hundred columns", claim: mean(normal) <= 3}'
+  expect 1 run all.yaml
+  python3 -c 'assert max(map(len, open("out", encoding="utf-8").read().split("\n"))) <= 100' ||
+    fail 'a line is wider than 100 columns'
+}
+
+test_colours_are_as_asked() {
+  local escape=$'\033'
+  write_suite good.yaml "$good"
+  expect 0 run good.yaml
+  lacks out "$escape"
+  FORCE_COLOR=1 expect 0 run good.yaml
+  contains out "$escape"
+  NO_COLOR=1 FORCE_COLOR=1 expect 0 run good.yaml
+  lacks out "$escape"
+  NO_COLOR=1 expect 0 run good.yaml --color always
+  contains out "$escape"
+  FORCE_COLOR=1 expect 0 run good.yaml --color never
+  lacks out "$escape"
+}
+
+test_full_disk_is_no_success() {
+  [ -e /dev/full ] || return 0
+  write_suite good.yaml "$good"
+  local code=0
+  "$assay" run good.yaml --report json=- >/dev/full 2>err || code=$?
+  [ "$code" -eq 2 ] || fail "ended with $code, not 2"
+  contains err 'No space left on device'
+}
+
+test_lists_are_one_id_a_line() {
+  write_suite good.yaml "$good" "$wrong"
+  expect 0 list tests good.yaml
+  [ "$(cat out)" = $'good/good\ngood/wrong' ] || fail 'not the two tests'
+  expect 0 list plugins
+  contains out 'luminaire/area'
+  expect 0 --version
+  expect 0 --help
+}
+
+"$3"

@@ -1,0 +1,186 @@
+#include "harness/evaluate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "normal_evidence.h"
+#include "running.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+constexpr double alpha = 0.05;
+
+/// A judged test of one channel with this p-value.
+TestWork judged(double p, double weight, Verdict verdict, const TestEntry& test) {
+  TestWork work;
+  TestOutcome& outcome = work.outcome;
+  outcome.question.test = &test;
+  outcome.question.subjects = {Subject{.channels = {0}}};
+  outcome.place = {.inside = true, .weight = weight, .share = {alpha * weight, 0.01}};
+  outcome.plan.regions = {Regions{.relation = Relation::equal}};
+  outcome.verdict = verdict;
+  ChannelOutcome& channel = outcome.channels.emplace_back();
+  channel.name = "value";
+  channel.evidence = normal_evidence(2, 1);
+  channel.decision.log_p_claimed = std::log(p);
+  return work;
+}
+
+std::vector<Verdict> after_holm(std::vector<TestWork> tests) {
+  std::vector<TestWork*> pointers;
+  for (TestWork& work : tests) pointers.push_back(&work);
+  apply_holm(pointers, alpha);
+  std::vector<Verdict> verdicts;
+  for (const TestWork& work : tests) verdicts.push_back(work.outcome.verdict);
+  return verdicts;
+}
+
+TEST(Evaluate, HolmTurnsAPassIntoAFail) {
+  const TestEntry test;
+  // 0.03 is above its share of 0.025; once the first is rejected all of 0.05 is its.
+  EXPECT_EQ(
+      after_holm({judged(1e-9, 0.5, Verdict::fail, test), judged(0.03, 0.5, Verdict::pass, test)}),
+      (std::vector{Verdict::fail, Verdict::fail}));
+  EXPECT_EQ(after_holm({judged(1e-9, 0.5, Verdict::fail, test),
+                        judged(0.03, 0.5, Verdict::inconclusive, test)}),
+            (std::vector{Verdict::fail, Verdict::fail}));
+}
+
+TEST(Evaluate, HolmLeavesWhatNothingBeforeItFreed) {
+  const TestEntry test;
+  EXPECT_EQ(
+      after_holm({judged(0.04, 0.5, Verdict::pass, test), judged(0.03, 0.5, Verdict::pass, test)}),
+      (std::vector{Verdict::pass, Verdict::pass}));
+}
+
+TEST(Evaluate, HolmCountsInvalidAndErrorAsNotRejected) {
+  const TestEntry test;
+  for (const Verdict verdict : {Verdict::invalid, Verdict::error}) {
+    EXPECT_EQ(
+        after_holm({judged(1e-9, 0.5, verdict, test), judged(0.03, 0.5, Verdict::pass, test)}),
+        (std::vector{verdict, Verdict::pass}));
+  }
+}
+
+TEST(Evaluate, HolmCountsATestWithoutNumbersAsNotRejected) {
+  const TestEntry test;
+  TestWork without = judged(1e-9, 0.5, Verdict::error, test);
+  without.outcome.channels.clear();
+  EXPECT_EQ(after_holm({without, judged(0.03, 0.5, Verdict::pass, test)}),
+            (std::vector{Verdict::error, Verdict::pass}));
+}
+
+TEST(Evaluate, HolmIsNotForTestsOutsideTheFamily) {
+  const TestEntry test;
+  TestWork outside = judged(0.03, 0.5, Verdict::pass, test);
+  outside.outcome.place.inside = false;
+  EXPECT_EQ(after_holm({judged(1e-9, 1, Verdict::fail, test), outside}),
+            (std::vector{Verdict::fail, Verdict::pass}));
+}
+
+std::string one_test(const std::string& estimator, const std::string& test) {
+  return "suite: one\nestimators:\n  it: " + estimator +
+         "\n  uniform: {plugin: analytic/exponential_uniform, primaries: 64}\ntests:\n  - {name: "
+         "test, " +
+         test + "}\n";
+}
+
+reports::Test judged_text(const std::string& estimator, const std::string& test) {
+  return test_named(run_text(one_test(estimator, test)), "test");
+}
+
+TEST(Evaluate, HeavyTailIsInvalidAndSaysWhatWouldHelp) {
+  const reports::Test test = judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
+                                         "claim: mean(it) == analytic, secondaries: 100");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_NE(test.message.find("a larger `primaries` or more `secondaries` would help"),
+            std::string::npos)
+      << test.message;
+}
+
+TEST(Evaluate, ForcedMethodIsNotInvalidatedByItsGates) {
+  const reports::Test test = judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
+                                         "claim: mean(it) == analytic, secondaries: 100, test: t");
+  EXPECT_NE(test.verdict, Verdict::invalid);
+  EXPECT_TRUE(std::any_of(test.gates.begin(), test.gates.end(),
+                          [](const reports::Gate& gate) { return gate.state == "red"; }));
+}
+
+TEST(Evaluate, ZeroVariancePassesAfterItsThousand) {
+  const reports::Test test =
+      judged_text("{plugin: analytic/zero_variance}", "claim: mean(it) == analytic, detect: 0.5%");
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_EQ(test.samples[0].secondaries, 1000);
+}
+
+TEST(Evaluate, ConstantHasNoVarianceToTest) {
+  for (const char* claim : {"variance(it) == 3", "variance(it) < variance(uniform)",
+                            "variance(uniform) > variance(it)"}) {
+    const reports::Test test =
+        judged_text("{plugin: analytic/zero_variance}", std::string("claim: ") + claim);
+    EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
+    EXPECT_NE(test.message.find("without spread"), std::string::npos) << test.message;
+  }
+}
+
+// 1000 secondaries of 64 see a spike of probability 1e-9 with probability 6e-5.
+TEST(Evaluate, UnseenSpikeIsNoPassWhenSomethingMustBeExcluded) {
+  EXPECT_EQ(judged_text("{plugin: analytic/rare_spike, probability: 1e-9}",
+                        "claim: mean(it) == 0.5, detect: 1%")
+                .verdict,
+            Verdict::inconclusive);
+  const reports::Test missed =
+      judged_text("{plugin: analytic/rare_spike, probability: 1e-9}", "claim: mean(it) == 0.51");
+  EXPECT_EQ(missed.verdict, Verdict::invalid);
+  EXPECT_NE(missed.message.find("unseen"), std::string::npos);
+}
+
+TEST(Evaluate, NotANumberIsAnErrorWithItsPlace) {
+  const reports::Test test = judged_text(
+      "{plugin: mutants/rare_nan, probability: 0.05, primaries: 1}", "claim: mean(it) == 0");
+  EXPECT_EQ(test.verdict, Verdict::error);
+  EXPECT_NE(test.message.find("not finite, the first is observation"), std::string::npos)
+      << test.message;
+  EXPECT_GT(test.samples[0].nonfinite, 0);
+  EXPECT_FALSE(test.ok);
+}
+
+TEST(Evaluate, MutantThatIsCaughtIsOk) {
+  const reports::Test test = judged_text("{plugin: mutants/scaled, factor: 1.1}",
+                                         "claim: mean(it) == analytic, detect: 5%, expect: fail");
+  EXPECT_EQ(test.verdict, Verdict::fail);
+  EXPECT_TRUE(test.ok);
+}
+
+TEST(Evaluate, MutantThatCannotActIsNeverActivatedAndNotOk) {
+  for (const char* estimator :
+       {"{plugin: mutants/scaled, factor: 1}",
+        "{plugin: mutants/absolute_cosine, scene: triangle, primaries: 16}"}) {
+    const reports::Test test =
+        judged_text(estimator, "claim: mean(it) == 0.1, secondaries: 50, expect: fail, test: t");
+    EXPECT_FALSE(test.ok) << estimator;
+    EXPECT_EQ(test.message.rfind("never activated", 0), 0) << test.message;
+  }
+}
+
+TEST(Evaluate, ExpectedInvalidIsOk) {
+  const reports::Test test =
+      judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
+                  "claim: mean(it) == analytic, secondaries: 100, expect: invalid");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_TRUE(test.ok);
+}
+
+TEST(Evaluate, PassThatWasNotExpectedIsNotOk) {
+  const reports::Test test = judged_text("{plugin: analytic/normal, mean: 2}",
+                                         "claim: mean(it) == 2, expect: fail, secondaries: 50");
+  EXPECT_EQ(test.verdict, Verdict::pass);
+  EXPECT_FALSE(test.ok);
+}
+
+}  // namespace
+}  // namespace assay::harness

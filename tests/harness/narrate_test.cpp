@@ -1,0 +1,74 @@
+#include "harness/narrate.h"
+
+#include <gtest/gtest.h>
+
+#include "normal_evidence.h"
+#include "running.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+reports::Test told(const std::string& test) {
+  return test_named(run_text(R"(suite: told
+estimators:
+  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+  other: {plugin: analytic/normal, mean: 2.01, primaries: 1}
+tests:
+  - {name: test, )" + test + "}\n"),
+                    "test");
+}
+
+void expect_said(const reports::Test& test, Verdict verdict, const std::string& words) {
+  EXPECT_EQ(test.verdict, verdict) << test.message;
+  EXPECT_NE(test.message.find(words), std::string::npos) << test.message;
+}
+
+TEST(Narrate, PassSaysWhatIsExcluded) {
+  const reports::Test test = told("claim: mean(normal) == 2, detect: 10%");
+  expect_said(test, Verdict::pass, "no evidence against the claim; ");
+  expect_said(test, Verdict::pass, " % or more is excluded");
+}
+
+TEST(Narrate, ClassicalPassSaysWhatWouldHaveBeenFound) {
+  expect_said(told("claim: mean(normal) == 2"), Verdict::pass,
+              "or more would have been found with probability 0.99");
+}
+
+TEST(Narrate, NeverSaysThatAClaimIsAccepted) {
+  EXPECT_EQ(told("claim: mean(normal) == 2").message.find("accept"), std::string::npos);
+}
+
+TEST(Narrate, FailSaysHowFarOffAndHowSure) {
+  const reports::Test test = told("claim: mean(normal) == 2.5");
+  expect_said(test, Verdict::fail, "relative difference from the reference is -");
+  expect_said(test, Verdict::fail, "p = ");
+}
+
+TEST(Narrate, ProofShowsItsInterval) {
+  expect_said(told("claim: mean(normal) within 20% of 2"), Verdict::pass, "shown: ");
+}
+
+TEST(Narrate, InconclusiveSaysHowManyMoreWouldDecide) {
+  expect_said(told("claim: mean(normal) == 2, detect: 2%, secondaries: 1000"),
+              Verdict::inconclusive, "secondaries would decide");
+}
+
+TEST(Narrate, InconclusiveSaysWhenNoNumberWouldDecide) {
+  expect_said(told("claim: mean(normal) == 2 +- 0.05, detect: 2%, secondaries: 100000"),
+              Verdict::inconclusive, "the reference's own error");
+}
+
+TEST(Narrate, ShowsThetaInItsUnit) {
+  Evidence evidence = normal_evidence(0, 1);
+  EXPECT_EQ(show_theta(0.25, evidence), "0.25");
+  evidence.relative = true;
+  EXPECT_EQ(show_theta(0.25, evidence), "+25 %");
+  evidence.relative = false;
+  evidence.ratio = true;
+  EXPECT_EQ(show_theta(0, evidence), "x 1");
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,150 @@
+#include "harness/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "questions.h"
+#include "stats/power.h"
+
+namespace assay::harness {
+namespace {
+
+/// A suite piloted and planned as a run does it.
+struct Planned {
+  std::unique_ptr<Asked> asked;
+  std::vector<FamilyPlace> place;
+  Pilots pilots;
+  std::vector<Plan> plans;
+};
+
+Planned plan_text(const std::string& tests, std::uint64_t seed = 1) {
+  Planned planned{.asked = ask_text(R"(suite: plans
+estimators:
+  normal: {plugin: analytic/normal, mean: 2}
+  single: {plugin: analytic/normal, mean: 2, primaries: 1}
+  uniform: {plugin: analytic/exponential_uniform}
+  heavy: {plugin: analytic/heavy_tail, index: 3}
+  heavy-single: {plugin: analytic/heavy_tail, index: 3, primaries: 1}
+  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
+tests:
+)" + tests)};
+  planned.place = places(planned.asked->suite, planned.asked->questions);
+  std::vector<const PreparedEstimator*> all;
+  for (const auto& [name, estimator] : planned.asked->estimators) all.push_back(&estimator);
+  Silence silence;
+  planned.pilots = run_pilots(all, {.seed = seed, .threads = 1}, silence);
+  const Primaries primaries =
+      choose_primaries(planned.asked->questions, planned.place, planned.pilots);
+  for (std::size_t i = 0; i < planned.place.size(); ++i) {
+    planned.plans.push_back(
+        plan_test(planned.asked->questions[i], planned.place[i], planned.pilots, primaries));
+  }
+  return planned;
+}
+
+TEST(Plan, WithoutDetectIsClassical) {
+  const Planned planned = plan_text("  - {claim: mean(normal) == 2}\n");
+  EXPECT_EQ(planned.plans[0].secondaries, 1000);
+  EXPECT_EQ(planned.plans[0].method.name, "t");
+}
+
+TEST(Plan, ObeysFixedSecondaries) {
+  const Planned planned = plan_text("  - {claim: mean(normal) == 2, secondaries: 123}\n");
+  EXPECT_EQ(planned.plans[0].secondaries, 123);
+}
+
+// sigma = 1 is known to the pilot of 8192 up to exp(3.09 sqrt(2 / 8192)) - 1 = 4.9 % of the
+// variance (its own error as much again): between the n of sigma^2 = 1 and that of 1.12.
+TEST(Plan, FindsDetectWithTheSuitesErrorRates) {
+  const Planned planned = plan_text("  - {claim: mean(single) == 2, detect: 2%}\n");
+  const stats::ErrorRates rates{.alpha = 0.01, .beta = 0.01, .two_sided = true};
+  const auto exact = [&](double variance) {
+    return static_cast<double>(*stats::student_t_sample_size(
+        {.standard_deviation = std::sqrt(variance), .rates = rates}, 0.04));
+  };
+  EXPECT_GE(static_cast<double>(planned.plans[0].secondaries), exact(1));
+  EXPECT_LE(static_cast<double>(planned.plans[0].secondaries), exact(1.12));
+}
+
+TEST(Plan, AsksForMoreAtASmallerShare) {
+  const Planned alone = plan_text("  - {claim: mean(single) == 2, detect: 2%}\n");
+  const Planned among = plan_text(
+      "  - {claim: mean(single) == 2, detect: 2%, weight: 1}\n"
+      "  - {name: heavier, claim: mean(single) <= 3, weight: 99}\n");
+  EXPECT_GT(among.plans[0].secondaries, alone.plans[0].secondaries);
+}
+
+TEST(Plan, ChoosesPrimariesAsAPowerOfTwoThatTamesTheTail) {
+  const Planned planned = plan_text(
+      "  - {name: a, claim: variance(uniform) <= 100}\n"
+      "  - {name: b, claim: variance(normal) <= 100}\n");
+  const std::uint64_t skewed = planned.plans[0].primaries[0];
+  EXPECT_EQ(skewed & (skewed - 1), 0);
+  EXPECT_GE(skewed, 64);
+  EXPECT_EQ(planned.plans[1].primaries[0], 64) << "a normal primary needs no averaging";
+}
+
+TEST(Plan, ObeysFixedPrimaries) {
+  const Planned planned = plan_text("  - {claim: mean(single) == 2}\n");
+  EXPECT_EQ(planned.plans[0].primaries[0], 1);
+}
+
+TEST(Plan, OfADistributionTakesSinglePrimaries) {
+  const Planned planned = plan_text(
+      "  - {name: a, claim: \"distribution(normal) == normal(2, 1)\"}\n"
+      "  - {name: b, claim: mean(normal) == 2}\n");
+  EXPECT_EQ(planned.plans[0].primaries[0], 1);
+  EXPECT_EQ(planned.plans[1].primaries[0], 64);
+}
+
+TEST(Plan, MovesToLogVarianceWhereSecondariesAreNotNormal) {
+  const Planned planned = plan_text("  - {claim: variance(uniform) <= 100}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "chi-square") << "primaries are chosen so";
+  const Planned skewed = plan_text("  - {claim: variance(heavy-single) <= 100}\n");
+  EXPECT_EQ(skewed.plans[0].method.name, "log-variance");
+  EXPECT_FALSE(skewed.plans[0].invalid.empty()) << "a Pareto law of index 3 has no kurtosis at all";
+  EXPECT_NE(skewed.plans[0].invalid.find("larger `primaries`"), std::string::npos);
+}
+
+TEST(Plan, ForcedMethodStandsWithItsGatesShown) {
+  const Planned planned =
+      plan_text("  - {claim: variance(heavy-single) <= 100, test: chi-square}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "chi-square");
+  EXPECT_TRUE(planned.plans[0].invalid.empty());
+  ASSERT_FALSE(planned.plans[0].gates.empty());
+  EXPECT_EQ(planned.plans[0].gates[0].state, "red");
+}
+
+TEST(Plan, StaysWithinABudgetOfPrimaries) {
+  const Planned planned = plan_text("  - {claim: mean(single) == 2, detect: 0.1%, budget: 5000}\n");
+  EXPECT_EQ(planned.plans[0].secondaries, 5000);
+}
+
+TEST(Plan, DoesNotDependOnWhichOtherTestsAreThere) {
+  const Planned one = plan_text(
+      "  - {claim: mean(single) == 2, detect: 2%, weight: 1}\n"
+      "  - {name: b, claim: mean(uniform) <= 7}\n");
+  const Planned other = plan_text(
+      "  - {claim: mean(single) == 2, detect: 2%, weight: 1}\n"
+      "  - {name: b, claim: variance(hemisphere) <= 7}\n");
+  EXPECT_EQ(one.plans[0].secondaries, other.plans[0].secondaries);
+}
+
+TEST(Plan, PilotIsOfTheSeedAlone) {
+  const std::string test = "  - {claim: mean(single) == 2}\n";
+  const stats::Moments one = plan_text(test).pilots.at("single").channels[0];
+  EXPECT_EQ(plan_text(test).pilots.at("single").channels[0], one);
+  EXPECT_NE(plan_text(test, 2).pilots.at("single").channels[0].mean, one.mean);
+  EXPECT_EQ(plan_text(test).pilots.at("single").channels[0].mean,
+            plan_text(test).pilots.at("normal").channels[0].mean)
+      << "the same plugin and parameters at one primary";
+}
+
+TEST(Plan, CriticalValueIsTheNormalQuantile) {
+  EXPECT_NEAR(critical_value(0.05, true), 1.959964, 1e-6);
+  EXPECT_NEAR(critical_value(0.05, false), 1.644854, 1e-6);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,170 @@
+#include "harness/pool.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "harness/progress.h"
+#include "harness/scheduler.h"
+
+namespace assay::harness {
+namespace {
+
+/// Two channels of a few sums of random numbers; misbehaves at one observation on request.
+struct Behaviour {
+  std::optional<std::uint64_t> not_a_number = {};
+  std::optional<std::uint64_t> throws = {};
+  std::optional<std::uint64_t> rows = {};
+};
+
+class Sums final : public Estimator {
+ public:
+  explicit Sums(Behaviour behaviour) : behaviour_(behaviour) {}
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    if (random.observation() == behaviour_.throws) throw std::runtime_error("the lamp burnt out");
+    double sum = 0;
+    for (std::uint64_t i = 0; i < primaries; ++i) sum += random.uniform();
+    out[0] = sum / static_cast<double>(primaries);
+    out[1] = std::log(random.uniform_open());
+    if (random.observation() == behaviour_.not_a_number) {
+      out[1] = std::numeric_limits<double>::quiet_NaN();
+    }
+    cost.samples += primaries;
+  }
+
+ private:
+  Behaviour behaviour_;
+};
+
+class SumsSetup final : public Setup {
+ public:
+  explicit SumsSetup(Behaviour behaviour = {}) : behaviour_(behaviour) {}
+  std::vector<Channel> channels() const override { return {{.name = "sum"}, {.name = "log"}}; }
+  std::unique_ptr<Estimator> make() const override { return std::make_unique<Sums>(behaviour_); }
+  std::optional<std::uint64_t> observations() const override { return behaviour_.rows; }
+
+ private:
+  Behaviour behaviour_;
+};
+
+struct Wanted {
+  std::vector<std::uint64_t> prefixes;
+  unsigned threads = 1;
+  std::uint64_t primaries = 5;
+  Behaviour behaviour = {};
+};
+
+std::shared_ptr<Pool> drawn(const Wanted& wanted) {
+  const StreamKey key = stream_key(1, "test/sums", "", 0);
+  auto pool =
+      std::make_shared<Pool>(std::make_shared<SumsSetup>(wanted.behaviour), key, wanted.primaries);
+  pool->plan() = {{.histogram_low = 0, .histogram_high = 1, .keep = 700}, {.keep = 20}};
+  for (const std::uint64_t count : wanted.prefixes) pool->request(count);
+  Silence silence;
+  draw_all({pool}, {.threads = wanted.threads}, silence);
+  return pool;
+}
+
+void expect_same(const Summary& one, const Summary& other) {
+  EXPECT_EQ(one.count, other.count);
+  EXPECT_EQ(one.cost.samples, other.cost.samples);
+  ASSERT_EQ(one.channels.size(), other.channels.size());
+  for (std::size_t c = 0; c < one.channels.size(); ++c) {
+    EXPECT_EQ(one.channels[c].moments, other.channels[c].moments) << "channel " << c;
+    EXPECT_EQ(one.channels[c].histogram.counts, other.channels[c].histogram.counts);
+    EXPECT_EQ(one.channels[c].nonfinite, other.channels[c].nonfinite);
+  }
+}
+
+TEST(Pool, OfEveryThreadCountHasTheSameBits) {
+  const std::vector<std::uint64_t> prefixes{100, 10000, 12345};
+  const auto alone = drawn({.prefixes = prefixes, .threads = 1});
+  for (const unsigned threads : {2U, 3U, 4U}) {
+    const auto together = drawn({.prefixes = prefixes, .threads = threads});
+    for (const std::uint64_t count : prefixes) {
+      expect_same(together->prefix(count), alone->prefix(count));
+      EXPECT_EQ(alone->prefix(count).count, count);
+    }
+    EXPECT_TRUE(std::ranges::equal(together->values(0, 700), alone->values(0, 700)));
+  }
+}
+
+// Blocks hold 2048 observations of 5 primaries: prefixes inside, at and beyond their ends.
+TEST(Pool, PrefixIsThatOfAPoolDrawnOnlySoFar) {
+  const std::vector<std::uint64_t> prefixes{1, 2, 999, 2047, 2048, 2049, 4096, 5000, 9999};
+  const auto all = drawn({.prefixes = prefixes, .threads = 2});
+  ASSERT_EQ(all->block_size(), 2048);
+  for (const std::uint64_t count : prefixes) {
+    expect_same(all->prefix(count), drawn({.prefixes = {count}})->prefix(count));
+  }
+}
+
+TEST(Pool, DoesNotChangeWhenContinuedLater) {
+  const StreamKey key = stream_key(1, "test/sums", "", 0);
+  const auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);
+  Silence silence;
+  pool->request(3000);
+  draw_all({pool}, {.threads = 1}, silence);
+  pool->request(9000);
+  draw_all({pool}, {.threads = 2}, silence);
+  EXPECT_EQ(pool->prefix(9000).channels[0].moments,
+            drawn({.prefixes = {9000}})->prefix(9000).channels[0].moments);
+}
+
+TEST(Pool, KeepsTheFirstValuesAsManyAsPlanned) {
+  const auto pool = drawn({.prefixes = {5000}, .threads = 2});
+  EXPECT_EQ(pool->values(0, 5000).size(), 700);
+  EXPECT_EQ(pool->values(0, 10).size(), 10);
+  EXPECT_EQ(pool->values(1, 5000).size(), 20);
+  for (const std::uint64_t index : {0U, 7U, 19U}) {
+    const std::vector<double> again =
+        draw_observation(SumsSetup(), pool->key(), pool->primaries(), index);
+    EXPECT_EQ(pool->values(0, 700)[index], again[0]);
+    EXPECT_EQ(pool->values(1, 20)[index], again[1]);
+  }
+}
+
+TEST(Pool, CountsWhatIsNotFiniteWithItsPlace) {
+  const auto pool =
+      drawn({.prefixes = {1000, 6000}, .threads = 2, .behaviour = {.not_a_number = 4321}});
+  const ChannelSummary& spoilt = pool->prefix(6000).channels[1];
+  EXPECT_EQ(spoilt.nonfinite, 1);
+  EXPECT_EQ(spoilt.first_nonfinite, 4321);
+  EXPECT_EQ(spoilt.moments.count, 5999);
+  EXPECT_EQ(pool->prefix(6000).channels[0].nonfinite, 0);
+  EXPECT_EQ(pool->prefix(1000).channels[1].nonfinite, 0);
+}
+
+TEST(Pool, SaysAtWhichObservationItsEstimatorThrew) {
+  const auto pool = drawn({.prefixes = {1000, 6000}, .threads = 2, .behaviour = {.throws = 4321}});
+  EXPECT_EQ(pool->trouble(), "observation 4321: the lamp burnt out");
+  EXPECT_FALSE(pool->has(6000));
+  EXPECT_FALSE(pool->has(4322));
+}
+
+TEST(Pool, StillHasWhatCameBeforeTheTrouble) {
+  const auto pool = drawn({.prefixes = {1000, 6000}, .threads = 2, .behaviour = {.throws = 4321}});
+  EXPECT_TRUE(pool->has(1000));
+  expect_same(pool->prefix(1000), drawn({.prefixes = {1000}})->prefix(1000));
+}
+
+TEST(Pool, OfBoundedDataEndsWhereTheyEnd) {
+  const auto pool = drawn({.prefixes = {2500}, .threads = 2, .behaviour = {.rows = 2500}});
+  EXPECT_EQ(pool->drawn(), 2500);
+  EXPECT_EQ(pool->block_end(2048), 2500);
+}
+
+TEST(Pool, HistogramHoldsEveryFiniteValue) {
+  const auto pool = drawn({.prefixes = {5000}});
+  const Histogram& histogram = pool->prefix(5000).channels[0].histogram;
+  std::uint64_t total = histogram.below + histogram.above;
+  for (const std::uint64_t count : histogram.counts) total += count;
+  EXPECT_EQ(total, 5000);
+  EXPECT_EQ(histogram.below + histogram.above, 0);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,105 @@
+#include "harness/question.h"
+
+#include <gtest/gtest.h>
+
+#include "questions.h"
+#include "refusal.h"
+
+namespace assay::harness {
+namespace {
+
+std::string suite_of(const std::string& test) {
+  return "suite: q\nestimators:\n  darts: {plugin: analytic/dart_throwing}\n"
+         "  other: {plugin: analytic/dart_throwing}\n"
+         "  scaled: {plugin: mutants/scaled}\n"
+         "  original: {plugin: analytic/exponential_uniform}\n"
+         "  normal: {plugin: analytic/normal}\n"
+         "  heavy: {plugin: analytic/heavy_tail, index: 2}\n"
+         "  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}\n"
+         "  area: {plugin: luminaire/area, scene: triangle}\n"
+         "tests:\n  - " +
+         test + "\n";
+}
+
+std::string refused(const std::string& test) {
+  return refusal([&] { ask_text(suite_of(test)); });
+}
+
+const Question question_of(const std::unique_ptr<Asked>& asked) { return asked->questions.at(0); }
+
+TEST(Question, TakesTheAnalyticMeanAndVarianceOfThePlugin) {
+  const auto mean = ask_text(suite_of("claim: mean(darts) == analytic"));
+  EXPECT_EQ(question_of(mean).kind, QuestionKind::mean_of_one);
+  EXPECT_DOUBLE_EQ(question_of(mean).references[0].value, 3.141592653589793);
+  const auto variance = ask_text(suite_of("claim: variance(darts) <= analytic"));
+  EXPECT_EQ(question_of(variance).kind, QuestionKind::variance_of_one);
+  EXPECT_NEAR(question_of(variance).references[0].value, 2.696766213, 1e-9);
+}
+
+TEST(Question, KeepsTheReferencesOwnError) {
+  const auto asked = ask_text(suite_of("claim: mean(darts) == 3.1 +- 0.1"));
+  EXPECT_EQ(question_of(asked).references[0].standard_error, 0.1);
+}
+
+TEST(Question, GivesTwoSourcesOfOneKeyDisjointCopies) {
+  const auto same = ask_text(suite_of("claim: mean(darts) == mean(other)"));
+  EXPECT_EQ(question_of(same).subjects[0].copy, 0U);
+  EXPECT_EQ(question_of(same).subjects[1].copy, 1U);
+  const auto mutant = ask_text(suite_of("claim: mean(scaled) == mean(original)"));
+  EXPECT_EQ(question_of(mutant).subjects[1].copy, 1U) << "a mutant draws its original's stream";
+  const auto apart = ask_text(suite_of("claim: mean(darts) == mean(normal)"));
+  EXPECT_EQ(question_of(apart).subjects[1].copy, 0U);
+}
+
+TEST(Question, AsksASamplersCellsOrOneMarginal) {
+  const auto cells = ask_text(suite_of("claim: distribution(hemisphere.direction) == density"));
+  EXPECT_EQ(question_of(cells).kind, QuestionKind::fit_to_density);
+  EXPECT_EQ(question_of(cells).channel_name(0), "cell");
+  EXPECT_EQ(question_of(cells).subjects[0].purpose, "direction");
+  const auto marginal = ask_text(suite_of("claim: distribution(hemisphere.theta) == density"));
+  EXPECT_EQ(question_of(marginal).channel_name(0), "theta");
+}
+
+TEST(Question, RefusesAPartThatIsNotThere) {
+  const std::string text = refused("claim: mean(area.irradience) == 1");
+  EXPECT_NE(text.find("no part `irradience`"), std::string::npos) << text;
+  EXPECT_NE(text.find("`irradiance`"), std::string::npos) << text;
+}
+
+TEST(Question, RefusesAnalyticWhereThePluginDoesNotKnow) {
+  const std::string text = refused("claim: variance(heavy) == analytic");
+  EXPECT_NE(text.find("no exact variance"), std::string::npos) << text;
+}
+
+TEST(Question, RefusesPerCentOfNothing) {
+  EXPECT_NE(refused("{claim: mean(normal) == 0, detect: 1%}").find("the reference is zero"),
+            std::string::npos);
+  EXPECT_NE(refused("{claim: 'distribution(normal) == normal(0, 1)', detect: 1%}")
+                .find("a distance between laws is a probability"),
+            std::string::npos);
+}
+
+TEST(Question, RefusesAnAbsoluteMarginOnARatio) {
+  EXPECT_NE(refused("{claim: variance(normal) == variance(darts), detect: 0.1}")
+                .find("give it in per cent"),
+            std::string::npos);
+}
+
+TEST(Question, RefusesMarginsOfTwoUnits) {
+  EXPECT_NE(refused("{claim: mean(darts) == 3, allow: 0.001, detect: 1%}").find("must both be"),
+            std::string::npos);
+}
+
+TEST(Question, RefusesAVarianceAgainstANumberWithAnError) {
+  EXPECT_NE(refused("claim: variance(normal) == 1 +- 0.1").find("+-"), std::string::npos)
+      << refused("claim: variance(normal) == 1 +- 0.1");
+}
+
+TEST(Question, SaysWhichQuantitiesItHasNoMethodFor) {
+  EXPECT_NE(
+      refused("claim: efficiency(darts) > efficiency(normal)").find("no method for `efficiency`"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace assay::harness

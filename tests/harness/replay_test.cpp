@@ -1,0 +1,154 @@
+#include "harness/replay.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "harness/commands.h"
+#include "harness/pool.h"
+#include "harness/prepare.h"
+#include "refusal.h"
+#include "reports/json.h"
+#include "running.h"
+
+namespace assay::harness {
+namespace {
+
+struct Said {
+  int code;
+  std::string text;
+};
+
+Said said(const ReplayArguments& arguments) {
+  testing::internal::CaptureStdout();
+  const int code = replay(arguments);
+  std::fflush(stdout);
+  return {code, testing::internal::GetCapturedStdout()};
+}
+
+constexpr const char* suite = R"(suite: replayed
+estimators:
+  uniform: {plugin: analytic/exponential_uniform}
+  again: {plugin: analytic/exponential_uniform}
+  normal: {plugin: analytic/normal, mean: 2}
+  area: {plugin: luminaire/area, scene: {
+    receiver: {position: [0, 0, 0], normal: [0, 0, 1]},
+    light: {polygon: [[0, 0, 1], [0, 1, 1], [1, 0, 1]], radiance: 2}}}
+  hemisphere: {plugin: luminaire/hemisphere, scene: cornell_triangle}
+  no_cosine: {plugin: mutants/no_cosine, scene: triangle}
+  ratio: {plugin: analytic/ratio, primaries: 16}
+  spoilt: {plugin: mutants/rare_nan, probability: 0.05, primaries: 1}
+  zero: {plugin: analytic/zero_variance}
+tests:
+  - {name: mean, claim: mean(uniform) == analytic, detect: 2%}
+  - {name: absolute, claim: mean(uniform) == analytic, detect: 0.2}
+  - {name: allowed, claim: mean(uniform) <= 6.3, allow: 1%, detect: 3%}
+  - {name: means, claim: mean(area) == mean(uniform), detect: 5%, expect: fail}
+  - {name: one stream, claim: mean(uniform) == mean(again), detect: 5%}
+  - {name: variance, claim: variance(normal) == analytic, detect: 40%}
+  - {name: variances, claim: variance(uniform) == variance(again), detect: 50%}
+  - {name: of a ratio, claim: mean(ratio) >= 6}
+  - {name: within, claim: mean(area) within 5% of analytic}
+  - {name: law, claim: 'distribution(normal) == normal(2, 1)', detect: 0.1}
+  - {name: cells, claim: distribution(hemisphere.direction) == density}
+  - {name: mutant, claim: mean(no_cosine) == analytic, detect: 5%, expect: fail}
+  - {name: spoilt, claim: mean(spoilt) == 0}
+  - {name: zero, claim: mean(zero) == analytic}
+)";
+
+/// The suite's record, as a file.
+std::string recorded(const Workplace& place, const RunOptions& options = {}) {
+  const reports::Record record = run_files({place.write("suite.yaml", suite)}, options);
+  return place.write("run.json", reports::json(record));
+}
+
+TEST(Replay, GivesTheSameNumbersForEveryKindOfClaim) {
+  const Workplace place;
+  const std::string file = recorded(place, {.seed = 5});
+  for (const reports::Test& test : read_record(file).suites[0].tests) {
+    const Said now = said({.record = file, .test = test.id});
+    EXPECT_EQ(now.code, 0) << now.text;
+    EXPECT_NE(now.text.find("the same numbers as recorded"), std::string::npos) << now.text;
+  }
+}
+
+TEST(Replay, FindsATestByItsName) {
+  const Workplace place;
+  EXPECT_EQ(said({.record = recorded(place), .test = "mean"}).code, 0);
+}
+
+TEST(Replay, UsesTheSeedOfTheTestsOwnSuite) {
+  const Workplace place;
+  const std::string one = place.write("one.yaml", "seed: 3\n" + std::string(suite));
+  const std::string two = place.write("two.yaml", "seed: 4\n" + std::string(suite));
+  const std::string file = place.write("run.json", reports::json(run_files({one, two})));
+  EXPECT_EQ(said({.record = file, .test = "two/mean"}).code, 0);
+}
+
+TEST(Replay, PrintsTheValueThatWasDrawn) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const PreparedEstimator uniform =
+      prepare({.name = "uniform", .plugin = "analytic/exponential_uniform"}, ".");
+  const std::uint64_t primaries = test_named(read_record(file), "mean").samples[0].primaries;
+  const std::vector<double> value =
+      draw_observation(*uniform.setup, key_of(uniform, 1, 0, ""), primaries, 17);
+  const Said now = said({.record = file, .test = "mean", .observation = 17});
+  EXPECT_NE(now.text.find(fmt::format("observation 17: {}\n", value[0])), std::string::npos)
+      << now.text;
+}
+
+TEST(Replay, DrawsTheVeryObservationThatIsNotANumber) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const std::string message = test_named(read_record(file), "spoilt").message;
+  const std::string before = "the first is observation ";
+  const std::size_t at = message.find(before);
+  ASSERT_NE(at, std::string::npos) << message;
+  const std::uint64_t index = std::stoull(message.substr(at + before.size()));
+  const Said now = said({.record = file, .test = "spoilt", .observation = index});
+  EXPECT_NE(now.text.find(": nan"), std::string::npos) << now.text;
+}
+
+TEST(Replay, NoticesARecordThatWasTamperedWith) {
+  const Workplace place;
+  reports::Record record = read_record(recorded(place));
+  record.suites[0].tests[0].samples[0].mean = 6.5;
+  const std::string file = place.write("tampered.json", reports::json(record));
+  const Said now = said({.record = file, .test = "mean"});
+  EXPECT_EQ(now.code, 1);
+  EXPECT_NE(now.text.find("(recorded: 6.5)"), std::string::npos) << now.text;
+}
+
+TEST(Replay, SuggestsTheTestThatWasMeant) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const std::string text = refusal([&] { replay({.record = file, .test = "suite/meen"}); });
+  EXPECT_NE(text.find("did you mean `suite/mean`?"), std::string::npos) << text;
+}
+
+TEST(Replay, RefusesAnObservationThatWasNotDrawn) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const std::string text =
+      refusal([&] { replay({.record = file, .test = "zero", .observation = 1000}); });
+  EXPECT_NE(text.find("the test used 0 to 999"), std::string::npos) << text;
+}
+
+TEST(Replay, FindsRecordedDataFromTheSuitesFolder) {
+  const Workplace place;
+  place.write("data.txt", "# columns: a b\n1 2\n3 4\n5 7\n");
+  const std::string file =
+      place.write("run.json", reports::json(run_files({place.write("data.yaml", R"(suite: data
+estimators:
+  all: {plugin: recorded, file: data.txt}
+  one: {plugin: recorded, file: data.txt, column: b}
+tests:
+  - {name: all, claim: mean(all) == 3, test: t}
+  - {name: one, claim: mean(one) == 3, test: t}
+)")})));
+  EXPECT_EQ(said({.record = file, .test = "all"}).code, 0);
+  EXPECT_EQ(said({.record = file, .test = "one"}).code, 0);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "harness/run.h"
+
+namespace assay::harness {
+
+/// A folder of the current test alone, removed at its end.
+class Workplace {
+ public:
+  Workplace() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::temp_directory_path() /
+            (std::string("assay_") + info->test_suite_name() + "_" + info->name());
+    std::filesystem::create_directories(path_);
+  }
+  ~Workplace() { std::filesystem::remove_all(path_); }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return (path_ / name).string();
+  }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline reports::Record run_files(const std::vector<std::string>& files,
+                                 const RunOptions& options = {}) {
+  std::vector<Suite> suites;
+  for (const std::string& file : files) suites.push_back(load_suite(file));
+  Silence silence;
+  return run(suites, options, silence);
+}
+
+/// Runs a suite given as text.
+inline reports::Record run_text(const std::string& text, const RunOptions& options = {}) {
+  const Workplace place;
+  return run_files({place.write("suite.yaml", text)}, options);
+}
+
+inline const reports::Test& test_named(const reports::Record& record, const std::string& name) {
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      if (test.name == name) return test;
+    }
+  }
+  throw std::out_of_range("no test named " + name);
+}
+
+}  // namespace assay::harness

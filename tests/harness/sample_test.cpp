@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "harness/commands.h"
+#include "refusal.h"
+#include "running.h"
+
+namespace assay::harness {
+namespace {
+
+std::string sampled(const SampleArguments& arguments) {
+  testing::internal::CaptureStdout();
+  const int code = sample(arguments);
+  std::fflush(stdout);
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(code, 0);
+  return text;
+}
+
+std::vector<std::string> rows(const std::string& text) {
+  std::vector<std::string> found;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.starts_with("#")) found.push_back(line);
+  }
+  return found;
+}
+
+TEST(Sample, PrintsOneObservationALine) {
+  EXPECT_EQ(rows(sampled({.source = "analytic/normal", .secondaries = 7})).size(), 7);
+}
+
+TEST(Sample, IsAPrefixOfALongerOne) {
+  const std::vector<std::string> few = rows(sampled({.source = "analytic/normal"}));
+  const std::vector<std::string> many =
+      rows(sampled({.source = "analytic/normal", .secondaries = 50}));
+  EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
+}
+
+TEST(Sample, DependsOnTheSeed) {
+  EXPECT_NE(sampled({.source = "analytic/normal", .seed = 1}),
+            sampled({.source = "analytic/normal", .seed = 2}));
+}
+
+TEST(Sample, OfASamplerHasItsMarginals) {
+  const std::string text = sampled({.source = "luminaire/hemisphere.direction"});
+  EXPECT_NE(text.find("# columns: theta phi\n"), std::string::npos) << text;
+}
+
+TEST(Sample, RefusesAPartThatIsNotThere) {
+  const std::string text = refusal([] { sample({.source = "luminaire/hemisphere.directions"}); });
+  EXPECT_NE(text.find("no part `directions`"), std::string::npos) << text;
+}
+
+// What `sample` prints, `recorded` reads: the moments are those of the estimator itself.
+TEST(Sample, IsWhatRecordedReads) {
+  const Workplace place;
+  place.write("data.txt",
+              sampled({.source = "analytic/normal", .secondaries = 300, .primaries = 4}));
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: round trip
+estimators:
+  direct: {plugin: analytic/normal, primaries: 4}
+  data: {plugin: recorded, file: data.txt}
+tests:
+  - {name: direct, claim: mean(direct) == 0.5, secondaries: 300}
+  - {name: data, claim: mean(data) == 0.5}
+)")});
+  const reports::Sample& direct = test_named(record, "direct").samples[0];
+  const reports::Sample& data = test_named(record, "data").samples[0];
+  EXPECT_EQ(data.secondaries, 300);
+  EXPECT_EQ(data.mean, direct.mean);
+  EXPECT_EQ(data.variance, direct.variance);
+}
+
+}  // namespace
+}  // namespace assay::harness
