@@ -159,6 +159,12 @@ bool is_constant(const Question& question, std::size_t subject, std::size_t chan
   return moments.maximum - moments.minimum <= 2 * channel_of(question, subject, channel).rounding;
 }
 
+double unseen_shift(const Question& question, std::size_t subject, std::size_t channel,
+                    const ChannelData& data, double level) {
+  const Difference mean = mean_of(channel_of(question, subject, channel), data, level);
+  return std::max(mean.below, mean.above);
+}
+
 ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                                std::span<const ChannelData> data, const Regions& regions,
                                const ErrorShare& share) {

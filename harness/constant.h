@@ -30,4 +30,9 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                                std::span<const ChannelData> data, const Regions& regions,
                                const ErrorShare& share);
 
+/// The most that values never seen could move the mean of a constant sample, at this level: q times
+/// the declared range, to the worse side.
+double unseen_shift(const Question& question, std::size_t subject, std::size_t channel,
+                    const ChannelData& data, double level);
+
 }  // namespace assay::harness

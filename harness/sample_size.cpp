@@ -56,17 +56,24 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
                                               const Pilots& pilots, const Plan& plan) {
   const stats::Moments& first = pilot_of(question, 0, channel, pilots);
   PlannedChannel planned;
-  if (is_constant(question, 0, channel, first)) return std::nullopt;
-  planned.standard_deviation = std::sqrt(upper_variance(first) / averaged(question, plan, 0));
-  planned.kurtosis = secondary_kurtosis(first, averaged(question, plan, 0));
+  const bool constant = is_constant(question, 0, channel, first);
+  // A mean without spread may be compared with one that has some; nothing else can be planned.
+  if (constant && question.kind != QuestionKind::mean_of_two) return std::nullopt;
+  if (!constant) {
+    planned.standard_deviation = std::sqrt(upper_variance(first) / averaged(question, plan, 0));
+    planned.kurtosis = secondary_kurtosis(first, averaged(question, plan, 0));
+  }
   double other_mean = 0;
   if (question.of_two()) {
     const stats::Moments& second = pilot_of(question, 1, channel, pilots);
-    if (is_constant(question, 1, channel, second)) return std::nullopt;
     other_mean = second.mean;
-    planned.other_deviation =
-        std::abs(question.factor) * std::sqrt(upper_variance(second) / averaged(question, plan, 1));
-    planned.other_kurtosis = secondary_kurtosis(second, averaged(question, plan, 1));
+    if (is_constant(question, 1, channel, second)) {
+      if (constant || question.kind != QuestionKind::mean_of_two) return std::nullopt;
+    } else {
+      planned.other_deviation = std::abs(question.factor) *
+                                std::sqrt(upper_variance(second) / averaged(question, plan, 1));
+      planned.other_kurtosis = secondary_kurtosis(second, averaged(question, plan, 1));
+    }
   } else if (!question.references.empty()) {
     planned.reference_error = question.references[channel].standard_error;
   }
@@ -82,21 +89,35 @@ stats::ErrorRates rates_of(const ErrorShare& share, const Regions& regions) {
   return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
 }
 
+/// Whether both samples of a comparison of means have a spread: else it is planned as one mean
+/// against a number.
+bool both_spread(const Question& question, const PlannedChannel& channel) {
+  return question.of_two() && channel.standard_deviation > 0 && channel.other_deviation > 0;
+}
+
+stats::MeanPlan mean_plan(const stats::ErrorRates& rates, double allow,
+                          const PlannedChannel& channel) {
+  return {.standard_deviation = std::hypot(channel.standard_deviation, channel.other_deviation),
+          .allow = allow * channel.unit,
+          .reference_standard_error = channel.reference_error,
+          .rates = rates};
+}
+
+stats::TwoMeansPlan means_plan(const stats::ErrorRates& rates, double allow,
+                               const PlannedChannel& channel) {
+  return {.standard_deviation_x = channel.standard_deviation,
+          .standard_deviation_y = channel.other_deviation,
+          .allow = allow * channel.unit,
+          .rates = rates};
+}
+
 std::optional<std::uint64_t> for_means(const Question& question, const stats::ErrorRates& rates,
                                        const Regions& regions, const PlannedChannel& channel) {
   const double detect = *regions.detect * channel.unit;
-  if (question.of_two()) {
-    return stats::welch_sample_size({.standard_deviation_x = channel.standard_deviation,
-                                     .standard_deviation_y = channel.other_deviation,
-                                     .allow = regions.allow * channel.unit,
-                                     .rates = rates},
-                                    detect);
+  if (both_spread(question, channel)) {
+    return stats::welch_sample_size(means_plan(rates, regions.allow, channel), detect);
   }
-  return stats::student_t_sample_size({.standard_deviation = channel.standard_deviation,
-                                       .allow = regions.allow * channel.unit,
-                                       .reference_standard_error = channel.reference_error,
-                                       .rates = rates},
-                                      detect);
+  return stats::student_t_sample_size(mean_plan(rates, regions.allow, channel), detect);
 }
 
 /// Both one-sided tests at beta must reject when theta = 0, each missing with beta / 2.
@@ -186,20 +207,10 @@ std::optional<double> detectable_effect(const Question& question, const ErrorSha
   const stats::ErrorRates rates{
       .alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
   double found = 0;
-  if (question.kind == QuestionKind::mean_of_one) {
-    found = stats::student_t_detectable({.standard_deviation = channel.standard_deviation,
-                                         .allow = regions.allow * channel.unit,
-                                         .reference_standard_error = channel.reference_error,
-                                         .rates = rates},
-                                        n) /
-            channel.unit;
-  } else if (question.kind == QuestionKind::mean_of_two) {
-    found = stats::welch_detectable({.standard_deviation_x = channel.standard_deviation,
-                                     .standard_deviation_y = channel.other_deviation,
-                                     .allow = regions.allow * channel.unit,
-                                     .rates = rates},
-                                    n) /
-            channel.unit;
+  if (both_spread(question, channel) && of_means(question)) {
+    found = stats::welch_detectable(means_plan(rates, regions.allow, channel), n) / channel.unit;
+  } else if (of_means(question)) {
+    found = stats::student_t_detectable(mean_plan(rates, regions.allow, channel), n) / channel.unit;
   } else if (of_variances(question)) {
     found =
         std::log(stats::log_variance_detectable(variance_plan(rates, regions.allow, channel), n));
@@ -227,17 +238,13 @@ std::optional<double> power_at(const Question& question, const ErrorShare& share
   }
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return stats::student_t_power({.standard_deviation = channel.standard_deviation,
-                                     .allow = regions.allow * channel.unit,
-                                     .reference_standard_error = channel.reference_error,
-                                     .rates = rates},
-                                    n, effect * channel.unit);
     case QuestionKind::mean_of_two:
-      return stats::welch_power({.standard_deviation_x = channel.standard_deviation,
-                                 .standard_deviation_y = channel.other_deviation,
-                                 .allow = regions.allow * channel.unit,
-                                 .rates = rates},
-                                n, effect * channel.unit);
+      if (both_spread(question, channel)) {
+        return stats::welch_power(means_plan(rates, regions.allow, channel), n,
+                                  effect * channel.unit);
+      }
+      return stats::student_t_power(mean_plan(rates, regions.allow, channel), n,
+                                    effect * channel.unit);
     case QuestionKind::variance_of_one:
     case QuestionKind::variance_of_two:
       return stats::log_variance_power(variance_plan(rates, regions.allow, channel), n,
@@ -259,12 +266,12 @@ PlannedChannel observed_channel(const Question& question, std::size_t channel,
   PlannedChannel observed;
   if (!of_means(question) && !of_variances(question)) return observed;
   observed.standard_deviation = data[0].moments.standard_deviation();
-  observed.kurtosis = data[0].moments.kurtosis();
+  if (of_variances(question)) observed.kurtosis = data[0].moments.kurtosis();
   double other_mean = 0;
   if (question.of_two()) {
     other_mean = data[1].moments.mean;
     observed.other_deviation = std::abs(question.factor) * data[1].moments.standard_deviation();
-    observed.other_kurtosis = data[1].moments.kurtosis();
+    if (of_variances(question)) observed.other_kurtosis = data[1].moments.kurtosis();
   } else {
     observed.reference_error = question.references[channel].standard_error;
   }

@@ -139,6 +139,25 @@ TEST(Evaluate, UnseenSpikeIsNoPassWhenSomethingMustBeExcluded) {
   EXPECT_NE(missed.message.find("unseen"), std::string::npos);
 }
 
+TEST(Evaluate, ConstantIsComparedWithSpreadWhereItsRangeIsClosed) {
+  const reports::Test test = judged_text("{plugin: analytic/zero_variance}",
+                                         "claim: mean(uniform) == mean(it), detect: 5%");
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_EQ(judged_text("{plugin: analytic/zero_variance}",
+                        "claim: mean(it) == 1.2 * mean(uniform), detect: 5%")
+                .verdict,
+            Verdict::fail);
+}
+
+TEST(Evaluate, ConstantIsNotComparedWithSpreadWhereTheUnseenCouldDecide) {
+  for (const char* claim : {"mean(it) == mean(uniform)", "mean(uniform) == mean(it)"}) {
+    const reports::Test test = judged_text("{plugin: analytic/rare_spike, probability: 1e-9}",
+                                           std::string("claim: ") + claim);
+    EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
+    EXPECT_NE(test.message.find("never seen could move"), std::string::npos) << test.message;
+  }
+}
+
 TEST(Evaluate, NotANumberIsAnErrorWithItsPlace) {
   const reports::Test test = judged_text(
       "{plugin: mutants/rare_nan, probability: 0.05, primaries: 1}", "claim: mean(it) == 0");
