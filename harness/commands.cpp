@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 
 #include "harness/progress_terminal.h"
 #include "harness/replay.h"
@@ -47,6 +48,21 @@ std::string written(const reports::Record& record, const std::string& kind, bool
   return reports::console(record, {.colour = colour, .verbose = is_single(record)});
 }
 
+/// A report that cannot be written is better known before the hours of sampling than after.
+void require_writable(const Output& output) {
+  for (const ReportRequest& request : output.reports) {
+    if (request.path == "-") continue;
+    const std::filesystem::path path(request.path);
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder)) {
+      throw InputError({.file = request.path}, "its folder does not exist; make it first");
+    }
+    if (std::filesystem::is_directory(path)) {
+      throw InputError({.file = request.path}, "is a folder; name the file to write");
+    }
+  }
+}
+
 /// Every report asked for. Files first: what standard output shows has then been written.
 void write_reports(const reports::Record& record, const Output& output) {
   std::string to_stdout;
@@ -72,6 +88,7 @@ void write_reports(const reports::Record& record, const Output& output) {
 }  // namespace
 
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
+  require_writable(output);
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Record record = run(suites, options, *progress);
   write_reports(record, output);
