@@ -253,13 +253,16 @@ Command run_command(const Given& given, const CLI::App& sub) {
 
 Command check_command(const Given& given, const CLI::App& sub) {
   require(given.claim, "a claim", sub);
-  CheckCommand command{.arguments = {.claim = given.claim,
-                                     .estimators = given.estimators,
-                                     .detect = if_given(given.detect),
-                                     .allow = if_given(given.allow),
-                                     .method = if_given(given.method)},
-                       .options = options(given),
-                       .output = output(given)};
+  // Assigned, not initialised in one expression: GCC 12 destroys the members of a nested aggregate
+  // twice when a later one throws, and options() throws at a wrong value.
+  CheckCommand command;
+  command.options = options(given);
+  command.output = output(given);
+  command.arguments.claim = given.claim;
+  command.arguments.estimators = given.estimators;
+  command.arguments.detect = if_given(given.detect);
+  command.arguments.allow = if_given(given.allow);
+  command.arguments.method = if_given(given.method);
   command.arguments.primaries = count_if_given(given.primaries, "--primaries", 1);
   command.arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 2);
   if (command.options.alpha) command.arguments.alpha = *command.options.alpha;
