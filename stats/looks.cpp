@@ -1,0 +1,146 @@
+#include "stats/looks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "stats/check.h"
+#include "stats/planning.h"
+
+namespace assay::stats {
+namespace {
+
+// Weights such as 1/3 + 1/3 + 1/3 may miss 1 by rounding.
+constexpr double rounding = 1e-12;
+
+void check_schedule(const char* function, const LookSchedule& schedule) {
+  check::at_least({function, "looks"}, schedule.sizes.size(), 1);
+  if (schedule.weights.size() != schedule.sizes.size()) {
+    check::fail({function, "number of weights"}, schedule.weights.size(), "the number of looks");
+  }
+  const auto out_of_order = std::adjacent_find(schedule.sizes.begin(), schedule.sizes.end(),
+                                               [](auto a, auto b) { return a >= b; });
+  if (out_of_order != schedule.sizes.end()) {
+    check::fail({function, "size"}, *out_of_order, "below the next look's size");
+  }
+  for (const double weight : schedule.weights) check::positive({function, "weight"}, weight);
+  const double sum = std::accumulate(schedule.weights.begin(), schedule.weights.end(), 0.0);
+  if (sum > 1 + rounding) check::fail({function, "sum of weights"}, sum, "at most 1");
+}
+
+void check_taken(const char* function, const LookSchedule& schedule, std::size_t taken) {
+  check_schedule(function, schedule);
+  check::at_least({function, "looks taken"}, taken, 1);
+  if (taken > schedule.sizes.size()) {
+    check::fail({function, "looks taken"}, taken, "at most the number scheduled");
+  }
+}
+
+std::size_t number_of_looks(LookRange range, double growth) {
+  if (range.first == range.last) return 1;
+  const double span = std::log(static_cast<double>(range.last) / static_cast<double>(range.first));
+  // 1024 = 2^10 is ten doublings, although the logarithms' quotient may round above ten.
+  return 1 + static_cast<std::size_t>(std::ceil(span / std::log(growth) * (1 - rounding)));
+}
+
+std::uint64_t size_at(LookRange range, double fraction) {
+  const double ratio = static_cast<double>(range.last) / static_cast<double>(range.first);
+  return static_cast<std::uint64_t>(
+      std::round(static_cast<double>(range.first) * std::pow(ratio, fraction)));
+}
+
+}  // namespace
+
+LookSchedule geometric_looks(LookRange range, double growth) {
+  check::at_least({"geometric_looks", "first"}, range.first, 1);
+  check::at_least({"geometric_looks", "last"}, range.last, range.first);
+  if (!(growth > 1) || std::isinf(growth)) {
+    check::fail({"geometric_looks", "growth"}, growth, "finite and above 1");
+  }
+  const std::size_t looks = number_of_looks(range, growth);
+  LookSchedule schedule;
+  for (std::size_t k = 0; k + 1 < looks; ++k) {
+    const auto size = size_at(range, static_cast<double>(k) / static_cast<double>(looks - 1));
+    if (size >= range.last) break;
+    if (schedule.sizes.empty() || size > schedule.sizes.back()) schedule.sizes.push_back(size);
+  }
+  schedule.sizes.push_back(range.last);
+  schedule.weights.assign(schedule.sizes.size(), 1 / static_cast<double>(schedule.sizes.size()));
+  return schedule;
+}
+
+LookSchedule with_weights(LookSchedule schedule, std::span<const double> proportions) {
+  if (proportions.size() != schedule.sizes.size()) {
+    check::fail({"with_weights", "number of proportions"}, proportions.size(),
+                "the number of looks");
+  }
+  for (const double value : proportions) check::positive({"with_weights", "proportion"}, value);
+  const double sum = std::accumulate(proportions.begin(), proportions.end(), 0.0);
+  check::positive({"with_weights", "sum of proportions"}, sum);
+  schedule.weights.assign(proportions.begin(), proportions.end());
+  for (double& weight : schedule.weights) weight /= sum;
+  return schedule;
+}
+
+double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p) {
+  check_taken("log_p_over_looks", schedule, log_p.size());
+  double smallest = 0;
+  for (std::size_t k = 0; k < log_p.size(); ++k) {
+    check::log_probability({"log_p_over_looks", "log p"}, log_p[k]);
+    smallest = std::min(smallest, log_p[k] - std::log(schedule.weights[k]));
+  }
+  return smallest;
+}
+
+TestResult over_looks(const LookSchedule& schedule, std::span<const TestResult> results) {
+  check_taken("over_looks", schedule, results.size());
+  std::vector<double> lower;
+  std::vector<double> upper;
+  for (const TestResult& result : results) {
+    lower.push_back(result.log_p_lower);
+    upper.push_back(result.log_p_upper);
+  }
+  TestResult combined = results.back();
+  combined.log_p_lower = log_p_over_looks(schedule, lower);
+  combined.log_p_upper = log_p_over_looks(schedule, upper);
+  const bool exact = std::all_of(results.begin(), results.end(), [](const TestResult& result) {
+    return result.exactness == Exactness::exact;
+  });
+  combined.exactness = exact ? Exactness::exact : Exactness::asymptotic;
+  return combined;
+}
+
+double look_confidence(const LookSchedule& schedule, std::size_t look, double confidence) {
+  check_taken("look_confidence", schedule, look + 1);
+  check::inside_unit({"look_confidence", "confidence"}, confidence);
+  return 1 - schedule.weights[look] * (1 - confidence);
+}
+
+Interval intersection(std::span<const Interval> intervals, double confidence) {
+  check::at_least({"intersection", "intervals"}, intervals.size(), 1);
+  check::inside_unit({"intersection", "confidence"}, confidence);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Interval common{-infinity, infinity, confidence};
+  for (const Interval& interval : intervals) {
+    common.low = std::max(common.low, interval.low);
+    common.high = std::min(common.high, interval.high);
+  }
+  return common;
+}
+
+ErrorRates look_rates(ErrorRates rates, double weight) {
+  planning::check_rates("look_rates", rates);
+  if (!(weight > 0 && weight <= 1)) check::fail({"look_rates", "weight"}, weight, "in (0, 1]");
+  return {rates.alpha * weight, rates.beta * weight, rates.two_sided};
+}
+
+double look_cost(ErrorRates rates, double weight) {
+  const ErrorRates share = look_rates(rates, weight);
+  const double z_beta = planning::z_upper(rates.beta);
+  const double ratio = (normal_quantile(planning::critical_tail(share)) + z_beta) /
+                       (normal_quantile(planning::critical_tail(rates)) + z_beta);
+  return ratio * ratio;
+}
+
+}  // namespace assay::stats

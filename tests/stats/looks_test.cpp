@@ -1,0 +1,166 @@
+#include "stats/looks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <vector>
+
+#include "stats/student_t.h"
+#include "stats/tails.h"
+#include "tests/stats/calibration.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::calibrate;
+using tests::draw_moments;
+using tests::Experiment;
+using tests::Philox;
+using tests::Shape;
+
+TEST(Looks, TenDoublingsAreElevenLooks) {
+  const LookSchedule schedule = geometric_looks({100, 102400}, 2);
+  ASSERT_EQ(schedule.sizes.size(), 11U);
+  for (std::size_t k = 0; k < 11; ++k) EXPECT_EQ(schedule.sizes[k], 100U << k);
+  for (const double weight : schedule.weights) EXPECT_DOUBLE_EQ(weight, 1 / 11.0);
+}
+
+TEST(Looks, TheRatioIsEvenedOutAndTheLastLookIsTheLargestSample) {
+  const LookSchedule schedule = geometric_looks({1000, 30000}, 4);
+  EXPECT_EQ(schedule.sizes, (std::vector<std::uint64_t>{1000, 3107, 9655, 30000}));
+}
+
+TEST(Looks, SmallSizesThatRoundTogetherAreOneLook) {
+  const LookSchedule schedule = geometric_looks({1, 4}, 1.1);
+  EXPECT_EQ(schedule.sizes, (std::vector<std::uint64_t>{1, 2, 3, 4}));
+  EXPECT_DOUBLE_EQ(schedule.weights.front(), .25);
+  EXPECT_EQ(geometric_looks({7, 7}, 2).sizes, (std::vector<std::uint64_t>{7}));
+}
+
+TEST(Looks, WeightsAreNormalised) {
+  const auto schedule = with_weights(geometric_looks({1, 4}, 2), std::vector<double>{1, 1, 2});
+  EXPECT_EQ(schedule.weights, (std::vector<double>{.25, .25, .5}));
+}
+
+TEST(Looks, TheCombinedPIsTheSmallestOfTheLooksTakenEachOverItsWeight) {
+  const auto schedule = with_weights(geometric_looks({1, 4}, 2), std::vector<double>{1, 1, 2});
+  const double p = std::exp(log_p_over_looks(
+      schedule, std::vector<double>{std::log(.02), std::log(.005), std::log(.008)}));
+  EXPECT_NEAR(p, .016, 1e-15);
+  EXPECT_NEAR(std::exp(log_p_over_looks(schedule, std::vector<double>{std::log(.02)})), .08, 1e-15);
+  EXPECT_EQ(log_p_over_looks(schedule, std::vector<double>{0, std::log(.5)}), 0);
+}
+
+TEST(Looks, AProbabilityOfZeroStaysFinite) {
+  const auto schedule = geometric_looks({1, 4}, 2);
+  const double lowest = std::numeric_limits<double>::lowest();
+  EXPECT_EQ(log_p_over_looks(schedule, std::vector<double>{lowest}), lowest);
+}
+
+TEST(Looks, CombineBothSidesOfAMethodAndKeepTheLatestStatistic) {
+  const auto schedule = geometric_looks({1, 2}, 2);
+  const std::vector<TestResult> results{{3, {"normal", {}}, -1, -9, Exactness::exact},
+                                        {2, {"normal", {}}, -2, -8, Exactness::asymptotic}};
+  const TestResult combined = over_looks(schedule, results);
+  EXPECT_DOUBLE_EQ(combined.log_p_lower, -2 + std::log(2));
+  EXPECT_DOUBLE_EQ(combined.log_p_upper, -9 + std::log(2));
+  EXPECT_EQ(combined.statistic, 2);
+  EXPECT_EQ(combined.exactness, Exactness::asymptotic);
+}
+
+// The ratios of one test with K looks to one fixed sample: squares of quotients of normal
+// quantiles.
+TEST(Looks, CostWhatTheUnionBoundSays) {
+  struct Known {
+    double alpha, five, ten;
+  };
+  for (const Known& known : {Known{.05, 1.73, 2.05}, Known{1e-3, 1.28, 1.40},
+                             Known{1e-6, 1.13, 1.19}, Known{1e-9, 1.08, 1.12}}) {
+    EXPECT_NEAR(look_cost({known.alpha, .5}, 1 / 5.0), known.five, .005);
+    EXPECT_NEAR(look_cost({known.alpha, .5}, 1 / 10.0), known.ten, .005);
+  }
+  // scipy: ((norm.isf(5e-5) + norm.isf(.01)) / (norm.isf(5e-4) + norm.isf(.01)))**2
+  EXPECT_NEAR(look_cost({1e-3, .01}, .1), 1.2250783401584966, 1e-10);
+}
+
+TEST(Looks, RefuseWhatCannotKeepTheLevel) {
+  EXPECT_THROW(geometric_looks({0, 4}, 2), std::domain_error);
+  EXPECT_THROW(geometric_looks({5, 4}, 2), std::domain_error);
+  EXPECT_THROW(geometric_looks({1, 4}, 1), std::domain_error);
+  EXPECT_THROW(geometric_looks({1, 4}, std::nan("")), std::domain_error);
+  const std::vector<double> one{-1};
+  EXPECT_THROW(log_p_over_looks({{1, 2}, {.6, .6}}, one), std::domain_error);
+  EXPECT_THROW(log_p_over_looks({{2, 1}, {.5, .5}}, one), std::domain_error);
+  EXPECT_THROW(log_p_over_looks({{1}, {0}}, one), std::domain_error);
+  EXPECT_THROW(log_p_over_looks({{1}, {1}}, {}), std::domain_error);
+  EXPECT_THROW(log_p_over_looks({{1}, {1}}, std::vector<double>{-1, -1}), std::domain_error);
+  EXPECT_THROW(log_p_over_looks({{1}, {1}}, std::vector<double>{.1}), std::domain_error);
+  EXPECT_THROW(log_p_over_looks({{1}, {1}}, std::vector<double>{std::nan("")}), std::domain_error);
+  EXPECT_THROW(with_weights({{1, 2}, {}}, std::vector<double>{1, 0}), std::domain_error);
+  EXPECT_THROW(look_rates({.01, .01}, 0), std::domain_error);
+}
+
+// One normal sample looked at after each doubling; `combine` sees ln p of all looks.
+template <class Combine>
+double looked_at(Philox& random, const LookSchedule& schedule, Combine&& combine) {
+  Moments x;
+  std::vector<TestResult> results;
+  for (const auto size : schedule.sizes) {
+    while (x.count < size) x.add(random.normal());
+    results.push_back(student_t(x, {0}));
+  }
+  return combine(results);
+}
+
+// False alarm 1e-5 (tests/stats/calibration.h).
+TEST(Looks, KeepTheLevelOverTenDoublings) {
+  const auto schedule = geometric_looks({4, 1024}, 2);
+  const auto calibration =
+      calibrate(Experiment{301, 10000, Shape::at_most_uniform}, [&](Philox& random) {
+        return looked_at(random, schedule, [&](const auto& results) {
+          return log_p_two_sided(over_looks(schedule, results));
+        });
+      });
+  EXPECT_TRUE(calibration.ok) << calibration.text();
+  std::cout << "  10000 repetitions: " << calibration.text() << "\n";
+}
+
+TEST(Looks, TheSmallestOfTheLooksWithoutWeightsIsCaught) {
+  const auto schedule = geometric_looks({4, 1024}, 2);
+  const auto calibration =
+      calibrate(Experiment{302, 10000, Shape::at_most_uniform}, [&](Philox& random) {
+        return looked_at(random, schedule, [](const auto& results) {
+          double smallest = 0;
+          for (const TestResult& result : results) {
+            smallest = std::min(smallest, log_p_two_sided(result));
+          }
+          return smallest;
+        });
+      });
+  EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+// Coverage of the intersection at .9: at most .1 misses; Hoeffding at 1e-5, R = 4000: .0379.
+TEST(Looks, TheIntersectionOfTheLooksIntervalsCovers) {
+  const auto schedule = geometric_looks({8, 128}, 2);
+  Philox random(303);
+  int missed = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Moments x;
+    std::vector<Interval> intervals;
+    for (std::size_t k = 0; k < schedule.sizes.size(); ++k) {
+      while (x.count < schedule.sizes[k]) x.add(3 + random.normal());
+      intervals.push_back(student_t_interval(x, {0}, look_confidence(schedule, k, .9)));
+    }
+    const Interval common = intersection(intervals, .9);
+    missed += common.low > 3 || common.high < 3;
+  }
+  EXPECT_LE(missed / 4000.0, .1 + .0379);
+  EXPECT_GT(missed, 0);
+}
+
+}  // namespace
+}  // namespace assay::stats
