@@ -1,0 +1,36 @@
+#pragma once
+
+#include "stats/moments.h"
+#include "stats/power.h"
+#include "stats/test_result.h"
+
+namespace assay::stats {
+
+// Null hypothesis: E cost x / E cost y = null_ratio, both costs positive.
+//   L = ln(mean x / mean y) - ln null_ratio,  SE^2 = sum s2 / (n mean^2),  Z = L / SE  (delta
+//   method)
+// Asymptotic. One cost may be constant. When both are constant over their samples, costs count as
+// deterministic: the ratios are compared exactly, the law is "bound", and a ratio that differs has
+// the smallest log p on its side. (welch_ratio_interval gives Fieller's interval for means of any
+// sign.) Throws std::domain_error (count < 2, mean or null_ratio not positive).
+TestResult log_cost_ratio(const Moments& cost_x, const Moments& cost_y, double null_ratio);
+
+// Central interval of ln(E cost x / E cost y); a single point when both are constant.
+Interval log_cost_ratio_interval(const Moments& cost_x, const Moments& cost_y, double confidence);
+
+// Null hypothesis: E cost = null_cost; all as above with ln(mean / null_cost).
+TestResult log_cost(const Moments& cost, double null_cost);
+Interval log_cost_interval(const Moments& cost, double reference_cost, double confidence);
+
+// Samples of each estimator for the ratio `detect` > allow >= 1 of mean costs:
+//   n = (cv_x^2 + cv_y^2) ((z_alpha + z_beta) / ln(detect / allow))^2, cv = sd / mean.
+// One sample: cv_y = 0.
+struct CostPlan {
+  double variation_x = 1;
+  double variation_y = 0;
+  double allow = 1;
+  ErrorRates rates;
+};
+double log_cost_sample_size(const CostPlan& plan, double detect);
+
+}  // namespace assay::stats

@@ -1,0 +1,137 @@
+#include "stats/log_efficiency.h"
+
+#include <cmath>
+
+#include "stats/check.h"
+#include "stats/errors.h"
+#include "stats/log_variance.h"
+#include "stats/tails.h"
+
+namespace assay::stats {
+namespace {
+
+struct Estimate {
+  double value;
+  double standard_error;
+};
+
+TestResult normal_result(Estimate estimate) {
+  const double z = estimate.value / estimate.standard_error;
+  const LogTails tails = normal_tails(z);
+  return {z, {"normal", {}}, tails.lower, tails.upper, Exactness::asymptotic};
+}
+
+Interval normal_interval(Estimate estimate, double confidence) {
+  const double z = normal_quantile({Tail::upper, std::log((1 - confidence) / 2)});
+  return {estimate.value - z * estimate.standard_error,
+          estimate.value + z * estimate.standard_error, confidence};
+}
+
+void check_sample(const JointMoments& sample) {
+  check::at_least({"log_efficiency_of", "count"}, sample.x.count, 4);
+  check::finite({"log_efficiency_of", "sum of fourth powers"}, sample.x.m4);
+  check::finite({"log_efficiency_of", "sum of squared deviation times cost"}, sample.m21);
+  check::positive({"log_efficiency_of", "mean cost"}, sample.cost.mean);
+}
+
+double relative_cost_variance(const JointMoments& sample) {
+  return sample.cost.variance() / sample.cost.mean / sample.cost.mean;
+}
+
+Estimate one_sample(const char* function, const LogEfficiency& x, double null_efficiency) {
+  check::positive({function, "null efficiency"}, null_efficiency);
+  return {x.value - std::log(null_efficiency), x.standard_error()};
+}
+
+double reference_variance(const LogEfficiency& x, const LogEfficiency& y, References references) {
+  const double own_x = x.reference_slope * x.reference_error;
+  const double own_y = y.reference_slope * y.reference_error;
+  if (references == References::independent) return own_x * own_x + own_y * own_y;
+  if (x.reference_error != y.reference_error) {
+    check::fail({"log_efficiency_ratio", "reference error of y"}, y.reference_error,
+                "that of x when the reference is shared");
+  }
+  return (own_x - own_y) * (own_x - own_y);
+}
+
+Estimate difference(const LogEfficiency& x, const LogEfficiency& y, References references) {
+  const double variance =
+      x.spread / x.count + y.spread / y.count + reference_variance(x, y, references);
+  return {x.value - y.value, std::sqrt(variance)};
+}
+
+}  // namespace
+
+double LogEfficiency::standard_error() const {
+  return std::hypot(std::sqrt(spread / count), reference_slope * reference_error);
+}
+
+LogEfficiency log_efficiency_of(const JointMoments& sample) {
+  check_sample(sample);
+  const double n = static_cast<double>(sample.x.count);
+  const double error = log_variance_standard_error(sample.x);
+  const double covariance = sample.m21 / sample.x.m2 / sample.cost.mean;
+  LogEfficiency result;
+  result.value = -std::log(sample.x.variance()) - std::log(sample.cost.mean);
+  result.spread = n * error * error + relative_cost_variance(sample) + 2 * covariance;
+  result.count = n;
+  return result;
+}
+
+LogEfficiency log_efficiency_of(const JointMoments& sample, Reference reference) {
+  check_sample(sample);
+  check::finite({"log_efficiency_of", "reference"}, reference.value);
+  check::non_negative({"log_efficiency_of", "reference error"}, reference.standard_error);
+  const Moments& x = sample.x;
+  const double n = static_cast<double>(x.count);
+  const double bias = x.mean - reference.value;
+  const double m2 = x.m2 / n;
+  const double mse = m2 + bias * bias - reference.standard_error * reference.standard_error;
+  check::positive({"log_efficiency_of", "mean squared error"}, mse);
+  // (x - r)^2 = d^2 + 2 bias d + bias^2.
+  const double square_variance =
+      (x.m4 / n - m2 * m2 + 4 * bias * (x.m3 / n) + 4 * bias * bias * m2) * n / (n - 1);
+  const double covariance = (sample.m21 + 2 * bias * sample.m11) / n;
+  LogEfficiency result;
+  result.value = -std::log(mse) - std::log(sample.cost.mean);
+  result.spread = square_variance / mse / mse + relative_cost_variance(sample) +
+                  2 * covariance / mse / sample.cost.mean;
+  result.count = n;
+  result.reference_slope = 2 * bias / mse;
+  result.reference_error = reference.standard_error;
+  if (!(result.standard_error() > 0)) {
+    throw ZeroVariance("log_efficiency_of: the mean squared error has no spread");
+  }
+  return result;
+}
+
+TestResult log_efficiency(const LogEfficiency& x, double null_efficiency) {
+  return normal_result(one_sample("log_efficiency", x, null_efficiency));
+}
+
+Interval log_efficiency_interval(const LogEfficiency& x, double reference_efficiency,
+                                 double confidence) {
+  check::inside_unit({"log_efficiency_interval", "confidence"}, confidence);
+  return normal_interval(one_sample("log_efficiency_interval", x, reference_efficiency),
+                         confidence);
+}
+
+TestResult log_efficiency_ratio(const LogEfficiency& x, const LogEfficiency& y, double null_ratio,
+                                References references) {
+  check::positive({"log_efficiency_ratio", "null_ratio"}, null_ratio);
+  Estimate estimate = difference(x, y, references);
+  estimate.value -= std::log(null_ratio);
+  return normal_result(estimate);
+}
+
+Interval log_efficiency_ratio_interval(const LogEfficiency& x, const LogEfficiency& y,
+                                       double confidence, References references) {
+  check::inside_unit({"log_efficiency_ratio_interval", "confidence"}, confidence);
+  return normal_interval(difference(x, y, references), confidence);
+}
+
+LogVariancePlan efficiency_plan(const EfficiencyPlan& plan) {
+  return {plan.spread_x + 1, plan.spread_y + 1, plan.allow, plan.rates};
+}
+
+}  // namespace assay::stats
