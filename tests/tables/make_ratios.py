@@ -64,6 +64,60 @@ def efficiency_rows():
         yield [k, n, value, se, biased, biased_se, z, stats.norm.sf(z), cost_z]
 
 
+SLOPES = [  # sizes, biases, standard errors, error of the reference, slope held against them
+    ([8, 16, 32, 64], [.1281, .0613, .0322, .0157], [.004, .004, .004, .004], .002, -1.0),
+    ([8, 16, 32, 64], [-.125, -.066, -.028, -.012], [.01, .008, .006, .005], .003, -0.8),
+    ([8, 16, 32, 64], [.125, .066, .028, .012], [.05, .05, .05, .05], .01, -1.2),
+    ([8, 16, 32, 64], [.125, .01, .0, .01], [.01, .01, .01, .01], .0, -1.2),
+    ([1, 10, 100], [1.0, 3.1, 10.2], [.02, .05, .2], .1, 0.45),
+    ([1, 2, 4, 8, 16], [1, -1, 1, -1, 1], [.1, .1, .1, .1, .1], .0, 0.0),
+]
+
+
+def misfit(case, s, logs=False):
+    """Generalised least squares with the full covariance matrix, inverted."""
+    size, b, se, u, _ = [np.array(v, dtype=float) for v in case]
+    covariance = np.diag(se**2) + u**2
+    precision = np.linalg.inv(covariance)
+    b = b - s * np.log(size) if logs else b
+    shape = np.ones_like(size) if logs else np.exp(s * (np.log(size) - np.log(size[-1 if s > 0 else 0])))
+    c = shape @ precision @ b / (shape @ precision @ shape)
+    r = b - c * shape
+    return r @ precision @ r
+
+
+def slope_ends(case, confidence, logs=False):
+    degrees = len(case[0]) - 1
+    level = stats.chi2.ppf(confidence, degrees)
+    grid = np.linspace(-60, 60, 120001)
+    inside = np.array([misfit(case, s, logs) <= level for s in grid])
+    if not inside.any():
+        return math.nan, math.nan
+    first, last = np.flatnonzero(inside)[[0, -1]]
+    f = lambda s: misfit(case, s, logs) - level
+    low = -math.inf if first == 0 else optimize.brentq(f, grid[first - 1], grid[first], xtol=1e-14)
+    high = (math.inf if last == len(grid) - 1
+            else optimize.brentq(f, grid[last], grid[last + 1], xtol=1e-14))
+    return low, high
+
+
+def slope_rows():
+    for index, case in enumerate(SLOPES):
+        for logs in (0, 1):
+            if logs and min(case[1]) <= 0:
+                continue
+            used = case
+            if logs:
+                b, se = np.array(case[1]), np.array(case[2])
+                used = (case[0], np.log(b), se / b, 0, case[4])
+            q = misfit(used, case[4], logs)
+            p = stats.chi2.sf(q, len(case[0]) - 1)
+            low, high = slope_ends(used, 0.99, logs)
+            power = stats.ncx2.sf(stats.chi2.ppf(0.99, len(case[0]) - 1), len(case[0]) - 1, q)
+            yield [index, logs, case[4], q, p, low, high, power]
+
+
 if __name__ == "__main__":
     write("log_efficiency", "k,n,value,error,biased,biased_error,ratio_z,ratio_upper,cost_z",
           efficiency_rows())
+    write("slope", "case,logs,null,misfit,p,low,high,power", slope_rows())

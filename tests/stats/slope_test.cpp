@@ -1,0 +1,268 @@
+#include "stats/slope.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <vector>
+
+#include "stats/errors.h"
+#include "stats/tails.h"
+#include "tests/stats/calibration.h"
+#include "tests/stats/table.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::calibrate;
+using tests::Experiment;
+using tests::Philox;
+using tests::Row;
+using tests::Shape;
+
+// The cases of make_ratios.py.
+SlopeData known(int index) {
+  switch (index) {
+    case 0:
+      return {{{8, .1281, .004}, {16, .0613, .004}, {32, .0322, .004}, {64, .0157, .004}}, .002};
+    case 1:
+      return {{{8, -.125, .01}, {16, -.066, .008}, {32, -.028, .006}, {64, -.012, .005}}, .003};
+    case 2:
+      return {{{8, .125, .05}, {16, .066, .05}, {32, .028, .05}, {64, .012, .05}}, .01};
+    case 3:
+      return {{{8, .125, .01}, {16, .01, .01}, {32, 0, .01}, {64, .01, .01}}};
+    case 4:
+      return {{{1, 1, .02}, {10, 3.1, .05}, {100, 10.2, .2}}, .1};
+    default:
+      return {{{1, 1, .1}, {2, -1, .1}, {4, 1, .1}, {8, -1, .1}, {16, 1, .1}}};
+  }
+}
+
+SlopeData logarithms(SlopeData data) {
+  for (SlopePoint& point : data.points) {
+    point.standard_error /= point.estimate;
+    point.estimate = std::log(point.estimate);
+  }
+  data.scale = SlopeScale::logarithms;
+  return data;
+}
+
+TEST(Slope, AgreesWithGeneralisedLeastSquaresOnTheFullMatrix) {
+  for (const Row& row : tests::read_table("slope")) {
+    SCOPED_TRACE(row.text("case") + " " + row.text("logs"));
+    SlopeData data = known(static_cast<int>(row["case"]));
+    if (row["logs"] == 1) data = logarithms(data);
+    const SlopeTest test = slope_test(data, row["null"]);
+    EXPECT_NEAR(test.test.statistic / row["misfit"], 1, 1e-9);
+    EXPECT_NEAR(std::exp(test.log_p_equal) / row["p"], 1, 1e-7);
+    EXPECT_NEAR(slope_power(data, row["null"], .01), row["power"], 1e-7);
+    const SlopeSet set = slope_set(data, .99);
+    if (row.text("low") == "nan") {
+      EXPECT_TRUE(set.empty);
+      continue;
+    }
+    EXPECT_FALSE(set.empty);
+    if (std::isinf(row["low"])) {
+      EXPECT_EQ(set.hull.low, row["low"]);
+    } else {
+      EXPECT_NEAR(set.hull.low, row["low"], 1e-9);
+    }
+    if (std::isinf(row["high"])) {
+      EXPECT_EQ(set.hull.high, row["high"]);
+    } else {
+      EXPECT_NEAR(set.hull.high, row["high"], 1e-9);
+    }
+  }
+}
+
+TEST(Slope, TheOrderOfThePointsAndTheUnitOfSizeDoNotMatter) {
+  const SlopeData data = known(0);
+  SlopeData other = data;
+  std::swap(other.points[0], other.points[3]);
+  for (SlopePoint& point : other.points) point.size *= 1000;
+  EXPECT_NEAR(log_p_of_slope(other, -1.1), log_p_of_slope(data, -1.1), 1e-9);
+  EXPECT_NEAR(slope_set(other, .9).hull.low, slope_set(data, .9).hull.low, 1e-9);
+}
+
+TEST(Slope, OneSidedPValuesAreTheLargestOverTheirHalfLine) {
+  const SlopeData data = known(0);
+  const double best = slope_estimate(data).slope;
+  EXPECT_NEAR(best, -1, .05);
+  const SlopeTest steep = slope_test(data, best - .3);
+  EXPECT_EQ(steep.log_p_equal, log_p_of_slope(data, best - .3));
+  EXPECT_EQ(steep.test.log_p_upper, steep.log_p_equal);  // "<= that" is rejected
+  EXPECT_GT(steep.test.log_p_lower, std::log(.5));
+  const SlopeTest flat = slope_test(data, best + .3);
+  EXPECT_EQ(flat.test.log_p_lower, flat.log_p_equal);
+  EXPECT_GT(flat.test.log_p_upper, std::log(.5));
+}
+
+TEST(Slope, NoiseAloneLeavesEverySlopePossible) {
+  const SlopeSet set = slope_set({{{8, .1, 1}, {16, -.2, 1}, {32, .3, 1}}}, .99);
+  EXPECT_TRUE(std::isinf(set.hull.low) && std::isinf(set.hull.high));
+  EXPECT_TRUE(set.connected);
+}
+
+TEST(Slope, AlternatingSignsAreNoPowerLaw) {
+  EXPECT_TRUE(slope_set(known(5), .9999).empty);
+  EXPECT_LT(slope_estimate(known(5)).log_p_fit, std::log(1e-20));
+}
+
+TEST(Slope, TwoPointsGiveTheRatioOfTwoNumbers) {
+  // (b1 M1^-s - b2 M2^-s)^2 over its variance, at s = -1: (.2 * 1 - .05 * 4)^2 = 0.
+  const SlopeData data{{{1, .2, .01}, {4, .05, .01}}};
+  EXPECT_NEAR(slope_test(data, -1).test.statistic, 0, 1e-20);
+  EXPECT_NEAR(slope_estimate(data).slope, -1, 1e-6);
+  EXPECT_EQ(slope_estimate(data).log_p_fit, 0);
+  const double contrast = .2 - .05 * 2;  // s = -1/2
+  const double variance = 1e-4 + 4 * 1e-4;
+  EXPECT_NEAR(slope_test(data, -.5).test.statistic, contrast * contrast / variance, 1e-9);
+}
+
+TEST(Slope, APowerLawKnownToManyDigitsHasANarrowInterval) {
+  SlopeData data;
+  for (const double size : {8.0, 16.0, 1000.0, 1001.0}) {
+    data.points.push_back({size, std::pow(size, -1.7), 1e-8 * std::pow(size, -1.7)});
+  }
+  const SlopeSet set = slope_set(data, .99);
+  EXPECT_LT(set.hull.low, -1.7);
+  EXPECT_GT(set.hull.high, -1.7);
+  EXPECT_LT(set.hull.high - set.hull.low, 1e-7);
+}
+
+TEST(Slope, RefusesMalformedPoints) {
+  EXPECT_THROW(slope_test({{{8, 1, 1}}}, -1), std::domain_error);
+  EXPECT_THROW(slope_test({{{8, 1, 1}, {8, 1, 1}}}, -1), std::domain_error);
+  EXPECT_THROW(slope_test({{{0, 1, 1}, {8, 1, 1}}}, -1), std::domain_error);
+  EXPECT_THROW(slope_test({{{1, 1, 0}, {8, 1, 1}}}, -1), ZeroVariance);
+  EXPECT_THROW(slope_test({{{1, std::nan(""), 1}, {8, 1, 1}}}, -1), std::domain_error);
+  EXPECT_THROW(slope_test({{{1, 1, 1}, {8, 1, 1}}, -1}, -1), std::domain_error);
+  EXPECT_THROW(slope_test(known(0), std::nan("")), std::domain_error);
+  EXPECT_THROW(slope_set(known(0), 1), std::domain_error);
+}
+
+// Biases 1 / M with one standard error at all sizes, twice of which is the bias at M = 64, and a
+// reference whose error is common to all.
+SlopeData inverse_bias(Philox& random) {
+  const double error = .5 / 64;
+  const double reference = .5 * error;
+  const double common = reference * random.normal();
+  SlopeData data{.points = {}, .reference_error = reference};
+  for (const double size : {8.0, 16.0, 32.0, 64.0}) {
+    data.points.push_back({size, 1 / size + error * random.normal() + common, error});
+  }
+  return data;
+}
+
+// False alarm 1e-5 each (tests/stats/calibration.h).
+void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
+  const auto calibration = calibrate(experiment, draw);
+  EXPECT_TRUE(calibration.ok) << calibration.text();
+  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
+}
+
+void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
+  const auto calibration = calibrate(experiment, draw);
+  EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+TEST(Slope, OfAnInverseBiasIsCalibratedWhereTheLastBiasIsTwoStandardErrors) {
+  expect_calibrated({321, 40000},
+                    [](Philox& random) { return log_p_of_slope(inverse_bias(random), -1); });
+}
+
+TEST(Slope, OneSidedPValuesAreAtMostUniformAtTheTruth) {
+  expect_calibrated({322, 2000, Shape::at_most_uniform}, [](Philox& random) {
+    return slope_test(inverse_bias(random), -1).test.log_p_upper;
+  });
+  expect_calibrated({323, 2000, Shape::at_most_uniform}, [](Philox& random) {
+    return slope_test(inverse_bias(random), -1).test.log_p_lower;
+  });
+}
+
+// Misses at confidence .99 in 6000 sets: Chernoff's bound, false alarm 2.5e-6.
+TEST(Slope, SetsCoverAsOftenAsTheySay) {
+  Philox random(324);
+  int missed = 0;
+  int unbounded = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const SlopeSet set = slope_set(inverse_bias(random), .99);
+    missed += set.empty || set.hull.low > -1 || set.hull.high < -1;
+    unbounded += std::isinf(set.hull.low) || std::isinf(set.hull.high);
+  }
+  EXPECT_FALSE(tests::too_many(missed / 6000.0, .01, 6000)) << missed;
+  EXPECT_GT(missed, 0);
+  std::cout << "  missed " << missed << " of 6000 at .99, unbounded " << unbounded << "\n";
+}
+
+TEST(Slope, OfLogarithmsIsCalibrated) {
+  expect_calibrated({325, 20000}, [](Philox& random) {
+    SlopeData data{.points = {}, .scale = SlopeScale::logarithms};
+    for (const double size : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+      data.points.push_back({size, 3 - .5 * std::log(size) + .1 * random.normal(), .1});
+    }
+    return log_p_of_slope(data, -.5);
+  });
+}
+
+TEST(Slope, AStraightLineThroughLogarithmsOfNoisyBiasesIsCaught) {
+  expect_caught({326, 20000}, [](Philox& random) {
+    SlopeData data = inverse_bias(random);
+    for (SlopePoint& point : data.points) {
+      const double error = std::hypot(point.standard_error, data.reference_error);
+      point.standard_error = error / std::abs(point.estimate);
+      point.estimate = std::log(std::abs(point.estimate));
+    }
+    data.scale = SlopeScale::logarithms;
+    return log_p_of_slope(data, -1);
+  });
+}
+
+TEST(Slope, ACommonErrorOfTheReferenceTakenForIndependentErrorsIsCaught) {
+  expect_caught({327, 40000}, [](Philox& random) {
+    SlopeData data = inverse_bias(random);
+    for (SlopePoint& point : data.points) {
+      point.standard_error = std::hypot(point.standard_error, data.reference_error);
+    }
+    data.reference_error = 0;
+    return log_p_of_slope(data, -1);
+  });
+}
+
+TEST(Slope, OneDegreeOfFreedomTooManyIsCaught) {
+  expect_caught({328, 10000}, [](Philox& random) {
+    return chi_square_tails(slope_test(inverse_bias(random), -1).test.statistic, 4).upper;
+  });
+}
+
+// |rate - power| <= sqrt(ln(2e5) / (2 R)): .0247 at R = 10000, false alarm 1e-5.
+TEST(Slope, APlannedFactorFindsTheSlopeItWasPlannedFor) {
+  const auto draw = [](Philox& random, double error, double reference) {
+    const double common = reference * random.normal();
+    SlopeData data{.points = {}, .reference_error = reference};
+    for (const double size : {8.0, 16.0, 32.0, 64.0}) {
+      data.points.push_back({size, 1 / std::sqrt(size) + error * random.normal() + common, error});
+    }
+    return data;
+  };
+  SlopeData expected{.points = {}, .reference_error = .01};
+  for (const double size : {8.0, 16.0, 32.0, 64.0}) {
+    expected.points.push_back({size, 1 / std::sqrt(size), .1});
+  }
+  const double factor = slope_sample_factor(expected, -.7, {.01, .2}).value();
+  Philox random(329);
+  int found = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const SlopeData data = draw(random, .1 / std::sqrt(factor), .01);
+    found += log_p_of_slope(data, -.7) <= std::log(.01);
+  }
+  EXPECT_NEAR(found / 10000.0, .8, .0247);
+}
+
+TEST(Slope, NoSampleOutweighsAnErrorOfTheReferenceOnTwoPoints) {
+  const SlopeData expected{{{1, .2, .01}, {4, .05, .01}}, 1};
+  EXPECT_FALSE(slope_sample_factor(expected, -.9, {.01, .2}).has_value());
+}
+
+}  // namespace
+}  // namespace assay::stats
