@@ -89,7 +89,7 @@ def misfit(case, s, logs=False):
 def slope_ends(case, confidence, logs=False):
     degrees = len(case[0]) - 1
     level = stats.chi2.ppf(confidence, degrees)
-    grid = np.linspace(-60, 60, 120001)
+    grid = np.linspace(-60, 60, 24001)
     inside = np.array([misfit(case, s, logs) <= level for s in grid])
     if not inside.any():
         return math.nan, math.nan
@@ -117,7 +117,30 @@ def slope_rows():
             yield [index, logs, case[4], q, p, low, high, power]
 
 
+def quantile_rows():
+    """Order statistics and binomial tails by enumeration, comparisons over every split."""
+    for k, n, m, q in ((1, 60, 45, 0.5), (2, 200, 150, 0.9), (3, 400, 400, 0.25), (1, 12, 9, 0.99)):
+        x, y = np.sort(sample(k, n)), np.sort(sample(k + 3, m))
+        v = 0.3 * k + 0.5
+        lower = stats.binom.sf(np.sum(x < v) - 1, n, q)
+        upper = stats.binom.cdf(np.sum(x <= v), n, q)
+        ranks = np.arange(n + 1)
+        kept = ranks[stats.binom.cdf(ranks, n, q) > 0.005]
+        low = -math.inf if kept[0] == 0 else x[kept[0] - 1]
+        kept = ranks[stats.binom.sf(ranks - 1, n, q) > 0.005]
+        high = math.inf if kept[-1] == n else x[kept[-1]]
+        d = 0.1 * k
+        combined = []
+        for a, b in ((x, y + d), (y + d, x)):
+            product = max(stats.binom.sf(np.sum(a < v) - 1, len(a), q)
+                          * stats.binom.cdf(np.sum(b <= v), len(b), q)
+                          for v in np.concatenate([a, b]))
+            combined.append(product * (1 - math.log(product)))
+        yield [k, n, m, q, lower, upper, low, high, *combined]
+
+
 if __name__ == "__main__":
     write("log_efficiency", "k,n,value,error,biased,biased_error,ratio_z,ratio_upper,cost_z",
           efficiency_rows())
     write("slope", "case,logs,null,misfit,p,low,high,power", slope_rows())
+    write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
