@@ -191,14 +191,17 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
                                       double confidence) {
   check::inside_unit({"quantile_difference_interval", "confidence"}, confidence);
   const double log_level = std::log((1 - confidence) / 2);
-  const auto rejected_above = [&](double offset) {
-    return quantile_compare(sorted_x, sorted_y, {probability, 1, offset}).log_p_lower <= log_level;
-  };
-  const auto rejected_below = [&](double offset) {
-    return quantile_compare(sorted_x, sorted_y, {probability, 1, offset}).log_p_upper <= log_level;
-  };
+  check::inside_unit({"quantile_difference_interval", "probability"}, probability);
   check_sorted("quantile_difference_interval", sorted_x);
   check_sorted("quantile_difference_interval", sorted_y);
+  const Side x{sorted_x, {1, 0}};
+  const auto moved = [&](double offset) { return Side{sorted_y, {1, offset}}; };
+  const auto rejected_above = [&](double offset) {
+    return log_p_below(x, moved(offset), probability) <= log_level;
+  };
+  const auto rejected_below = [&](double offset) {
+    return log_p_below(moved(offset), x, probability) <= log_level;
+  };
   const double middle =
       sample_quantile(sorted_x, probability) - sample_quantile(sorted_y, probability);
   // Further apart than any two values: nothing can be more extreme.
