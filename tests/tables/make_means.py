@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""Reference values of the tests of means, from numpy and scipy by the definitions (influence values one
+by one, bounds inverted by root finding, suprema over a dense grid). Run in this folder:
+python3 make_means.py. Columns named log_* are natural logarithms of p."""
+import math
+
+import numpy as np
+from scipy import optimize, stats
+
+COMMAND = "# python3 tests/tables/make_means.py"
+
+
+def write(name, header, rows):
+    with open(name + ".csv", "w") as out:
+        out.write(COMMAND + "\n" + header + "\n")
+        for row in rows:
+            out.write(",".join(repr(v) if isinstance(v, float) else str(v) for v in row) + "\n")
+
+
+def skewed(k, n):
+    i = np.arange(1, n + 1)
+    return -np.log((i - 0.5) / n) * (1 + 0.2 * k * np.cos(0.3 * k * i))
+
+
+def transformed(t, a):
+    return ((1 + 2 * a * t) ** 3 - 1) / (6 * a) + a
+
+
+def sixth_skewness(psi, extra=0.0):
+    return (psi**3).sum() / (6 * ((psi**2).sum() + extra) ** 1.5)
+
+
+def skewness_rows():
+    for k in range(1, 7):
+        x, y = skewed(k, 20 * k), skewed(k + 2, 15 * k)
+        scale, offset, error = 0.7 + 0.2 * k, 0.05 * k, 0.03 * k
+        null = x.mean() + (k - 3.5) * 0.12
+        v = x.var(ddof=1) / len(x)
+        nu = (v + error**2) ** 2 / (v**2 / (len(x) - 1))
+        psi = (x - x.mean()) / len(x)
+        one = transformed((x.mean() - null) / math.sqrt(v + error**2),
+                          sixth_skewness(psi, error**2))
+        w = scale**2 * y.var(ddof=1) / len(y)
+        nu2 = (v + w) ** 2 / (v**2 / (len(x) - 1) + w**2 / (len(y) - 1))
+        both = np.concatenate([psi, -scale * (y - y.mean()) / len(y)])
+        two = transformed((x.mean() - scale * y.mean() - offset) / math.sqrt(v + w),
+                          sixth_skewness(both))
+        yield [k, null, error, scale, offset, one, stats.t.logcdf(one, nu), stats.t.logsf(one, nu),
+               two, stats.t.logcdf(two, nu2), stats.t.logsf(two, nu2)]
+
+
+def kl(a, m):
+    return sum(p * math.log(p / q) for p, q in ((a, m), (1 - a, 1 - m)) if p > 0)
+
+
+def below(mean, n, s2, m):
+    """ln p of "the mean is at least m" on the unit scale."""
+    if mean >= m:
+        return 0.0
+    bentkus = 1 + stats.binom.logcdf(math.ceil(n * mean - 1e-9), n, m)
+    first = min(-n * kl(mean, m), bentkus)
+
+    def radius(big):
+        return math.sqrt(2 * s2 * big / n) + 7 * big / (3 * (n - 1)) - (m - mean)
+
+    second = math.log(2) - optimize.brentq(radius, 0, 1e6, xtol=1e-13)
+    return min(0.0, math.log(2) + min(first, second, 0.0))
+
+
+def fractions(k, n):
+    u = np.arange(1, n + 1) * (math.sqrt(5) - 1) / 2 % 1
+    return u**k
+
+
+def bounded_rows():
+    for k in range(1, 6):
+        for null in (0.1, 0.3, 0.45, 0.6, 0.95):
+            n = 40 * k * k
+            x = fractions(k, n)
+            mean, s2 = x.mean(), x.var(ddof=1)
+            yield [k, n, -2 + 5 * null, below(mean, n, s2, null),
+                   below(1 - mean, n, s2, 1 - null)]
+
+
+def process_rows():
+    for k in range(1, 5):
+        for planned in (0, 900):
+            u, error = fractions(k, 600), 10.0**-k
+            null = 0.5 * u.mean() + 0.2
+            up = down = variation = 0.0
+            bets = []
+            for first, last in ((0, 100), (100, 150), (150, 400), (400, 600)):
+                past, block = u[:first], u[first:last]
+                guess = (0.5 + past.sum()) / (first + 1)
+                v = 0.25
+                if first:
+                    v = (0.25 + ((past - past.mean()) ** 2).sum()) / (first + 1)
+                horizon = max(last, planned) if planned else last * math.log(1 + last)
+                bet = min(0.5, math.sqrt(2 * math.log(2 / error) / (horizon * v)))
+                bets.append(bet * len(block))
+                for value in block:
+                    cost = (value - guess) ** 2 * (-math.log(1 - bet) - bet)
+                    up += bet * (value - null) - cost
+                    down += bet * (null - value) - cost
+                    variation += cost
+            centre = (up - down + 2 * null * sum(bets)) / 2 / sum(bets)
+            half = (math.log(2 / 0.01) + variation) / sum(bets)
+            yield [k, planned, error, null, min(0.0, -down), min(0.0, -up),
+                   max(0.0, centre - half), min(1.0, centre + half)]
+
+
+def nonnegative_rows():
+    for k in range(1, 6):
+        x = skewed(k, 50 * k)
+        for null in (0.5, 0.8, 1.0, 1.3):
+            e = np.mean([np.prod((1 + 2.0**-j * (x / null - 1)).astype(np.longdouble))
+                         for j in range(1, 13)])
+            yield [k, null, min(0.0, -math.log(e))]
+
+
+def fisher(x, n, y, m, start, slope):
+    """ln p of "P(x) >= start + slope P(y)": Fisher's statistic, its least value by a grid refined."""
+    def statistic(q):
+        p = start + slope * q
+        if not 0 <= p <= 1:
+            return math.inf
+        return -2 * (stats.binom.logcdf(x, n, p) + stats.binom.logsf(y - 1, m, q))
+
+    grid = np.linspace(1e-9, 1 - 1e-9, 4001)
+    at = int(np.argmin([statistic(q) for q in grid]))
+    around = (grid[max(0, at - 1)], grid[min(4000, at + 1)])
+    best = optimize.minimize_scalar(statistic, bounds=around, method="bounded",
+                                    options={"xatol": 1e-13})
+    return stats.chi2.logsf(min(best.fun, statistic(grid[at])), 4)
+
+
+def two_valued_rows():
+    cases = [(3, 40, 15, 50), (0, 30, 9, 60), (12, 30, 60, 60), (200, 10000, 260, 9000),
+             (5, 2000, 31, 1500), (49, 50, 50, 50)]
+    for x, n, y, m in cases:
+        for start, slope in ((0.0, 1.0), (0.02, 1.0), (-0.03, 1.0), (0.0, 1.25)):
+            yield [x, n, y, m, start, slope, fisher(x, n, y, m, start, slope)]
+
+
+write("skewness_corrected_t",
+      "k,null,error,scale,offset,one,one_lower,one_upper,two,two_lower,two_upper", skewness_rows())
+write("bounded_mean", "k,n,null,log_lower,log_upper", bounded_rows())
+write("bounded_process", "k,planned,error,null,log_lower,log_upper,low_99,high_99", process_rows())
+write("nonnegative_mean", "k,null,log_upper", nonnegative_rows())
+write("two_valued", "x,n,y,m,start,slope,log_lower", two_valued_rows())
