@@ -139,8 +139,29 @@ def quantile_rows():
         yield [k, n, m, q, lower, upper, low, high, *combined]
 
 
+def ledger_rows():
+    """Likelihood ratios of the multivariate normal laws of all nights at once."""
+    for k, count, tau, u in ((1, 6, 0.5, 0.0), (1, 9, 0.5, 0.2), (2, 12, 1.0, 0.3)):
+        i = np.arange(1, count + 1)
+        y = 0.5 * np.cos(1.3 * i * k) + np.where(i > 4, 0.4 * k, 0.0)
+        null = np.diag((0.5 + 0.1 * (i % 3)) ** 2) + u**2
+
+        def ratio(first, start=0):
+            """Changed from night `first` on, of the nights from `start` on."""
+            moved = (np.arange(count) >= first).astype(float)[start:]
+            base = null[start:, start:]
+            law = lambda c: stats.multivariate_normal(np.zeros(count - start), c).logpdf(y[start:])
+            return law(base + tau**2 * np.outer(moved, moved)) - law(base)
+
+        detector = math.log(sum(math.exp(ratio(j, j)) for j in range(count)))
+        changes = np.array([ratio(j) for j in range(count)])
+        share = np.exp(changes) / np.exp(changes).sum()
+        yield [k, count, tau, u, ratio(0), detector, int(changes.argmax()), changes.max(), share[2]]
+
+
 if __name__ == "__main__":
     write("log_efficiency", "k,n,value,error,biased,biased_error,ratio_z,ratio_upper,cost_z",
           efficiency_rows())
     write("slope", "case,logs,null,misfit,p,low,high,power", slope_rows())
     write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
+    write("ledger", "k,nights,tau,u,log_e,detector,night,change,share_2", ledger_rows())
