@@ -4,19 +4,21 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <set>
 
 #include "reports/charts.h"
+#include "reports/describe.h"
 #include "reports/number.h"
 #include "reports/svg.h"
+#include "reports/text.h"
 
 namespace assay::reports {
 namespace {
 
 constexpr double row_height = 24;
 constexpr double bar_height = 13;
-constexpr double panel_width = 285;
+constexpr double panel_width = 265;
 constexpr double value_width = 78;
-constexpr double gap = 22;
 constexpr double top = 26;
 constexpr double log_from = 50;
 
@@ -42,7 +44,7 @@ struct Bar {
 };
 
 struct Panel {
-  const char* title;
+  std::string title;
   const char* unit;
   const char* style;
   std::function<Bar(const EstimatorChannel&)> bar;
@@ -109,7 +111,7 @@ void draw_bar(Svg& svg, const Panel& panel, const Scale& scale, Point row, const
     svg.line({x, row.y}, {x, row.y + row_height}, "reference");
   }
   svg.text({.at = {panel.left + panel_width + 8, middle + 4},
-            .content = human(value),
+            .content = data_text(value),
             .room = value_width});
 }
 
@@ -135,56 +137,78 @@ void draw_panel(Svg& svg, const std::vector<Row>& rows, const Panel& panel) {
 double label_width(const std::vector<Row>& rows) {
   double widest = 60;
   for (const Row& row : rows) widest = std::max(widest, text_width(row.estimator->name));
-  return std::min(widest, 190.0);
+  return std::min(widest, 170.0);
 }
 
 std::string label_tooltip(const EstimatorSummary& estimator) {
-  std::string text =
-      fmt::format("{}: {} {}", estimator.name, estimator.plugin, estimator.parameters);
+  std::string text = fmt::format("{}: {} {}", estimator.name, estimator.plugin,
+                                 parameters_text(estimator.parameters));
   if (!estimator.defect.empty()) text += fmt::format(" (mutant: {})", estimator.defect);
   return text;
 }
 
-}  // namespace
+// Whether the variances are of primary or of secondary estimates: one title where all agree.
+std::string variance_title(const std::vector<Row>& rows) {
+  std::set<std::string> kinds;
+  for (const Row& row : rows) kinds.insert(row.estimator->variance_of);
+  if (kinds.size() == 1 && !kinds.begin()->empty())
+    return fmt::format("variance of one {} estimate", one_line(*kinds.begin()));
+  return kinds.size() > 1 ? "variance of one primary (p) or secondary (s) estimate" : "variance";
+}
 
-std::string estimator_bars(const Suite& suite, const std::string& channel) {
+std::string row_label(const Row& row, const Panel& panel, bool mixed) {
+  const std::string& of = row.estimator->variance_of;
+  const bool marked = mixed && panel.may_be_logarithmic && !of.empty();
+  return marked ? fmt::format("{} ({})", row.estimator->name, of.substr(0, 1))
+                : row.estimator->name;
+}
+
+std::string bars(const Suite& suite, const std::string& channel, Panel panel) {
   const std::vector<Row> rows = rows_of(suite, channel);
   if (rows.empty()) return {};
   const double labels = label_width(rows);
-  const Panel mean = {.title = "mean",
-                      .unit = "unit of the output",
-
-                      .style = "mean",
-                      .bar =
-                          [](const EstimatorChannel& c) {
-                            return Bar{c.mean, c.reference};
-                          },
-                      .left = labels + 12};
-  const Panel variance = {.title = "variance",
-                          .unit = "squared unit of the output",
-                          .style = "variance",
-                          .bar =
-                              [](const EstimatorChannel& c) {
-                                return Bar{c.variance, c.reference_variance};
-                              },
-                          .left = mean.left + panel_width + value_width + gap,
-                          .may_be_logarithmic = true};
+  panel.left = labels + 12;
+  const bool mixed = panel.title.ends_with(" (s) estimate");
   const double height = top + row_height * static_cast<double>(rows.size()) + 2 * line_height + 8;
-  Svg svg({variance.left + panel_width + value_width + 8, height},
-          fmt::format("Mean and variance of {} estimators of {}", rows.size(), suite.name));
+  Svg svg({panel.left + panel_width + value_width + 8, height},
+          fmt::format("{} of {} of {}: {}", panel.title,
+                      counted(rows.size(), "estimator", "estimators"), suite.name, channel));
   double y = top + row_height / 2 + 4;
   for (const Row& row : rows) {
     svg.text({.at = {labels, y},
-              .content = row.estimator->name,
+              .content = row_label(row, panel, mixed),
               .anchor = Anchor::end,
               .style = row.estimator->original.empty() ? "" : "mutant",
               .room = labels,
               .tooltip = label_tooltip(*row.estimator)});
     y += row_height;
   }
-  draw_panel(svg, rows, mean);
-  draw_panel(svg, rows, variance);
+  draw_panel(svg, rows, panel);
   return svg.finish();
+}
+
+}  // namespace
+
+std::string mean_bars(const Suite& suite, const std::string& channel) {
+  return bars(suite, channel,
+              {.title = "mean",
+               .unit = "unit of the output",
+               .style = "mean",
+               .bar = [](const EstimatorChannel& c) {
+                 return Bar{c.mean, c.reference};
+               }});
+}
+
+std::string variance_bars(const Suite& suite, const std::string& channel) {
+  return bars(suite, channel,
+              {.title = variance_title(rows_of(suite, channel)),
+               .unit = "squared unit of the output",
+               .style = "variance",
+               .bar =
+                   [](const EstimatorChannel& c) {
+                     return Bar{c.variance, c.reference_variance};
+                   },
+               .may_be_logarithmic = true});
 }
 
 }  // namespace assay::reports

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "reports/charts.h"
-#include "reports/number.h"
+#include "reports/effect.h"
+#include "reports/evidence.h"
 #include "reports/svg.h"
 
 namespace assay::reports {
@@ -14,31 +16,51 @@ constexpr double plot_width = 520;
 constexpr double row_height = 26;
 constexpr double top = 34;
 
-// Effects in the unit of the axis: per cent where relative.
-struct Unit {
-  double factor = 1;
-  explicit Unit(const Effect& effect) : factor(effect.relative ? 100 : 1) {}
-  Number operator()(Number value) const { return value ? Number(factor * *value) : std::nullopt; }
+// Effects in the unit of the axis: per cent where relative, the ratio where theta is its logarithm.
+class Unit {
+ public:
+  explicit Unit(const Effect& effect) : relative_(effect.relative), ratio_(is_ratio(effect)) {}
+
+  Number operator()(Number value) const {
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    if (ratio_) return std::exp(std::clamp(*value, -most, most));
+    return relative_ ? 100 * *value : *value;
+  }
   Estimate operator()(const Effect& e) const {
     return {(*this)(e.estimate), (*this)(e.low), (*this)(e.high)};
   }
+  double none() const { return ratio_ ? 1 : 0; }
+  bool ratio() const { return ratio_; }
+
+ private:
+  static constexpr double most = 300;  // so that even the ratio of two ends is a double
+  bool relative_;
+  bool ratio_;
 };
 
-// Which sides a margin is drawn on: an inequality has one.
+// Which sides a margin is drawn on: an inequality has one. What a proof of < or > is planned for
+// lies on the side that is claimed, what an alarm must notice on the other.
 struct Sides {
   bool below, above;
-  explicit Sides(const Test& test) : below(test.tail != "upper"), above(test.tail != "lower") {}
+  explicit Sides(const Test& test) : below(test.tail != "upper"), above(test.tail != "lower") {
+    const std::string relation = relation_of(test.claim);
+    if (relation == "within") below = above = true;
+    if (relation == "<" || relation == ">") {
+      below = relation == "<";
+      above = relation == ">";
+    }
+  }
 };
 
 std::size_t shown(const Test& test) {
   return std::min(test.channels.size(), most_in_interval_chart);
 }
 
-Range domain(const Test& test, std::size_t channels) {
+Extent extent_of(const Test& test, std::size_t channels) {
   const Unit unit(test.channels.front().effect);
   const Sides sides(test);
   Extent extent;
-  extent.include(0.0);
+  extent.include(unit.none());
   for (const Number& margin : {test.detect, test.allow}) {
     if (!margin) continue;
     if (sides.above) extent.include(unit(margin));
@@ -50,7 +72,29 @@ Range domain(const Test& test, std::size_t channels) {
     extent.include(effect.low);
     extent.include(effect.high);
   }
-  return extent.padded(0.06);
+  return extent;
+}
+
+// Ratios that span more than a factor of three are told apart on a logarithmic axis only.
+Scale scale_of(const Test& test, std::size_t channels, Range pixels) {
+  const Extent extent = extent_of(test, channels);
+  const Range range = extent.range();
+  if (Unit(test.channels.front().effect).ratio() && range.low > 0 && range.high > 3 * range.low) {
+    const double margin = std::pow(range.high / range.low, 0.06);
+    return Scale({{range.low / margin, range.high * margin}, pixels, Scale::Kind::logarithmic});
+  }
+  return Scale({extent.padded(0.06), pixels});
+}
+
+// Where on the axis `detect` lies: one place or two.
+std::vector<double> detect_margins(const Test& test) {
+  const Unit unit(test.channels.front().effect);
+  const Sides sides(test);
+  std::vector<double> margins;
+  if (!test.detect || !std::isfinite(*test.detect)) return margins;
+  if (sides.above) margins.push_back(*unit(test.detect));
+  if (sides.below) margins.push_back(*unit(-*test.detect));
+  return margins;
 }
 
 struct Frame {
@@ -66,17 +110,15 @@ void draw_margin(Svg& svg, const Frame& frame, double value, const char* style) 
 void draw_margins(Svg& svg, const Test& test, const Frame& frame) {
   const Unit unit(test.channels.front().effect);
   const Sides sides(test);
-  if (const Number allow = unit(test.allow); allow && *allow > 0) {
-    const double left = frame.scale(sides.below ? -*allow : frame.scale.definition().domain.low);
-    const double right = frame.scale(sides.above ? *allow : frame.scale.definition().domain.high);
+  if (test.allow.value_or(0) > 0) {
+    const Range domain = frame.scale.definition().domain;
+    const double left = frame.scale(sides.below ? unit(-*test.allow).value_or(0) : domain.low);
+    const double right = frame.scale(sides.above ? unit(test.allow).value_or(0) : domain.high);
     svg.box({left, frame.vertical.low, right - left, frame.vertical.high - frame.vertical.low},
             "allowed");
   }
-  if (const Number detect = unit(test.detect)) {
-    if (sides.above) draw_margin(svg, frame, *detect, "detect");
-    if (sides.below) draw_margin(svg, frame, -*detect, "detect");
-  }
-  draw_margin(svg, frame, 0, "zero");
+  for (const double margin : detect_margins(test)) draw_margin(svg, frame, margin, "detect");
+  draw_margin(svg, frame, unit.none(), "zero");
 }
 
 void draw_effect(Svg& svg, const Effect& effect, const Scale& scale, double y) {
@@ -88,7 +130,6 @@ void draw_effect(Svg& svg, const Effect& effect, const Scale& scale, double y) {
 // Names above the lines, where they do not run into each other.
 void label_margins(Svg& svg, const Test& test, const Scale& scale) {
   const Unit unit(test.channels.front().effect);
-  const Sides sides(test);
   std::vector<Range> taken;
   const auto label = [&](double value, const std::string& text) {
     const double x = scale(value), half = text_width(text) / 2 + 4;
@@ -98,10 +139,10 @@ void label_margins(Svg& svg, const Test& test, const Scale& scale) {
     taken.push_back({x - half, x + half});
     svg.text({.at = {x, top - 8}, .content = text, .anchor = Anchor::middle});
   };
-  label(0, "0");
-  const Number detect = unit(test.detect);
-  if (detect && sides.above) label(*detect, "+detect");
-  if (detect && sides.below) label(-*detect, "-detect");
+  label(unit.none(), unit.ratio() ? "1" : "0");
+  const char* name = relation_of(test.claim) == "within" ? "margin" : "detect";
+  for (const double margin : detect_margins(test))
+    label(margin, unit.ratio() ? name : fmt::format("{}{}", margin < 0 ? "-" : "+", name));
 }
 
 double label_room(const Test& test) {
@@ -119,13 +160,16 @@ std::string interval_chart(const Test& test) {
   const double labels = label_room(test) + 34;
   const double bottom = top + row_height * static_cast<double>(rows);
   const Effect& effect = test.channels.front().effect;
-  const Scale scale({domain(test, rows), {labels, labels + plot_width}});
+  const Scale scale = scale_of(test, rows, {labels, labels + plot_width});
+  const bool logarithmic = scale.definition().kind == Scale::Kind::logarithmic;
   Svg svg({labels + plot_width + 40, bottom + 2 * line_height + 8},
-          fmt::format("{}: {}", effect.quantity, test.name));
+          fmt::format("{}: {}", effect_name(effect), test.name));
   horizontal_axis(svg, {.scale = scale,
                         .at = bottom,
                         .across = {top, bottom},
-                        .title = effect.quantity + (effect.relative ? " (%)" : ""),
+                        .title = effect_name(effect) + (effect.relative ? " (%)"
+                                                        : logarithmic   ? ", log scale"
+                                                                        : ""),
                         .ticks = 6});
   draw_margins(svg, test, {scale, {top, bottom}});
   label_margins(svg, test, scale);
@@ -143,8 +187,8 @@ std::string interval_chart(const Test& test) {
 std::string interval_sketch(const Test& test) {
   if (test.channels.empty() || !test.channels.front().effect.estimate) return {};
   constexpr Size size = {130, 20};
-  const Scale scale({domain(test, 1), {6, size.width - 6}});
-  Svg svg(size, "effect against zero and detect");
+  const Scale scale = scale_of(test, 1, {6, size.width - 6});
+  Svg svg(size, "effect against none and detect");
   draw_margins(svg, test, {scale, {1, size.height - 1}});
   draw_effect(svg, test.channels.front().effect, scale, size.height / 2);
   return svg.finish();

@@ -42,7 +42,7 @@ struct Standing {
 };
 
 Standing mean_standing(const Comparison& pair) {
-  const std::string p = fmt::format("p {}", p_text(pair.mean_p, {}));
+  const std::string p = fmt::format("p {}", p_text(pair.mean_p, pair.log10_mean_p));
   if (pair.means_differ) return {"cell differ", "≠", "≠ differ", p};
   return {"cell agree", "=", "= agree", p};
 }

@@ -10,17 +10,19 @@
 
 namespace assay::reports {
 
-/// The estimators side by side, one row each: mean (red) and variance (blue) of one channel as bars
-/// from zero with their intervals; exact values as dashed lines. Variances whose values span more
-/// than a factor 50 are drawn on a logarithmic axis, which says so.
-std::string estimator_bars(const Suite& suite, const std::string& channel);
+/// The estimators of a suite that have a channel, one row each, as bars from zero with their
+/// intervals: the means (red) and the variances (blue); exact values as dashed lines. Variances
+/// whose values span more than a factor 50 are drawn on a logarithmic axis, which says so.
+std::string mean_bars(const Suite& suite, const std::string& channel);
+std::string variance_bars(const Suite& suite, const std::string& channel);
 
 /// Where each pair of a suite's estimators stands in one channel: above the diagonal whether the
 /// means agree, below it whose variance is smaller. The first 40 estimators.
 std::string pair_matrix(const Suite& suite, const std::string& channel);
 inline constexpr std::size_t most_in_matrix = 40;
 
-/// A test's effect against zero, `allow` and `detect`: one interval a channel, the first 40.
+/// A test's effect against none, `allow` and `detect`: one interval a channel, the first 40. A
+/// logarithm of a ratio is drawn as the ratio.
 std::string interval_chart(const Test&);
 inline constexpr std::size_t most_in_interval_chart = 40;
 

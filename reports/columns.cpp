@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "reports/text.h"
 
@@ -57,13 +58,27 @@ std::size_t fitting(std::string_view text, int width) {
   return position;
 }
 
+// The last place up to `end` where a long word, such as a claim, may be parted: behind an opening
+// bracket, comma, slash, or a dot that is not a decimal point; `end` where there is none.
+std::size_t joint(std::string_view text, std::size_t end) {
+  for (std::size_t i = end; i > end / 2; --i) {
+    const char last = text[i - 1];
+    const bool letter = std::isalpha(static_cast<unsigned char>(text[i])) != 0;
+    if (last == '(' || last == ',' || last == '/' || (last == '.' && letter)) return i;
+  }
+  return end;
+}
+
 // Takes the next line off the front of `rest`.
 std::string take_line(std::string_view& rest, int width) {
   std::size_t end = fitting(rest, width);
   std::size_t next = end;
   if (end < rest.size() && rest[end] != ' ') {
     const std::size_t space = rest.substr(0, end).rfind(' ');
-    if (space != std::string_view::npos && space > 0) end = next = space;
+    if (space != std::string_view::npos && space > 0)
+      end = next = space;
+    else
+      end = next = joint(rest, end);
   }
   while (next < rest.size() && rest[next] == ' ') ++next;
   std::string line(rest.substr(0, end));

@@ -5,19 +5,17 @@
 #include <algorithm>
 
 #include "reports/columns.h"
+#include "reports/console_rows.h"
 #include "reports/describe.h"
 #include "reports/number.h"
 #include "reports/text.h"
+#include "reports/verdict.h"
 
 namespace assay::reports {
 namespace {
 
 constexpr int least_width = 60;
 constexpr int label_width = 17;
-constexpr int verdict_width = 12;
-constexpr int number_width = 33;
-constexpr int cost_width = 12;
-constexpr std::size_t name_lines = 3;
 
 // A terminal renders a no-break space in its own way: copied text should hold plain ones.
 std::string plain_spaces(const std::string& text) {
@@ -66,8 +64,16 @@ class Screen {
                             : shorten(text, options_.width) + "\n";
   }
 
+  // Lines that are empty in the text say nothing on a terminal.
   void paragraph(const std::string& text) {
-    for (const std::string& part : wrapped(text, options_.width)) line(part);
+    for (const std::string& part : wrapped(text, options_.width)) {
+      if (!part.empty()) line(part);
+    }
+  }
+
+  // One empty line, never two.
+  void blank() {
+    if (!out_.empty() && !out_.ends_with("\n\n")) out_ += "\n";
   }
 
   // No-break spaces keep numbers and units together until the lines are made.
@@ -89,65 +95,81 @@ class Screen {
   int beside_width() const { return options_.width - label_width - 6; }
 
   void fact(const std::string& label, const std::string& text) {
-    if (!text.empty()) beside(label, wrapped(text, beside_width()));
+    std::vector<std::string> lines = wrapped(text, beside_width());
+    std::erase(lines, "");
+    beside(label, lines);
   }
 
   void write(const Suite& suite) {
     const std::string file = suite.file.empty() ? "" : " (" + suite.file + ")";
-    line(plain(suite.name + file), "\x1b[1m");
-    if (!suite.about.empty()) paragraph(suite.about);
+    for (const std::string& part : wrapped(one_line(suite.name + file), options_.width))
+      line(part, "\x1b[1m");
+    paragraph(suite.about);
     paragraph(levels_text(suite));
-    out_ += "\n";
+    const std::string confidence = common_confidence(suite);
+    if (!confidence.empty())
+      paragraph(
+          fmt::format("Brackets are {} intervals unless another confidence is given.", confidence));
+    blank();
     if (options_.verbose) estimators(suite);
-    for (const Test& test : suite.tests) write(test);
-    out_ += "\n";
+    std::vector<TestRow> rows;
+    for (const Test& test : suite.tests) rows.push_back(row_of(test, confidence));
+    const RowLayout layout = layout_of(rows, options_.width);
+    for (std::size_t i = 0; i < rows.size(); ++i) write(suite.tests[i], row_lines(rows[i], layout));
+    blank();
+    if (layout.cost == 0 && !rows.empty()) cost_of(suite);
   }
 
-  void write(const Test& test) {
+  void write(const Test& test, const std::vector<std::string>& lines) {
     const Outcome result = outcome(test);
-    std::string start = "  " + mark(result) + " ";
-    start += pad_right(to_string(test.verdict), verdict_width) + " ";
-    const int room = options_.width - columns(start) - number_width - cost_width - 2;
-    std::vector<std::string> name = wrapped(one_line(test.name), std::max(room, 8));
-    while (name.size() > name_lines) {
-      name[name.size() - 2] = shorten(name[name.size() - 2] + " " + name.back(), std::max(room, 8));
-      name.pop_back();
-    }
-    const std::string number =
-        pad_right(shorten(plain(key_number(test)), number_width), number_width);
-    const std::string cost = shorten(plain(cost_text(total_cost(test))), cost_width);
-    std::string text = start + pad_right(name.front(), room) + " " + number + " " + cost;
-    text.erase(text.find_last_not_of(' ') + 1);
-    line(text, colour_of(result));
-    const std::string below(static_cast<std::size_t>(columns(start)), ' ');
-    for (std::size_t i = 1; i < name.size(); ++i) line(below + name[i], colour_of(result));
+    for (const std::string& part : lines) line(plain_spaces(part), colour_of(result));
     if (result == Outcome::failed || result == Outcome::inconclusive || options_.verbose)
       explain(test);
   }
 
+  // The table had no room for what each test cost.
+  void cost_of(const Suite& suite) {
+    Cost sum;
+    for (const EstimatorSummary& estimator : suite.estimators) {
+      sum.closest_hit_rays += rays(estimator.cost);
+      sum.samples += estimator.cost.samples;
+    }
+    if (const std::string cost = cost_text(sum); !cost.empty()) {
+      paragraph("All estimators of the suite: " + cost + ".");
+      blank();
+    }
+  }
+
   void explain(const Test& test) {
     for (const auto& [label, sentence] : facts(test)) fact(label, sentence);
+    fact("cost", cost_text(total_cost(test)));
     fact("where", place(test));
     if (!test.replay.empty()) beside("replay", wrap_command(plain(test.replay), beside_width()));
-    out_ += "\n";
+    blank();
   }
 
   void estimators(const Suite& suite) {
     for (const EstimatorSummary& estimator : suite.estimators) {
-      line(plain("  " + estimator.name + "  " + estimator.plugin + "  " +
-                 cost_text(estimator.cost)));
+      paragraph(one_line("  " + estimator.name + "  " + estimator.plugin + "  " +
+                         cost_text(estimator.cost)));
+      const std::string of =
+          estimator.variance_of.empty() ? "" : " of one " + estimator.variance_of;
       for (const EstimatorChannel& channel : estimator.channels) {
         fact(one_line(shorten(clean(channel.name), label_width - 1)),
-             fmt::format("mean {}, variance {}", interval(channel.mean),
-                         interval(channel.variance)));
+             fmt::format("mean {}, variance{} {}{}", interval(channel.mean), of,
+                         interval(channel.variance),
+                         channel.mean.low
+                             ? fmt::format(" ({} intervals)", confidence_text(estimator.confidence))
+                             : std::string()));
       }
     }
-    if (!suite.estimators.empty()) out_ += "\n";
+    if (!suite.estimators.empty()) blank();
   }
 
   static std::string interval(const Estimate& estimate) {
-    return fmt::format("{} [{}, {}]", human(estimate.value), human(estimate.low),
-                       human(estimate.high));
+    const std::string value = data_text(estimate.value);
+    if (!estimate.low || !estimate.high) return value;
+    return fmt::format("{} [{}, {}]", value, human(estimate.low), human(estimate.high));
   }
 
   void list(const Record& record, Outcome kind, const std::string& heading) {
@@ -157,17 +179,24 @@ class Screen {
         if (outcome(test) != kind) continue;
         if (first) line(heading, colour_of(kind));
         first = false;
-        line("  " + plain(verdict_text(test) + ": " + (test.id.empty() ? test.name : test.id)));
+        const std::string name = one_line(test.id.empty() ? test.name : test.id);
+        for (const std::string& part :
+             wrapped(verdict_text(test) + ": " + name, options_.width - 2))
+          line("  " + part);
       }
     }
   }
 
   void summary(const Record& record) {
     const Tally counts = tally(record);
+    blank();
     list(record, Outcome::failed, "Not ok:");
     list(record, Outcome::inconclusive, "Undecided:");
-    line(tally_sentence(counts) +
-         (record.seconds > 0 ? " in " + plain(duration(record.seconds)) : ""));
+    const std::string took =
+        record.seconds > 0 ? " in " + plain(duration(record.seconds)) : std::string();
+    const std::string verdicts = verdict_counts(record);
+    paragraph(tally_sentence(counts) + took + (verdicts.empty() ? "." : ": " + verdicts + "."));
+    paragraph(error_rates(record));
     if (counts.inconclusive > 0)
       line(fmt::format("{} inconclusive (counted as skipped below)", counts.inconclusive));
     out_ += fmt::format("{} passed, {} failed, {} skipped\n", counts.passed, counts.failed,

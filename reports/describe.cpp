@@ -3,62 +3,47 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
+#include "reports/effect.h"
+#include "reports/evidence.h"
 #include "reports/number.h"
 #include "reports/text.h"
+#include "reports/verdict.h"
 
 namespace assay::reports {
 namespace {
 
-std::string ratio_note(const Effect& effect) {
-  if (!effect.estimate || effect.quantity.rfind("ln ", 0) != 0) return {};
-  return fmt::format(" (ratio {})", human(std::exp(*effect.estimate)));
-}
-
-bool bounded(const Number& end) { return end && std::isfinite(*end); }
-
-// "[low, high]", or the one bound of a one-sided interval.
-std::string interval_text(const Effect& effect) {
-  const auto end = [&](const Number& value) { return with_sign(*value, effect.relative); };
-  if (bounded(effect.low) && bounded(effect.high))
-    return fmt::format("[{}, {}]", end(effect.low), end(effect.high));
-  if (bounded(effect.low)) return fmt::format("[from {}]", end(effect.low));
-  return bounded(effect.high) ? fmt::format("[to {}]", end(effect.high)) : std::string();
-}
-
 std::string estimate_fact(const Effect& effect) {
-  std::string text = fmt::format("{} {}{}", effect.quantity,
-                                 with_sign(*effect.estimate, effect.relative), ratio_note(effect));
+  std::string text =
+      fmt::format("{} {}", effect_name(effect), theta_text(*effect.estimate, effect));
+  if (is_ratio(effect)) text += fmt::format(" (ln {})", with_sign(*effect.estimate, false));
   if (const std::string interval = interval_text(effect); !interval.empty())
-    text += fmt::format(", {} interval {}", confidence_text(effect.confidence), interval);
+    text += fmt::format(", {} {}", interval_name(effect), interval);
   return text;
 }
 
-std::string p_fact(const Test& test, const Channel& channel) {
-  std::string text = fmt::format("p = {}", p_text(channel.p_value, channel.log10_p));
-  std::string how = test.method;
-  if (!test.tail.empty()) how += how.empty() ? test.tail : ", " + test.tail;
-  if (!how.empty()) text += fmt::format(" ({})", how);
-  if (channel.p_adjusted) text += fmt::format(", {} after Holm", p_text(channel.p_adjusted, {}));
-  if (test.alpha) text += fmt::format("; its share of alpha is {}", human(*test.alpha, 3));
-  if (channel.p_pass)
-    text += fmt::format("; p = {} of an effect that must not pass", p_text(channel.p_pass, {}));
-  return text;
+// What `detect` means depends on what is claimed.
+const char* detect_words(const Test& test) {
+  const std::string relation = relation_of(test.claim);
+  if (relation == "within") return "must be less than";
+  return is_proof(test) ? "planned for an advantage of" : "must be noticed from";
 }
 
 std::string margins_fact(const Test& test) {
-  const bool relative = worst_channel(test).effect.relative;
+  const Effect effect = worst_channel(test).effect;
   std::string text;
   const auto add = [&](const char* words, Number margin) {
     if (!margin) return;
     if (!text.empty()) text += "; ";
-    text += fmt::format("{} {}", words, magnitude(*margin, relative));
+    text += fmt::format("{} {}", words, margin_text(*margin, effect));
   };
   if (test.allow.value_or(0) != 0) add("allowed up to", test.allow);
-  add("must be noticed from", test.detect);
+  add(detect_words(test), test.detect);
   add("would be noticed from", test.detectable);
   if (test.power)
-    text += fmt::format("{}planned power {}", text.empty() ? "" : "; ", percent(*test.power));
+    text +=
+        fmt::format("{}planned power {}", text.empty() ? "" : "; ", confidence_text(*test.power));
   return text;
 }
 
@@ -92,13 +77,16 @@ std::string expectation_fact(const Test& test) {
                      to_string(test.verdict));
 }
 
+// How a character changes the depth of brackets.
+int nesting(char c) { return (c == '{' || c == '[') - (c == '}' || c == ']'); }
+
 std::string observations_fact(const Test& test) {
   std::string text;
   for (const Sample* sample : worst_samples(test)) {
     if (text.size() > 1000) break;
     if (!text.empty()) text += "; ";
-    text += fmt::format("{} of {} with {} primaries each", count_text(sample->secondaries),
-                        sample->estimator, count_text(sample->primaries));
+    text += fmt::format("{} of {} with {} each", count_text(sample->secondaries), sample->estimator,
+                        counted(sample->primaries, "primary", "primaries"));
     if (sample->nonfinite > 0)
       text += fmt::format(", {} not finite", count_text(sample->nonfinite));
   }
@@ -121,54 +109,9 @@ std::vector<const Sample*> worst_samples(const Test& test) {
   return of_channel.empty() ? all : of_channel;
 }
 
-std::string effect_text(const Effect& effect) {
-  if (!effect.estimate) return {};
-  const std::string text = with_sign(*effect.estimate, effect.relative);
-  const std::string interval = interval_text(effect);
-  return interval.empty() ? text : fmt::format("{} {}", text, interval);
-}
-
 std::string key_number(const Test& test) {
-  const Channel channel = worst_channel(test);
-  std::string text = effect_text(channel.effect);
-  if (text.empty() && (channel.p_value || channel.log10_p))
-    text = "p = " + p_text(channel.p_value, channel.log10_p);
-  return text;
-}
-
-std::string outcome_word(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::passed:
-      return "ok";
-    case Outcome::failed:
-      return "not ok";
-    case Outcome::inconclusive:
-      return "undecided";
-    case Outcome::skipped:
-      break;
-  }
-  return "not run";
-}
-
-std::string mark(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::passed:
-      return "✓";
-    case Outcome::failed:
-      return "✗";
-    case Outcome::inconclusive:
-      return "?";
-    case Outcome::skipped:
-      break;
-  }
-  return "–";
-}
-
-std::string verdict_text(const Test& test) {
-  const std::string verdict = to_string(test.verdict);
-  if (test.expected == Verdict::pass || test.verdict == Verdict::skipped) return verdict;
-  if (test.verdict == test.expected) return verdict + " (as expected)";
-  return fmt::format("{} (expected {})", verdict, to_string(test.expected));
+  const std::string text = named_effect_text(worst_channel(test).effect);
+  return text.empty() ? headline_p(test).text() : text;
 }
 
 std::uint64_t rays(const Cost& cost) {
@@ -176,8 +119,8 @@ std::uint64_t rays(const Cost& cost) {
 }
 
 std::string cost_text(const Cost& cost) {
-  if (rays(cost) > 0) return count_text(rays(cost)) + " rays";
-  return cost.samples > 0 ? count_text(cost.samples) + " samples" : std::string();
+  if (rays(cost) > 0) return counted(rays(cost), "ray", "rays");
+  return cost.samples > 0 ? counted(cost.samples, "sample", "samples") : std::string();
 }
 
 std::string place(const Test& test) {
@@ -187,23 +130,33 @@ std::string place(const Test& test) {
 
 std::string headline(const Test& test) {
   if (test.verdict != test.expected && test.expected != Verdict::pass)
-    return fmt::format("expected {}, got {}: {}", to_string(test.expected), to_string(test.verdict),
-                       test.message.empty() ? test.claim : test.message);
+    return verdict_text(test) + ": " + (test.message.empty() ? test.claim : test.message);
   if (!test.message.empty()) return test.message;
   const std::string number = key_number(test);
   return number.empty() ? to_string(test.verdict) : number;
 }
 
-std::string tally_sentence(const Tally& tally) {
-  const int total = tally.passed + tally.failed + tally.inconclusive + tally.skipped;
-  if (total == 0) return "No test ran";
-  if (tally.failed > 0) return fmt::format("{} of {} tests not ok", tally.failed, total);
-  if (tally.inconclusive > 0)
-    return fmt::format("No test failed, {} of {} inconclusive", tally.inconclusive, total);
-  if (tally.skipped == total) return fmt::format("All {} tests skipped", total);
-  if (tally.skipped > 0)
-    return fmt::format("All {} tests that ran are ok, {} skipped", tally.passed, tally.skipped);
-  return total == 1 ? "The test is ok" : fmt::format("All {} tests ok", total);
+std::string parameters_text(const std::string& canonical) {
+  std::string text;
+  int depth = 0;
+  for (std::size_t i = 0; i < canonical.size(); ++i) {
+    if (canonical[i] != '"') {
+      depth += nesting(canonical[i]);
+      text += canonical[i];
+      // A place to break the line between two parameters.
+      if (canonical[i] == ',' && depth == 0) text += ' ';
+      continue;
+    }
+    // A text's canonical form begins with a colon, which tells it from a number.
+    const bool opens =
+        i == 0 || std::string_view("=:,[{").find(canonical[i - 1]) != std::string_view::npos;
+    if (opens && i + 1 < canonical.size() && canonical[i + 1] == ':') ++i;
+  }
+  return text;
+}
+
+std::string data_text(const Number& value) {
+  return value && !std::isnan(*value) ? human(*value) : "none";
 }
 
 std::vector<Fact> facts(const Test& test) {
@@ -215,9 +168,14 @@ std::vector<Fact> facts(const Test& test) {
   add("expected", expectation_fact(test));
   add("message", test.message);
   add("claim", test.claim);
-  add("null hypothesis", test.null_hypothesis);
+  // The null hypothesis of a proof's p(claim) is the claim; what must be rejected is its contrary.
+  if (is_proof(test))
+    add("contrary", contrary(test.claim));
+  else
+    add("null hypothesis", test.null_hypothesis);
   if (channel.effect.estimate) add("estimate", estimate_fact(channel.effect));
-  if (channel.p_value || channel.log10_p) add("evidence", p_fact(test, channel));
+  add("evidence", evidence_text(test));
+  add(is_proof(test) ? "beside it" : "passing", exclusion_text(test));
   add("margins", margins_fact(test));
   add("channels", channels_fact(test));
   add("assumptions", gates_fact(test));

@@ -16,22 +16,9 @@ Channel worst_channel(const Test&);
 /// The samples of the worst channel; all of them where none has its name.
 std::vector<const Sample*> worst_samples(const Test&);
 
-/// "+0.31 % [+0.12 %, +0.5 %]", "[from +0.12 %]" for a one-sided interval; empty where there is no
-/// estimate.
-std::string effect_text(const Effect&);
-
-/// The number of a test that a reader looks for first: the worst channel's effect with its
-/// interval, else its p-value; empty where nothing was tested.
+/// The number of a test that a reader looks for first: the worst channel's effect with its named
+/// interval, else the p-value that the verdict rests on; empty where nothing was tested.
 std::string key_number(const Test&);
-
-/// One word for the mark in front of a test: "ok", "not ok", "undecided", "not run".
-std::string outcome_word(Outcome);
-
-/// ✓ ✗ ? – : the same in one column.
-std::string mark(Outcome);
-
-/// The verdict, with what was expected where that is not pass: "fail (as expected)".
-std::string verdict_text(const Test&);
 
 /// "1.05 M rays", or samples where no ray was traced.
 std::string cost_text(const Cost&);
@@ -40,17 +27,21 @@ std::uint64_t rays(const Cost&);
 /// "suites/triangle.yaml:14".
 std::string place(const Test&);
 
+/// Canonical parameters for people, without the quotes that tell text from numbers.
+std::string parameters_text(const std::string& canonical);
+
+/// human(), or "none" for a number of data that were never finite.
+std::string data_text(const Number& value);
+
 /// The first sentence of the message, or what the verdict says by itself: a report's one line.
 std::string headline(const Test&);
-
-/// How many tests had which outcome, as a sentence for a title.
-std::string tally_sentence(const Tally&);
 
 /// A label and a sentence.
 using Fact = std::pair<std::string, std::string>;
 
 /// Everything that a reader of a verdict needs, in reading order: claim, null hypothesis, estimate,
-/// p-value, margins, expectation, channels, assumptions, message. Without place and replay command.
+/// p-values, margins, expectation, channels, assumptions, message. Without place and replay
+/// command.
 std::vector<Fact> facts(const Test&);
 
 /// The same facts as lines "label: sentence", with place and replay command: for formats that show

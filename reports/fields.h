@@ -113,6 +113,8 @@ void fields(Archive& a, T& channel) {
   a("log10_p", channel.log10_p);
   a("p_adjusted", channel.p_adjusted);
   a("p_pass", channel.p_pass);
+  a("log10_p_adjusted", channel.log10_p_adjusted);
+  a("log10_p_pass", channel.log10_p_pass);
   a("effect", channel.effect);
   a("reference", channel.reference);
 }
@@ -120,8 +122,10 @@ void fields(Archive& a, T& channel) {
 template <class Archive, maybe_const<Look> T>
 void fields(Archive& a, T& look) {
   a("secondaries", look.secondaries);
+  a("weight", look.weight);
   a("log10_p", look.log10_p);
   a("p_pass", look.p_pass);
+  a("log10_p_pass", look.log10_p_pass);
 }
 
 /// The worst channel's numbers are `repeated` at the test's own level, for readers that want one
@@ -147,6 +151,8 @@ void fields(Archive& a, T& test) {
   a.repeated("log10_p", worst.log10_p);
   a.repeated("p_adjusted", worst.p_adjusted);
   a.repeated("p_pass", worst.p_pass);
+  a.repeated("log10_p_adjusted", worst.log10_p_adjusted);
+  a.repeated("log10_p_pass", worst.log10_p_pass);
   a("alpha", test.alpha);
   a("beta", test.beta);
   a.repeated("effect", worst.effect);
@@ -183,6 +189,7 @@ void fields(Archive& a, T& estimator) {
   a("primaries", estimator.primaries);
   a("secondaries", estimator.secondaries);
   a("confidence", estimator.confidence);
+  a("variance_of", estimator.variance_of);
   a("channels", estimator.channels);
   a("cost", estimator.cost);
 }
@@ -194,6 +201,8 @@ void fields(Archive& a, T& comparison) {
   a("channel", comparison.channel);
   a("mean_p", comparison.mean_p);
   a("variance_p", comparison.variance_p);
+  a("log10_mean_p", comparison.log10_mean_p);
+  a("log10_variance_p", comparison.log10_variance_p);
   a("means_differ", comparison.means_differ);
   a("variances_differ", comparison.variances_differ);
   a("variance_ratio", comparison.variance_ratio);

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "reports/charts.h"
-#include "reports/columns.h"
 #include "reports/describe.h"
 #include "reports/html_parts.h"
 #include "reports/number.h"
 #include "reports/text.h"
+#include "reports/verdict.h"
 
 namespace assay::reports {
 namespace {
@@ -51,58 +50,12 @@ constexpr const char* reading_help =
 <dt>inconclusive</dt><dd>Neither: the budget ended before the data could decide.</dd>
 <dt>invalid</dt><dd>An assumption of the test does not hold, so its numbers prove nothing.</dd>
 <dt>error</dt><dd>The claim could not be tested: a value that is not finite, a crash, a time-out.</dd>
-<dt>expected</dt><dd>A test is ok when its verdict is the expected one; a mutant is expected to fail.</dd>
-<dt>effect</dt><dd>How far the estimator is from its claim, with an interval that holds the true value with the stated confidence.</dd>
+<dt>as expected</dt><dd>A mutant is a deliberately broken estimator: its claim is expected to fail, and the test is ok when it does.</dd>
+<dt>effect</dt><dd>How far the estimator is from its claim. Ratios are shown as per cent near one, else as factors (×0.07).</dd>
+<dt>interval</dt><dd>Holds the true effect with the confidence printed beside it. In a test that is one minus the test's share of alpha, so an interval that leaves out the claimed value is evidence against the claim. A sentence such as "shown: …" or "… is excluded" rests on the narrower interval at 1 - 2 beta, since passing is decided at beta.</dd>
+<dt>p</dt><dd>Of the claim, unless another name stands below it. The claims with &lt;, &gt; and within are proofs: their verdict rests on p(contrary), the p-value of the contrary of the claim.</dd>
 </dl></details>
 )html";
-
-std::uint64_t observations(const Test& test) {
-  std::uint64_t sum = 0;
-  for (const Sample* sample : worst_samples(test)) sum += sample->secondaries;
-  return sum;
-}
-
-std::string number_cell(const std::string& shown, const std::string& exact) {
-  return fmt::format("<td class=\"number\" title=\"{}\">{}</td>", exact, shown);
-}
-
-// A table of all tests is for finding one; its own section has the whole name.
-std::string overview_text(const std::string& text) { return shorten(one_line(text), 120); }
-
-std::string overview_row(const Test& test, TestPlace place) {
-  const Cost cost = total_cost(test);
-  const std::string claim = test.claim.empty() || test.claim == test.name
-                                ? std::string()
-                                : fmt::format("<br/><span class=\"claim\">{}</span>",
-                                              escape_xml(overview_text(test.claim)));
-  return fmt::format(
-             "<tr class=\"{}\"><td class=\"verdict\">{}</td><td class=\"name\"><a "
-             "href=\"#{}\">{}</a>{}</td><td class=\"effect\">{}</td><td>{}</td>",
-             outcome_style(outcome(test)), badge(test), anchor(place),
-             escape_xml(overview_text(test.name)), claim, escape_xml(key_number(test)),
-             interval_sketch(test)) +
-         number_cell(count_text(observations(test)), grouped(observations(test))) +
-         number_cell(count_text(rays(cost)), grouped(rays(cost))) +
-         number_cell(duration(cost.seconds), round_trip(cost.seconds) + " s") + "</tr>\n";
-}
-
-std::string overview(const Record& record) {
-  std::string out =
-      "<div class=\"scroll\"><table>\n<thead><tr><th>verdict</th><th>test and claim</th>"
-      "<th>effect [interval]</th><th>against zero, detect</th><th "
-      "class=\"number\">observations</th>"
-      "<th class=\"number\">rays</th><th class=\"number\">CPU time</th></tr></thead>\n";
-  for (std::size_t s = 0; s < record.suites.size(); ++s) {
-    const Suite& suite = record.suites[s];
-    if (suite.tests.empty()) continue;
-    out += fmt::format("<tbody>\n<tr><th colspan=\"7\"><a href=\"#s{}\">{}</a></th></tr>\n", s,
-                       escape_xml(one_line(suite.name)));
-    for (std::size_t t = 0; t < suite.tests.size(); ++t)
-      out += overview_row(suite.tests[t], {s, t});
-    out += "</tbody>\n";
-  }
-  return out + "</table></div>\n";
-}
 
 std::string head(const std::string& title) {
   return fmt::format(
@@ -137,19 +90,18 @@ std::string badge(const Test& test) {
 
 std::string figure(const std::string& chart, const std::string& caption) {
   if (chart.empty()) return {};
-  return fmt::format("<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n", chart,
-                     escape_xml(caption));
+  const std::string words =
+      caption.empty() ? "" : fmt::format("<figcaption>{}</figcaption>\n", escape_xml(caption));
+  return fmt::format("<figure>\n<div class=\"scroll\">{}</div>{}</figure>\n", chart, words);
 }
 
 std::string html(const Record& record) {
   const Tally counts = tally(record);
   const std::string sentence = tally_sentence(counts);
   std::string out = head(fmt::format("Assay: {}", sentence));
-  out += fmt::format(
-      "<body>\n<h1 class=\"{}\">{}</h1>\n<p>{} passed, {} failed, {} inconclusive, {} "
-      "skipped</p>\n",
-      overall_style(counts), escape_xml(sentence), counts.passed, counts.failed,
-      counts.inconclusive, counts.skipped);
+  out += fmt::format("<body>\n<h1 class=\"{}\">{}</h1>\n<p>{}</p>\n<p>{}</p>\n",
+                     overall_style(counts), escape_xml(sentence),
+                     escape_xml(verdict_counts(record)), escape_xml(error_rates(record)));
   out += about_the_run(record);
   out += reading_help;
   out += "<p class=\"tools\"></p>\n";

@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
+#include "reports/html_table.h"
 #include "reports/record.h"
 
 namespace assay::reports {
@@ -26,8 +28,24 @@ const char* outcome_style(Outcome);
 /// Mark and verdict as a badge.
 std::string badge(const Test&);
 
-/// A figure with a caption; empty where the chart is.
+/// A figure with a caption, if there is one; empty where the chart is.
 std::string figure(const std::string& chart, const std::string& caption);
+
+/// A source's name, with its plugin and parameters below.
+std::string source_markup(const std::string& name, const std::string& plugin,
+                          const std::string& parameters);
+
+/// What something cost: rays or samples, with the CPU time below; all digits on pointing at it.
+HtmlTable::Cell cost_cell(const Cost&);
+
+/// The tests of a suite in the order of their urgency (reports/verdict.h).
+std::vector<std::size_t> by_urgency(const Suite&);
+
+/// All tests in one table: first what is not ok, then what is undecided, then the suites.
+std::string overview(const Record&);
+
+/// The estimators of a suite as bars, in numbers, and in pairs.
+std::string estimator_pictures(const Suite&);
 
 std::string suite_section(const Record&, std::size_t suite);
 std::string test_section(const Test&, TestPlace);

@@ -18,7 +18,7 @@ const char* const page_style = R"css(
   --mean: #c8362e; --variance: #2f6fb7; --link: #000000; --ok: #1a7f37; --bad: #b42318; --open: #8a5a00;
   --differ: #f6c9c4; --smaller: #c3dbf5; --larger: #f5e3b8; --agree: #f2f2f2; --band: #d8eadc; --code: #f2f2f2; } }
 * { box-sizing: border-box; }
-body { margin: 0 auto; padding: 24px 20px 60px; max-width: 1120px; background: var(--paper); color: var(--ink);
+body { margin: 0 auto; padding: 24px 20px 60px; max-width: 1180px; background: var(--paper); color: var(--ink);
   font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
 h1 { font-size: 26px; line-height: 1.25; margin: 0 0 4px; }
 h2 { font-size: 21px; margin: 44px 0 4px; padding-top: 14px; border-top: 2px solid var(--edge); overflow-wrap: anywhere; }
@@ -30,14 +30,14 @@ a { color: var(--link); }
 .facts b { color: var(--ink); font-weight: 600; overflow-wrap: anywhere; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-size: 13px; margin: 10px 0; }
-table.small { width: auto; } table.wide th { white-space: normal; }
+table.small { width: auto; max-width: 100%; }
 th, td { text-align: left; vertical-align: top; padding: 5px 8px; border-bottom: 1px solid var(--grid); }
-th { font-weight: 600; white-space: nowrap; }
+th { font-weight: 600; } th.group { padding-top: 16px; font-size: 14px; color: var(--ink); } tr.failed th.group { color: var(--bad); } tr.inconclusive th.group { color: var(--open); }
 td { overflow-wrap: break-word; }
 td.name { min-width: 180px; overflow-wrap: anywhere; }
-td.number, th.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-td.effect, td.verdict { white-space: nowrap; }
-.badge { font-weight: 600; white-space: nowrap; }
+td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
+td .muted { font-size: 12px; } td > .chart { min-width: 130px; } .whole { white-space: nowrap; }
+.badge { font-weight: 600; }
 .passed .badge { color: var(--ok); } .failed .badge { color: var(--bad); }
 .inconclusive .badge { color: var(--open); } .skipped .badge { color: var(--muted); }
 h1.passed { color: var(--ok); } h1.failed { color: var(--bad); } h1.inconclusive { color: var(--open); }
@@ -57,6 +57,8 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
 .figures { display: flex; flex-wrap: wrap; gap: 4px 20px; align-items: flex-start; }
 .figures figure { flex: 0 1 auto; max-width: 100%; }
 .figures figcaption { contain: inline-size; }
+.scroll > .chart { max-width: none; } .figures .scroll > .chart { max-width: 100%; }
+@media print { .scroll > .chart { max-width: 100%; } }
 .chart { display: block; max-width: 100%; height: auto; font: 11px ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; }
 .chart text { fill: var(--muted); } .chart text.title { fill: var(--ink); } .chart text.over { fill: var(--ink); }
 .chart text.mutant { font-style: italic; }
@@ -76,7 +78,14 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
 .chart .normal { stroke: var(--ink); stroke-width: 1.2; stroke-dasharray: 4 3; }
 .red { color: var(--bad); font-weight: 600; } .amber { color: var(--open); font-weight: 600; } .green { color: var(--ok); }
 .only-problems tr.passed, .only-problems details.passed, .only-problems tr.skipped, .only-problems details.skipped { display: none; }
-@media (max-width: 620px) { dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 6px; } }
+@media screen and (max-width: 900px) {
+  table.cards, table.small.cards { width: 100%; } table.cards thead { display: none; } table.cards tbody, table.cards tr, table.cards th.group { display: block; }
+  table.cards tr { padding: 8px 0; border-bottom: 1px solid var(--edge); }
+  table.cards td { display: grid; grid-template-columns: 11em minmax(0, 1fr); gap: 8px; border: 0; padding: 2px 0; text-align: left; overflow-wrap: anywhere; }
+  table.cards td.empty { display: none; }
+  table.cards td::before { content: attr(data-label); color: var(--muted); } }
+@media screen and (max-width: 480px) { table.cards td { grid-template-columns: 8em minmax(0, 1fr); } }
+@media (max-width: 620px) { body { padding: 16px 12px 40px; } dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 6px; } }
 @media print { body { max-width: none; padding: 0; font-size: 11px; } .tools { display: none; }
   table, .facts, dl, figcaption, .key { font-size: 10px !important; } .claim { font-size: 9px; } h2 { break-after: avoid; } h3 { break-after: avoid; }
   figure, tr, pre { break-inside: avoid; } .scroll { overflow: visible; }

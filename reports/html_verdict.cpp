@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "reports/charts.h"
 #include "reports/describe.h"
+#include "reports/effect.h"
+#include "reports/evidence.h"
 #include "reports/html_parts.h"
+#include "reports/html_table.h"
 #include "reports/number.h"
 #include "reports/text.h"
 
@@ -34,9 +38,13 @@ std::vector<const Sample*> drawn_samples(const Test& test) {
 
 std::string interval_caption(const Test& test) {
   const Effect effect = worst_channel(test).effect;
-  std::string text = fmt::format("The effect with its {} interval, against zero (solid line)",
-                                 confidence_text(effect.confidence));
-  if (test.detect) text += ", what must be noticed (dashed, ±detect)";
+  const std::string interval = interval_name(effect);
+  std::string text = interval.empty() ? "The effect" : "The effect with its " + interval;
+  text +=
+      is_ratio(effect) ? ", against a ratio of one (solid line)" : ", against zero (solid line)";
+  if (test.detect)
+    text += is_proof(test) ? ", the margin of the claim (dashed)"
+                           : ", what must be noticed (dashed, detect)";
   if (test.allow.value_or(0) > 0) text += ", what is allowed (shaded)";
   if (test.channels.size() > most_in_interval_chart)
     text +=
@@ -71,51 +79,53 @@ const char* state_style(const std::string& state) {
 
 std::string gates(const Test& test) {
   if (test.gates.empty()) return {};
-  std::string out =
-      "<table class=\"small\"><thead><tr><th>assumption checked</th><th class=\"number\">value</th>"
-      "<th class=\"number\">limit</th><th>state</th></tr></thead><tbody>\n";
+  HtmlTable table({{"assumption checked"}, {"value", true}, {"limit", true}, {"state"}},
+                  "small cards");
   for (const Gate& gate : test.gates)
-    out += fmt::format(
-        "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td "
-        "class=\"{}\">{}</td></tr>\n",
-        escape_xml(one_line(gate.name)), human(gate.value), human(gate.limit),
-        state_style(gate.state), escape_xml(one_line(gate.state)));
-  return out + "</tbody></table>\n";
+    table.row({{escape_xml(one_line(gate.name))},
+               {human(gate.value)},
+               {human(gate.limit)},
+               {escape_xml(one_line(gate.state)), state_style(gate.state)}});
+  return table.finish();
 }
 
 std::string looks(const Test& test) {
   if (test.looks.empty()) return {};
-  std::string out =
-      "<table class=\"small\"><thead><tr><th>look</th><th class=\"number\">observations</th><th "
-      "class=\"number\">p "
-      "of the null hypothesis</th><th class=\"number\">p of the forbidden effect</th></tr></thead>"
-      "<tbody>\n";
+  HtmlTable table(
+      {{"look", true},
+       {"observations", true},
+       {"its share", true},
+       {"p of the claim", true},
+       {is_proof(test) ? "p of the contrary" : "p of an effect that must not pass", true}},
+      "small cards");
   for (std::size_t i = 0; i < test.looks.size(); ++i) {
     const Look& look = test.looks[i];
-    out += fmt::format(
-        "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td "
-        "class=\"number\">{}</td></tr>\n",
-        i + 1, grouped(look.secondaries), p_text({}, look.log10_p), p_text(look.p_pass, {}));
+    table.row({{fmt::format("{}", i + 1)},
+               {grouped(look.secondaries)},
+               {human(look.weight)},
+               {p_text({}, look.log10_p)},
+               {p_text(look.p_pass, look.log10_p_pass)}});
   }
-  return out + "</tbody></table>\n";
+  return table.finish();
 }
 
-std::string sample_row(const Sample& s) {
-  std::string out = fmt::format(
-      "<tr><td class=\"name\">{}<br/><span class=\"claim\">{} {}</span></td><td>{}</td>",
-      escape_xml(one_line(s.estimator)), escape_xml(one_line(s.plugin)),
-      escape_xml(one_line(s.parameters)), escape_xml(one_line(s.channel)));
-  const auto cell = [&out](const std::string& text) {
-    out += fmt::format("<td class=\"number\">{}</td>", text);
+bool has_data(const Sample& sample) {
+  return (sample.mean && !std::isnan(*sample.mean)) || sample.nonfinite < sample.secondaries;
+}
+
+void add(HtmlTable& table, const Sample& s) {
+  const auto number = [&](const Number& value) {
+    return has_data(s) ? human(value) : data_text(std::nullopt);
   };
-  cell(fmt::format("{} × {}", count_text(s.secondaries), count_text(s.primaries)));
-  for (const Number& number : {s.mean, s.variance, s.skewness, s.kurtosis, s.minimum, s.maximum})
-    cell(human(number));
-  cell(count_text(s.nonzero));
-  cell(count_text(s.nonfinite));
-  cell(count_text(rays(s.cost)));
-  cell(duration(s.cost.seconds));
-  return out + "</tr>\n";
+  table.row({{source_markup(s.estimator, s.plugin, s.parameters), "name"},
+             {escape_xml(one_line(s.channel))},
+             {fmt::format("{} × {}", count_text(s.secondaries), count_text(s.primaries))},
+             {number(s.mean)},
+             {number(s.variance)},
+             {fmt::format("{} / {}", number(s.skewness), number(s.kurtosis))},
+             {fmt::format("{} … {}", number(s.minimum), number(s.maximum))},
+             {fmt::format("{} / {}", count_text(s.nonzero), count_text(s.nonfinite))},
+             cost_cell(s.cost)});
 }
 
 // An image has a sample a pixel.
@@ -123,17 +133,19 @@ constexpr std::size_t most_rows = 12;
 
 std::string sample_table(const Test& test) {
   if (test.samples.empty()) return {};
-  std::string out =
-      "<div class=\"scroll\"><table class=\"wide\"><thead><tr><th>source</th><th>channel</th>"
-      "<th class=\"number\">observations × primaries</th><th class=\"number\">mean</th>"
-      "<th class=\"number\">variance</th><th class=\"number\">skewness</th><th "
-      "class=\"number\">kurtosis</th><th class=\"number\">least</th><th "
-      "class=\"number\">largest</th>"
-      "<th class=\"number\">not zero</th><th class=\"number\">not finite</th>"
-      "<th class=\"number\">rays</th><th class=\"number\">CPU time</th></tr></thead><tbody>\n";
+  HtmlTable table({{"source"},
+                   {"channel"},
+                   {"observations × primaries", true},
+                   {"mean", true},
+                   {"variance of an observation", true},
+                   {"skewness / kurtosis", true},
+                   {"least … largest", true},
+                   {"not zero / not finite", true},
+                   {"cost, CPU time", true}},
+                  "wide cards");
   for (std::size_t i = 0; i < std::min(test.samples.size(), most_rows); ++i)
-    out += sample_row(test.samples[i]);
-  out += "</tbody></table></div>\n";
+    add(table, test.samples[i]);
+  std::string out = table.finish();
   if (test.samples.size() > most_rows)
     out += fmt::format("<p>{} more samples are in the JSON record.</p>\n",
                        test.samples.size() - most_rows);

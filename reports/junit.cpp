@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
 #include "reports/describe.h"
+#include "reports/effect.h"
+#include "reports/evidence.h"
 #include "reports/number.h"
 #include "reports/text.h"
+#include "reports/verdict.h"
 
 namespace assay::reports {
 namespace {
@@ -29,6 +34,13 @@ std::string property(const std::string& name, const std::string& value) {
 
 void add(std::string& out, const std::string& name, const Number& value) {
   if (value) out += property(name, round_trip(*value));
+}
+
+// All digits, or what the logarithm tells of a p-value that underflowed.
+void add_p(std::string& out, const std::string& name, const NamedP& p) {
+  if (!p.exists()) return;
+  const bool whole = p.p && (*p.p >= std::numeric_limits<double>::min() || std::isnan(*p.p));
+  out += property(name, whole ? round_trip(*p.p) : p_text(p.p, p.log10_p));
 }
 
 void add(std::string& out, const std::string& name, const std::string& value) {
@@ -58,17 +70,20 @@ std::string test_properties(const Test& test) {
   add(out, "claim", test.claim);
   add(out, "verdict", std::string(to_string(test.verdict)));
   add(out, "expected", std::string(to_string(test.expected)));
+  add(out, "outcome", verdict_text(test));
   add(out, "method", test.method);
   add(out, "channel", channel.name);
   add(out, "quantity", channel.effect.quantity);
   add(out, "estimate", channel.effect.estimate);
   add(out, "low", channel.effect.low);
   add(out, "high", channel.effect.high);
+  if (!interval_name(channel.effect).empty())
+    add(out, "confidence", Number(channel.effect.confidence));
   add(out, "statistic", channel.statistic);
-  add(out, "p_value", channel.p_value);
+  add_p(out, "p_value", {"", channel.p_value, channel.log10_p});
   add(out, "log10_p", channel.log10_p);
-  add(out, "p_adjusted", channel.p_adjusted);
-  add(out, "p_pass", channel.p_pass);
+  add_p(out, "p_adjusted", {"", channel.p_adjusted, channel.log10_p_adjusted});
+  add_p(out, "p_pass", {"", channel.p_pass, channel.log10_p_pass});
   add(out, "alpha", test.alpha);
   add(out, "detect", test.detect);
   add(out, "detectable", test.detectable);

@@ -7,6 +7,7 @@
 #include "reports/describe.h"
 #include "reports/number.h"
 #include "reports/text.h"
+#include "reports/verdict.h"
 
 namespace assay::reports {
 namespace {
@@ -51,7 +52,7 @@ std::string suite_heading(const Suite& suite) {
   std::string out = fmt::format("## {}\n\n", cell(suite.name));
   if (!suite.about.empty()) out += cell(suite.about, paragraph_limit) + "\n\n";
   return out + cell(levels_text(suite)) + "\n\n" +
-         "| verdict | test | effect | cost | time |\n|---|---|---|---|---|\n";
+         "| verdict | test | effect [interval] | cost | CPU time |\n|---|---|---|---|---|\n";
 }
 
 // Pieces up to a limit that leaves room for the note on what is missing.
@@ -78,6 +79,8 @@ std::string title(const Record& record) {
   out += cell(fmt::format("{} {} {}, seed {}, {}", record.tool.name, record.tool.version,
                           record.tool.commit, record.seed, record.started)) +
          "\n\n";
+  if (const std::string verdicts = verdict_counts(record); !verdicts.empty())
+    out += cell(verdicts + ". " + error_rates(record)) + "\n\n";
   if (!record.note.empty()) out += cell(record.note, paragraph_limit) + "\n\n";
   return out;
 }

@@ -18,17 +18,6 @@ std::string non_finite(double value) {
   return value > 0 ? "Infinity" : "-Infinity";
 }
 
-std::string from_log10(double log10_p) {
-  double exponent = std::floor(log10_p);
-  double mantissa = std::pow(10.0, log10_p - exponent);
-  // 9.96e-5 must not be printed as 10.0e-5.
-  if (mantissa >= 9.95) {
-    mantissa = 1;
-    ++exponent;
-  }
-  return fmt::format("{:.1f}e{:.0f}", mantissa, exponent);
-}
-
 }  // namespace
 
 std::string round_trip(double value) {
@@ -66,13 +55,25 @@ std::string magnitude(double value, bool relative) {
   return relative ? percent(value) : human(value);
 }
 
+std::string scientific(double log10_value) {
+  if (!std::isfinite(log10_value)) return log10_value < 0 ? "0" : non_finite(log10_value);
+  double exponent = std::floor(log10_value);
+  double mantissa = std::pow(10.0, log10_value - exponent);
+  // 9.96e-5 must not be printed as 10.0e-5.
+  if (mantissa >= 9.95) {
+    mantissa = 1;
+    ++exponent;
+  }
+  return fmt::format("{:.1f}e{:.0f}", mantissa, exponent);
+}
+
 std::string p_text(Number p, Number log10_p) {
-  if (log10_p && std::isfinite(*log10_p) && *log10_p < -4) return from_log10(*log10_p);
+  if (log10_p && std::isfinite(*log10_p) && *log10_p < -4) return scientific(*log10_p);
   if (!p) return log10_p ? p_text(std::pow(10.0, *log10_p), std::nullopt) : no_number;
   if (!std::isfinite(*p)) return non_finite(*p);
-  // What underflowed is stored as the least number there is.
-  if (*p > 0 && *p < std::numeric_limits<double>::min()) return "below 1e-307";
-  if (*p > 0 && *p < 1e-4) return from_log10(std::log10(*p));
+  // What underflowed is stored as the least number there is, or as zero.
+  if (*p >= 0 && *p < std::numeric_limits<double>::min()) return "below 1e-307";
+  if (*p < 1e-4) return *p < 0 ? human(*p, 2) : scientific(std::log10(*p));
   // Two digits would turn 0.9996 into 1: a p-value near one is itself a finding.
   return *p > 0.99 && *p < 1 ? fmt::format("1 - {:.1g}", 1 - *p) : fmt::format("{:.2g}", *p);
 }
@@ -91,6 +92,10 @@ std::string count_text(std::uint64_t count) {
                      : scaled < 99.95 ? 1
                                       : 0,
                      no_break_space, prefixes[prefix]);
+}
+
+std::string counted(std::uint64_t count, const char* singular, const char* plural) {
+  return fmt::format("{}{}{}", count_text(count), no_break_space, count == 1 ? singular : plural);
 }
 
 std::string grouped(std::uint64_t count) {

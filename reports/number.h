@@ -33,12 +33,18 @@ std::string with_sign(double value, bool relative);
 /// human() or percent(): a margin on an effect.
 std::string magnitude(double value, bool relative);
 
+/// 10 to this power with two significant digits, also far beyond a double's range: "2.3e-1205".
+std::string scientific(double log10_value);
+
 /// A p-value with two significant digits. Below 1e-4 it is made from log10_p when that is given,
 /// since p itself may have underflowed: p = 0, log10_p = -1204.64 gives "2.3e-1205".
 std::string p_text(Number p, Number log10_p);
 
 /// A count: 1048576 gives "1.05 M", below 10 000 all digits.
 std::string count_text(std::uint64_t count);
+
+/// A count with its noun: "1 primary", "12.5 k primaries".
+std::string counted(std::uint64_t count, const char* singular, const char* plural);
 
 /// A count with all digits, in threes: 1048576 gives "1 048 576" (no-break spaces).
 std::string grouped(std::uint64_t count);

@@ -117,16 +117,20 @@ struct Channel {
   Number log10_p;
   Number p_adjusted;  ///< Holm over the family; null outside it (mutants, filtered runs)
   Number p_pass;      ///< p-value of "theta lies in the forbidden region"
+  Number log10_p_adjusted, log10_p_pass;  ///< of these two, which may underflow as well
   Effect effect;
   Number reference;  ///< what the mean is marked against in the histogram, if a number
   bool operator==(const Channel&) const = default;
 };
 
-/// One look: what was known after so many observations.
+/// One look: what the first so many observations say by themselves. The test's own p-value is the
+/// smallest over the looks of p over the look's weight.
 struct Look {
   std::uint64_t secondaries = 0;
+  double weight = 1;  ///< its share of the test's alpha and beta
   Number log10_p;
   Number p_pass;
+  Number log10_p_pass;
   bool operator==(const Look&) const = default;
 };
 
@@ -178,6 +182,8 @@ struct EstimatorSummary {
   std::uint64_t primaries = 0;
   std::uint64_t secondaries = 0;
   double confidence = 0;  ///< of the intervals in channels
+  std::string
+      variance_of;  ///< what `variance` in channels is of: "primary", "secondary", or not said
   std::vector<EstimatorChannel> channels;
   Cost cost;
   bool operator==(const EstimatorSummary&) const = default;
@@ -186,9 +192,10 @@ struct EstimatorSummary {
 /// Where a pair of estimators of a suite stands at its alpha: descriptive, not part of the family.
 struct Comparison {
   std::string first, second, channel;
-  Number mean_p;              ///< Welch, two-sided
-  Number variance_p;          ///< log-variance ratio, two-sided
-  bool means_differ = false;  ///< after Holm over the pairs of the suite
+  Number mean_p;                          ///< Welch, two-sided
+  Number variance_p;                      ///< log-variance ratio, two-sided
+  Number log10_mean_p, log10_variance_p;  ///< of the same, which may underflow
+  bool means_differ = false;              ///< after Holm over the pairs of the suite
   bool variances_differ = false;
   Number variance_ratio;  ///< first over second, a primary each
   bool operator==(const Comparison&) const = default;

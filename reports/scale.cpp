@@ -87,6 +87,7 @@ std::vector<Tick> Scale::linear_ticks(int wanted) const {
 std::vector<Tick> Scale::logarithmic_ticks(int wanted) const {
   const double first = std::ceil(std::log10(d_.domain.low) - 1e-9);
   const double last = std::floor(std::log10(d_.domain.high) + 1e-9);
+  if (last - first < 1) return short_logarithmic_ticks(wanted);
   const double every = std::max(1.0, std::ceil((last - first + 1) / std::max(wanted, 1)));
   std::vector<Tick> result;
   for (double power = first; power <= last; power += every) {
@@ -94,6 +95,20 @@ std::vector<Tick> Scale::logarithmic_ticks(int wanted) const {
     result.push_back({value, axis_label(value, value)});
   }
   return result;
+}
+
+// Less than two powers of ten: 1, 2 and 5 times each, or where even these are rare, round numbers
+// of a linear axis.
+std::vector<Tick> Scale::short_logarithmic_ticks(int wanted) const {
+  std::vector<Tick> result;
+  for (double power = decade(d_.domain.low); power <= d_.domain.high; power *= 10) {
+    for (const int multiple : {1, 2, 5}) {
+      const double value = multiple * power;
+      if (value >= d_.domain.low && value <= d_.domain.high)
+        result.push_back({value, axis_label(value, power)});
+    }
+  }
+  return result.size() < 2 ? linear_ticks(wanted) : result;
 }
 
 std::string axis_label(double value, double step) {

@@ -59,6 +59,7 @@ class Scale {
  private:
   std::vector<Tick> linear_ticks(int wanted) const;
   std::vector<Tick> logarithmic_ticks(int wanted) const;
+  std::vector<Tick> short_logarithmic_ticks(int wanted) const;
 
   Definition d_;
 };

@@ -61,5 +61,13 @@ RC_GTEST_PROP(Columns, WrappedLinesFit, ()) {
     RC_ASSERT(columns(line) <= width + 2);
 }
 
+TEST(Columns, ALongWordIsPartedWhereAClaimMayBe) {
+  EXPECT_EQ(wrap("distribution(triangle_hemisphere.direction)", 40),
+            (std::vector<std::string>{"distribution(triangle_hemisphere.", "direction)"}));
+  // A decimal point is no such place.
+  EXPECT_EQ(wrap("mean==0.48104690731593186", 20),
+            (std::vector<std::string>{"mean==0.481046907315", "93186"}));
+}
+
 }  // namespace
 }  // namespace assay::reports

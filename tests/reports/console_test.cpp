@@ -38,6 +38,49 @@ TEST(Console, WhatIsNotOkIsExplainedAndWhatIsOkIsNot) {
             std::string::npos);
 }
 
+TEST(Console, AnExpectedFailureIsNotShownAsAFailure) {
+  const std::string text = console(example_record());
+  EXPECT_NE(text.find("✓ fail (as expected) "), std::string::npos);
+  EXPECT_NE(text.find("✗ pass, but fail expected "), std::string::npos);
+  EXPECT_EQ(text.find("✓ fail  "), std::string::npos);
+}
+
+// The numbers of a row as they stand in it, on whichever lines.
+TEST(Console, NoNumberIsCutAtAnyWidth) {
+  const Record record = example_record();
+  for (const int width : {60, 72, 80, 100, 160}) {
+    std::string flat;
+    for (const std::string& line : lines(console(record, {.width = width})))
+      flat += line.substr(std::min(line.size(), line.find_first_not_of(' '))) + " ";
+    for (const char* number : {"-2.04 % [-2.25 %, -1.83 %]", "×0.252 [to ×0.267]",
+                               "+0.031 % [-0.094 %, +0.156 %]", "-9.5 %, +1.5 %]"})
+      EXPECT_NE(flat.find(number), std::string::npos) << number << " at " << width;
+  }
+}
+
+TEST(Console, TheConfidenceOfBracketsIsSaid) {
+  Record record = example_record();
+  EXPECT_NE(console(record).find("Brackets are 99 % intervals"), std::string::npos);
+  record.suites[0].tests[0].channels[0].effect.confidence = 0.9995;
+  EXPECT_NE(console(record).find("+0.156 %] at 99.95 %"), std::string::npos);
+}
+
+TEST(Console, NoTwoLinesInARowAreEmpty) {
+  Record record = example_record();
+  record.note = "first\n\n\nsecond";
+  record.suites[0].tests[2].message = "one\n\ntwo";
+  EXPECT_EQ(console(record).find("\n\n\n"), std::string::npos);
+  EXPECT_NE(console(record).find("first\nsecond\n"), std::string::npos);
+}
+
+TEST(Console, TheSummarySaysInWordsWhatTheRunConcluded) {
+  const std::string text = console(example_record());
+  EXPECT_NE(text.find("5 of 12 tests not ok in 1 min 23 s: 3 pass; 1 fail (as expected);"),
+            std::string::npos);
+  EXPECT_NE(text.find("some test would fail by chance with probability 0.015 at most"),
+            std::string::npos);
+}
+
 TEST(Console, ColourIsWrittenOnlyWhenAskedFor) {
   EXPECT_EQ(console(example_record()).find('\x1b'), std::string::npos);
   EXPECT_NE(console(example_record(), {.colour = true}).find("\x1b[1;31m"), std::string::npos);

@@ -42,7 +42,7 @@ Sample sample(const std::string& estimator, const Law& law) {
   Sample s;
   s.estimator = estimator;
   s.plugin = "luminaire/" + estimator;
-  s.parameters = "{scene: triangle}";
+  s.parameters = R"(sampler=":published",scene="triangle")";
   s.channel = "value";
   s.primaries = 64;
   s.secondaries = 16384;
@@ -72,6 +72,8 @@ Channel channel(const std::string& name, const Effect& effect) {
   c.log10_p = -0.3979400086720376;
   c.p_adjusted = 1;
   c.p_pass = 1.5e-7;
+  c.log10_p_adjusted = 0;
+  c.log10_p_pass = -6.823908740944319;
   c.effect = effect;
   c.reference = 0.481046907316;
   return c;
@@ -122,14 +124,17 @@ Test proof() {
   t.verdict = Verdict::pass;
   t.ok = true;
   t.method = "log-variance";
-  t.tail = "lower";
-  t.null_hypothesis = "variance(area) >= variance(hemisphere)";
+  t.tail = "upper";
+  t.null_hypothesis = "variance(area) <= variance(hemisphere)";
   t.detect = 0.5;
   t.detectable = 0.12;
   t.samples = {sample("area", {0.4812, 0.031, 0.01}), sample("hemisphere", {0.4809, 0.062, 0.08})};
   t.channels = {channel("value", ratio_effect(-1.38, 0.06))};
-  t.channels[0].p_value = 0;
-  t.channels[0].log10_p = -1204.64;
+  // The claim stands with p = 1; its contrary is rejected with a p-value that underflowed.
+  t.channels[0].p_value = 1;
+  t.channels[0].log10_p = -6e-304;
+  t.channels[0].p_pass = 5e-324;
+  t.channels[0].log10_p_pass = -1204.64;
   t.channels[0].effect.low.reset();
   t.channels[0].reference.reset();
   t.message = "proved: the variance is 0.252 times as large";
@@ -148,7 +153,9 @@ Test failing() {
   t.channels[0].p_value = 2.3e-45;
   t.channels[0].log10_p = -44.63827216398241;
   t.channels[0].p_adjusted = 2.07e-44;
+  t.channels[0].log10_p_adjusted = -43.68402965454308;
   t.channels[0].p_pass = 1;
+  t.channels[0].log10_p_pass = 0;
   t.message = "the means differ by -2.04 %; interval [-2.25 %, -1.83 %]";
   return t;
 }
@@ -161,7 +168,10 @@ Test caught_mutant() {
   t.detect = 0.05;
   t.samples = {sample("no_cosine", {0.68, 0.05, 0.02})};
   t.channels = {channel("value", mean_effect(0.4136, 0.004))};
+  t.channels[0].p_value = 5e-324;
+  t.channels[0].log10_p = -812.3;
   t.channels[0].p_adjusted.reset();
+  t.channels[0].log10_p_adjusted.reset();
   t.message = "bias of +41.4 %; the defect is found";
   return t;
 }
@@ -185,7 +195,9 @@ Test undecided() {
   t.channels[0].p_value = 0.064;
   t.channels[0].log10_p = -1.1938200260161129;
   t.gates[0] = {"skewness", 1.7, 1.25, "amber"};
-  t.looks = {{1024, -0.31, 0.7}, {4096, -0.85, 0.45}, {16384, -1.19, std::nullopt}};
+  t.looks = {{1024, 0.25, -0.31, 0.7, -0.155},
+             {4096, 0.25, -0.85, 0.45, -0.347},
+             {16384, 0.5, -1.19, std::nullopt, std::nullopt}};
   t.message = "the budget ended; about 2.3 M more observations would decide";
   return t;
 }
@@ -209,11 +221,12 @@ Test broken() {
   t.samples = {sample("rare_nan", {0.48, 0.03, 0.0})};
   Sample& s = t.samples[0];
   s.mean = s.variance = s.skewness = s.kurtosis = s.minimum = s.maximum = std::nullopt;
-  s.nonfinite = 3;
+  s.nonfinite = s.secondaries;
+  s.primaries = 1;
   s.histogram = {};
   s.quantiles.clear();
   t.detectable = t.power = std::nullopt;
-  t.message = "3 of 16384 observations are not finite, the first is observation 411";
+  t.message = "16384 of 16384 observations are not finite, the first is observation 0";
   return t;
 }
 
@@ -248,7 +261,8 @@ EstimatorSummary summary(const Entry& entry) {
   EstimatorSummary e;
   e.name = entry.name;
   e.plugin = std::string(*entry.original ? "mutants/" : "luminaire/") + entry.name;
-  e.parameters = "{scene: triangle}";
+  e.parameters = R"(sampler=":published",scene="triangle")";
+  e.variance_of = "primary";
   e.bias = "unbiased";
   e.original = entry.original;
   e.defect = entry.defect;
@@ -271,10 +285,13 @@ Comparison compare(const EstimatorSummary& a, const EstimatorSummary& b, std::si
   c.first = a.name;
   c.second = b.name;
   c.channel = x.name;
+  if (!x.mean.value || !y.mean.value) return c;
   c.means_differ = *x.mean.high < *y.mean.low || *y.mean.high < *x.mean.low;
   c.variances_differ = *x.variance.high < *y.variance.low || *y.variance.high < *x.variance.low;
   c.mean_p = c.means_differ ? 3.2e-12 : 0.37;
-  c.variance_p = c.variances_differ ? 1.1e-30 : 0.21;
+  c.variance_p = c.variances_differ ? 5e-324 : 0.21;
+  c.log10_mean_p = std::log10(*c.mean_p);
+  c.log10_variance_p = c.variances_differ ? -403.2 : std::log10(*c.variance_p);
   if (*y.variance.value > 0) c.variance_ratio = *x.variance.value / *y.variance.value;
   return c;
 }
@@ -296,12 +313,19 @@ Suite triangle() {
   s.seed = 18446744073709551615u;
   s.alpha = 0.01;
   s.beta = 0.01;
-  s.estimators = {summary({"hemisphere", 0.4809, 0.246}),
-                  summary({"area", 0.4812, 0.0615}),
-                  summary({"solid_angle", 0.48104, 0.0121}),
-                  summary({"winners", 0.4711, 0.0282}),
-                  summary({"heavy", 0.46, 10.24}),
-                  summary({"no_cosine", 0.68, 0.16, "area", "the receiver's cosine is missing"})};
+  s.estimators = {
+      summary({"hemisphere", 0.4809, 0.246}),
+      summary({"area", 0.4812, 0.0615}),
+      summary({"solid_angle", 0.48104, 0.0121}),
+      summary({"winners", 0.4711, 0.0282}),
+      summary({"heavy", 0.46, 10.24}),
+      summary({"no_cosine", 0.68, 0.16, "luminaire/area", "the receiver's cosine is missing"}),
+      summary({"rare_nan", 0.48, 0.1})};
+  s.estimators.back().channels[0].mean = s.estimators.back().channels[0].variance = {};
+  s.estimators.back().primaries = 1;
+  s.estimators.back().cost = {
+      .camera_rays = 0, .closest_hit_rays = 0, .shadow_rays = 0, .samples = 16384, .seconds = 0.01};
+  s.estimators[3].variance_of = "secondary";
   s.estimators[2].channels[0].reference_variance = 0.0119;
   compare_all(s);
   s.tests = {passing(),   proof(),   failing(), caught_mutant(), surviving_mutant(),

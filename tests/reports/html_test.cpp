@@ -61,9 +61,10 @@ TEST(Html, RefersToNothingOutsideItself) {
 TEST(Html, HasAPictureOfEachKind) {
   const std::string page = html(example_record());
   for (const char* part :
-       {"Mean and variance of 6 estimators", "Pairs of estimators of triangle luminaire",
-        "Histogram of observations", "Normal quantile plot of winners",
-        "relative difference of means: mean(area)", "assay replay run.json"})
+       {"mean of 7\u00A0estimators", "variance of one primary (p) or secondary (s) estimate of 7",
+        "Pairs of estimators of triangle luminaire", "Histogram of observations",
+        "Normal quantile plot of winners", "relative difference of means: mean(area)",
+        "assay replay run.json"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
@@ -113,8 +114,8 @@ TEST(Charts, StayInsideTheirFrame) {
   for (const Record& record : {example_record(), forty_estimators()}) {
     for (const Suite& suite : record.suites) {
       for (const char* channel : {"value", "R", "G", "B"}) {
-        for (const std::string& svg :
-             {estimator_bars(suite, channel), pair_matrix(suite, channel)}) {
+        for (const std::string& svg : {mean_bars(suite, channel), variance_bars(suite, channel),
+                                       pair_matrix(suite, channel)}) {
           if (!svg.empty()) {
             EXPECT_EQ(outside_the_view(svg), "");
           }
@@ -132,11 +133,11 @@ TEST(Charts, StayInsideTheirFrame) {
 
 TEST(Charts, WideVariancesAreDrawnOnALogarithmicAxisThatSaysSo) {
   Suite suite = example_record().suites[0];
-  EXPECT_NE(estimator_bars(suite, "value").find("log scale"), std::string::npos);
+  EXPECT_NE(variance_bars(suite, "value").find("log scale"), std::string::npos);
   for (EstimatorSummary& estimator : suite.estimators)
     estimator.channels[0].variance = {1, 0.9, 1.1};
   suite.estimators[2].channels[0].reference_variance.reset();
-  EXPECT_EQ(estimator_bars(suite, "value").find("log scale"), std::string::npos);
+  EXPECT_EQ(variance_bars(suite, "value").find("log scale"), std::string::npos);
 }
 
 // area's variance is a quarter of hemisphere's (0.0615 to 0.246): its row stands below the
@@ -150,8 +151,60 @@ TEST(Charts, PairsBelowTheDiagonalReadRowAgainstColumn) {
   EXPECT_EQ(svg.find("variance of hemisphere against area"), std::string::npos);
 }
 
+TEST(Charts, EstimatorsWithoutFiniteDataSayNone) {
+  const std::string svg = mean_bars(example_record().suites[0], "value");
+  EXPECT_NE(svg.find(">none</text>"), std::string::npos);
+}
+
+TEST(Charts, ALogarithmOfARatioIsDrawnAsTheRatio) {
+  const std::string svg = interval_chart(example_record().suites[0].tests[1]);
+  EXPECT_NE(svg.find(">variance ratio, log scale</text>"), std::string::npos);
+  EXPECT_EQ(svg.find("ln "), std::string::npos);
+}
+
+TEST(Charts, RatiosBeyondADoubleStayInsideTheFrame) {
+  reports::Test test = example_record().suites[0].tests[1];
+  for (const double theta : {-1e300, -800.0, 800.0, 1e300}) {
+    test.channels[0].effect.estimate = theta;
+    test.channels[0].effect.low = -theta;
+    test.channels[0].effect.high = 2.0;
+    EXPECT_EQ(outside_the_view(interval_chart(test)), "") << theta;
+  }
+}
+
+TEST(Html, WhatIsNotOkStandsFirst) {
+  const std::string page = html(example_record());
+  const std::size_t table = page.find("data-label=");
+  EXPECT_LT(page.find(">Not ok</th>"), table);
+  EXPECT_LT(page.find("✗ fail", table), page.find("✓ fail (as expected)", table));
+  EXPECT_LT(page.find("✓ fail (as expected)", table), page.find("✓ pass", table));
+}
+
+TEST(Html, ShowsNoUnderflowNoCanonicalQuotesAndNoZeroRays) {
+  const std::string page = html(example_record());
+  for (const char* bad : {"e-324", ":published", ">0 rays"})
+    EXPECT_EQ(page.find(bad), std::string::npos) << bad;
+  EXPECT_NE(page.find("2.3e-1205"), std::string::npos);
+  EXPECT_NE(page.find("p(contrary)"), std::string::npos);
+}
+
+TEST(Html, EveryIntervalOfTheOverviewIsNamed) {
+  const std::string page = html(example_record());
+  const std::string table =
+      page.substr(page.find("<table"), page.find("</table>") - page.find("<table"));
+  static const std::regex interval("<span class=\"whole\">[^<]*\\[");
+  static const std::regex named(
+      "<span class=\"whole\">[^<]*\\[[^<]*</span><br/><span class=\"muted\">[^<]* interval</span>");
+  const auto count = [&](const std::regex& pattern) {
+    return std::distance(std::sregex_iterator(table.begin(), table.end(), pattern), {});
+  };
+  EXPECT_EQ(count(interval), 10);
+  EXPECT_EQ(count(named), count(interval));
+}
+
 TEST(Charts, NothingIsDrawnFromNothing) {
-  EXPECT_EQ(estimator_bars(Suite{}, "value"), "");
+  EXPECT_EQ(mean_bars(Suite{}, "value"), "");
+  EXPECT_EQ(variance_bars(Suite{}, "value"), "");
   EXPECT_EQ(pair_matrix(Suite{}, "value"), "");
   EXPECT_EQ(interval_chart(reports::Test{}), "");
   EXPECT_EQ(histogram_chart({}), "");

@@ -39,15 +39,40 @@ TEST(Json, KeysOfATestStandInTheDocumentedOrder) {
   const Json tree = Json::parse(json(example_record()));
   std::vector<std::string> keys;
   for (const auto& item : tree["suites"][0]["tests"][0].items()) keys.push_back(item.key());
-  const std::vector<std::string> wanted = {
-      "name",       "id",           "claim",           "file",
-      "line",       "tags",         "verdict",         "expected",
-      "ok",         "method",       "null_hypothesis", "tail",
-      "statistic",  "distribution", "p_value",         "log10_p",
-      "p_adjusted", "p_pass",       "alpha",           "beta",
-      "effect",     "detect",       "allow",           "detectable",
-      "power",      "looks",        "gates",           "samples",
-      "channels",   "maps",         "message",         "replay"};
+  const std::vector<std::string> wanted = {"name",
+                                           "id",
+                                           "claim",
+                                           "file",
+                                           "line",
+                                           "tags",
+                                           "verdict",
+                                           "expected",
+                                           "ok",
+                                           "method",
+                                           "null_hypothesis",
+                                           "tail",
+                                           "statistic",
+                                           "distribution",
+                                           "p_value",
+                                           "log10_p",
+                                           "p_adjusted",
+                                           "p_pass",
+                                           "log10_p_adjusted",
+                                           "log10_p_pass",
+                                           "alpha",
+                                           "beta",
+                                           "effect",
+                                           "detect",
+                                           "allow",
+                                           "detectable",
+                                           "power",
+                                           "looks",
+                                           "gates",
+                                           "samples",
+                                           "channels",
+                                           "maps",
+                                           "message",
+                                           "replay"};
   EXPECT_EQ(keys, wanted);
 }
 

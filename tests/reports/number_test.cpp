@@ -67,7 +67,20 @@ TEST(Numbers, AConfidenceNearOneKeepsTheDigitsThatTellItFromOne) {
   EXPECT_EQ(confidence_text(1 - 4e-6), "99.9996\u00A0%");
 }
 
+TEST(Numbers, PowersOfTenReachBeyondADouble) {
+  EXPECT_EQ(scientific(-811.6), "2.5e-812");
+  EXPECT_EQ(scientific(1000), "1.0e1000");
+  EXPECT_EQ(scientific(-std::numeric_limits<double>::infinity()), "0");
+}
+
+TEST(Numbers, ANounAgreesWithItsCount) {
+  EXPECT_EQ(counted(1, "primary", "primaries"), "1\u00A0primary");
+  EXPECT_EQ(counted(0, "primary", "primaries"), "0\u00A0primaries");
+  EXPECT_EQ(counted(12500, "primary", "primaries"), "12.5\u00A0k\u00A0primaries");
+}
+
 TEST(Numbers, AnUnderflownPValueIsABound) {
+  EXPECT_EQ(p_text(0.0, {}), "below 1e-307");
   EXPECT_EQ(p_text(5e-324, {}), "below 1e-307");
   EXPECT_EQ(p_text(5e-324, -1204.64), "2.3e-1205");
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "reports/describe.h"
+#include "reports/verdict.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {
@@ -32,11 +33,11 @@ TEST(Tally, CountsEveryTestOnce) {
   EXPECT_EQ(counts.failed, 5);
   EXPECT_EQ(counts.inconclusive, 2);
   EXPECT_EQ(counts.skipped, 1);
-  EXPECT_EQ(tally_sentence(counts), "5 of 12 tests not ok");
+  EXPECT_EQ(tally_sentence(counts), "5 of 12\u00A0tests not ok");
   EXPECT_EQ(tally_sentence({}), "No test ran");
   EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 tests ok");
   EXPECT_EQ(tally_sentence({.passed = 3, .inconclusive = 1}),
-            "No test failed, 1 of 4 inconclusive");
+            "No test failed, 1 of 4\u00A0tests inconclusive");
 }
 
 TEST(Cost, CountsAnEstimatorOnceHoweverManyChannelsItHas) {

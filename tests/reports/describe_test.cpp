@@ -1,0 +1,44 @@
+#include "reports/describe.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/reports/example_record.h"
+
+namespace assay::reports {
+namespace {
+
+TEST(Describe, ParametersLoseTheQuotesOfTheirCanonicalForm) {
+  EXPECT_EQ(parameters_text(R"(sampler=":all",scene="triangle")"), "sampler=all, scene=triangle");
+  EXPECT_EQ(parameters_text(R"(scene={"light":{"polygon":[[1,2]]}},n=3)"),
+            "scene={light:{polygon:[[1,2]]}}, n=3");
+  EXPECT_EQ(parameters_text(""), "");
+}
+
+TEST(Describe, WhatWasNeverFiniteIsNone) {
+  EXPECT_EQ(data_text(std::nullopt), "none");
+  EXPECT_EQ(data_text(std::nan("")), "none");
+  EXPECT_EQ(data_text(0.0), "0");
+}
+
+TEST(Describe, OneIsSingular) {
+  Cost cost;
+  cost.samples = 1;
+  EXPECT_EQ(cost_text(cost), "1\u00A0sample");
+  cost.shadow_rays = 1;
+  EXPECT_EQ(cost_text(cost), "1\u00A0ray");
+  EXPECT_NE(plain_text(example_record().suites[0].tests[7]).find("with 1\u00A0primary each"),
+            std::string::npos);
+}
+
+TEST(Describe, AProofIsExplainedByItsContrary) {
+  const std::string text = plain_text(example_record().suites[0].tests[1]);
+  EXPECT_NE(text.find("contrary: variance(area) >= variance(hemisphere)\n"), std::string::npos);
+  EXPECT_NE(text.find("evidence: p(contrary) = 2.3e-1205"), std::string::npos);
+  EXPECT_EQ(text.find("null hypothesis"), std::string::npos);
+  EXPECT_EQ(text.find("e-324"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace assay::reports

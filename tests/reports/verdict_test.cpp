@@ -1,0 +1,66 @@
+#include "reports/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/reports/example_record.h"
+
+namespace assay::reports {
+namespace {
+
+std::string text(Verdict verdict, Verdict expected) {
+  reports::Test test;
+  test.verdict = verdict;
+  test.expected = expected;
+  test.ok = verdict == expected;
+  return verdict_text(test);
+}
+
+TEST(Verdicts, AVerdictSaysWhatWasExpectedOfIt) {
+  EXPECT_EQ(text(Verdict::pass, Verdict::pass), "pass");
+  EXPECT_EQ(text(Verdict::fail, Verdict::pass), "fail");
+  EXPECT_EQ(text(Verdict::fail, Verdict::fail), "fail (as expected)");
+  EXPECT_EQ(text(Verdict::invalid, Verdict::invalid), "invalid (as expected)");
+  EXPECT_EQ(text(Verdict::pass, Verdict::fail), "pass, but fail expected");
+  EXPECT_EQ(text(Verdict::inconclusive, Verdict::fail), "inconclusive, but fail expected");
+  EXPECT_EQ(text(Verdict::skipped, Verdict::fail), "skipped");
+}
+
+TEST(Verdicts, AnExpectedVerdictThatIsNotOkSaysSo) {
+  reports::Test test;
+  test.verdict = test.expected = Verdict::fail;
+  EXPECT_EQ(verdict_text(test), "fail, yet not ok");
+}
+
+TEST(Verdicts, ARunIsSummedUpInWords) {
+  EXPECT_EQ(verdict_counts(example_record()),
+            "3 pass; 1 fail (as expected); 1 skipped; 2 inconclusive; 1 error; 1 invalid; "
+            "1 pass, but fail expected; 2 fail");
+  EXPECT_EQ(verdict_counts(Record{}), "");
+}
+
+TEST(Verdicts, ATallyAgreesWithItsNumber) {
+  EXPECT_EQ(tally_sentence({.failed = 1}), "1 of 1\u00A0test not ok");
+  EXPECT_EQ(tally_sentence({.passed = 1}), "The test is ok");
+  EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 tests ok");
+  EXPECT_EQ(tally_sentence({.passed = 1, .skipped = 2}), "1 of 3\u00A0tests ok, 2 skipped");
+  EXPECT_EQ(tally_sentence({}), "No test ran");
+}
+
+TEST(Verdicts, TheErrorRatesOfARunAreThoseOfItsSuitesTogether) {
+  Record record;
+  record.suites.resize(2);
+  for (Suite& suite : record.suites) {
+    suite.alpha = 0.01;
+    suite.beta = 0.02;
+    suite.tests.resize(1);
+  }
+  EXPECT_EQ(error_rates(record),
+            "If every claim were true, some test would fail by chance with probability 0.02 at "
+            "most.");
+  record.suites[0].tests[0].detect = 0.1;
+  EXPECT_NE(error_rates(record).find("off by its \"detect\" or more passes with probability 0.02"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace assay::reports
