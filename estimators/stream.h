@@ -3,12 +3,12 @@
 // Random numbers as a function of (key, observation, substream, draw): any observation can be drawn
 // again alone, in any order, on any thread.
 
-#include <Random123/philox.h>
-
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <string_view>
+
+#include "estimators/philox.h"
 
 namespace assay {
 
@@ -41,10 +41,10 @@ class Stream {
   }
 
   /// Uniform in [0, 1): a multiple of 2^-53.
-  double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
+  double uniform() { return to_double((*this)() >> 11) * 0x1p-53; }
 
   /// Uniform in (0, 1): the midpoints of 2^52 cells, for logarithms and quantiles.
-  double uniform_open() { return (static_cast<double>((*this)() >> 12) + 0.5) * 0x1p-52; }
+  double uniform_open() { return (to_double((*this)() >> 12) + 0.5) * 0x1p-52; }
 
   /// Which observation this is: the index of a row for recorded data.
   std::uint64_t observation() const {
@@ -61,16 +61,21 @@ class Stream {
         counter_{{0, substream, static_cast<std::uint32_t>(observation),
                   static_cast<std::uint32_t>(observation >> 32)}} {}
 
+  // Processors convert signed integers in one instruction, unsigned ones in a branch. word < 2^63.
+  static double to_double(std::uint64_t word) {
+    return static_cast<double>(static_cast<std::int64_t>(word));
+  }
+
   void refill() {
-    const auto block = r123::Philox4x32{}(counter_, key_);
+    const PhiloxCounter block = philox(counter_, key_);
     ++counter_[0];
     words_[0] = block[0] | static_cast<std::uint64_t>(block[1]) << 32;
     words_[1] = block[2] | static_cast<std::uint64_t>(block[3]) << 32;
     next_ = 0;
   }
 
-  r123::Philox4x32::key_type key_;
-  r123::Philox4x32::ctr_type counter_;
+  PhiloxKey key_;
+  PhiloxCounter counter_;
   std::array<std::uint64_t, 2> words_{};
   std::uint32_t next_ = 2;
 };

@@ -24,12 +24,12 @@ struct CosineDirections {
 struct Primary {
   SharedSetting setting;
 
-  render::Ray draw(Stream& random) const {
+  render::RoundedRay draw(Stream& random) const {
     const double u = random.uniform();
     const double v = random.uniform();
     return setting->ray(render::cosine_hemisphere(u, v));
   }
-  double value(const render::Ray& ray, Cost& cost) const {
+  double value(const render::RoundedRay& ray, Cost& cost) const {
     return setting->sees_light(ray, cost) ? pi * setting->radiance() : 0;
   }
 };

@@ -25,13 +25,14 @@ struct UniformDirections {
 struct Primary {
   SharedSetting setting;
 
-  render::Ray draw(Stream& random) const {
+  LightSample draw(Stream& random) const {
     const double u = random.uniform();
     const double v = random.uniform();
-    return setting->ray(render::uniform_hemisphere(u, v));
+    const render::Vector3 w = render::uniform_hemisphere(u, v);
+    return {setting->ray(w), two_pi * setting->radiance() * w.z};
   }
-  double value(const render::Ray& ray, Cost& cost) const {
-    return setting->sees_light(ray, cost) ? two_pi * setting->radiance() * ray.direction.z : 0;
+  double value(const LightSample& sample, Cost& cost) const {
+    return setting->sees_light(sample.ray, cost) ? sample.value : 0;
   }
 };
 

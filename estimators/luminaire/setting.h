@@ -55,13 +55,14 @@ struct Connection {
 
 /// A way from the receiver to a point of the luminaire and what it brings if nothing stands in it.
 struct LightSample {
-  render::Ray ray;
+  render::RoundedRay ray;
   double value = 0;
 };
 
 /// The shadow ray from the receiver to a point of the luminaire.
-inline render::Ray shadow_ray(const render::Vector3& to_light) {
-  return {.origin = {}, .direction = to_light, .near = resolution, .far = 1 - 2 * resolution};
+inline render::RoundedRay shadow_ray(const render::Vector3& to_light) {
+  return render::RoundedRay(
+      {.origin = {}, .direction = to_light, .near = resolution, .far = 1 - 2 * resolution});
 }
 
 class Setting {
@@ -91,12 +92,12 @@ class Setting {
   }
 
   /// The ray from the receiver along a unit vector.
-  render::Ray ray(const render::Vector3& direction) const {
-    return {.origin = {}, .direction = direction, .near = near_};
+  render::RoundedRay ray(const render::Vector3& direction) const {
+    return render::RoundedRay({.origin = {}, .direction = direction, .near = near_});
   }
 
   /// Whether a ray from the receiver first hits a side of the luminaire that emits.
-  bool sees_light(const render::Ray& ray, Cost& cost) const {
+  bool sees_light(const render::RoundedRay& ray, Cost& cost) const {
     ++cost.closest_hit_rays;
     const render::Hit hit = scene_.closest_hit(ray);
     return hit.shape == 0 && triangles_[hit.primitive].emits;
@@ -150,8 +151,9 @@ class ShareTable {
 
   std::uint32_t find(double x) const {
     if (shares_.size() > 8) return find_of_many(x);
+    // Counted rather than searched: the processor cannot foresee where a search ends.
     std::uint32_t index = 0;
-    while (x >= shares_[index].end) ++index;
+    for (std::size_t i = 0; i + 1 < shares_.size(); ++i) index += x >= shares_[i].end;
     return index;
   }
   std::uint32_t find_of_many(double x) const;

@@ -4,6 +4,8 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <stdexcept>
 #include <utility>
 
@@ -15,8 +17,9 @@ namespace {
   throw std::runtime_error(std::string("Embree: ") + message);
 }
 
-// One device for the process: it pins the instruction set. Its own `threads` setting must stay away:
-// Embree would limit oneTBB to that number in the whole process for as long as the device lives.
+// One device for the process: it pins the instruction set. Its own `threads` setting must stay
+// away: Embree would limit oneTBB to that number in the whole process for as long as the device
+// lives.
 class Device {
  public:
   Device() : isa_(__builtin_cpu_supports("avx2") ? "avx2" : "sse4.2") {
@@ -112,23 +115,6 @@ void attach(RTCScene scene, const Shape& shape, RTCDevice device) {
   rtcReleaseGeometry(geometry);
 }
 
-RTCRay embree_ray(const Ray& ray) {
-  RTCRay out;
-  out.org_x = static_cast<float>(ray.origin.x);
-  out.org_y = static_cast<float>(ray.origin.y);
-  out.org_z = static_cast<float>(ray.origin.z);
-  out.tnear = static_cast<float>(ray.near);
-  out.dir_x = static_cast<float>(ray.direction.x);
-  out.dir_y = static_cast<float>(ray.direction.y);
-  out.dir_z = static_cast<float>(ray.direction.z);
-  out.time = 0;
-  out.tfar = static_cast<float>(ray.far);
-  out.mask = ~0u;
-  out.id = 0;
-  out.flags = 0;
-  return out;
-}
-
 }  // namespace
 
 Scene::Scene(const std::vector<Shape>& shapes) {
@@ -146,11 +132,14 @@ Scene::Scene(const std::vector<Shape>& shapes) {
   device->check();
 }
 
-Hit Scene::closest_hit(const Ray& ray) const {
+static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 &&
+              offsetof(RTCRay, tfar) == 32 && offsetof(RTCRay, mask) == 36);
+
+Hit Scene::closest_hit(const RoundedRay& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query;
-  query.ray = embree_ray(ray);
+  query.ray = std::bit_cast<RTCRay>(ray);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene_.get(), &context, &query);
@@ -158,10 +147,10 @@ Hit Scene::closest_hit(const Ray& ray) const {
   return {query.hit.geomID, query.hit.primID, static_cast<double>(query.ray.tfar)};
 }
 
-bool Scene::occluded(const Ray& ray) const {
+bool Scene::occluded(const RoundedRay& ray) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay query = embree_ray(ray);
+  RTCRay query = std::bit_cast<RTCRay>(ray);
   rtcOccluded1(scene_.get(), &context, &query);
   return query.tfar < 0;
 }

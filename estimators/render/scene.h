@@ -2,6 +2,7 @@
 
 // Rays against triangles and discs: Embree behind one class.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -33,6 +34,31 @@ struct Ray {
   double far = std::numeric_limits<double>::infinity();
 };
 
+/// A ray in single precision, as Embree takes it. Where it is made is worth a thought: what has
+/// just been written float by float cannot be read back in one piece for a dozen cycles, so who
+/// makes many rays before tracing the first does not wait.
+class RoundedRay {
+ public:
+  RoundedRay() = default;
+  explicit RoundedRay(const Ray& ray)
+      : numbers_{single(ray.origin.x),    single(ray.origin.y),
+                 single(ray.origin.z),    single(ray.near),
+                 single(ray.direction.x), single(ray.direction.y),
+                 single(ray.direction.z), 0,
+                 single(ray.far)} {}
+
+ private:
+  friend class Scene;
+
+  static float single(double x) { return static_cast<float>(x); }
+
+  // In the order of Embree's RTCRay: origin, near, direction, time, far.
+  alignas(16) std::array<float, 9> numbers_{};
+  std::uint32_t mask_ = ~0u;
+  std::uint32_t id_ = 0;
+  std::uint32_t flags_ = 0;
+};
+
 /// What a ray hit first.
 struct Hit {
   std::uint32_t shape = none;      ///< index into the list the scene was made from, or none
@@ -52,9 +78,11 @@ class Scene {
   /// std::runtime_error with Embree's message when Embree refuses.
   explicit Scene(const std::vector<Shape>& shapes);
 
-  Hit closest_hit(const Ray& ray) const;
+  Hit closest_hit(const RoundedRay& ray) const;
+  Hit closest_hit(const Ray& ray) const { return closest_hit(RoundedRay(ray)); }
   /// Whether anything lies on the ray.
-  bool occluded(const Ray& ray) const;
+  bool occluded(const RoundedRay& ray) const;
+  bool occluded(const Ray& ray) const { return occluded(RoundedRay(ray)); }
 
  private:
   std::shared_ptr<RTCSceneTy> scene_;

@@ -1,5 +1,6 @@
 #include "estimators/stream.h"
 
+#include <Random123/philox.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -44,9 +45,20 @@ TEST(Stream, IsPhiloxAsDefined) {
     std::array<std::uint32_t, 10> n{};
     for (std::size_t i = 0; i < n.size(); ++i)
       n[i] = static_cast<std::uint32_t>(std::stoul(row[i]));
-    const r123::Philox4x32::ctr_type counter = {{n[0], n[1], n[2], n[3]}};
-    const auto block = r123::Philox4x32{}(counter, {{n[4], n[5]}});
+    const PhiloxCounter block = philox({n[0], n[1], n[2], n[3]}, {n[4], n[5]});
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(block[i], n[6 + i]);
+  }
+}
+
+// Random123 is by the authors of Philox.
+TEST(Stream, IsThePhiloxOfItsAuthors) {
+  PhiloxCounter counter = {};
+  for (std::uint32_t i = 0; i < 10000; ++i) {
+    const PhiloxKey key_of_i = {i * 0x9E3779B9, ~i};
+    const auto theirs = r123::Philox4x32{}({{counter[0], counter[1], counter[2], counter[3]}},
+                                           {{key_of_i[0], key_of_i[1]}});
+    counter = philox(counter, key_of_i);
+    for (std::size_t word = 0; word < 4; ++word) ASSERT_EQ(counter[word], theirs[word]);
   }
 }
 

@@ -33,6 +33,17 @@ TEST(Scene, OcclusionEndsAtTheFarEnd) {
   EXPECT_FALSE(scene.occluded({.origin = {}, .direction = {0, 0, 1}, .near = 1.01}));
 }
 
+TEST(Scene, ARayRoundedBeforehandIsTheSameRay) {
+  const Scene scene({floor_above});
+  for (const double far : {.99, 1.01}) {
+    const Ray ray = {.origin = {.1, 0, 0}, .direction = {0, .2, 1}, .near = .5, .far = far};
+    EXPECT_EQ(scene.occluded(RoundedRay(ray)), far > 1);
+    const Hit rounded = scene.closest_hit(RoundedRay(ray));
+    EXPECT_EQ(rounded.shape, scene.closest_hit(ray).shape);
+    EXPECT_EQ(rounded.t, scene.closest_hit(ray).t);
+  }
+}
+
 TEST(Scene, AnEmptySceneIsEmpty) {
   const Scene scene({});
   EXPECT_FALSE(scene.occluded({.origin = {}, .direction = {0, 0, 1}}));
