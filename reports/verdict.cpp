@@ -88,7 +88,7 @@ std::string verdict_counts(const Record& record) {
   std::sort(sorted.begin(), sorted.end());
   std::string out;
   for (const auto& [count, text] : sorted)
-    out += fmt::format("{}{} {}", out.empty() ? "" : "; ", count.second, text);
+    out += fmt::format("{}{}\u00A0{}", out.empty() ? "" : "; ", count.second, text);
   return out;
 }
 

@@ -33,8 +33,9 @@ TEST(Verdicts, AnExpectedVerdictThatIsNotOkSaysSo) {
 
 TEST(Verdicts, ARunIsSummedUpInWords) {
   EXPECT_EQ(verdict_counts(example_record()),
-            "3 pass; 1 fail (as expected); 1 skipped; 2 inconclusive; 1 error; 1 invalid; "
-            "1 pass, but fail expected; 2 fail");
+            "3\u00A0pass; 1\u00A0fail (as expected); 1\u00A0skipped; 2\u00A0inconclusive; "
+            "1\u00A0error; 1\u00A0invalid; "
+            "1\u00A0pass, but fail expected; 2\u00A0fail");
   EXPECT_EQ(verdict_counts(Record{}), "");
 }
 
