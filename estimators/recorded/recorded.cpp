@@ -74,8 +74,13 @@ Selection select(const recorded::Table& table, Parameters& parameters) {
   const auto found = std::ranges::find(table.columns, column);
   if (found == table.columns.end()) {
     std::string known;
-    for (const std::string& name : table.columns) known += " `" + name + "`";
-    parameters.refuse("column", "the file has no column `" + column + "`; it has" + known);
+    for (const std::string& name : table.columns) {
+      known += (known.empty() ? "`" : ", `") + name + "`";
+    }
+    const std::string near = nearest(column, table.columns);
+    parameters.refuse("column",
+                      "must be a column of the file, but it is `" + column + "`; " +
+                          (near.empty() ? "there is: " + known : "did you mean `" + near + "`?"));
   }
   return {static_cast<std::size_t>(found - table.columns.begin()), 1};
 }
@@ -87,7 +92,7 @@ recorded::Table read(Parameters& parameters) {
   } catch (const InputError& error) {
     // A file that cannot be used at all is a mistake of the suite; what stands in it, of the file.
     if (error.where().line != 0) throw;
-    parameters.refuse("file", "`" + file + "`: " + error.message());
+    parameters.refuse("file", "is `" + file + "`: " + error.message());
   }
 }
 
@@ -105,7 +110,8 @@ std::vector<Entry> recorded_recorded() {
                 "Observation i is row i of `file`. Numbers are separated by white space or commas, "
                 "`#` begins a comment, and `# columns: a b c` names the columns, each of which is "
                 "a channel unless `column` picks one. Every row needs the same number of numbers; "
-                "`nan` and `inf` are read as such. `primaries` is 1.",
+                "`nan` and `inf` are read as such. What a row was made from is not known here: "
+                "`primaries` stays 1.",
             .parameters = {{.name = "file",
                             .type = ParameterType::string,
                             .summary = "the file, relative to the suite"},

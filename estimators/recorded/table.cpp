@@ -1,7 +1,10 @@
 #include "recorded/table.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -150,9 +153,17 @@ class Reader {
 }  // namespace
 
 Table read_table(const std::string& file) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError({.file = file}, "it cannot be read: " + why);
+  };
+  // A stream opens a folder, and throws only when it is read.
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) refuse("it is a folder");
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
+  if (!stream) refuse(errno != 0 ? std::strerror(errno) : "it does not open");
   std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw InputError({.file = file}, "the file cannot be read");
+  if (stream.bad()) refuse("reading it failed");
   Reader reader(file);
   std::string_view rest = text;
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";

@@ -130,7 +130,16 @@ TEST_F(Recorded, RefusesAFileThatIsNotThere) {
     FAIL() << "a missing file was accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.message(), HasSubstr("none.txt"));
-    EXPECT_THAT(error.message(), HasSubstr("cannot be read"));
+    EXPECT_THAT(error.message(), HasSubstr("cannot be read: No such file or directory"));
+  }
+}
+
+TEST_F(Recorded, RefusesAFolder) {
+  try {
+    draws::prepare("recorded", "{file: .}", folder_.string());
+    FAIL() << "a folder was accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.message(), HasSubstr("cannot be read: it is a folder"));
   }
 }
 
@@ -168,8 +177,11 @@ TEST_F(Recorded, RefusesAColumnThatIsNotThere) {
     prepare("# columns: a b\n1 2\n", ", column: c");
     FAIL() << "an unknown column was accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.message(), HasSubstr("no column `c`"));
-    EXPECT_THAT(error.message(), HasSubstr("`a` `b`"));
+    EXPECT_THAT(
+        error.message(),
+        HasSubstr("parameter `column` must be a column of the file, but it is `c`; there is: "
+                  "`a`, `b`"));
+    EXPECT_THAT(error.message(), HasSubstr("`a`, `b`"));
   }
 }
 

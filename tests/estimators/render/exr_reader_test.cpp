@@ -1,0 +1,168 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <numbers>
+
+#include "render/environment_map.h"
+#include "tests/estimators/draws.h"
+#include "tests/estimators/exr.h"
+
+namespace assay {
+namespace {
+
+using render::EnvironmentMap;
+using render::Rgb;
+using render::Vector3;
+using ::testing::HasSubstr;
+using namespace assay::draws;
+using std::numbers::pi;
+
+class Exr : public ::testing::Test {
+ protected:
+  Exr() {
+    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ =
+        std::filesystem::path(::testing::TempDir()) / (std::string("assay_exr_") + test->name());
+    std::filesystem::create_directories(folder_);
+    file_ = (folder_ / "map.exr").string();
+  }
+  ~Exr() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::vector<std::string>& channels, std::vector<float> values,
+             int height = 1) const {
+    const int width = static_cast<int>(values.size() / channels.size()) / height;
+    write_exr(file_, {width, height, channels, std::move(values)});
+  }
+  std::string bytes() const {
+    std::ifstream stream(file_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  void write_bytes(const std::string& text) const {
+    std::ofstream(file_, std::ios::binary) << text;
+  }
+  void expect_refused(const std::string& why) const {
+    try {
+      render::read_environment(file_);
+      ADD_FAILURE() << "accepted, but " << why;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.where().file, file_);
+      EXPECT_THAT(error.message(), HasSubstr(why));
+    }
+  }
+
+  std::filesystem::path folder_;
+  std::string file_;
+};
+
+TEST_F(Exr, ReadsColoursAndGrey) {
+  write({"R", "G", "B", "A"}, {1, 2, 3, 0, 4, 5, 6, 0});
+  const EnvironmentMap colour = render::read_environment(file_);
+  EXPECT_EQ(colour.resolution().width, 2u);
+  EXPECT_EQ(colour.resolution().height, 1u);
+  EXPECT_EQ(colour.radiance(std::size_t{0}), (Rgb{1, 2, 3}));
+  EXPECT_EQ(colour.radiance(std::size_t{1}), (Rgb{4, 5, 6}));
+  write({"Y"}, {7, 8}, 2);
+  const EnvironmentMap grey = render::read_environment(file_);
+  EXPECT_EQ(grey.resolution().height, 2u);
+  EXPECT_EQ(grey.radiance(Vector3{0, 0, 1}), (Rgb{7, 7, 7})) << "+z is the first row's pole";
+  EXPECT_EQ(grey.radiance(Vector3{0, 0, -1}), (Rgb{8, 8, 8}));
+}
+
+TEST_F(Exr, RefusesMissingChannels) {
+  write({"R", "G"}, {1, 2});
+  expect_refused("needs the channels R, G and B, or Y; it has G, R");
+}
+
+TEST_F(Exr, RefusesRadianceThatIsNegativeOrNotFinite) {
+  write({"Y"}, {1, 1, 1, -0.5f}, 2);
+  expect_refused("row 1, column 1 is -0.5");
+  write({"Y"}, {1, std::numeric_limits<float>::quiet_NaN()});
+  expect_refused("row 0, column 1 is nan");
+  write({"Y"}, {std::numeric_limits<float>::infinity(), 1});
+  expect_refused("row 0, column 0 is inf");
+}
+
+TEST_F(Exr, RefusesTruncatedFiles) {
+  std::vector<float> noise;
+  for (std::uint64_t i = 0; i < 64 * 64; ++i) {
+    noise.push_back(static_cast<float>(Stream(StreamKey{1}, i).uniform()));
+  }
+  write({"Y"}, noise, 64);
+  const std::string whole = bytes();
+  for (const std::size_t length :
+       {whole.size() - 1, whole.size() / 2, whole.size() / 50, std::size_t{10}, std::size_t{0}}) {
+    write_bytes(whole.substr(0, length));
+    expect_refused("cannot be read as OpenEXR");
+  }
+}
+
+TEST_F(Exr, RefusesOtherFiles) {
+  expect_refused("cannot be read as OpenEXR");  // not there
+  write_bytes("P6 1 1 255 ...");
+  expect_refused("cannot be read as OpenEXR");
+}
+
+// The header's boxes are four 32-bit numbers after the attribute's name and type.
+void patch_box(std::string& file, const std::string& name, const std::array<std::int32_t, 4>& box) {
+  const std::string attribute = name + std::string("\0box2i\0\x10\0\0\0", 11);
+  const std::size_t at = file.find(attribute);
+  ASSERT_NE(at, file.npos);
+  std::string raw(reinterpret_cast<const char*>(box.data()), 16);
+  file.replace(at + attribute.size(), 16, raw);
+}
+
+TEST_F(Exr, RefusesPicturesWithoutTexels) {
+  write({"Y"}, {1, 1});
+  std::string file = bytes();
+  patch_box(file, std::string("dataWindow"), {0, 0, -1, 0});
+  patch_box(file, std::string("displayWindow"), {0, 0, -1, 0});
+  write_bytes(file);
+  // OpenEXR itself refuses such a header.
+  expect_refused("cannot be read as OpenEXR");
+}
+
+TEST_F(Exr, RefusesCroppedPictures) {
+  write({"Y"}, {1, 1});
+  std::string file = bytes();
+  patch_box(file, std::string("displayWindow"), {0, 0, 2, 0});
+  write_bytes(file);
+  expect_refused("cropped");
+}
+
+TEST_F(Exr, ThePluginNamesItsParameterAndTheFile) {
+  write({"R"}, {1});
+  try {
+    prepare("environment/cosine", "{map: map.exr}", folder_.string());
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.message(), HasSubstr("environment/cosine: parameter `map`"));
+    EXPECT_THAT(error.message(), HasSubstr("map.exr"));
+  }
+}
+
+TEST_F(Exr, EmittanceRefusesABlackSky) {
+  write({"Y"}, {0, 0});
+  EXPECT_THROW(prepare("environment/emittance", "{map: map.exr}", folder_.string()), InputError);
+  const auto cosine = prepare("environment/cosine", "{map: map.exr}", folder_.string());
+  EXPECT_EQ(*cosine.setup->channels()[0].mean, 0);
+  EXPECT_EQ(*cosine.setup->channels()[0].variance, 0);
+}
+
+TEST_F(Exr, UniformSkyGivesPi) {
+  write({"Y"}, {2, 2, 2, 2, 2, 2}, 2);
+  for (const char* plugin : {"environment/cosine", "environment/emittance"}) {
+    const auto prepared = prepare(plugin, "{map: map.exr, normal: [1, 2, -2]}", folder_.string());
+    const Channel channel = prepared.setup->channels()[1];
+    EXPECT_NEAR(*channel.mean, 2 * pi, 1e-12) << plugin;
+    EXPECT_LE(std::abs(*channel.mean - 2 * pi), channel.mean_error + 1e-14) << plugin;
+  }
+}
+
+}  // namespace
+}  // namespace assay
