@@ -23,7 +23,8 @@ install_packages() {
 }
 
 # build_project FOLDER TARGET... [-- CMAKE_OPTION...] configures and builds, with ccache where it is
-# installed. What the tools say is shown only when they fail.
+# installed. Says nothing when nothing is to be done; else that it builds, on a terminal with a line
+# that follows the steps. All that the tools say goes to FOLDER/build.log, shown when they fail.
 build_project() {
   local folder=$1 targets=() log
   shift
@@ -33,10 +34,31 @@ build_project() {
   if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
   mkdir -p "$folder"
   log=$folder/build.log
+  if [ ! -e "$folder/build.ninja" ]; then
+    echo "building Assay (a few minutes the first time)…" >&2
+  elif ! cmake --build "$folder" --target "${targets[@]}" -- -n 2>&1 | grep -q 'no work to do'; then
+    echo "building Assay…" >&2
+  fi
   if ! { cmake -G Ninja -S . -B "$folder" "${launcher[@]}" "$@" &&
-         cmake --build "$folder" --target "${targets[@]}"; } >"$log" 2>&1; then
+         cmake --build "$folder" --target "${targets[@]}"; } 2>&1 | follow_steps "$log"; then
+    echo "the end of $log:" >&2
     tail -n 60 "$log" >&2
     echo "the build failed; all of it is in $log" >&2
     return 1
   fi
+}
+
+# Writes what it reads to a file; on a terminal the last line stands on one line until the end. Needs
+# `set -o pipefail` around it for the exit code of what it follows.
+follow_steps() {
+  if [ ! -t 2 ]; then
+    cat >"$1"
+    return
+  fi
+  local line
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >&3
+    case $line in "["*) printf '\r\033[K%.*s' "$((${COLUMNS:-80} - 1))" "$line" >&2 ;; esac
+  done 3>"$1"
+  printf '\r\033[K' >&2
 }
