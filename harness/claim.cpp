@@ -22,9 +22,12 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 
 std::vector<std::string> quantity_words() {
   std::vector<std::string> words;
-  for (const QuantityName name : quantity_names()) words.emplace_back(to_string(name));
-  words.emplace_back("slope");
+  for (const QuantityName name : offered_quantities()) words.emplace_back(to_string(name));
   return words;
+}
+
+bool stands_on_the_right(std::string_view word) {
+  return word == "analytic" || word == "density" || find_law(word);
 }
 
 /// What may begin the right side, apart from numbers.
@@ -109,10 +112,7 @@ class Parser {
     const Token name = expect_word("a quantity (mean, variance, distribution …)");
     if (name.text == "slope") return slope(name);
     const std::optional<QuantityName> known = quantity_named(name.text);
-    if (!known) {
-      fail(name.where, fmt::format("there is no quantity `{}`{}", name.text,
-                                   advice(name.text, quantity_words())));
-    }
+    if (!known) no_quantity(name);
     Quantity quantity{.name = *known, .where = name.where};
     expect("(", fmt::format("`(` after `{}`", name.text));
     quantity.source = source_of(expect_word("the name of an estimator"));
@@ -196,10 +196,30 @@ class Parser {
     return law;
   }
 
+  /// The commonest slips: an estimator without its quantity, and the two sides exchanged.
+  [[noreturn]] void no_quantity(const Token& name) {
+    const std::string near = did_you_mean(name.text, quantity_words());
+    if (near.empty() && stands_on_the_right(name.text)) {
+      fail(name.where, fmt::format("`{}` stands on the right, as in `mean(area) == analytic` or "
+                                   "`distribution(x) == normal(0, 1)`",
+                                   name.text));
+    }
+    if (near.empty() && !lexer_.peek().is("(")) {
+      fail(name.where,
+           fmt::format("expected a quantity, as in `mean({0})`, found `{0}`", name.text));
+    }
+    fail(name.where, fmt::format("there is no quantity `{}`{}", name.text,
+                                 advice(name.text, quantity_words())));
+  }
+
   std::string side_advice(const Token& token) {
-    // `mean(a) == b` is the commonest slip: the name of an estimator where its quantity should be.
     const std::string near = did_you_mean(token.text, side_words());
-    return near.empty() ? fmt::format("; expected {}", expected_side) : near;
+    if (!near.empty()) return near;
+    // `mean(a) == b`: the name of an estimator where its quantity should be.
+    if (!lexer_.peek().is("(")) {
+      return fmt::format("; of an estimator, write its quantity, as in `mean({})`", token.text);
+    }
+    return fmt::format("; expected {}", expected_side);
   }
 
   static std::string advice(std::string_view word, const std::vector<std::string>& known) {

@@ -32,6 +32,8 @@ enum class QuantityName {
 const char* to_string(QuantityName);
 /// All of them, in the order above.
 const std::vector<QuantityName>& quantity_names();
+/// Those that this version has methods for (question.h refuses the others): what messages offer.
+const std::vector<QuantityName>& offered_quantities();
 
 /// An estimator of the suite (or, in `check`, a plugin's name), and a part of it: a channel, a
 /// sampler, a marginal of its only sampler, or "sampler.marginal"; "" is the whole.

@@ -96,12 +96,20 @@ Token Lexer::symbol() {
   struct Habit {
     std::string_view written, advice;
   };
+  static constexpr std::string_view no_arithmetic =
+      "a claim has no arithmetic; compare two quantities, as in `mean(a) == 2 * mean(b)`";
   static constexpr std::array habits{
       Habit{"!=", "a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`"},
+      Habit{"~", "write `==`, or `within 1% of` for what need only be close"},
       Habit{"=", "a lone `=`; did you mean `==`?"},
       Habit{"±", "write `+-` for `±`"},
       Habit{"≤", "write `<=` for `≤`"},
       Habit{"≥", "write `>=` for `≥`"},
+      Habit{"\"", "no quotes inside a claim"},
+      Habit{"'", "no quotes inside a claim"},
+      Habit{"-", no_arithmetic},
+      Habit{"+", no_arithmetic},
+      Habit{"/", no_arithmetic},
       Habit{".", "the name of a part must follow the `.` at once"},
   };
   for (const Habit& habit : habits) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "harness/cli_help.h"
+#include "harness/cli_options.h"
 #include "harness/cli_values.h"
 #include "harness/shell.h"
 #include "harness/suite_keys.h"
@@ -15,99 +16,6 @@
 namespace assay::harness {
 
 namespace {
-
-using Texts = std::vector<std::string>;
-
-/// Every option's text as it was typed; empty where it was not. CLI11 sorts the words, our own
-/// functions read the values, so that messages are alike everywhere.
-struct Given {
-  std::string claim, source, what, plugin, record, test, observation;
-  Texts suites, estimators, sets, reports;
-  std::string filter, seed, threads, alpha, coarsen, shard, inconclusive, colour;
-  std::string detect, allow, method, primaries, secondaries;
-  bool quiet = false;
-};
-
-CLI::App* subcommand(CLI::App& app, const std::string& name) {
-  CLI::App* sub = app.add_subcommand(name, help_of(name));
-  sub->allow_extras();
-  return sub;
-}
-
-void many(CLI::App* sub, const char* name, Texts& values, const char* kind, const char* about) {
-  sub->add_option(name, values, about)->type_name(kind)->allow_extra_args(false)->take_all();
-}
-
-void one(CLI::App* sub, const char* name, std::string& value, const char* kind, const char* about) {
-  sub->add_option(name, value, about)->type_name(kind);
-}
-
-void add_output(CLI::App* sub, Given& given) {
-  many(sub, "--report", given.reports, "KIND=PATH",
-       "console, json, junit, markdown or html to a file, - for standard output; repeatable");
-  one(sub, "--color", given.colour, "WHEN", "auto, always or never");
-}
-
-void add_running(CLI::App* sub, Given& given) {
-  one(sub, "--seed", given.seed, "N|random", "seed of all streams, instead of the suite's");
-  one(sub, "--threads", given.threads, "N", "worker threads; all cores unless given");
-  one(sub, "--alpha", given.alpha, "A", "probability of a false alarm over the suite, in (0, 0.5]");
-  one(sub, "--inconclusive", given.inconclusive, "fail|pass",
-      "count undecided tests as failed or as passed in the exit code");
-  sub->add_flag("--quiet", given.quiet, "no progress");
-  add_output(sub, given);
-}
-
-void add_estimators(CLI::App* sub, Given& given) {
-  many(sub, "--estimator", given.estimators, "NAME=PLUGIN[,key=value]...",
-       "an estimator with parameters; repeatable");
-  one(sub, "--primaries", given.primaries, "N", "primary estimates of an observation");
-  one(sub, "--secondaries", given.secondaries, "M", "number of observations");
-}
-
-void define_run(CLI::App& app, Given& given) {
-  CLI::App* sub = subcommand(app, "run");
-  sub->add_option("SUITE", given.suites, "suite files")->type_name("");
-  one(sub, "--filter", given.filter, "GLOB", "only tests whose id matches; * and ? are wild");
-  one(sub, "--coarsen", given.coarsen, "F", "multiply every `detect` by F");
-  many(sub, "--set", given.sets, "estimator.key=value", "set a parameter; repeatable");
-  one(sub, "--shard", given.shard, "I/N", "only the I-th of N parts of the tests");
-  add_running(sub, given);
-}
-
-void define_check(CLI::App& app, Given& given) {
-  CLI::App* sub = subcommand(app, "check");
-  sub->add_option("CLAIM", given.claim, "the claim, in quotes")->type_name("");
-  one(sub, "--detect", given.detect, "X", "the effect that must not pass, as 0.5% or 0.002");
-  one(sub, "--allow", given.allow, "X", "the effect that may be there");
-  one(sub, "--test", given.method, "METHOD", "force a method");
-  add_estimators(sub, given);
-  add_running(sub, given);
-}
-
-void define_others(CLI::App& app, Given& given) {
-  CLI::App* sample = subcommand(app, "sample");
-  sample->add_option("SOURCE", given.source, "an estimator, or a part of it")->type_name("");
-  add_estimators(sample, given);
-  one(sample, "--seed", given.seed, "N|random", "seed of the stream");
-
-  CLI::App* list = subcommand(app, "list");
-  list->add_option("WHAT", given.what, "plugins or tests")->type_name("");
-  list->add_option("SUITE", given.suites, "suite files, for tests")->type_name("");
-
-  CLI::App* describe = subcommand(app, "describe");
-  describe->add_option("PLUGIN", given.plugin, "a name from `assay list plugins`")->type_name("");
-
-  CLI::App* replay = subcommand(app, "replay");
-  replay->add_option("RUN.json", given.record, "a saved run")->type_name("");
-  replay->add_option("TEST", given.test, "a test's id or name")->type_name("");
-  replay->add_option("OBSERVATION", given.observation, "one observation alone, from 0")
-      ->type_name("");
-
-  CLI::App* report = subcommand(app, "report");
-  report->add_option("RUN.json", given.record, "a saved run")->type_name("");
-  add_output(report, given);
-}
 
 Texts option_names(const CLI::App& app) {
   Texts names;
@@ -321,12 +229,13 @@ std::string help(CLI::App& app) {
   const auto parsed = app.get_subcommands();
   if (parsed.empty()) return general_help();
   CLI::App& sub = *parsed.front();
+  sub.set_help_flag("-h,--help", "this text");
   for (CLI::Option* option : sub.get_options()) {
     const std::string name = option->get_name(true);
     const bool optional = name == "OBSERVATION" || (name == "SUITE" && sub.get_name() == "list");
     if (option->get_positional() && !optional) option->required();
   }
-  return sub.help("assay");
+  return wrapped_options(sub.help("assay"));
 }
 
 }  // namespace
@@ -338,9 +247,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   app.allow_extras();
   bool version_asked = false;
   app.add_flag("--version", version_asked);
-  define_run(app, given);
-  define_check(app, given);
-  define_others(app, given);
+  define_options(app, given);
   try {
     // CLI11 takes the words from the back.
     app.parse(Texts(arguments.rbegin(), arguments.rend()));

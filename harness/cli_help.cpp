@@ -1,6 +1,8 @@
 #include "harness/cli_help.h"
 
+#include <algorithm>
 #include <map>
+#include <string_view>
 
 namespace assay::harness {
 
@@ -12,7 +14,7 @@ Examples:
   assay check 'mean(luminaire/area) == analytic' --detect 0.5%
   assay describe luminaire/area
 
-Commands (each has its own --help):
+Commands (each has its own --help, with examples and defaults):
   run       test the claims of suite files
   check     test one claim
   sample    print observations of an estimator
@@ -27,10 +29,10 @@ Options:
 
 Exit codes:
   0    every test came out as expected
-  1    at least one did not
+  1    at least one did not: it failed, was invalid or could not be tested
   2    a mistake in what was asked for, or trouble
-  3    none failed, but at least one could not be decided
-  4    no test ran
+  3    none of these, but at least one is inconclusive
+  4    no test ran: --filter or --shard selected none
   77   all tests were skipped
   130  interrupted
 )";
@@ -44,7 +46,7 @@ Examples:
   assay run suites/luminaire.yaml
   assay run suites/*.yaml --filter '*/variance*' --threads 4
   assay run suites/luminaire.yaml --report json=run.json --report html=run.html
-  assay run suites/luminaire.yaml --set area.scene=rectangle --seed 7
+  assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
   assay run suites/luminaire.yaml --coarsen 4      a quick look: four times coarser effects
 )"},
       {"check", R"(Tests one claim. The names in it are plugins, or names given with --estimator.
@@ -76,8 +78,8 @@ Examples:
       {"replay", R"(Draws the numbers of a recorded test again, or one observation of it alone.
 
 Examples:
-  assay replay run.json 'luminaire/mean(area) == analytic'
-  assay replay run.json 'luminaire/mean(area) == analytic' 17
+  assay replay run.json 'luminaire/mean(triangle_area) == analytic'
+  assay replay run.json 'luminaire/mean(triangle_area) == analytic' 17
 )"},
       {"report", R"(Makes reports from a saved run; nothing is sampled.
 
@@ -86,6 +88,32 @@ Examples:
   assay report run.json --report console=-
 )"}};
   return texts.at(subcommand);
+}
+
+std::string wrapped_options(const std::string& help) {
+  constexpr std::size_t width = 100;
+  constexpr std::size_t indent = 30;  // where CLI11 begins what an option is about
+  const std::size_t options = help.find("\nOptions:\n");
+  if (options == std::string::npos) return help;
+  std::string out = help.substr(0, options);
+  std::string_view rest = std::string_view(help).substr(options);
+  while (!rest.empty()) {
+    std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::size_t blank = rest.substr(0, width + 1).rfind(' ');
+    if (end <= width || blank <= indent || blank == std::string_view::npos) {
+      end = std::min(end + 1, rest.size());
+      out += rest.substr(0, end);
+      rest.remove_prefix(end);
+    } else {
+      out += std::string(rest.substr(0, blank)) + "\n";
+      rest.remove_prefix(blank + 1);
+      const std::string line =
+          std::string(indent, ' ') + std::string(rest.substr(0, rest.find('\n')));
+      out += line + "\n";
+      rest.remove_prefix(std::min(rest.find('\n') + 1, rest.size()));
+    }
+  }
+  return out;
 }
 
 }  // namespace assay::harness

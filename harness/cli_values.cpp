@@ -24,7 +24,7 @@ std::uint64_t random_seed() {
 }
 
 unsigned shard_number(const std::string& text) {
-  const std::uint64_t number = parse_count(text, "a number of --shard", 1);
+  const std::uint64_t number = parse_count(text, "each number of --shard I/N", 1);
   if (number > std::numeric_limits<unsigned>::max()) throw InputError({}, "--shard is too large");
   return static_cast<unsigned>(number);
 }

@@ -20,6 +20,8 @@
 namespace assay::harness {
 namespace {
 
+constexpr int nothing_ran = 4;
+
 bool is_set(const char* variable) {
   const char* value = std::getenv(variable);
   return value != nullptr && *value != '\0';
@@ -87,8 +89,40 @@ void write_reports(const reports::Record& record, const Output& output) {
 
 }  // namespace
 
+std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter) {
+  std::vector<std::string> ids;
+  for (const Suite& suite : suites) {
+    for (const TestEntry& test : suite.tests) ids.push_back(test.id);
+  }
+  const auto matched = [&](const std::string& glob) {
+    std::vector<std::string> found;
+    for (const std::string& id : ids) {
+      if (matches(glob, id)) found.push_back(id);
+    }
+    return found;
+  };
+  if (!matched(filter).empty()) return "";
+  std::string text = fmt::format("--filter '{}' matches no test\n", filter);
+  std::vector<std::string> near = matched("*" + filter + "*");
+  if (near.empty() && !nearest(filter, ids).empty()) near = {nearest(filter, ids)};
+  text += "  it is held against the whole id, suite/name, where * and ? are wild; ";
+  text += near.empty() ? "ids here are:\n" : "near it:\n";
+  const std::vector<std::string>& shown = near.empty() ? ids : near;
+  constexpr std::size_t most = 5;
+  for (std::size_t i = 0; i < std::min(most, shown.size()); ++i) text += "    " + shown[i] + "\n";
+  if (shown.size() > most) {
+    text += fmt::format("    … {} more; `assay list tests` has all\n", shown.size() - most);
+  }
+  return text;
+}
+
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
   require_writable(output);
+  if (!options.filter.empty()) {
+    const std::string unmatched = unmatched_filter(suites, options.filter);
+    fmt::print(stderr, "{}{}", unmatched.empty() ? "" : "assay: ", unmatched);
+    if (!unmatched.empty()) return nothing_ran;
+  }
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Record record = run(suites, options, *progress);
   write_reports(record, output);

@@ -24,6 +24,11 @@ struct Output {
   bool quiet = false;  ///< no progress
 };
 
+/// What is said of a filter that no test's id matches: what an id looks like and the nearest ones;
+/// "" when one does.
+std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter);
+
+/// Runs, writes the reports. 4 without a report when the filter matches no test.
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
 int report_saved_run(const std::string& file, const Output& output);
 

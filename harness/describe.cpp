@@ -137,10 +137,15 @@ std::string channel_text(const Channel& channel) {
   return hanging(text, 2, 6);
 }
 
+/// Parts are offered only where a claim can name them (sampler_setup.h).
 std::string sampler_text(const NamedSampler& named) {
-  std::string text =
-      fmt::format("{}: {}; marginals", named.name, domain_name(named.sampler->domain()));
-  for (const Marginal& marginal : marginals(named.sampler->domain())) text += " " + marginal.name;
+  const Domain domain = named.sampler->domain();
+  std::string text = fmt::format("{}: {}", named.name, domain_name(domain));
+  if (domain != Domain::interval && domain != Domain::hemisphere) {
+    return hanging(text + "; this version has no test of it", 2, 6);
+  }
+  text += "; marginals";
+  for (const Marginal& marginal : marginals(domain)) text += " " + marginal.name;
   return hanging(text, 2, 6);
 }
 
@@ -200,10 +205,12 @@ std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
   if (!information.description.empty()) {
     out += "\n" + wrapped(information.description, page_width, 0);
   }
-  out += "\n" + field("bias", bias_text(information.bias));
+  // A mutant's bias is its defect's; the class is that of the estimator it was made from.
+  const bool mutant = !information.original.empty();
+  out += "\n" + field("bias", mutant ? "that of its defect" : bias_text(information.bias));
   out += field("primaries", information.averages
                                 ? "averaged: a secondary estimate is the mean of its primaries"
-                                : "not averaged: give `primaries`");
+                                : "not averaged; 1 unless given");
   out += field("mutant of", information.original) + field("defect", information.defect);
   return out + parameters_text(information) + prepared_text(plugin) +
          mutants_text(information, entries);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <stdexcept>
 
 #include "harness/cli.h"
@@ -18,7 +20,16 @@ constexpr int stopped = 130;
 
 std::vector<Suite> load(const std::vector<std::string>& files) {
   std::vector<Suite> suites;
-  for (const std::string& file : files) suites.push_back(load_suite(file));
+  std::map<std::filesystem::path, std::string> seen;
+  for (const std::string& file : files) {
+    suites.push_back(load_suite(file));
+    const auto [first, is_new] = seen.emplace(std::filesystem::weakly_canonical(file), file);
+    if (is_new) continue;
+    throw InputError(
+        {}, file == first->second
+                ? fmt::format("the suite `{}` is given twice", file)
+                : fmt::format("`{}` and `{}` are one suite; give it once", first->second, file));
+  }
   return suites;
 }
 

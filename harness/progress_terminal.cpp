@@ -42,10 +42,17 @@ bool environment_has(const char* name) {
 }  // namespace
 
 std::string progress_text(const std::string& phase, std::uint64_t done, std::uint64_t total) {
-  if (total == 0) return fmt::format("{}  {}", phase, done);
+  if (total == 0) return fmt::format("{}  {} primaries", phase, done);
   // Rounded down: 100 % is said when all is done.
   const int percent = static_cast<int>(100 * fraction(done, total));
-  return fmt::format("{}  {} %  {} of {}", phase, percent, done, total);
+  constexpr std::uint64_t million = 1'000'000;
+  const auto millions = [](std::uint64_t count) {
+    return static_cast<double>(count) / static_cast<double>(million);
+  };
+  if (total < million)
+    return fmt::format("{}  {} %  {} of {} primaries", phase, percent, done, total);
+  return fmt::format("{}  {} %  {:.1f} of {:.1f} million primaries", phase, percent, millions(done),
+                     millions(total));
 }
 
 ProgressBar::ProgressBar(std::ostream& out, Clock now) : out_(out), now_(std::move(now)) {}

@@ -52,7 +52,8 @@ class ProgressLines final : public Progress {
 /// A bar when standard error is a terminal and CI is not set, lines otherwise, nothing when quiet.
 std::unique_ptr<Progress> make_progress(bool quiet);
 
-/// "sampling  43 %  1290 of 3000": `done` of `total` in words; no percentage when total is 0.
+/// "sampling  43 %  1290 of 3000 primaries", from a million on in millions; no percentage when
+/// total is 0.
 std::string progress_text(const std::string& phase, std::uint64_t done, std::uint64_t total);
 
 }  // namespace assay::harness

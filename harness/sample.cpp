@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "harness/commands.h"
 #include "harness/interrupt.h"
 #include "harness/pool.h"
@@ -26,15 +28,25 @@ void add_columns(Sampled& sampled, const std::string& name) {
   }
 }
 
+bool has_marginal(const NamedSampler& named, const std::string& name) {
+  const std::vector<Marginal> all = marginals(named.sampler->domain());
+  return std::ranges::find(all, name, &Marginal::name) != all.end();
+}
+
 Sampled sampled_by(const PreparedEstimator& estimator, const Source& source) {
   Sampled sampled{.setup = estimator.setup};
   add_columns(sampled, source.part);
   if (!sampled.columns.empty()) return sampled;
   const auto dot = source.part.find('.');
-  for (const NamedSampler& named : estimator.setup->samplers()) {
-    if (named.name != source.part.substr(0, dot)) continue;
-    sampled = {.setup = sampler_setup(named, source.where), .purpose = named.name};
-    add_columns(sampled, dot == std::string::npos ? "" : source.part.substr(dot + 1));
+  const std::vector<NamedSampler> samplers = estimator.setup->samplers();
+  for (const NamedSampler& named : samplers) {
+    const bool by_name = named.name == source.part.substr(0, dot);
+    // As in a claim: a marginal of the only sampler needs no sampler's name.
+    const bool by_marginal = samplers.size() == 1 && has_marginal(named, source.part);
+    if (!by_name && !by_marginal) continue;
+    sampled = Sampled{.setup = sampler_setup(named, source.where), .purpose = named.name};
+    const std::string rest = dot == std::string::npos ? "" : source.part.substr(dot + 1);
+    add_columns(sampled, by_name ? rest : source.part);
   }
   if (!sampled.columns.empty()) return sampled;
   throw InputError(source.where,

@@ -150,22 +150,23 @@ void check_margins(const TestEntry& test, const Refuse& refuse) {
   }
 }
 
+/// Error rates and seeds belong to the run.
+void refuse_levels(const Document& document, const Value& test) {
+  for (const char* key : {"alpha", "beta", "seed"}) {
+    const Value* found = test.find(key);
+    if (!found) continue;
+    throw InputError(document.key(*found),
+                     fmt::format("`{}` is the suite's, so that no test can choose its own; put it "
+                                 "at the top of the file",
+                                 key));
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& method_names() {
-  static const std::vector<std::string> names{"t",
-                                              "welch",
-                                              "chi-square",
-                                              "F",
-                                              "log-variance",
-                                              "ks",
-                                              "anderson-darling",
-                                              "chi-square-fit",
-                                              "tost",
-                                              "binomial",
-                                              "log-efficiency",
-                                              "slope",
-                                              "image"};
+  static const std::vector<std::string> names{
+      "t", "welch", "tost", "F", "chi-square", "log-variance", "ks", "chi-square-fit"};
   return names;
 }
 
@@ -181,6 +182,10 @@ std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view
 
 EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
                               const Value& scenes) {
+  if (name.find('{') != std::string::npos) {
+    throw InputError(document.key(value),
+                     fmt::format("a `: ` is missing before the `{{` of `{}`", name));
+  }
   if (!is_estimator_name(name)) {
     throw InputError(document.key(value),
                      fmt::format("`{}` cannot name an estimator: a letter, then letters, digits, "
@@ -227,9 +232,15 @@ Claim read_claim(const Document& document, const Value& value) {
 }
 
 TestEntry read_test(const Document& document, const Value& value) {
+  if (value.kind() != Value::Kind::map) {
+    throw InputError(value.where(),
+                     "a test is a map of keys and values, as in `- claim: mean(area) == analytic`");
+  }
+  refuse_levels(document, value);
   const Keys keys(document, value, "a test",
                   {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
-                   "over", "reference", "cost", "expect", "tags"});
+                   "expect", "tags"},
+                  {"over", "reference", "cost"});
   TestEntry test{.claim = read_claim(document, keys.require("claim")), .where = value.where()};
   const Value* name = keys.find("name");
   test.name = name ? one_line(*name, "`name`") : test.claim.text;

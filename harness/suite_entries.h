@@ -9,7 +9,7 @@
 
 namespace assay::harness {
 
-/// The methods that `test:` and `--test` can force.
+/// The methods that `test:` and `--test` can force: those that this version has.
 const std::vector<std::string>& method_names();
 
 /// An entry of `estimators:`. `scenes` is the map under the suite's `scenes:`.

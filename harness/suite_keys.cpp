@@ -15,14 +15,22 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
   return all.empty() ? "; there is none" : "; there is: " + all;
 }
 
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+}  // namespace
+
 Keys::Keys(const Document& document, const Value& map, std::string what,
-           const std::vector<std::string>& known)
+           const std::vector<std::string>& known, const std::vector<std::string>& reserved)
     : document_(document), map_(map), what_(std::move(what)) {
   if (map.kind() != Value::Kind::map) {
     throw InputError(map.where(), fmt::format("{} must be a map of keys and values", what_));
   }
   for (const auto& [key, value] : map.members()) {
-    if (std::ranges::find(known, key) == known.end()) {
+    if (!contains(known, key) && !contains(reserved, key)) {
       throw InputError(document.key(value),
                        fmt::format("unknown key `{}` of {}{}", key, what_, suggestion(key, known)));
     }
@@ -34,25 +42,43 @@ const Value& Keys::require(std::string_view key) const {
   throw InputError(map_.where(), fmt::format("{} needs the key `{}`", what_, key));
 }
 
+namespace {
+
+/// Wrong type and wrong value get the same sentence: what is allowed, and what was given.
+template <class Read, class Allowed>
+auto read_within(const Value& value, std::string_view what, const std::string& range, Read read,
+                 Allowed allowed) {
+  std::string found = "no single value";
+  if (value.kind() == Value::Kind::scalar) {
+    found = "`" + value.text() + "`";
+    try {
+      const auto number = read();
+      if (allowed(number)) return number;
+    } catch (const InputError&) {
+      // Not a number: said below.
+    }
+  }
+  throw InputError(value.where(), fmt::format("{} must be {}, but it is {}", what, range, found));
+}
+
+}  // namespace
+
 double positive_number(const Value& value, std::string_view what) {
-  const double number = value.number(what);
-  if (number > 0 && std::isfinite(number)) return number;
-  throw InputError(value.where(),
-                   fmt::format("{} must be above 0 and finite, but it is {}", what, value.text()));
+  return read_within(
+      value, what, "a number above 0", [&] { return value.number(what); },
+      [](double number) { return number > 0 && std::isfinite(number); });
 }
 
 double error_rate(const Value& value, std::string_view what) {
-  const double rate = value.number(what);
-  if (rate > 0 && rate <= 0.5) return rate;
-  throw InputError(value.where(), fmt::format("{} must be above 0 and at most 0.5, but it is {}",
-                                              what, value.text()));
+  return read_within(
+      value, what, "a number above 0 and at most 0.5", [&] { return value.number(what); },
+      [](double rate) { return rate > 0 && rate <= 0.5; });
 }
 
 std::uint64_t count_from(const Value& value, std::string_view what, std::uint64_t least) {
-  const std::uint64_t count = value.count(what);
-  if (count >= least) return count;
-  throw InputError(value.where(),
-                   fmt::format("{} must be at least {}, but it is {}", what, least, value.text()));
+  return read_within(
+      value, what, fmt::format("a whole number, {} or more", least),
+      [&] { return value.count(what); }, [&](std::uint64_t count) { return count >= least; });
 }
 
 std::string one_line(const Value& value, std::string_view what) {

@@ -12,9 +12,10 @@ namespace assay::harness {
 /// A map of a suite file of which all keys are known. Refuses unknown ones when it is made.
 class Keys {
  public:
-  /// `what` names the map in messages: "a suite", "a test".
+  /// `what` names the map in messages: "a suite", "a test". Messages offer the keys of `known`;
+  /// those of `reserved` are read as well.
   Keys(const Document& document, const Value& map, std::string what,
-       const std::vector<std::string>& known);
+       const std::vector<std::string>& known, const std::vector<std::string>& reserved = {});
 
   const Value* find(std::string_view key) const { return map_.find(key); }
   /// InputError at the map when the key is not there.

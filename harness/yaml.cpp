@@ -32,8 +32,9 @@ std::string readable(const std::string& message) {
       Translation{YAML::ErrorMsg::END_OF_MAP,
                   "expected a key of the map here; is the indentation "
                   "that of the other keys, and the line `key: value`?"},
-      Translation{YAML::ErrorMsg::END_OF_SEQ,
-                  "expected another `- ` item here; is the indentation that of the other items?"},
+      Translation{
+          YAML::ErrorMsg::END_OF_SEQ,
+          "expected another `- ` item here; indent all items alike, and all keys of an item"},
       Translation{YAML::ErrorMsg::MAP_VALUE,
                   "a `:` cannot stand here; indent all keys of a map alike, and put text that "
                   "contains `: ` in quotes"},
@@ -69,7 +70,7 @@ class DocumentBuilder final : public YAML::EventHandler {
     if (open_.empty()) refuse(place(mark), "there is nothing here");
     Frame& frame = open_.back();
     if (frame.map && !frame.key) refuse(place(mark), "a key is missing before the `:`");
-    if (frame.map) refuse(frame.key_place, fmt::format("`{}` has no value", *frame.key));
+    if (frame.map) refuse_without_value(frame);
     refuse(dash_before(mark), "a list item without a value");
   }
 
@@ -185,6 +186,22 @@ class DocumentBuilder final : public YAML::EventHandler {
     document_.keys_[{value.where().line, value.where().column}] = frame.key_place;
     frame.members.emplace_back(std::move(*frame.key), std::move(value));
     frame.key.reset();
+  }
+
+  /// In `{claim: quantile(a, 0.5) == 1}` YAML ends the claim at its comma and takes the rest for a
+  /// key: the brackets of the two tell.
+  [[noreturn]] void refuse_without_value(const Frame& frame) const {
+    const auto open_brackets = [](const std::string& text) {
+      return std::ranges::count(text, '(') - std::ranges::count(text, ')');
+    };
+    const Value::Member* before = frame.members.empty() ? nullptr : &frame.members.back();
+    const bool cut = before && before->second.kind() == Value::Kind::scalar &&
+                     open_brackets(before->second.text()) > 0 && open_brackets(*frame.key) < 0;
+    if (!cut) refuse(frame.key_place, fmt::format("`{}` has no value", *frame.key));
+    refuse(frame.key_place,
+           fmt::format("inside {{…}} a comma ends the value of `{0}`; quote the {0}: `{0}: \"{1}, "
+                       "{2}\"`",
+                       before->first, before->second.text(), *frame.key));
   }
 
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {

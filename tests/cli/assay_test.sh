@@ -92,7 +92,36 @@ test_undecided_is_3_or_as_asked() {
 
 test_filter_that_matches_nothing_is_4() {
   write_suite good.yaml "$good"
-  expect 4 run good.yaml --filter 'good/nothing'
+  expect 4 run good.yaml --filter 'good/nothing' --report html=run.html
+  empty out
+  contains err "--filter 'good/nothing' matches no test"
+  contains err 'good/good'
+  [ ! -e run.html ] || fail 'a report of nothing was written'
+}
+
+test_suite_given_twice_is_2() {
+  write_suite good.yaml "$good"
+  expect 2 run good.yaml good.yaml
+  empty out
+  contains err 'the suite `good.yaml` is given twice'
+  expect 2 run good.yaml ./good.yaml
+  contains err '`good.yaml` and `./good.yaml` are one suite; give it once'
+}
+
+test_wrong_value_of_any_option_is_2() {
+  local option
+  write_suite good.yaml "$good"
+  for option in --threads --seed --alpha --inconclusive --color --report --detect --allow --test \
+    --primaries --secondaries; do
+    expect 2 check 'mean(analytic/dart_throwing) == analytic' $option 'no value of any option'
+    empty out
+    contains err "$option"
+  done
+  for option in --threads --seed --alpha --inconclusive --color --report --coarsen --shard --set; do
+    expect 2 run good.yaml $option 'no value of any option'
+    empty out
+    contains err "$option"
+  done
 }
 
 test_interrupted_is_130_and_leaves_no_report() {
@@ -228,6 +257,32 @@ test_full_disk_is_no_success() {
   "$assay" run good.yaml --report json=- >/dev/full 2>err || code=$?
   [ "$code" -eq 2 ] || fail "ended with $code, not 2"
   contains err 'No space left on device'
+}
+
+# A build by tools that say what they are asked and fail as asked.
+build_with() {
+  mkdir -p tools
+  printf '%s\n' '#!/bin/sh' 'case "$*" in *" -n") echo "$PLANNED"; exit;; esac' \
+    'echo "cmake $*"' 'exit "$ENDS_WITH"' >tools/cmake
+  chmod +x tools/cmake
+  PLANNED=$1 ENDS_WITH=$2 PATH=$PWD/tools:$PATH bash -c "set -euo pipefail
+    source '$source_folder/suites/install.sh'
+    build_project built assay" >out 2>err
+}
+
+test_build_speaks_when_it_works_or_fails() {
+  build_with '' 0 || fail 'the build failed'
+  contains err 'building Assay (a few minutes the first time)…'
+  contains built/build.log 'cmake --build built --target assay'
+  : >built/build.ninja
+  build_with 'ninja: no work to do.' 0 || fail 'the build failed'
+  empty out
+  empty err
+  ! build_with '[1/2] compile' 1 || fail 'the build did not fail'
+  contains err 'building Assay…'
+  contains err 'the end of built/build.log:'
+  contains err 'cmake -G Ninja'
+  contains err 'the build failed; all of it is in built/build.log'
 }
 
 test_lists_are_one_id_a_line() {

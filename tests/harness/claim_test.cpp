@@ -108,8 +108,18 @@ TEST(Claim, SaysWhatWasExpectedAndWhere) {
             "1:20: `nromal` is nothing that a quantity can be compared with; did you mean "
             "`normal`?");
   EXPECT_EQ(refused("mean(a) == hemisphere"),
-            "1:12: `hemisphere` is nothing that a quantity can be compared with; expected a "
-            "number, `analytic`, a quantity as `mean(…)`, or a law as `uniform(0, 1)`");
+            "1:12: `hemisphere` is nothing that a quantity can be compared with; of an estimator, "
+            "write its quantity, as in `mean(hemisphere)`");
+  EXPECT_EQ(refused("mean(a) == zzz(1)"),
+            "1:12: `zzz` is nothing that a quantity can be compared with; expected a number, "
+            "`analytic`, a quantity as `mean(…)`, or a law as `uniform(0, 1)`");
+  EXPECT_EQ(refused("area == analytic"),
+            "1:1: expected a quantity, as in `mean(area)`, found `area`");
+  EXPECT_EQ(refused("analytic == mean(a)"),
+            "1:1: `analytic` stands on the right, as in `mean(area) == analytic` or "
+            "`distribution(x) == normal(0, 1)`");
+  EXPECT_EQ(refused("skewness(a) == 1"),
+            "1:1: there is no quantity `skewness`; expected one of mean, variance, distribution");
   EXPECT_EQ(refused("mean(a) == 1 2"), "1:14: the claim is over before the number `2`");
   EXPECT_EQ(refused("1 == mean(a)"),
             "1:1: a claim begins with a quantity, as in `mean(area) == 0.5`");
@@ -120,6 +130,12 @@ TEST(Claim, KnowsTheHabitsOfOtherLanguages) {
   EXPECT_EQ(refused("mean(a) = 1"), "1:9: a lone `=`; did you mean `==`?");
   EXPECT_EQ(refused("mean(a) != 1"),
             "1:9: a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`");
+  EXPECT_EQ(refused("mean(a) ~= 1"),
+            "1:9: write `==`, or `within 1% of` for what need only be close");
+  EXPECT_EQ(refused("mean(a) == \"analytic\""), "1:12: no quotes inside a claim");
+  EXPECT_EQ(refused("mean(a) - mean(b) == 0"),
+            "1:9: a claim has no arithmetic; compare two quantities, as in `mean(a) == 2 * "
+            "mean(b)`");
   EXPECT_EQ(refused("mean(a) ≤ 1"), "1:9: write `<=` for `≤`");
   EXPECT_EQ(refused("mean(a) == 1 ± 2"), "1:14: write `+-` for `±`");
   EXPECT_EQ(refused("mean(a.) == 1"), "1:7: the name of a part must follow the `.` at once");

@@ -8,6 +8,7 @@
 
 #include "estimators/catalogue.h"
 #include "harness/commands.h"
+#include "harness/sampler_setup.h"
 #include "refusal.h"
 
 namespace assay::harness {
@@ -47,6 +48,40 @@ TEST(Describe, NamesTheOriginalAndTheDefectOfAMutant) {
   const std::string text = manual(*mutant, catalogue());
   EXPECT_THAT(text, HasSubstr("mutant of   " + mutant->information.original + "\n"));
   EXPECT_THAT(text, HasSubstr("defect      "));
+}
+
+TEST(Describe, CallsNoMutantUnbiased) {
+  for (const Entry& entry : catalogue()) {
+    if (entry.information.original.empty()) continue;
+    EXPECT_THAT(manual(entry, catalogue()), HasSubstr("bias        that of its defect\n"));
+  }
+}
+
+TEST(Describe, SaysOfRecordedRowsThatTheyAreOne) {
+  EXPECT_THAT(manual_of("recorded"), HasSubstr("primaries   not averaged; 1 unless given\n"));
+}
+
+// Every sampler and marginal that a manual offers can be named in a claim, and no other is offered.
+TEST(Describe, OffersThePartsThatClaimsCanName) {
+  EXPECT_THAT(manual_of("luminaire/area"),
+              HasSubstr("point: triangle (barycentric); this version has no test of it\n"));
+  EXPECT_THAT(manual_of("luminaire/solid_angle"),
+              HasSubstr("square: unit square; this version has no test of it\n"));
+  EXPECT_THAT(manual_of("luminaire/cosine"),
+              HasSubstr("direction: hemisphere (solid angle); marginals theta phi\n"));
+  for (const Entry& entry : catalogue()) {
+    const std::vector<ParameterInformation>& declared = entry.information.parameters;
+    const auto required = [](const ParameterInformation& p) { return p.fallback.empty(); };
+    if (std::ranges::any_of(declared, required)) continue;
+    Parameters parameters(entry.information.name, declared, Value{}, ".");
+    const std::string text = manual(entry, catalogue());
+    for (const NamedSampler& named : entry.prepare(parameters)->samplers()) {
+      const std::string line = text.substr(text.find("\n  " + named.name + ": "));
+      const bool offered = line.substr(0, line.find('\n', 1)).find("marginals") != line.npos;
+      EXPECT_EQ(offered, refusal([&] { sampler_setup(named, {}); }) == "(nothing was refused)")
+          << entry.information.name << "." << named.name;
+    }
+  }
 }
 
 TEST(Describe, SaysWhyChannelsAreNotKnownYet) {

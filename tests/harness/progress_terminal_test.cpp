@@ -20,9 +20,11 @@ struct Hands {
 };
 
 TEST(ProgressText, RoundsDownSoThatAHundredMeansAll) {
-  EXPECT_EQ(progress_text("sampling", 999, 1000), "sampling  99 %  999 of 1000");
-  EXPECT_EQ(progress_text("sampling", 1000, 1000), "sampling  100 %  1000 of 1000");
-  EXPECT_EQ(progress_text("pilot", 7, 0), "pilot  7");
+  EXPECT_EQ(progress_text("sampling", 999, 1000), "sampling  99 %  999 of 1000 primaries");
+  EXPECT_EQ(progress_text("sampling", 1000, 1000), "sampling  100 %  1000 of 1000 primaries");
+  EXPECT_EQ(progress_text("pilot", 7, 0), "pilot  7 primaries");
+  EXPECT_EQ(progress_text("sampling", 2'340'000, 62'000'000),
+            "sampling  3 %  2.3 of 62.0 million primaries");
 }
 
 TEST(ProgressBar, RedrawsAtMostTenTimesASecond) {
@@ -73,8 +75,8 @@ TEST(ProgressLines, SpeakAtMostEveryHalfMinute) {
   }
   lines.end();
   EXPECT_EQ(out.str(),
-            "assay: sampling  30 %  30 of 100\n"
-            "assay: sampling  60 %  60 of 100\n");
+            "assay: sampling  30 %  30 of 100 primaries\n"
+            "assay: sampling  60 %  60 of 100 primaries\n");
 }
 
 TEST(ProgressLines, SayNothingOfAShortRun) {

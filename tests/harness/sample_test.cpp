@@ -48,6 +48,17 @@ TEST(Sample, OfASamplerHasItsMarginals) {
   EXPECT_NE(text.find("# columns: theta phi\n"), std::string::npos) << text;
 }
 
+TEST(Sample, OfTheOnlySamplerNeedsAMarginalsNameAlone) {
+  const std::string named = sampled({.source = "luminaire/hemisphere.direction.theta"});
+  EXPECT_NE(named.find("# columns: theta\n"), std::string::npos) << named;
+  EXPECT_EQ(sampled({.source = "luminaire/hemisphere.theta"}), named);
+}
+
+TEST(Sample, RefusesAMisspeltMarginalOfASamplerWithoutATest) {
+  const std::string text = refusal([] { sample({.source = "luminaire/area.w"}); });
+  EXPECT_NE(text.find("no part `w`"), std::string::npos) << text;
+}
+
 TEST(Sample, RefusesAPartThatIsNotThere) {
   const std::string text = refusal([] { sample({.source = "luminaire/hemisphere.directions"}); });
   EXPECT_NE(text.find("no part `directions`"), std::string::npos) << text;

@@ -1,0 +1,129 @@
+#include "harness/cli_options.h"
+
+#include "harness/cli_help.h"
+
+namespace assay::harness {
+
+namespace {
+
+CLI::App* subcommand(CLI::App& app, const std::string& name) {
+  CLI::App* sub = app.add_subcommand(name, help_of(name));
+  sub->allow_extras();
+  return sub;
+}
+
+void many(CLI::App* sub, const char* name, Texts& values, const char* kind, const char* about) {
+  sub->add_option(name, values, about)->type_name(kind)->allow_extra_args(false)->take_all();
+}
+
+void one(CLI::App* sub, const char* name, std::string& value, const char* kind, const char* about) {
+  sub->add_option(name, value, about)->type_name(kind);
+}
+
+void add_output(CLI::App* sub, Given& given) {
+  many(sub, "--report", given.reports, "KIND=PATH",
+       "console, json, junit, markdown or html to a file, - is standard output; repeatable; "
+       "default console=-");
+  one(sub, "--color", given.colour, "WHEN",
+      "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
+}
+
+/// What differs between the commands that sample and judge.
+struct Running {
+  const char* seed;
+  const char* alpha;
+};
+
+void add_running(CLI::App* sub, Given& given, const Running& about) {
+  one(sub, "--seed", given.seed, "N|random", about.seed);
+  one(sub, "--threads", given.threads, "N", "worker threads; default one for each core");
+  one(sub, "--alpha", given.alpha, "A", about.alpha);
+  one(sub, "--inconclusive", given.inconclusive, "fail|pass",
+      "count undecided tests as failed or as passed; default neither: exit code 3");
+  sub->add_flag("--quiet", given.quiet, "no progress on standard error; default shown");
+  add_output(sub, given);
+}
+
+/// What differs between the commands that take estimators.
+struct Sizes {
+  const char* primaries;
+  const char* secondaries;
+};
+
+void add_estimators(CLI::App* sub, Given& given, const Sizes& about) {
+  many(sub, "--estimator", given.estimators, "NAME=PLUGIN[,key=value]...",
+       "an estimator with parameters; repeatable; default the plugin of that name");
+  one(sub, "--primaries", given.primaries, "N", about.primaries);
+  one(sub, "--secondaries", given.secondaries, "M", about.secondaries);
+}
+
+void define_run(CLI::App& app, Given& given) {
+  CLI::App* sub = subcommand(app, "run");
+  sub->add_option("SUITE", given.suites, "suite files")->type_name("");
+  one(sub, "--filter", given.filter, "GLOB",
+      "only tests whose id, suite/name, matches; * and ? are wild; default all");
+  one(sub, "--coarsen", given.coarsen, "F", "multiply every `detect` by F, above 0; default 1");
+  many(sub, "--set", given.sets, "estimator.key=value",
+       "set a parameter; repeatable; default as in the suite");
+  one(sub, "--shard", given.shard, "I/N", "only the I-th of N parts of the tests; default 1/1");
+  add_running(sub, given,
+              {.seed = "seed of all streams, or a fresh one; default the suite's, else 1",
+               .alpha = "probability that a suite whose claims hold fails, in (0, 0.5]; default "
+                        "the suite's, else 0.01"});
+}
+
+void define_check(CLI::App& app, Given& given) {
+  CLI::App* sub = subcommand(app, "check");
+  sub->add_option("CLAIM", given.claim, "the claim, in quotes")->type_name("");
+  one(sub, "--detect", given.detect, "X",
+      "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations");
+  one(sub, "--allow", given.allow, "X",
+      "the effect that may be there, as 0.5% or 0.002; default 0");
+  one(sub, "--test", given.method, "METHOD",
+      "force a method, such as welch; default chosen from the pilot");
+  add_estimators(sub, given,
+                 {.primaries = "primary estimates of an observation; default chosen from the pilot",
+                  .secondaries = "number of observations, 2 or more; default what --detect needs"});
+  add_running(sub, given,
+              {.seed = "seed of all streams, or a fresh one; default 1",
+               .alpha = "probability that a claim that holds fails, in (0, 0.5]; default 0.01"});
+}
+
+void define_others(CLI::App& app, Given& given) {
+  CLI::App* sample = subcommand(app, "sample");
+  sample->add_option("SOURCE", given.source, "an estimator, or a part of it")->type_name("");
+  add_estimators(sample, given,
+                 {.primaries = "primary estimates of an observation; default 1",
+                  .secondaries = "number of observations; default 10"});
+  one(sample, "--seed", given.seed, "N|random", "seed of the stream, or a fresh one; default 1");
+
+  CLI::App* list = subcommand(app, "list");
+  list->add_option("WHAT", given.what, "plugins or tests")->type_name("");
+  list->add_option("SUITE", given.suites, "suite files, of which the tests are listed")
+      ->type_name("");
+
+  CLI::App* describe = subcommand(app, "describe");
+  describe->add_option("PLUGIN", given.plugin, "a name from `assay list plugins`")->type_name("");
+
+  CLI::App* replay = subcommand(app, "replay");
+  replay->add_option("RUN.json", given.record, "a saved run")->type_name("");
+  replay->add_option("TEST", given.test, "a test's id or name")->type_name("");
+  replay
+      ->add_option("OBSERVATION", given.observation,
+                   "one observation alone, from 0; default the whole test")
+      ->type_name("");
+
+  CLI::App* report = subcommand(app, "report");
+  report->add_option("RUN.json", given.record, "a saved run")->type_name("");
+  add_output(report, given);
+}
+
+}  // namespace
+
+void define_options(CLI::App& app, Given& given) {
+  define_run(app, given);
+  define_check(app, given);
+  define_others(app, given);
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,83 @@
+// The editors' schema and the manual offer what this version takes, no more and no less.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "harness/prepare.h"
+#include "harness/question.h"
+#include "harness/suite_entries.h"
+#include "harness/text_file.h"
+#include "harness/yaml.h"
+#include "refusal.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::ElementsAreArray;
+
+const std::string suites = std::string(ASSAY_SOURCE_DIR) + "/suites/";
+
+/// What the schema says of a key of a test. JSON is YAML.
+Value schema_of(const std::string& key) {
+  static const Document schema = read_yaml_file(suites + "suite.schema.json");
+  return *schema.root().find("definitions")->find("test")->find("properties")->find(key);
+}
+
+std::vector<std::string> matches_of(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator at(text.begin(), text.end(), regex), end; at != end; ++at) {
+    found.push_back((*at)[1]);
+  }
+  return found;
+}
+
+std::string manual_line(const std::string& beginning) {
+  const std::string text = read_text_file(suites + "README.md");
+  for (const std::string_view line : lines_of(text)) {
+    if (line.starts_with(beginning)) return std::string(line);
+  }
+  return "";
+}
+
+bool is_tested(QuantityName name) {
+  const std::string number = name == QuantityName::quantile ? ", 0.5" : "";
+  const char* side = name == QuantityName::distribution ? "normal(0, 1)" : "1";
+  const Suite suite = suite_of_claim(
+      {.claim = std::string(to_string(name)) + "(analytic/normal" + number + ") == " + side});
+  const auto estimators = prepare_all(suite);
+  return refusal([&] { ask(suite.tests[0], estimators); }) == "(nothing was refused)";
+}
+
+TEST(SuiteSchema, OffersTheMethodsThereAre) {
+  std::vector<std::string> names;
+  for (const Value& name : schema_of("test").find("enum")->items()) names.push_back(name.text());
+  EXPECT_THAT(names, ElementsAreArray(method_names()));
+}
+
+TEST(SuiteSchema, OffersTheQuantitiesThatAreTested) {
+  std::vector<std::string> tested;
+  for (const QuantityName name : quantity_names()) {
+    if (is_tested(name)) tested.emplace_back(to_string(name));
+  }
+  std::vector<std::string> offered;
+  for (const QuantityName name : offered_quantities()) offered.emplace_back(to_string(name));
+  EXPECT_THAT(tested, ElementsAreArray(offered));
+  const std::string pattern = schema_of("claim").find("pattern")->text();
+  EXPECT_THAT(matches_of(pattern, "([a-z_]{2,})"), ElementsAreArray(offered)) << pattern;
+}
+
+TEST(SuitesReadme, OffersWhatTheSchemaOffers) {
+  std::vector<std::string> offered;
+  for (const QuantityName name : offered_quantities()) offered.emplace_back(to_string(name));
+  EXPECT_THAT(matches_of(manual_line("name     = "), "([a-z_]{2,})(?: \\||$)"),
+              ElementsAreArray(offered));
+  std::vector<std::string> keys = matches_of(manual_line("| `test` |"), "`([A-Za-z-]+)`");
+  keys.erase(keys.begin());
+  EXPECT_THAT(keys, ElementsAreArray(method_names()));
+}
+
+}  // namespace
+}  // namespace assay::harness
