@@ -35,7 +35,7 @@ th, td { text-align: left; vertical-align: top; padding: 5px 8px; border-bottom:
 th { font-weight: 600; } th.group { padding-top: 16px; font-size: 14px; color: var(--ink); } tr.failed th.group { color: var(--bad); } tr.inconclusive th.group { color: var(--open); }
 td { overflow-wrap: break-word; }
 td.name { min-width: 180px; overflow-wrap: anywhere; }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
+td.number { white-space: nowrap; } td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 td .muted { font-size: 12px; } td > .chart { min-width: 130px; } .whole { white-space: nowrap; }
 .badge { font-weight: 600; }
 .passed .badge { color: var(--ok); } .failed .badge { color: var(--bad); }
@@ -87,7 +87,7 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
 @media screen and (max-width: 480px) { table.cards td { grid-template-columns: 8em minmax(0, 1fr); } }
 @media (max-width: 620px) { body { padding: 16px 12px 40px; } dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 6px; } }
 @media print { body { max-width: none; padding: 0; font-size: 11px; } .tools { display: none; }
-  table, .facts, dl, figcaption, .key { font-size: 10px !important; } .claim { font-size: 9px; } h2 { break-after: avoid; } h3 { break-after: avoid; }
+  table, .facts, dl, figcaption, .key { font-size: 10px !important; } .claim, td .muted { font-size: 9px; } h2 { break-after: avoid; } h3 { break-after: avoid; }
   figure, tr, pre { break-inside: avoid; } .scroll { overflow: visible; }
   details::details-content { content-visibility: visible; display: block; height: auto; }
   .chart { -webkit-print-color-adjust: exact; print-color-adjust: exact; } }

@@ -122,8 +122,8 @@ void add(HtmlTable& table, const Sample& s) {
              {fmt::format("{} × {}", count_text(s.secondaries), count_text(s.primaries))},
              {number(s.mean)},
              {number(s.variance)},
-             {fmt::format("{} / {}", number(s.skewness), number(s.kurtosis))},
-             {fmt::format("{} … {}", number(s.minimum), number(s.maximum))},
+             {fmt::format("<span>{} /<br/>{}</span>", number(s.skewness), number(s.kurtosis))},
+             {fmt::format("<span>{} …<br/>{}</span>", number(s.minimum), number(s.maximum))},
              {fmt::format("{} / {}", count_text(s.nonzero), count_text(s.nonfinite))},
              cost_cell(s.cost)});
 }
