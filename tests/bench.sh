@@ -11,8 +11,9 @@ install_packages suites/packages.txt tests/packages.txt
 if [ "${1:-}" = build ]; then
   folder=$(mktemp -d)
   trap 'rm -rf "$folder"' EXIT
-  cmake -G Ninja -S . -B "$folder" >/dev/null
-  echo "clean build of everything:"
+  export CCACHE_DISABLE=1
+  cmake -G Ninja -S . -B "$folder" -DCMAKE_CXX_COMPILER_LAUNCHER= >/dev/null
+  echo "clean build of everything, without ccache:"
   time cmake --build "$folder" >/dev/null
   touch estimators/luminaire/area.cpp
   echo "rebuild of assay after touching one estimator:"
