@@ -32,8 +32,6 @@ build_project() {
   [ "${1:-}" = -- ] && shift
   local launcher=()
   if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-  # Without these ccache passes by whatever has a precompiled header, as the tests have.
-  export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
   mkdir -p "$folder"
   log=$folder/build.log
   if [ ! -e "$folder/build.ninja" ]; then
