@@ -52,7 +52,7 @@ constexpr const char* reading_help =
 <dt>error</dt><dd>The claim could not be tested: a value that is not finite, a crash, a time-out.</dd>
 <dt>as expected</dt><dd>A mutant is a deliberately broken estimator: its claim is expected to fail, and the test is ok when it does.</dd>
 <dt>effect</dt><dd>How far the estimator is from its claim. Ratios are shown as per cent near one, else as factors (×0.07).</dd>
-<dt>interval</dt><dd>Holds the true effect with the confidence printed beside it. In a test that is one minus the test's share of alpha, so an interval that leaves out the claimed value is evidence against the claim. A sentence such as "shown: …" or "… is excluded" rests on the narrower interval at 1 - 2 beta, since passing is decided at beta.</dd>
+<dt>interval</dt><dd>Holds the true effect with the confidence printed beside it. In a test that is one minus the share of alpha of the test, or of its look, so an interval that leaves out the claimed value is evidence against the claim. A sentence such as "shown: …" or "… is excluded" rests on the narrower interval at 1 - 2 beta, since passing is decided at beta.</dd>
 <dt>p</dt><dd>Of the claim, unless another name stands below it. The claims with &lt;, &gt; and within are proofs: their verdict rests on p(contrary), the p-value of the contrary of the claim.</dd>
 </dl></details>
 )html";
