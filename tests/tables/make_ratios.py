@@ -159,9 +159,74 @@ def ledger_rows():
         yield [k, count, tau, u, ratio(0), detector, int(changes.argmax()), changes.max(), share[2]]
 
 
+def leaving(start, steps, low, high):
+    """Probability that a chain with transition matrices `steps` leaves [low, high]."""
+    p = np.array(start, dtype=float)
+    for step, a, b in zip(steps, low, high):
+        p = p @ step
+        keep = (np.arange(len(p)) >= a) & (np.arange(len(p)) <= b)
+        p = np.where(keep, p, 0)
+    return 1 - p.sum()
+
+
+def band_chain(n, points):
+    z = np.arange(1, points) / points
+    before = np.concatenate([[0], z[:-1]])
+    x = np.arange(n + 1)
+    steps = [stats.binom.pmf(x[None, :] - x[:, None], (n - x)[:, None], (b - a) / (1 - a))
+             for a, b in zip(before, z)]
+    return [stats.binom(n, v) for v in z], steps, n
+
+
+def pooled_chain(m, n, points):
+    ranks = sorted({round(i * (m + n) / points) for i in range(1, points)} - {0, m + n})
+    x = np.arange(m + 1)
+    steps, before = [], 0
+    for rank in ranks:
+        left = m + n - before
+        steps.append(np.array([[stats.hypergeom.pmf(b - a, left, max(m - a, 0), rank - before)
+                                if before - a <= n and a <= before else 0.0
+                                for b in x] for a in x]))
+        before = rank
+    return [stats.hypergeom(m + n, m, rank) for rank in ranks], steps, m
+
+
+def band_limits(laws, gamma, largest):
+    x = np.arange(largest + 1)
+    low, high = [], []
+    for law in laws:
+        inside = x[(law.cdf(x) > gamma / 2) & (law.sf(x - 1) > gamma / 2)]
+        low.append(inside[0])
+        high.append(inside[-1])
+    return low, high
+
+
+def band_rows():
+    """Transition matrices and every step of gamma, for one sample and for two."""
+    for case, arguments in enumerate(((20, 10), (100, 100), (12, 15, 9))):
+        chain = band_chain(*arguments) if len(arguments) == 2 else pooled_chain(*arguments)
+        laws, steps, largest = chain
+        start = [1.0] + [0.0] * largest
+        x = np.arange(largest + 1)
+        tails = np.concatenate([np.minimum(law.cdf(x), law.sf(x - 1)) for law in laws])
+        # The band loses a count when gamma / 2 reaches its tail: the steps of the coverage.
+        gammas = np.unique(2 * tails[(tails < 0.04) & (tails > 1e-6)])
+        low, high = 0, len(gammas) - 1
+        lost = lambda g: leaving(start, steps, *band_limits(laws, g, largest))
+        for confidence in (0.95, 0.99):
+            low, high = 0, len(gammas) - 1
+            while high - low > 1:
+                middle = (low + high) // 2
+                inside = gammas[middle] * (1 + 1e-9)
+                low, high = (middle, high) if lost(inside) <= 1 - confidence else (low, middle)
+            # Every gamma below the next step has the same band.
+            yield [case, confidence, gammas[low], gammas[high], 1 - lost(gammas[low] * (1 + 1e-9))]
+
+
 if __name__ == "__main__":
     write("log_efficiency", "k,n,value,error,biased,biased_error,ratio_z,ratio_upper,cost_z",
           efficiency_rows())
     write("slope", "case,logs,null,misfit,p,low,high,power", slope_rows())
     write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
     write("ledger", "k,nights,tau,u,log_e,detector,night,change,share_2", ledger_rows())
+    write("band", "case,confidence,step,next_step,coverage", band_rows())
