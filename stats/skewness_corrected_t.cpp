@@ -136,7 +136,7 @@ double factor_of(const Residue& r, double x) {
   const double a = std::abs(r.a);
   const double cube = x * x * x;
   const double even = std::max(0.0, x * cube * (r.kurtosis / 4 - 44 * a * a / 3));
-  const double odd = a * cube * (16.5 * r.inverse + 121.5 * a * a);
+  const double odd = a * cube * (16.5 * r.inverse + 121.5 * a * a) * (1 + x * x / 24);
   return std::exp(std::min(even + odd + cube * cube * r.square / 3, 700.0));
 }
 
