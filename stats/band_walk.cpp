@@ -205,7 +205,7 @@ double BandWalk::exit(const std::vector<Range>& ranges, double negligible) const
         const double term = lost(x);
         left += term;
         largest = std::max(largest, term);
-        if (term <= negligible * largest || (!upwards && x == 0)) break;
+        if (term <= 1e-16 * largest || (!upwards && x == 0)) break;
       }
     };
     if (ranges[i].high < n_) sweep(ranges[i].high + 1, true);

@@ -35,8 +35,8 @@ class BandWalk {
   // The counts whose two tails both exceed e^log_tail, which must be below ln(1/2).
   Range inside(std::size_t point, double log_tail) const;
   std::vector<Range> inside(double log_tail) const;
-  // Probability that the walk ever leaves the ranges: a sum of positive terms, those below
-  // `negligible` times their largest left out.
+  // Probability that the walk ever leaves the ranges: a sum of positive terms. Steps less likely
+  // than `negligible` times the likeliest are left out.
   double exit(const std::vector<Range>& ranges, double negligible) const;
 
  private:

@@ -81,9 +81,11 @@ BandTest test_path(const BandWalk& walk, const std::vector<std::uint64_t>& count
   result.worst.z = static_cast<double>(worst);
   const double bonferroni = log_gamma + std::log(static_cast<double>(walk.points()));
   constexpr double deep = -460;  // ln 1e-200
-  result.test.log_p_upper =
-      log_gamma < deep ? bonferroni
-                       : std::min(bonferroni, std::log(walk.exit(walk.inside(log_tail), 1e-16)));
+  result.test.log_p_upper = bonferroni;
+  if (log_gamma >= deep) {
+    const double left = walk.exit(walk.inside(log_tail), 1e-16 * std::exp(log_gamma));
+    result.test.log_p_upper = std::min(bonferroni, std::log(left));
+  }
   result.test.log_p_upper = std::min(0.0, result.test.log_p_upper);
   return result;
 }
