@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace assay::stats {
+
+// Images as numbers: the element of column x, row y and channel c stands at
+// (y * width + x) * channels + c.
+struct ImageExtent {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t channels = 1;
+
+  std::size_t elements() const { return width * height * channels; }
+  friend bool operator==(const ImageExtent&, const ImageExtent&) = default;
+};
+
+// Replicates of one image: independent, of one law, each with extent.elements() finite values.
+template <class Real>
+struct ImageStack {
+  ImageExtent extent;
+  std::vector<std::span<const Real>> images;
+};
+
+// An image known exactly (standard_error empty) or with a standard error for each element.
+struct ImageReference {
+  ImageExtent extent;
+  std::span<const double> value;
+  std::span<const double> standard_error = {};
+};
+
+struct ElementRange {
+  std::size_t first = 0;
+  std::size_t last = std::numeric_limits<std::size_t>::max();  // one past the end
+};
+
+// What the methods on images need as a variance of its own: with fewer, Student's tails at the
+// level that thousands of elements demand reject nothing (15 degrees: |t| > 12 at 5e-9).
+inline constexpr std::size_t least_replicates = 16;
+
+namespace check {
+// Throw std::domain_error: empty extent, wrong sizes, fewer than least_replicates images (saying
+// why); reference_error: 0 without standard errors, throws when negative or not finite.
+template <class Real>
+void image_stack(const char* function, const ImageStack<Real>& stack);
+void image_reference(const char* function, const ImageReference& reference);
+double reference_error(const char* function, const ImageReference& reference, std::size_t element);
+void same_extent(const char* function, const ImageExtent& a, const ImageExtent& b);
+void replicates(const char* function, std::size_t count);
+}  // namespace check
+
+}  // namespace assay::stats

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "stats/image.h"
+
+namespace assay::stats {
+
+// Internal to image_pyramid: the two halves that replicates are dealt to, even and odd indices.
+inline constexpr std::size_t halves = 2;
+
+// Of one half: D = mean a - mean b, its squared error v, and the weight that the other half takes:
+// 1 / sqrt of the mean of v and of v smoothed over 3 x 3 elements of the channel, or zero where
+// that is zero. A single element's v is from few values and can be tiny by chance; its weight alone
+// would then carry the whole sum.
+struct Half {
+  std::vector<double> difference;
+  std::vector<double> variance;
+  std::vector<double> weight;
+};
+
+// A stack and what it is held against, a second stack or a reference: exactly one is not null.
+template <class Real>
+struct ImagePair {
+  const ImageStack<Real>& a;
+  const ImageStack<Real>* b = nullptr;
+  const ImageReference* reference = nullptr;
+};
+
+template <class Real>
+std::array<Half, halves> halves_of(const ImagePair<Real>& pair);
+
+}  // namespace assay::stats

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "stats/image.h"
+#include "stats/image_family.h"
+
+namespace assay::stats {
+
+// Are two images equal? Their difference is looked at on every scale at once: sums over cells from
+// one element to the whole image (image_windows.h), the whole image with alternating signs, and the
+// energy, a sum of squares over all elements. One family p-value covers all of it (image_family.h).
+
+// A map of z-values of known variance: under the null hypothesis independent and N(0, 1). A cell of
+// k tested elements has z = sum z / sqrt k; the energy sum z^2 is chi-square, its upper tail is
+// used. Exact. `untested` marks (non-zero) elements whose z is no random number, equal constants;
+// empty: all are tested. An infinite z is a certain difference.
+// Throws std::domain_error for wrong sizes and NaN.
+struct ZMap {
+  ImageExtent extent;
+  std::span<const double> z;
+  std::span<const unsigned char> untested = {};
+};
+ImageFamily image_pyramid(const ZMap& map);
+
+// Replicates of two images, or of one against a reference. Null hypothesis: E a = E b at every
+// element.
+//
+// Cells: the replicates are dealt to two halves; each half's variances, steadied by those of 3 x 3
+// neighbours, give the other half its weights w ~ 1 / sqrt(va + vb). A replicate's cell value is
+// its weighted sum, T the Welch statistic of (mean of a - mean of b), averaged over the halves,
+// from the variances of the cell values over replicates. Weights and values are independent, so the
+// numerator has mean zero for any law of the elements, and correlation between elements is in the
+// variance: adding up the elements' own z would be wrong for both (README.md has the rates). Single
+// elements: welch_z.
+//
+// Energy: with D = mean a - mean b of halves 0 and 1 and v the squared errors of D,
+//   u = w1^2 (D0^2 - v0) + w0^2 (D1^2 - v1) + 2 w0 w1 D0 D1,     E u = (bias (w0 + w1))^2
+// summed over elements and divided by sqrt(sum u^2): normal for many independent elements, upper
+// tail. It needs independent elements. For others (reconstruction filters, Metropolis chains,
+// shared points) give the p-value of a sign flip (image_sign_flip.h) as `energy_log_p`.
+//
+// Asymptotic: Welch's law, and for one stack against a reference no strongly skewed replicates at
+// the critical value of a single element (README.md, limits).
+// Throws std::domain_error as welch_z does, and for a positive energy_log_p.
+struct PyramidOptions {
+  std::optional<double> energy_log_p = {};
+};
+template <class Real>
+ImageFamily image_pyramid(const ImageStack<Real>& a, const ImageStack<Real>& b,
+                          const PyramidOptions& options = {});
+template <class Real>
+ImageFamily image_pyramid(const ImageStack<Real>& a, const ImageReference& b,
+                          const PyramidOptions& options = {});
+
+}  // namespace assay::stats

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "stats/image.h"
+#include "stats/test_result.h"
+
+namespace assay::stats {
+
+// The energy of the difference of two images whose elements are correlated. Null hypothesis: the
+// differences d_r = a_r - b_r of replicates (or a_r - reference) are independent and each as likely
+// as its negative, all elements together. Exactly so when a_r and b_r have one law; the test of
+// equal means alone is asymptotic. Correlation between elements is free: a whole image flips its
+// sign.
+//   Q(s) = sum over elements (sum_r s_r d_r)^2 / sum_r d_r^2,      s_r = +-1
+// The divisor studentises each element and does not change with the signs. Q is s' G s with the
+// matrix G below, so a flip costs replicates^2 operations whatever the size of the image.
+// p = share of sign vectors with Q(s) >= Q(observed). It cannot be below 2^(1 - replicates).
+class FlipMatrix {
+ public:
+  FlipMatrix(std::size_t replicates, std::vector<double> values)
+      : replicates_(replicates), values_(std::move(values)) {}
+
+  std::size_t replicates() const { return replicates_; }
+  double energy(const std::vector<double>& signs) const;
+
+ private:
+  std::size_t replicates_;
+  std::vector<double> values_;  // G_rs = sum over elements d_r d_s / sum_t d_t^2, row by row
+};
+
+// Throw std::domain_error as welch_z does, and for stacks of different counts.
+template <class Real>
+FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageStack<Real>& b);
+template <class Real>
+FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageReference& b);
+
+enum class FlipMethod { enumerated, monte_carlo };
+
+struct SignFlip {
+  double statistic = 0;     // Q(observed)
+  double log_p = 0;         // never below -(replicates - 1) ln 2, never of zero
+  std::uint64_t flips = 0;  // sign vectors looked at, beside the observed one
+  FlipMethod method = FlipMethod::enumerated;
+  Exactness exactness = Exactness::asymptotic;  // exact only for exchangeable a_r and b_r
+};
+
+// `share` is the level that the p-value will be held against.
+// Throw std::domain_error for fewer than 2 + log2(1 / share) replicates, where no image at all
+// could be rejected or hardly one. Enumeration takes up to 25 replicates; Monte Carlo needs flips
+// >= 2 / share - 1 and has p = (1 + #{Q(s) >= Q}) / (flips + 1).
+SignFlip sign_flip(const FlipMatrix& matrix, double share);
+
+struct FlipPlan {
+  double share = 0;
+  std::uint64_t flips = 0;
+};
+
+namespace detail {
+void check_flip_plan(const FlipMatrix& matrix, const FlipPlan& plan);
+double flip_threshold(const FlipMatrix& matrix);
+SignFlip flip_result(const FlipMatrix& matrix, const FlipPlan& plan, std::uint64_t reached);
+}  // namespace detail
+
+template <std::uniform_random_bit_generator Generator>
+SignFlip sign_flip(const FlipMatrix& matrix, const FlipPlan& plan, Generator& generator) {
+  detail::check_flip_plan(matrix, plan);
+  const double threshold = detail::flip_threshold(matrix);
+  constexpr auto middle = Generator::min() + (Generator::max() - Generator::min()) / 2;
+  std::vector<double> signs(matrix.replicates());
+  std::uint64_t reached = 0;
+  for (std::uint64_t i = 0; i < plan.flips; ++i) {
+    for (double& sign : signs) sign = generator() > middle ? 1 : -1;
+    reached += matrix.energy(signs) >= threshold;
+  }
+  return detail::flip_result(matrix, plan, reached);
+}
+
+}  // namespace assay::stats

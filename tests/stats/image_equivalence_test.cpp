@@ -1,0 +1,143 @@
+#include "stats/image_equivalence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+#include "stats/errors.h"
+#include "stats/tails.h"
+#include "tests/stats/calibration.h"
+#include "tests/stats/image_samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::calibrate;
+using tests::Calibration;
+using tests::draw_stack;
+using tests::OwnedStack;
+using tests::Philox;
+using tests::Shape;
+
+constexpr ImageExtent extent{12, 12, 1};
+constexpr double margin = 0.1;
+
+// Brightness 10 everywhere, a factor (1 + bias) brighter.
+OwnedStack image(Philox& random, double bias, double sd = 1) {
+  return draw_stack(extent, 32,
+                    [&](std::size_t) { return 10 * (1 + bias) + sd * random.normal(); });
+}
+
+// Where the noise of the means is as large as the bias, the jackknife's variance is too large (up
+// to twice, Efron & Stein): p-values crowd around one half, and only levels below it are judged.
+double below_half(double log_p) { return log_p < std::log(0.5) ? log_p : 0; }
+
+Calibration at_margin(std::uint32_t test_case, double sd, bool lower) {
+  return calibrate({test_case, 2000, Shape::at_most_uniform}, [&](Philox& random) {
+    const OwnedStack a = image(random, margin, sd);
+    const TestResult result = image_equivalence(a.view(), image(random, 0, sd).view(), margin);
+    return below_half(lower ? result.log_p_lower : result.log_p_upper);
+  });
+}
+
+// Every calibration raises a false alarm with probability 1e-5.
+TEST(ImageEquivalence, AtTheMarginItKeepsItsLevel) {
+  for (const double sd : {1.0, 8.0}) {
+    const Calibration calibration = at_margin(860, sd, true);
+    EXPECT_TRUE(calibration.ok) << sd << ": " << calibration.text();
+  }
+}
+
+TEST(ImageEquivalence, AtTheMarginTheOtherSideKeepsItsLevel) {
+  for (const double sd : {1.0, 8.0}) {
+    const Calibration calibration = at_margin(861, sd, false);
+    EXPECT_TRUE(calibration.ok) << sd << ": " << calibration.text();
+  }
+}
+
+// The mutant does not subtract the noise of the means.
+TEST(ImageEquivalence, ASquaredDifferenceThatKeepsTheNoiseIsCaught) {
+  const auto calibration = calibrate({861, 2000, Shape::at_most_uniform}, [](Philox& random) {
+    const OwnedStack a = image(random, margin, 8);
+    const OwnedStack b = image(random, 0, 8);
+    const SquaredBias bias = squared_bias(a.view(), b.view());
+    const double noise = 2 * 64.0 / 32 * static_cast<double>(extent.elements());
+    const double norm = 100 * static_cast<double>(extent.elements());
+    const double t = (bias.estimate + noise - margin * margin * norm) / bias.standard_error;
+    return below_half(student_t_tails(t, bias.degrees).upper);
+  });
+  EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+// The mutant takes the variance of the leave-one-out values for that of the estimate.
+TEST(ImageEquivalence, AJackknifeWithoutItsFactorIsCaught) {
+  const auto calibration = calibrate({862, 2000, Shape::at_most_uniform}, [](Philox& random) {
+    const OwnedStack a = image(random, margin, 8);
+    const TestResult result = image_equivalence(a.view(), image(random, 0, 8).view(), margin);
+    return below_half(student_t_tails(result.statistic * std::sqrt(31.0), 31).lower);
+  });
+  EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+TEST(ImageEquivalence, TheSquaredBiasIsUnbiased) {
+  Philox random(863);
+  for (const double bias : {0.0, 0.05}) {
+    double sum = 0;
+    double squares = 0;
+    constexpr int repetitions = 400;
+    for (int i = 0; i < repetitions; ++i) {
+      const OwnedStack a = image(random, bias, 4);
+      const double u = squared_bias(a.view(), image(random, 0, 2).view()).estimate;
+      sum += u / repetitions;
+      squares += u * u / repetitions;
+    }
+    const double truth = 100 * bias * bias * static_cast<double>(extent.elements());
+    const double error = std::sqrt((squares - sum * sum) / repetitions);
+    EXPECT_LT(std::abs(sum - truth), 4.5 * error) << bias;  // false alarm below 1e-5
+  }
+}
+
+TEST(ImageEquivalence, IntervalsCoverTheSquaredBias) {
+  Philox random(864);
+  int missed = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const OwnedStack a = image(random, i % 2 == 0 ? 0 : 0.02, 4);
+    const SquaredBias bias = squared_bias(a.view(), image(random, 0, 4).view());
+    const Interval interval = squared_bias_interval(bias, 0.99);
+    const double truth = i % 2 == 0 ? 0 : 0.04 * static_cast<double>(extent.elements());
+    missed += truth < interval.low || truth > interval.high;
+  }
+  EXPECT_LE(missed, 25);  // P(Binomial(1000, .01) > 25) = 1e-5
+}
+
+TEST(ImageEquivalence, EqualImagesAreEquivalentAndADifferentOneIsNot) {
+  Philox random(865);
+  const OwnedStack a = image(random, 0);
+  const OwnedStack b = image(random, 0);
+  const OwnedStack c = image(random, 0.2);
+  EXPECT_LT(image_equivalence(a.view(), b.view(), margin).log_p_lower, std::log(1e-6));
+  EXPECT_GT(image_equivalence(c.view(), b.view(), margin).log_p_lower, std::log(0.99));
+  const std::vector<double> truth(extent.elements(), 10);
+  const ImageReference reference{extent, truth};
+  EXPECT_LT(image_equivalence(a.view(), reference, margin).log_p_lower, std::log(1e-6));
+  EXPECT_NEAR(relative_bias(c.view(), reference, 1e-3).estimate, 0.04, 0.002);
+  EXPECT_NEAR(squared_bias(c.view(), reference).estimate, 4 * 144, 30);
+}
+
+TEST(ImageEquivalence, BadArgumentsAreRefused) {
+  Philox random(866);
+  const OwnedStack a = image(random, 0);
+  const OwnedStack still = draw_stack(extent, 16, [](std::size_t) { return 1; });
+  EXPECT_THROW(image_equivalence(a.view(), a.view(), 0), std::domain_error);
+  EXPECT_THROW(relative_bias(a.view(), a.view(), 0), std::domain_error);
+  EXPECT_THROW(image_equivalence(still.view(), still.view(), margin), ZeroVariance);
+  EXPECT_THROW(squared_bias_interval({1, 1, 15}, 1), std::domain_error);
+  OwnedStack few = a;
+  few.images.resize(15);
+  EXPECT_THROW(squared_bias(a.view(), few.view()), std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats
