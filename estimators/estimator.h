@@ -69,6 +69,10 @@ class Setup {
   virtual std::vector<NamedSampler> samplers() const { return {}; }
   /// The most secondary estimates there are (recorded data), if bounded.
   virtual std::optional<std::uint64_t> observations() const { return {}; }
+  /// The file that ready-made observations are read from: two set-ups of one file share its rows.
+  virtual std::string data_file() const { return {}; }
+  /// The stream that ready-made observations were drawn from, where they say so.
+  virtual std::optional<StreamKey> data_stream() const { return {}; }
   /// What making the set-up cost.
   virtual Cost cost() const { return {}; }
 };

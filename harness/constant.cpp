@@ -69,7 +69,7 @@ Difference from_other(const Question& question, std::size_t channel,
   return {.value = one.value - reference,
           .below = one.below + factor * (same_sign ? two.above : two.below),
           .above = one.above + factor * (same_sign ? two.below : two.above),
-          .scale = is_relative(question, channel) ? std::abs(reference) : 1};
+          .scale = is_relative(question, channel) && reference != 0 ? std::abs(reference) : 1};
 }
 
 Difference difference_of(const Question& question, std::size_t channel,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/equivalence.h"
+
 namespace assay::harness {
 namespace {
 
@@ -25,7 +27,7 @@ double log_p_between(const Evidence& evidence, double margin) {
 /// p of "abs(theta) >= margin": two one-sided tests, each at the full level.
 double log_p_outside(const Evidence& evidence, double margin) {
   if (evidence.distance) return log_p_at_least(evidence, margin);
-  return std::max(log_p_at_least(evidence, margin), log_p_at_most(evidence, -margin));
+  return stats::equivalence(evidence.at(-margin), evidence.at(margin)).log_p;
 }
 
 }  // namespace

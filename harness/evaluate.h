@@ -16,13 +16,9 @@ struct TestWork {
   std::vector<std::shared_ptr<Pool>> pools = {};
 };
 
-/// Numbers, gates and the verdict on the test's fixed share.
-void evaluate(TestWork& work);
-
-/// Holm over the tests of one suite inside the family: fills in adjusted p-values and turns a pass
-/// or inconclusive into a fail where Holm rejects what the fixed share did not. Invalid and error
-/// enter as 1.
-void apply_holm(std::vector<TestWork*>& suite, double alpha);
+/// Numbers, gates and the verdict on the test's fixed share at the current look, once its
+/// observations are drawn; `decided` is set where no further look can or need change it.
+void take_look(TestWork& work);
 
 /// The data a channel of the test is judged by.
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "harness/inversion.h"
 #include "harness/law_cdf.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_fit.h"
@@ -44,6 +46,14 @@ Evidence mean_against_number(const Question& question, std::size_t channel, cons
             .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
   };
   const auto interval = [=](double confidence) {
+    // Theta scales the reference's own error too: the interval is what `at` does not reject.
+    if (relative && reference.standard_error > 0) {
+      return interval_by_inversion(
+          at,
+          {.estimate = (x.mean - reference.value) / unit,
+           .step = std::hypot(x.standard_error(), reference.standard_error) / unit},
+          confidence);
+    }
     return map_ends(
         stats::student_t_interval(x, {reference.value, reference.standard_error}, confidence),
         [=](double d) { return d / unit; });
@@ -54,6 +64,12 @@ Evidence mean_against_number(const Question& question, std::size_t channel, cons
           .quantity =
               relative ? "relative difference from the reference" : "difference from the reference",
           .relative = relative};
+}
+
+/// Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
+double log_p_of_no_sign(const Moments& y) {
+  if (y.m2 == 0) return y.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();
+  return stats::log_p_two_sided(stats::student_t(y, {.value = 0}));
 }
 
 /// theta = (E x - c E y) / |c E y|, tested as a contrast, or E x - c E y.
@@ -78,7 +94,14 @@ Evidence mean_against_mean(const Question& question, std::size_t channel, const 
   }
   const double sign = std::copysign(1, other);
   const auto at = [=](double theta) {
-    return stats::welch_t(x, y, {.scale = factor * (1 + sign * theta), .offset = 0});
+    stats::TestResult result =
+        stats::welch_t(x, y, {.scale = factor * (1 + sign * theta), .offset = 0});
+    if (theta == 0) return result;
+    // Which contrast a relative margin is depends on the sign of E y, which y must show as well.
+    const double log_p_sign = log_p_of_no_sign(y);
+    result.log_p_lower = std::max(result.log_p_lower, log_p_sign);
+    result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
+    return result;
   };
   const auto interval = [=](double confidence) {
     return map_ends(stats::welch_ratio_interval(x, y, confidence),

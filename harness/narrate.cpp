@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reports/number.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
@@ -13,10 +14,7 @@ namespace {
 using reports::Verdict;
 
 std::string p_text(double log_p) {
-  const double exponent = log_p / std::log(10.0);
-  if (exponent > -4) return fmt::format("p = {:.2g}", std::exp(log_p));
-  const double whole = std::floor(exponent);
-  return fmt::format("p = {:.1f}e{:.0f}", std::pow(10, exponent - whole), whole);
+  return "p = " + reports::p_text(std::exp(log_p), log_p / std::log(10.0));
 }
 
 /// "0.31 %" without a sign; a ratio as the factor it is.
@@ -28,8 +26,9 @@ std::string size_text(double theta, const Evidence& evidence) {
 
 std::string interval_text(const ChannelOutcome& channel, double confidence) {
   const stats::Interval interval = channel.evidence.interval(confidence);
-  return fmt::format("[{}, {}]", show_theta(interval.low, channel.evidence),
-                     show_theta(interval.high, channel.evidence));
+  return fmt::format("[{}, {}] at {}", show_theta(interval.low, channel.evidence),
+                     show_theta(interval.high, channel.evidence),
+                     reports::confidence_text(confidence));
 }
 
 std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -45,8 +44,8 @@ const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
 
 /// The largest effect in the claim's forbidden direction that is not excluded at beta.
 double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const stats::Interval interval = channel.evidence.interval(1 - 2 * outcome.place.share.beta);
-  switch (outcome.plan.regions[0].relation) {
+  const stats::Interval interval = channel.evidence.interval(1 - 2 * outcome.share().beta);
+  switch (channel.regions.relation) {
     case Relation::at_most:
     case Relation::less:
       return interval.high;
@@ -61,30 +60,39 @@ double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel
 }
 
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  if (!outcome.plan.regions[0].has_forbidden()) {
+  if (!channel.regions.has_forbidden()) {
     std::string text = "no evidence against the claim";
     if (channel.detectable) {
-      text += fmt::format("; {} or more would have been found with probability {:g}",
-                          size_text(*channel.detectable, channel.evidence),
-                          1 - outcome.place.share.beta);
+      text +=
+          fmt::format("; {} or more would have been found with probability {:g}",
+                      size_text(*channel.detectable, channel.evidence), 1 - outcome.share().beta);
     }
     return text;
   }
-  return fmt::format("no evidence against the claim; {} or more is excluded",
-                     size_text(excluded_beyond(outcome, channel), channel.evidence));
+  const double excluded = excluded_beyond(outcome, channel);
+  const std::string confidence = reports::confidence_text(1 - outcome.share().beta);
+  const bool one_sided = !channel.regions.two_sided();
+  const double towards = channel.regions.relation == Relation::at_least ? -excluded : excluded;
+  if (one_sided && towards <= 0) {
+    return fmt::format(
+        "no evidence against the claim, which holds with {} to spare at {} confidence",
+        size_text(excluded, channel.evidence), confidence);
+  }
+  return fmt::format("no evidence against the claim; {} or more is excluded at {} confidence",
+                     size_text(excluded, channel.evidence), confidence);
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return fmt::format("shown: {} is {} {} ({})", channel.evidence.quantity,
                      show_theta(channel.evidence.estimate, channel.evidence),
-                     interval_text(channel, 1 - 2 * outcome.place.share.beta),
+                     interval_text(channel, 1 - 2 * outcome.share().beta),
                      p_text(channel.decision.log_p_forbidden) + " against the contrary");
 }
 
 std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return fmt::format("{} is {} {}{}, {}", channel.evidence.quantity,
                      show_theta(channel.evidence.estimate, channel.evidence),
-                     interval_text(channel, 1 - outcome.place.share.alpha),
+                     interval_text(channel, channel.effect.confidence),
                      in_channel(outcome, channel), p_text(channel.decision.log_p_claimed));
 }
 
@@ -122,10 +130,10 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
 
 /// n grows with the square of how much narrower the interval must become.
 std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const double beta = outcome.place.share.beta;
+  const double beta = outcome.share().beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
   const double half = (interval.high - interval.low) / 2;
-  const double room = distance_to_forbidden(outcome.plan.regions[0], channel.evidence.estimate);
+  const double room = distance_to_forbidden(channel.regions, channel.evidence.estimate);
   if (!(half > 0) || !std::isfinite(half) || !(room > 0)) {
     return "the estimate lies where the claim must not pass, yet not clearly so";
   }
@@ -140,13 +148,13 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   }
   const double factor = std::max(0.0, sampled) / wanted;
   return fmt::format("about {:.2g} secondaries would decide if the estimate stands",
-                     std::max(1.1, factor) * static_cast<double>(outcome.plan.secondaries));
+                     std::max(1.1, factor) * static_cast<double>(outcome.secondaries()));
 }
 
 std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return fmt::format("{} is {} {}{}: neither shown nor refuted; {}", channel.evidence.quantity,
                      show_theta(channel.evidence.estimate, channel.evidence),
-                     interval_text(channel, 1 - 2 * outcome.place.share.beta),
+                     interval_text(channel, 1 - 2 * outcome.share().beta),
                      in_channel(outcome, channel), what_would_decide(outcome, channel));
 }
 
@@ -172,8 +180,7 @@ std::string narrate(const TestOutcome& outcome) {
       return "";
   }
   const ChannelOutcome& least = least_excluded(outcome);
-  return outcome.plan.regions[0].proof() ? passed_proof(outcome, least)
-                                         : passed_alarm(outcome, least);
+  return least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least);
 }
 
 }  // namespace assay::harness

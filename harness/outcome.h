@@ -11,6 +11,7 @@
 #include "harness/method.h"
 #include "harness/question.h"
 #include "reports/record.h"
+#include "stats/looks.h"
 #include "stats/test_result.h"
 
 namespace assay::harness {
@@ -18,34 +19,56 @@ namespace assay::harness {
 /// How a test will be made: frozen before its own data are drawn.
 struct Plan {
   Method method;
-  std::vector<std::uint64_t> primaries;  ///< of each subject
-  std::uint64_t secondaries = 0;         ///< of each subject
-  std::vector<Regions> regions;          ///< of each channel
-  std::vector<reports::Gate> gates = {};
-  std::optional<double> power = {};  ///< at `detect`, with the spread that was found
-  std::string invalid = "";          ///< why no method is valid, if none is
+  std::vector<std::uint64_t> primaries = {};  ///< of each subject
+  stats::LookSchedule looks = {};             ///< sizes are secondaries of each subject
+  std::vector<Regions> regions = {};          ///< of each channel
+  std::vector<reports::Gate> gates = {};      ///< of the pilot
+  std::string invalid = "";                   ///< why no method is valid, if none is
+
+  std::uint64_t most_secondaries() const { return looks.sizes.back(); }
 };
 
 /// One channel's numbers.
 struct ChannelOutcome {
+  std::size_t index = 0;  ///< in the question
   std::string name;
+  Regions regions = {};
   stats::TestResult at_null;  ///< statistic and distribution at the null value
   Evidence evidence;
-  ChannelDecision decision;
+  ChannelDecision decision = {};  ///< over the looks taken
   double log_p_adjusted = 0;
   reports::Effect effect = {};
   std::optional<double> detectable = {};  ///< least theta found with probability 1 - beta
   std::optional<double> reference = {};   ///< a number to mark among the observations
 };
 
-/// A test from claim to verdict.
+/// Natural logarithms of the p-values of one channel at the looks taken, each as of a single look;
+/// 0 where a gate was red and the look counts for nothing.
+struct ChannelHistory {
+  std::vector<double> log_p_claimed = {};
+  std::vector<double> log_p_forbidden = {};
+};
+
+/// A test from claim to verdict. Everything but `history` is as of the last look.
 struct TestOutcome {
   Question question;
   FamilyPlace place;
   Plan plan;
-  std::vector<ChannelOutcome> channels = {};
+  std::size_t look = 0;  ///< which of the plan's looks is taken next, or was taken last
+  bool decided = false;  ///< no further look will be taken
+  std::vector<ChannelHistory> history = {};
+  std::vector<ChannelOutcome> channels = {};  ///< the worst first
+  std::vector<reports::Gate> gates = {};      ///< of the test's own data
+  std::optional<double> power = {};           ///< at `detect`, with the spread that was found
   reports::Verdict verdict = reports::Verdict::skipped;
   std::string message = "";
+
+  std::uint64_t secondaries() const { return plan.looks.sizes[look]; }
+  double weight() const { return plan.looks.weights[look]; }
+  /// What one channel may spend at this look.
+  ErrorShare share() const {
+    return {.alpha = place.share.alpha * weight(), .beta = place.share.beta * weight()};
+  }
 };
 
 }  // namespace assay::harness

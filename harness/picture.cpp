@@ -34,7 +34,7 @@ const char* bias_name(BiasClass bias) {
 }
 
 const Summary& summary_of(const Picture& picture) {
-  return picture.pool->prefix(picture.pool->requested());
+  return picture.pool->prefix(picture.pool->largest_prefix());
 }
 
 double per_primary(const Picture& picture) {
@@ -70,7 +70,7 @@ reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
                                 .original = information.original,
                                 .defect = information.defect,
                                 .primaries = picture.pool->primaries(),
-                                .secondaries = picture.pool->requested(),
+                                .secondaries = picture.pool->largest_prefix(),
                                 .confidence = confidence};
   if (!picture.pool->trouble().empty()) return row;
   const Summary& summary = summary_of(picture);

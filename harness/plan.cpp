@@ -6,7 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
+#include "harness/assumptions.h"
 #include "harness/constant.h"
 #include "harness/sample_size.h"
 #include "stats/assumption_gates.h"
@@ -23,15 +25,14 @@ constexpr std::uint64_t most_primaries = 4096;
 // log-variance keeps its level up to here at 1000 observations and more (an exponential has 6).
 constexpr double log_variance_kurtosis = 6;
 constexpr std::uint64_t log_variance_secondaries = 1000;
-
-bool about_variance(const Question& question) {
-  return question.kind == QuestionKind::variance_of_one ||
-         question.kind == QuestionKind::variance_of_two;
-}
-
-bool about_mean(const Question& question) {
-  return question.kind == QuestionKind::mean_of_one || question.kind == QuestionKind::mean_of_two;
-}
+// Fewer say nothing about their own shape.
+constexpr std::uint64_t first_look = 100;
+// Half a day at 40 ns a primary.
+constexpr double most_planned_primaries = 1e12;
+// Each look doubles the sample. Ten cost a tenth to a third more at the last look (README.md) and
+// let a test end after 1/512 of it.
+constexpr double look_growth = 2;
+constexpr std::size_t most_looks = 10;
 
 bool chooses_primaries(const Subject& subject) {
   return subject.averages && subject.purpose.empty() && !subject.estimator->primaries;
@@ -73,19 +74,11 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
     const stats::PlannedTest test{
         .secondaries = question.test->secondaries.value_or(classical_secondaries),
         .critical_value = x};
-    wanted = std::max(wanted, about_variance(question)
+    wanted = std::max(wanted, question.of_variances()
                                   ? stats::primaries_for_variance(shape, shape_limits(x))
                                   : stats::primaries_for_mean(shape, test));
   }
   return wanted;
-}
-
-reports::Gate gate_of(const stats::Gate& gate, const std::string& where) {
-  constexpr const char* states[] = {"green", "amber", "red"};
-  return {.name = gate.name + where,
-          .value = gate.value,
-          .limit = gate.limit,
-          .state = states[static_cast<int>(gate.state)]};
 }
 
 std::string pilot_label(const Question& question, std::size_t subject, std::size_t channel) {
@@ -163,45 +156,84 @@ void add_skewness_gates(const Question& question, const FamilyPlace& place, cons
   each_pilot(question, pilots, [&](std::size_t subject, std::size_t channel, const auto& pilot) {
     const std::uint64_t averaged =
         question.subjects[subject].averages ? plan.primaries[subject] : 1;
-    const stats::Gate gate =
-        stats::predicted_skewness_gate(stats::primary_shape(pilot), averaged,
-                                       {.secondaries = plan.secondaries, .critical_value = x});
+    const stats::Gate gate = stats::predicted_skewness_gate(
+        stats::primary_shape(pilot), averaged,
+        {.secondaries = plan.most_secondaries(), .critical_value = x});
     plan.gates.push_back(gate_of(gate, pilot_label(question, subject, channel)));
   });
 }
 
-/// The most observations a bounded source has.
-std::uint64_t available(const Question& question) {
-  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+/// The most secondaries there are, or that a budget in primaries pays for, all subjects together.
+std::uint64_t most_available(const Question& question, const Plan& plan) {
+  std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
   for (const Subject& subject : question.subjects) {
-    least = std::min(least, subject.setup->observations().value_or(least));
+    most = std::min(most, subject.setup->observations().value_or(most));
   }
-  return least;
-}
-
-std::uint64_t choose_secondaries(const Question& question, const FamilyPlace& place,
-                                 const Pilots& pilots, Plan& plan) {
-  const std::uint64_t most = available(question);
-  if (question.test->secondaries) return *question.test->secondaries;
-  if (most < std::numeric_limits<std::uint64_t>::max()) return most;
-  std::uint64_t count =
-      planned_secondaries(question, place.share, pilots, plan).value_or(classical_secondaries);
-  if (about_mean(question) && !question.test->method) {
-    // Up to as many again as the pilot's cap on primaries would cost; beyond, the gate says so.
-    count = std::max(count, std::min(skewness_secondaries(question, place, pilots, plan),
-                                     64 * std::max(count, classical_secondaries)));
-  }
-  if (plan.method.name == "log-variance") count = std::max(count, log_variance_secondaries);
-  return count;
-}
-
-/// The most observations that a budget in primaries pays for, all subjects together.
-std::uint64_t within_budget(const Question& question, const Plan& plan, std::uint64_t count) {
   const std::optional<Budget>& budget = question.test->budget;
-  if (!budget || !budget->primaries) return count;
+  if (!budget || !budget->primaries) return most;
   const std::uint64_t each =
       std::accumulate(plan.primaries.begin(), plan.primaries.end(), std::uint64_t{0});
-  return std::clamp<std::uint64_t>(*budget->primaries / each, 2, count);
+  return std::min(most, std::max<std::uint64_t>(2, *budget->primaries / each));
+}
+
+/// The fewest secondaries of which a test by this method means anything.
+std::uint64_t least_secondaries(const Question& question, const FamilyPlace& place,
+                                const Pilots& pilots, const Plan& plan) {
+  if (plan.method.name == "log-variance") return log_variance_secondaries;
+  if (!question.of_means() || question.test->method) return first_look;
+  // Up to as many as the pilot's cap on primaries would cost; beyond, the gate says so.
+  return std::clamp(skewness_secondaries(question, place, pilots, plan), first_look,
+                    64 * classical_secondaries);
+}
+
+/// Stops before hours are spent on what was hardly meant.
+void require_possible(const Question& question, const Plan& plan, std::uint64_t secondaries) {
+  const Location& where = question.test->where;
+  if (secondaries >= impossible_secondaries) {
+    throw InputError(where,
+                     "no number of observations would decide this claim: the reference's own "
+                     "standard error is too large for the margin; give a larger margin or a "
+                     "better reference");
+  }
+  const double total = static_cast<double>(secondaries) *
+                       static_cast<double>(std::accumulate(plan.primaries.begin(),
+                                                           plan.primaries.end(), std::uint64_t{0}));
+  if (total <= most_planned_primaries) return;
+  throw InputError(where, fmt::format("this claim would take about {:.1e} primaries; give a larger "
+                                      "margin, or a `budget` to spend on it all the same",
+                                      total));
+}
+
+stats::LookSchedule one_look(std::uint64_t secondaries) { return {{secondaries}, {1}}; }
+
+bool is_bounded(const Question& question) {
+  return std::any_of(question.subjects.begin(), question.subjects.end(),
+                     [](const Subject& s) { return s.setup->observations().has_value(); });
+}
+
+/// Looks that double from the fewest that mean anything up to what `detect` needs at the last
+/// look's share of the errors. One look where nothing asks for a number or the number is given: all
+/// rows of a file, `secondaries`, the classical 1000.
+stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
+                               const Pilots& pilots, const Plan& plan) {
+  const std::uint64_t most = most_available(question, plan);
+  if (question.test->secondaries) return one_look(std::min(*question.test->secondaries, most));
+  if (is_bounded(question)) return one_look(most);
+  const std::uint64_t first = least_secondaries(question, place, pilots, plan);
+  const std::optional<std::uint64_t> alone =
+      planned_secondaries(question, place.share, pilots, plan);
+  if (!alone) return one_look(std::min(std::max(first, classical_secondaries), most));
+  if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
+  if (*alone <= first) return one_look(std::min(first, most));
+  const std::size_t count =
+      std::min<std::size_t>(most_looks, 1 + std::bit_width((*alone - 1) / first));
+  const double weight = 1 / static_cast<double>(count);
+  const ErrorShare share{.alpha = place.share.alpha * weight, .beta = place.share.beta * weight};
+  const std::uint64_t last =
+      std::min(most, planned_secondaries(question, share, pilots, plan).value_or(*alone));
+  if (last <= first) return one_look(last);
+  return stats::geometric_looks({.first = std::max(first, (last >> (count - 1)) + 1), .last = last},
+                                look_growth);
 }
 
 std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen) {
@@ -237,7 +269,7 @@ Primaries choose_primaries(const std::vector<Question>& questions,
   Primaries chosen;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Question& question = questions[i];
-    if (!about_mean(question) && !about_variance(question)) continue;
+    if (!question.of_means() && !question.of_variances()) continue;
     for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
       const Subject& side = question.subjects[subject];
       if (!chooses_primaries(side) || !has_pilot(side, pilots)) continue;
@@ -255,17 +287,20 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
   const TestEntry& test = *question.test;
   Plan plan{
       .method = test.method ? find_method(question, *test.method) : methods_for(question).front(),
-      .primaries = {},
       .regions = regions_of(question)};
-  const bool laws = !about_mean(question) && !about_variance(question);
+  const bool laws = !question.of_means() && !question.of_variances();
   for (const Subject& subject : question.subjects) {
     const bool single = laws && !subject.estimator->primaries;
     plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
   }
-  if (about_variance(question)) choose_variance_method(question, place, pilots, plan);
-  plan.secondaries =
-      within_budget(question, plan, choose_secondaries(question, place, pilots, plan));
-  if (about_mean(question)) add_skewness_gates(question, place, pilots, plan);
+  if (question.of_variances()) choose_variance_method(question, place, pilots, plan);
+  try {
+    plan.looks = plan_looks(question, place, pilots, plan);
+  } catch (const std::domain_error& error) {
+    plan.looks = one_look(first_look);
+    plan.invalid = error.what();
+  }
+  if (question.of_means()) add_skewness_gates(question, place, pilots, plan);
   return plan;
 }
 

@@ -41,7 +41,22 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
           std::bit_floor(std::clamp(primaries_per_block / primaries, least_block, most_block))),
       plan_(setup_->channels().size()) {}
 
+void Pool::mark(std::uint64_t count) {
+  const bool known = !prefixes_.try_emplace(count).second;
+  if (!known && count <= drawn()) throw std::logic_error("a prefix was marked after it was drawn");
+}
+
+void Pool::request(std::uint64_t count) {
+  mark(count);
+  requested_ = std::max(requested_, count);
+}
+
 const Summary& Pool::prefix(std::uint64_t count) const { return prefixes_.at(count); }
+
+std::uint64_t Pool::largest_prefix() const {
+  const auto beyond = prefixes_.upper_bound(drawn());
+  return beyond == prefixes_.begin() ? 0 : std::prev(beyond)->first;
+}
 
 std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
   const std::vector<double>& kept = values_.at(channel);

@@ -40,13 +40,19 @@ class Pool {
   void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
   std::vector<ChannelPlan>& plan() { return plan_; }
 
-  /// A test will read observations [0, count).
-  void request(std::uint64_t count) { prefixes_.try_emplace(count); }
+  /// Observations [0, count) may be read as a prefix. std::logic_error once they are drawn.
+  void mark(std::uint64_t count);
+  /// Marks `count` and asks for everything up to it to be drawn next.
+  void request(std::uint64_t count);
+  bool is_marked() const { return !prefixes_.empty(); }
+  std::uint64_t most_marked() const { return is_marked() ? prefixes_.rbegin()->first : 0; }
   /// The most that is requested.
-  std::uint64_t requested() const { return prefixes_.empty() ? 0 : prefixes_.rbegin()->first; }
+  std::uint64_t requested() const { return requested_; }
 
-  /// The summary of the first `count` observations, once drawn; `count` as requested.
+  /// The summary of the first `count` observations, once drawn; `count` as marked.
   const Summary& prefix(std::uint64_t count) const;
+  /// The largest marked count that is drawn; 0 where none is.
+  std::uint64_t largest_prefix() const;
   /// The first values of a channel, at most `count` and as many as were to be kept.
   std::span<const double> values(std::size_t channel, std::uint64_t count) const;
   /// Why drawing ended early: an estimator threw. Empty when it did not.
@@ -60,7 +66,7 @@ class Pool {
   /// requested: a later look then continues as if it had been one run.
   std::uint64_t block_end(std::uint64_t first) const;
 
-  /// A drawn block, and copies of it at the requested counts that lie inside.
+  /// A drawn block, and copies of it at the marked counts that lie inside.
   struct Block {
     Summary whole;
     std::vector<std::vector<double>> values;  ///< of each channel, where they are kept
@@ -80,6 +86,7 @@ class Pool {
   std::uint64_t block_size_;
   std::vector<ChannelPlan> plan_;
   std::map<std::uint64_t, Summary> prefixes_;
+  std::uint64_t requested_ = 0;
   Summary running_;
   std::vector<std::vector<double>> values_;
   bool started_ = false;

@@ -84,8 +84,12 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
 std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t seed,
                                           const Pilots& pilots) {
   const StreamKey key = key_of(wanted.estimator, seed, wanted.copy, wanted.purpose);
-  const Identity identity{wanted.estimator.entry->information.name, wanted.estimator.parameters,
-                          wanted.purpose, key.bits, wanted.primaries};
+  const Identity identity{wanted.estimator.entry->information.name,
+                          wanted.estimator.parameters,
+                          wanted.estimator.folder,
+                          wanted.purpose,
+                          key.bits,
+                          wanted.primaries};
   std::shared_ptr<Pool>& pool = pools_[identity];
   if (pool) return pool;
   pool = std::make_shared<Pool>(wanted.setup, key, wanted.primaries);
@@ -109,10 +113,10 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
   if (plan.method.keeps == Keeps::values) {
     for (const std::size_t channel : side.channels) {
       std::uint64_t& keep = pool->plan()[channel].keep;
-      keep = std::max(keep, plan.secondaries);
+      keep = std::max(keep, plan.most_secondaries());
     }
   }
-  pool->request(plan.secondaries);
+  for (const std::uint64_t size : plan.looks.sizes) pool->mark(size);
   return pool;
 }
 

@@ -38,7 +38,8 @@ class Pools {
   std::shared_ptr<Pool> find_or_make(const Wanted& wanted, std::uint64_t seed,
                                      const Pilots& pilots);
 
-  using Identity = std::tuple<std::string, std::string, std::string, std::uint64_t, std::uint64_t>;
+  using Identity =
+      std::tuple<std::string, std::string, std::string, std::string, std::uint64_t, std::uint64_t>;
   std::map<Identity, std::shared_ptr<Pool>> pools_;
   std::vector<std::shared_ptr<Pool>> all_;
 };

@@ -1,5 +1,9 @@
 #include "harness/prepare.h"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+
 #include "estimators/catalogue.h"
 
 namespace assay::harness {
@@ -37,11 +41,17 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
                              .entry = &plugin,
                              .setup = set_up(plugin, parameters),
                              .parameters = parameters.canonical(),
+                             .folder = std::filesystem::weakly_canonical(folder).string(),
                              .key_plugin = entry.plugin,
                              .key_parameters = parameters.canonical(),
                              .primaries = entry.primaries,
                              .original = nullptr,
                              .where = entry.where};
+  if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
+    throw InputError(
+        entry.where,
+        fmt::format("`{}` has its observations ready made: leave `primaries` out", entry.plugin));
+  }
   if (!plugin.information.original.empty()) {
     const Entry& original = find_plugin(plugin.information.original, entry.where);
     const std::vector<std::string> names = parameter_names(original.information);

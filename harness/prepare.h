@@ -18,6 +18,7 @@ struct PreparedEstimator {
   const Entry* entry;
   std::shared_ptr<const Setup> setup;
   std::string parameters;  ///< canonical, as recorded
+  std::string folder;      ///< what file names in them are relative to
   std::string key_plugin;  ///< whose streams are used: a mutant's are its original's
   std::string key_parameters;
   std::optional<std::uint64_t> primaries;  ///< as the suite says; nullopt: auto

@@ -167,12 +167,35 @@ void require_pairs(const Question& question, const Claim& claim) {
                                first, second, claim.left.source.estimator));
 }
 
-/// Sources of one key would draw the same numbers: the second gets a copy of its own.
-void separate_streams(Question& question) {
+/// Rows of one file belong together: two columns of it are no independent samples.
+void require_different_data(const Question& question, const Claim& claim) {
+  const std::string first = question.subjects[0].setup->data_file();
+  if (first.empty() || first != question.subjects[1].setup->data_file()) return;
+  throw InputError(claim.left.where,
+                   fmt::format("both sides are read from `{}`: its rows belong together and are no "
+                               "independent samples; record the difference as a column of its own "
+                               "and claim that its mean is 0",
+                               first));
+}
+
+/// The stream that a subject's observations are or were drawn from.
+StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
+  return subject.setup->data_stream().value_or(
+      key_of(*subject.estimator, seed, subject.copy, subject.purpose));
+}
+
+/// Sources of one key would draw the same numbers: one of them, the second if it is drawn at all,
+/// gets a copy of its own.
+void separate_streams(Question& question, const Claim& claim, std::uint64_t seed) {
   Subject& first = question.subjects[0];
   Subject& second = question.subjects[1];
-  const auto key = [](const Subject& s) { return key_of(*s.estimator, 0, 0, s.purpose); };
-  if (key(first) == key(second)) second.copy = 1;
+  if (!(stream_of(first, seed) == stream_of(second, seed))) return;
+  if (first.setup->data_stream() && second.setup->data_stream()) {
+    throw InputError(claim.left.where,
+                     "both files say that they were drawn from the same stream: they are not "
+                     "independent; draw one of them with another `--seed`");
+  }
+  (second.setup->data_stream() ? first : second).copy = 1;
 }
 
 Question about_moments(const TestEntry& test, const Estimators& estimators) {
@@ -245,9 +268,6 @@ void check_margins(const Question& question) {
 /// What the suite asks of a test that cannot be had from these sources.
 void check_sizes(const Question& question) {
   const TestEntry& test = *question.test;
-  if (test.budget && test.budget->seconds) {
-    throw InputError(test.where, "this version has no budgets in seconds; give one in primaries");
-  }
   for (const Subject& subject : question.subjects) {
     const auto rows = subject.setup->observations();
     if (rows && test.secondaries && *test.secondaries > *rows) {
@@ -264,7 +284,7 @@ std::string Question::channel_name(std::size_t channel) const {
   return subjects[0].setup->channels()[subjects[0].channels[channel]].name;
 }
 
-Question ask(const TestEntry& test, const Estimators& estimators) {
+Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
   const QuantityName name = test.claim.left.name;
   if (test.claim.left.slope || (name != QuantityName::mean && name != QuantityName::variance &&
                                 name != QuantityName::distribution)) {
@@ -277,7 +297,8 @@ Question ask(const TestEntry& test, const Estimators& estimators) {
                                                          : about_moments(test, estimators);
   if (question.of_two()) {
     require_pairs(question, test.claim);
-    separate_streams(question);
+    require_different_data(question, test.claim);
+    separate_streams(question, test.claim, seed);
   }
   check_margins(question);
   check_sizes(question);

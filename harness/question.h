@@ -47,11 +47,19 @@ struct Question {
   std::size_t channel_count() const { return subjects[0].channels.size(); }
   std::string channel_name(std::size_t channel) const;
   bool of_two() const { return subjects.size() == 2; }
+  bool of_means() const {
+    return kind == QuestionKind::mean_of_one || kind == QuestionKind::mean_of_two;
+  }
+  bool of_variances() const {
+    return kind == QuestionKind::variance_of_one || kind == QuestionKind::variance_of_two;
+  }
 };
 
 /// InputError at the claim's place: a part that does not exist, an analytic reference that the
 /// plugin does not know, channels that do not pair, a quantity there is no method for, a margin in
 /// per cent where there is nothing to take it of.
-Question ask(const TestEntry& test, const std::map<std::string, PreparedEstimator>& estimators);
+/// Two sources that would share a stream under this seed are told apart.
+Question ask(const TestEntry& test, const std::map<std::string, PreparedEstimator>& estimators,
+             std::uint64_t seed);
 
 }  // namespace assay::harness

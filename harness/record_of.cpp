@@ -47,7 +47,7 @@ reports::Histogram histogram_of(const Histogram& histogram) {
 
 reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t channel) {
   const Subject& side = work.outcome.question.subjects[subject];
-  const std::uint64_t count = work.outcome.plan.secondaries;
+  const std::uint64_t count = work.outcome.secondaries();
   const std::size_t index = side.channels[channel];
   const Summary& summary = work.pools[subject]->prefix(count);
   const ChannelSummary& kept = summary.channels[index];
@@ -84,7 +84,7 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
   std::vector<reports::Sample> samples;
   for (std::size_t channel = 0; channel < work.outcome.question.channel_count(); ++channel) {
     for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
-      if (work.pools[subject]->has(work.outcome.plan.secondaries)) {
+      if (work.pools[subject]->has(work.outcome.secondaries())) {
         samples.push_back(sample_of(work, subject, channel));
       }
     }
@@ -99,11 +99,41 @@ reports::Channel channel_of(const ChannelOutcome& outcome, bool adjusted, const 
                                             .parameters = outcome.at_null.distribution.parameters},
                            .p_value = probability(outcome.decision.log_p_claimed),
                            .log10_p = log10_of(outcome.decision.log_p_claimed)};
-  if (adjusted) channel.p_adjusted = probability(outcome.log_p_adjusted);
-  if (regions.has_forbidden()) channel.p_pass = probability(outcome.decision.log_p_forbidden);
+  if (adjusted) {
+    channel.p_adjusted = probability(outcome.log_p_adjusted);
+    channel.log10_p_adjusted = log10_of(outcome.log_p_adjusted);
+  }
+  if (regions.has_forbidden()) {
+    channel.p_pass = probability(outcome.decision.log_p_forbidden);
+    channel.log10_p_pass = log10_of(outcome.decision.log_p_forbidden);
+  }
   channel.effect = outcome.effect;
   if (outcome.reference) channel.reference = number(*outcome.reference);
   return channel;
+}
+
+/// Of each look the p-values as of a single look: of the channel that speaks most against the
+/// claim, and of the one that is least excluded from the forbidden region.
+std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& regions) {
+  std::vector<reports::Look> looks;
+  const std::size_t taken = outcome.history.empty() ? 0 : outcome.history[0].log_p_claimed.size();
+  for (std::size_t k = 0; k < taken; ++k) {
+    double claimed = 0;
+    double forbidden = -std::numeric_limits<double>::infinity();
+    for (const ChannelHistory& history : outcome.history) {
+      claimed = std::min(claimed, history.log_p_claimed[k]);
+      forbidden = std::max(forbidden, history.log_p_forbidden[k]);
+    }
+    reports::Look look{.secondaries = outcome.plan.looks.sizes[k],
+                       .weight = outcome.plan.looks.weights[k],
+                       .log10_p = log10_of(claimed)};
+    if (regions.has_forbidden()) {
+      look.p_pass = probability(forbidden);
+      look.log10_p_pass = log10_of(forbidden);
+    }
+    looks.push_back(look);
+  }
+  return looks;
 }
 
 Number margin(const Regions& regions) {
@@ -129,25 +159,23 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
                      .expected = expected_verdict(entry.expect)};
   test.ok = test.verdict == test.expected;
   test.method = outcome.plan.method.name;
-  test.null_hypothesis = null_hypothesis(outcome.plan.method, outcome.question, 0);
+  const std::size_t worst = outcome.channels.empty() ? 0 : outcome.channels[0].index;
+  test.null_hypothesis = null_hypothesis(outcome.plan.method, outcome.question, worst);
   const bool distance = !outcome.channels.empty() && outcome.channels[0].evidence.distance;
   test.tail = distance ? "upper" : tail(regions);
   test.alpha = outcome.place.share.alpha;
   test.beta = outcome.place.share.beta;
   test.detect = margin(regions);
   test.allow = regions.allow;
-  test.power = outcome.plan.power;
+  test.power = outcome.power;
   test.gates = outcome.plan.gates;
+  test.gates.insert(test.gates.end(), outcome.gates.begin(), outcome.gates.end());
   test.samples = samples_of(work);
   for (const ChannelOutcome& channel : outcome.channels) {
     test.channels.push_back(channel_of(channel, holm && outcome.place.inside, regions));
   }
-  if (!outcome.channels.empty()) {
-    test.detectable = outcome.channels.front().detectable;
-    test.looks = {{.secondaries = outcome.plan.secondaries,
-                   .log10_p = test.channels.front().log10_p,
-                   .p_pass = test.channels.front().p_pass}};
-  }
+  if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
+  test.looks = looks_of(outcome, regions);
   test.message = outcome.message;
   return test;
 }

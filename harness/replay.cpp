@@ -10,11 +10,10 @@
 
 #include "estimators/catalogue.h"
 #include "harness/commands.h"
-#include "harness/evaluate.h"
+#include "harness/looks.h"
 #include "harness/pools.h"
 #include "harness/progress_terminal.h"
 #include "harness/record_of.h"
-#include "harness/scheduler.h"
 #include "harness/yaml.h"
 #include "reports/read_json.h"
 
@@ -105,11 +104,20 @@ Suite suite_of(const Recorded& recorded) {
   return suite;
 }
 
+/// The looks that were taken; a test of constants recorded none.
+stats::LookSchedule recorded_looks(const reports::Test& test) {
+  stats::LookSchedule looks;
+  for (const reports::Look& look : test.looks) {
+    looks.sizes.push_back(look.secondaries);
+    looks.weights.push_back(look.weight);
+  }
+  if (looks.sizes.empty()) return {{test.samples.front().secondaries}, {1}};
+  return looks;
+}
+
 /// The plan as it was: nothing is chosen anew, so no pilot is drawn.
 Plan recorded_plan(const Question& question, const reports::Test& test) {
-  Plan plan{.method = find_method(question, test.method),
-            .primaries = {},
-            .secondaries = test.samples.front().secondaries};
+  Plan plan{.method = find_method(question, test.method), .looks = recorded_looks(test)};
   for (const Subject& subject : question.subjects) {
     const auto sample = std::find_if(
         test.samples.begin(), test.samples.end(),
@@ -140,7 +148,7 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded) {
   auto rebuilt = std::make_unique<Rebuilt>();
   rebuilt->suite = suite_of(recorded);
   rebuilt->estimators = prepare_all(rebuilt->suite);
-  Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators);
+  Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
   Plan plan = recorded_plan(question, recorded.test);
   rebuilt->work.outcome = {
       .question = std::move(question),
@@ -157,9 +165,9 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded) {
 }
 
 void print_observation(const TestWork& work, std::uint64_t index) {
-  if (index >= work.outcome.plan.secondaries) {
+  if (index >= work.outcome.plan.most_secondaries()) {
     throw InputError({}, fmt::format("observation {} was not drawn: the test used 0 to {}", index,
-                                     work.outcome.plan.secondaries - 1));
+                                     work.outcome.plan.most_secondaries() - 1));
   }
   for (std::size_t i = 0; i < work.pools.size(); ++i) {
     const Pool& pool = *work.pools[i];
@@ -227,8 +235,7 @@ int replay(const ReplayArguments& arguments) {
     return 0;
   }
   const std::unique_ptr<Progress> progress = make_progress(false);
-  draw_all(rebuilt->pools.all(), {}, *progress);
-  evaluate(rebuilt->work);
+  sample_in_looks({&rebuilt->work}, rebuilt->pools.all(), 0, *progress);
   const reports::Test now = record_of_test(rebuilt->work, recorded.suite.file, false);
   const bool same = print_comparison(now, recorded.test);
   fmt::print("{}\n", same ? "the same numbers as recorded"

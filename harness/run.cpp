@@ -8,8 +8,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "harness/evaluate.h"
+#include "harness/holm_verdict.h"
 #include "harness/interrupt.h"
+#include "harness/looks.h"
 #include "harness/plan.h"
 #include "harness/pools.h"
 #include "harness/record_of.h"
@@ -31,7 +32,13 @@ bool selected(const TestEntry& test, std::size_t index, const RunOptions& option
 Suite adjusted(Suite suite, const RunOptions& options) {
   if (options.alpha) suite.alpha = *options.alpha;
   for (TestEntry& test : suite.tests) {
-    if (test.detect) test.detect->value *= options.coarsen;
+    if (!test.detect) continue;
+    test.detect->value *= options.coarsen;
+    if (test.allow && test.detect->value <= test.allow->value) {
+      throw InputError(test.where, fmt::format("`--coarsen {:g}` brings `detect` down to `allow`; "
+                                               "`detect` must stay above it",
+                                               options.coarsen));
+    }
   }
   return suite;
 }
@@ -64,7 +71,7 @@ void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& us
                                                                             : picture_primaries;
     const auto pool =
         pools.for_picture(*estimator, estimator->primaries.value_or(automatic), run.seed, pilots);
-    if (pool->requested() == 0) {
+    if (!pool->is_marked()) {
       pool->request(estimator->setup->observations().value_or(picture_secondaries));
     }
     run.pictures.push_back({estimator, pool});
@@ -80,7 +87,7 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   std::vector<Question> questions;
   std::vector<bool> chosen;
   for (std::size_t i = 0; i < run.suite.tests.size(); ++i) {
-    questions.push_back(ask(run.suite.tests[i], run.estimators));
+    questions.push_back(ask(run.suite.tests[i], run.estimators, run.seed));
     chosen.push_back(selected(run.suite.tests[i], i, options));
   }
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
@@ -103,12 +110,9 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   plan_picture(run, used, primaries, pilots, pools);
 }
 
-void judge_suite(SuiteRun& run, const RunOptions& options) {
+void judge_family(SuiteRun& run, const RunOptions& options) {
   std::vector<TestWork*> tests;
-  for (TestWork& work : run.tests) {
-    evaluate(work);
-    tests.push_back(&work);
-  }
+  for (TestWork& work : run.tests) tests.push_back(&work);
   if (run.tests.size() == run.suite.tests.size() && !options.shard) {
     apply_holm(tests, run.suite.alpha);
     run.holm = true;
@@ -138,16 +142,20 @@ reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
     run->seed = options.seed.value_or(suite.seed.value_or(1));
     run->estimators = prepare_all(run->suite);
     for (const TestEntry& test : run->suite.tests) {
-      const Question question = ask(test, run->estimators);
+      const Question question = ask(test, run->estimators, run->seed);
       if (test.method) find_method(question, *test.method);
     }
     runs.push_back(std::move(run));
   }
   Pools pools;
   for (auto& run : runs) plan_suite(*run, options, pools, progress);
-  draw_all(pools.all(), {.threads = options.threads, .phase = "sampling"}, progress);
+  std::vector<TestWork*> tests;
+  for (auto& run : runs) {
+    for (TestWork& work : run->tests) tests.push_back(&work);
+  }
+  sample_in_looks(tests, pools.all(), options.threads, progress);
   stop_if_interrupted();
-  for (auto& run : runs) judge_suite(*run, options);
+  for (auto& run : runs) judge_family(*run, options);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   reports::Record record = record_of(runs, options);
   record.started = started;

@@ -67,8 +67,9 @@ int sample(const SampleArguments& arguments) {
   std::vector<std::string> names;
   const std::vector<Channel> channels = sampled.setup->channels();
   for (const std::size_t column : sampled.columns) names.push_back(channels[column].name);
-  fmt::print("# {} {} of {} primaries, seed {}\n# columns: {}\n", estimator.entry->information.name,
-             estimator.parameters, arguments.primaries, arguments.seed, fmt::join(names, " "));
+  fmt::print("# {} {} of {} primaries, seed {}\n", estimator.entry->information.name,
+             estimator.parameters, arguments.primaries, arguments.seed);
+  fmt::print("# stream: {:016x}\n# columns: {}\n", key.bits, fmt::join(names, " "));
   const std::uint64_t rows = std::min(
       arguments.secondaries, sampled.setup->observations().value_or(arguments.secondaries));
   const std::unique_ptr<Estimator> worker = sampled.setup->make();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "harness/constant.h"
 #include "harness/sampler_setup.h"
@@ -32,15 +33,6 @@ const stats::Moments& pilot_of(const Question& question, std::size_t subject, st
   return pilots.at(side.estimator->name).channels[side.channels[channel]];
 }
 
-bool of_means(const Question& question) {
-  return question.kind == QuestionKind::mean_of_one || question.kind == QuestionKind::mean_of_two;
-}
-
-bool of_variances(const Question& question) {
-  return question.kind == QuestionKind::variance_of_one ||
-         question.kind == QuestionKind::variance_of_two;
-}
-
 double unit_of(const Question& question, std::size_t channel, double other_mean) {
   if (!is_relative(question, channel)) return 1;
   return std::abs(question.of_two() ? question.factor * other_mean
@@ -55,7 +47,7 @@ double secondary_kurtosis(const stats::Moments& pilot, double primaries) {
 std::optional<PlannedChannel> planned_channel(const Question& question, std::size_t channel,
                                               const Pilots& pilots, const Plan& plan) {
   const stats::Moments& first = pilot_of(question, 0, channel, pilots);
-  PlannedChannel planned;
+  PlannedChannel planned{.regions = plan.regions[channel]};
   const bool constant = is_constant(question, 0, channel, first);
   // A mean without spread may be compared with one that has some; nothing else can be planned.
   if (constant && question.kind != QuestionKind::mean_of_two) return std::nullopt;
@@ -78,6 +70,11 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
     planned.reference_error = question.references[channel].standard_error;
   }
   planned.unit = unit_of(question, channel, other_mean);
+  if (planned.unit == 0) {
+    throw std::domain_error(
+        "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give the "
+        "margin as a number");
+  }
   return planned;
 }
 
@@ -121,13 +118,15 @@ std::optional<std::uint64_t> for_means(const Question& question, const stats::Er
 }
 
 /// Both one-sided tests at beta must reject when theta = 0, each missing with beta / 2.
-std::uint64_t for_equivalence(const ErrorShare& share, const Regions& regions,
-                              const PlannedChannel& channel) {
+std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& channel) {
   const double deviation = std::hypot(channel.standard_deviation, channel.other_deviation);
   const double z = stats::normal_quantile({stats::Tail::upper, std::log(share.beta)}) +
                    stats::normal_quantile({stats::Tail::upper, std::log(share.beta / 2)});
-  const double root = z * deviation / (regions.within * channel.unit);
-  return static_cast<std::uint64_t>(std::ceil(root * root)) + 2;
+  const double wanted = channel.regions.within * channel.unit / z;  // standard error of the mean
+  const double left = wanted * wanted - channel.reference_error * channel.reference_error;
+  if (!(left > 0)) return impossible_secondaries;
+  const double count = std::ceil(deviation * deviation / left) + 2;
+  return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
 }
 
 stats::LogVariancePlan variance_plan(const stats::ErrorRates& rates, double allow,
@@ -138,6 +137,21 @@ stats::LogVariancePlan variance_plan(const stats::ErrorRates& rates, double allo
           .rates = rates};
 }
 
+/// Of a proof that a variance lies within a margin: as for means, at each of the two margins.
+stats::ErrorRates equivalence_rates(const ErrorShare& share) {
+  return {.alpha = share.beta, .beta = share.beta / 2, .two_sided = false};
+}
+
+std::optional<std::uint64_t> for_variances(const ErrorShare& share, const PlannedChannel& channel) {
+  const Regions& regions = channel.regions;
+  if (regions.relation == Relation::within) {
+    return stats::log_variance_sample_size(variance_plan(equivalence_rates(share), 0, channel),
+                                           std::exp(regions.within));
+  }
+  return stats::log_variance_sample_size(
+      variance_plan(rates_of(share, regions), regions.allow, channel), std::exp(*regions.detect));
+}
+
 std::optional<std::uint64_t> one_channel(const Question& question, std::size_t index,
                                          const ErrorShare& share, const Pilots& pilots,
                                          const Plan& plan) {
@@ -145,14 +159,15 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
   const bool equivalence = regions.relation == Relation::within;
   const std::optional<PlannedChannel> channel = planned_channel(question, index, pilots, plan);
   if (!channel || (!equivalence && !regions.detect)) return std::nullopt;
-  const stats::ErrorRates rates = rates_of(share, regions);
-  if (of_variances(question)) {
-    const double margin = equivalence ? regions.within : *regions.detect;
-    return stats::log_variance_sample_size(variance_plan(rates, regions.allow, *channel),
-                                           std::exp(margin));
+  std::optional<std::uint64_t> count;
+  if (question.of_variances()) {
+    count = for_variances(share, *channel);
+  } else if (equivalence) {
+    count = for_equivalence(share, *channel);
+  } else {
+    count = for_means(question, rates_of(share, regions), regions, *channel);
   }
-  if (equivalence) return for_equivalence(share, regions, *channel);
-  return for_means(question, rates, regions, *channel);
+  return count.value_or(impossible_secondaries);
 }
 
 stats::DistancePlan distance_plan(const Question& question, const ErrorShare& share, double allow) {
@@ -179,6 +194,26 @@ std::optional<std::uint64_t> for_laws(const Question& question, const ErrorShare
   return stats::ks_sample_size(distance_plan(question, share, regions.allow), *regions.detect);
 }
 
+/// The probability of showing `within` where theta is 0.
+double equivalence_power(const Question& question, const TestSize& size,
+                         const PlannedChannel& channel) {
+  const double n = static_cast<double>(size.secondaries);
+  if (question.of_variances()) {
+    const double one_margin =
+        stats::log_variance_power(variance_plan(equivalence_rates(size.share), 0, channel), n,
+                                  std::exp(channel.regions.within));
+    return std::max(0.0, 2 * one_margin - 1);
+  }
+  // The reference's error does not shrink with n: as a deviation of the observations it grows.
+  const double spread = std::hypot(channel.standard_deviation, channel.other_deviation,
+                                   channel.reference_error * std::sqrt(n));
+  return stats::equivalence_power({.standard_deviation = spread,
+                                   .margin = channel.regions.within * channel.unit,
+                                   .alpha = size.share.beta,
+                                   .beta = size.share.beta},
+                                  n, 0);
+}
+
 bool all_piloted(const Question& question, const Pilots& pilots) {
   return std::all_of(question.subjects.begin(), question.subjects.end(), [&](const Subject& s) {
     const auto found = pilots.find(s.estimator->name);
@@ -190,28 +225,32 @@ bool all_piloted(const Question& question, const Pilots& pilots) {
 
 std::optional<std::uint64_t> planned_secondaries(const Question& question, const ErrorShare& share,
                                                  const Pilots& pilots, const Plan& plan) {
-  if (!of_means(question) && !of_variances(question)) return for_laws(question, share, plan);
+  if (!question.of_means() && !question.of_variances()) return for_laws(question, share, plan);
   if (!all_piloted(question, pilots)) return std::nullopt;
   std::optional<std::uint64_t> most;
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const auto count = one_channel(question, channel, share, pilots, plan);
-    if (count) most = std::max({most.value_or(0), *count, least_secondaries});
+    if (count) {
+      most =
+          std::min(impossible_secondaries, std::max({most.value_or(0), *count, least_secondaries}));
+    }
   }
   return most;
 }
 
-std::optional<double> detectable_effect(const Question& question, const ErrorShare& share,
+std::optional<double> detectable_effect(const Question& question, const TestSize& size,
                                         const Plan& plan, const PlannedChannel& channel) {
-  const double n = static_cast<double>(plan.secondaries);
-  const Regions& regions = plan.regions[0];
-  const stats::ErrorRates rates{
-      .alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
+  const double n = static_cast<double>(size.secondaries);
+  const ErrorShare& share = size.share;
+  const Regions& regions = channel.regions;
+  if (regions.relation == Relation::within) return std::nullopt;  // it finds nothing, it shows
+  const stats::ErrorRates rates = rates_of(share, regions);
   double found = 0;
-  if (both_spread(question, channel) && of_means(question)) {
+  if (both_spread(question, channel) && question.of_means()) {
     found = stats::welch_detectable(means_plan(rates, regions.allow, channel), n) / channel.unit;
-  } else if (of_means(question)) {
+  } else if (question.of_means()) {
     found = stats::student_t_detectable(mean_plan(rates, regions.allow, channel), n) / channel.unit;
-  } else if (of_variances(question)) {
+  } else if (question.of_variances()) {
     found =
         std::log(stats::log_variance_detectable(variance_plan(rates, regions.allow, channel), n));
   } else if (plan.method.keeps == Keeps::cells) {
@@ -223,19 +262,13 @@ std::optional<double> detectable_effect(const Question& question, const ErrorSha
   return found;
 }
 
-std::optional<double> power_at(const Question& question, const ErrorShare& share, const Plan& plan,
+std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,
                                const PlannedChannel& channel, double effect) {
-  const double n = static_cast<double>(plan.secondaries);
-  const Regions& regions = plan.regions[0];
+  const double n = static_cast<double>(size.secondaries);
+  const ErrorShare& share = size.share;
+  const Regions& regions = channel.regions;
   const stats::ErrorRates rates = rates_of(share, regions);
-  if (regions.relation == Relation::within && of_means(question)) {
-    return stats::equivalence_power(
-        {.standard_deviation = std::hypot(channel.standard_deviation, channel.other_deviation),
-         .margin = regions.within * channel.unit,
-         .alpha = share.beta,
-         .beta = share.beta},
-        n, effect * channel.unit);
-  }
+  if (regions.relation == Relation::within) return equivalence_power(question, size, channel);
   switch (question.kind) {
     case QuestionKind::mean_of_one:
     case QuestionKind::mean_of_two:
@@ -261,17 +294,17 @@ std::optional<double> power_at(const Question& question, const ErrorShare& share
   return std::nullopt;
 }
 
-PlannedChannel observed_channel(const Question& question, std::size_t channel,
-                                std::span<const ChannelData> data) {
-  PlannedChannel observed;
-  if (!of_means(question) && !of_variances(question)) return observed;
+PlannedChannel observed_channel(const Question& question, const Regions& regions,
+                                std::size_t channel, std::span<const ChannelData> data) {
+  PlannedChannel observed{.regions = regions};
+  if (!question.of_means() && !question.of_variances()) return observed;
   observed.standard_deviation = data[0].moments.standard_deviation();
-  if (of_variances(question)) observed.kurtosis = data[0].moments.kurtosis();
+  if (question.of_variances()) observed.kurtosis = data[0].moments.kurtosis();
   double other_mean = 0;
   if (question.of_two()) {
     other_mean = data[1].moments.mean;
     observed.other_deviation = std::abs(question.factor) * data[1].moments.standard_deviation();
-    if (of_variances(question)) observed.other_kurtosis = data[1].moments.kurtosis();
+    if (question.of_variances()) observed.other_kurtosis = data[1].moments.kurtosis();
   } else {
     observed.reference_error = question.references[channel].standard_error;
   }

@@ -11,6 +11,7 @@ namespace assay::harness {
 /// What planning takes a channel's law to be: a secondary's standard deviation and kurtosis at the
 /// upper limit of what the pilot allows, and the value margins are relative to.
 struct PlannedChannel {
+  Regions regions = {};
   double standard_deviation = 0;
   double other_deviation = 0;  ///< of the second subject, times the factor
   double kurtosis = 3;
@@ -19,22 +20,32 @@ struct PlannedChannel {
   double reference_error = 0;
 };
 
+/// A test of n secondaries of each subject, at its levels.
+struct TestSize {
+  ErrorShare share;
+  std::uint64_t secondaries;
+};
+
+/// More secondaries than any test is given: what is planned beyond is impossible.
+inline constexpr std::uint64_t impossible_secondaries = std::uint64_t{1} << 53;
+
 /// Secondaries of each subject that find `detect` (or prove `within`) with this share of alpha and
 /// beta in every channel; nullopt where nothing asks for a number: no `detect`, or no pilot.
+/// `impossible_secondaries` where no number would do, the reference's own error being too large.
 std::optional<std::uint64_t> planned_secondaries(const Question& question, const ErrorShare& share,
                                                  const Pilots& pilots, const Plan& plan);
 
-/// The least theta that a test of n secondaries finds with probability 1 - beta.
-std::optional<double> detectable_effect(const Question& question, const ErrorShare& share,
+/// The least theta that a test of that size finds with probability 1 - beta.
+std::optional<double> detectable_effect(const Question& question, const TestSize& size,
                                         const Plan& plan, const PlannedChannel& channel);
 
 /// The probability of failing the claim when theta is `effect`; of `<` and `>` the probability of
-/// passing it with that advantage, of `within` that of passing it when theta is `effect`.
-std::optional<double> power_at(const Question& question, const ErrorShare& share, const Plan& plan,
+/// passing it with that advantage, of `within` that of passing it when theta is 0.
+std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,
                                const PlannedChannel& channel, double effect);
 
 /// The same from the test's own data, for what is reported about its n.
-PlannedChannel observed_channel(const Question& question, std::size_t channel,
-                                std::span<const ChannelData> data);
+PlannedChannel observed_channel(const Question& question, const Regions& regions,
+                                std::size_t channel, std::span<const ChannelData> data);
 
 }  // namespace assay::harness

@@ -3,6 +3,7 @@
 // from is the other program's affair.
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -48,8 +49,8 @@ class Recorded final : public Estimator {
 
 class RecordedSetup final : public Setup {
  public:
-  RecordedSetup(SharedTable table, Selection selection)
-      : table_(std::move(table)), selection_(selection) {}
+  RecordedSetup(SharedTable table, Selection selection, std::string file)
+      : table_(std::move(table)), selection_(selection), file_(std::move(file)) {}
 
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
@@ -62,10 +63,16 @@ class RecordedSetup final : public Setup {
     return std::make_unique<Recorded>(table_, selection_);
   }
   std::optional<std::uint64_t> observations() const override { return table_->rows(); }
+  std::string data_file() const override { return file_; }
+  std::optional<StreamKey> data_stream() const override {
+    if (!table_->stream) return {};
+    return StreamKey{*table_->stream};
+  }
 
  private:
   SharedTable table_;
   Selection selection_;
+  std::string file_;
 };
 
 Selection select(const recorded::Table& table, Parameters& parameters) {
@@ -98,7 +105,9 @@ recorded::Table read(Parameters& parameters) {
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const auto table = std::make_shared<const recorded::Table>(read(parameters));
-  return std::make_shared<RecordedSetup>(table, select(*table, parameters));
+  return std::make_shared<RecordedSetup>(
+      table, select(*table, parameters),
+      std::filesystem::weakly_canonical(parameters.file("file")).string());
 }
 
 }  // namespace

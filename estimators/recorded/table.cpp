@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\f\v";
 
+constexpr std::string_view stream_keyword = "stream:";
+
 bool is_blank(char c) { return blanks.find(c) != blanks.npos; }
 
 /// A piece of a line and the column it begins at, counted from 1.
@@ -88,6 +90,7 @@ class Reader {
   // A comment that begins with `columns:`.
   void header(std::string_view text, std::size_t comment) {
     const Field field = trimmed(text, comment + 1, text.size());
+    if (field.text.starts_with(stream_keyword)) stream(field);
     constexpr std::string_view keyword = "columns:";
     if (!field.text.starts_with(keyword)) return;
     if (!table_.columns.empty()) {
@@ -98,6 +101,19 @@ class Reader {
       add_name(name, static_cast<int>(skipped));
     }
     if (table_.columns.empty()) refuse(field.column, "`# columns:` names no column");
+  }
+
+  void stream(const Field& field) {
+    const Field key = trimmed(field.text, stream_keyword.size(), field.text.size());
+    std::uint64_t bits = 0;
+    const char* const end = key.text.data() + key.text.size();
+    const auto [stop, problem] = std::from_chars(key.text.data(), end, bits, 16);
+    if (key.text.empty() || problem != std::errc{} || stop != end) {
+      refuse(field.column,
+             "`# stream:` needs a key of up to 16 hexadecimal digits, as `assay "
+             "sample` writes it; leave the line out if there is none");
+    }
+    table_.stream = bits;
   }
 
   void add_name(const Field& name, int skipped) {

@@ -2,6 +2,8 @@
 
 // Numbers that another program wrote, as text.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,13 +13,15 @@ namespace assay::recorded {
 struct Table {
   std::vector<std::string> columns;
   std::vector<double> values;  ///< row after row
+  std::optional<std::uint64_t> stream = {};  ///< what `# stream: HEX` says the rows were drawn from
 
   std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
 };
 
 /// Reads a table. One row a line; numbers are separated by white space, or by commas where the line
 /// has any; `#` begins a comment, empty lines are skipped. Names: `# columns: a b c` before the
-/// first row, else `value` for one column and `value1`, `value2`, ... for more. Numbers as in C++,
+/// first row, else `value` for one column and `value1`, `value2`, ... for more. `# stream: HEX`
+/// tells the key of the stream the rows were drawn from. Numbers as in C++,
 /// `inf` and `nan` included: a recorded failure is a value too.
 /// InputError at line and column for a text that is not a number or no double can hold, an empty
 /// field, a row of another length than the first or the header, a second or late or repeated

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "harness/holm_verdict.h"
 #include "normal_evidence.h"
 #include "running.h"
 
@@ -22,6 +23,7 @@ TestWork judged(double p, double weight, Verdict verdict, const TestEntry& test)
   outcome.question.subjects = {Subject{.channels = {0}}};
   outcome.place = {.inside = true, .weight = weight, .share = {alpha * weight, 0.01}};
   outcome.plan.regions = {Regions{.relation = Relation::equal}};
+  outcome.plan.looks = {{1000}, {1}};
   outcome.verdict = verdict;
   ChannelOutcome& channel = outcome.channels.emplace_back();
   channel.name = "value";
@@ -97,7 +99,7 @@ TEST(Evaluate, HeavyTailIsInvalidAndSaysWhatWouldHelp) {
   const reports::Test test = judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
                                          "claim: mean(it) == analytic, secondaries: 100");
   EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_NE(test.message.find("a larger `primaries` or more `secondaries` would help"),
+  EXPECT_NE(test.message.find("`secondaries` would help, or a larger `primaries`"),
             std::string::npos)
       << test.message;
 }

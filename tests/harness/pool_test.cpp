@@ -106,12 +106,28 @@ TEST(Pool, DoesNotChangeWhenContinuedLater) {
   const StreamKey key = stream_key(1, "test/sums", "", 0);
   const auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);
   Silence silence;
+  pool->mark(9000);
   pool->request(3000);
   draw_all({pool}, {.threads = 1}, silence);
   pool->request(9000);
   draw_all({pool}, {.threads = 2}, silence);
   EXPECT_EQ(pool->prefix(9000).channels[0].moments,
             drawn({.prefixes = {9000}})->prefix(9000).channels[0].moments);
+}
+
+// Blocks are drawn whole: 3000 requested draws 4096, and a prefix inside can no longer be taken.
+TEST(Pool, RefusesAMarkBehindWhatIsDrawn) {
+  const StreamKey key = stream_key(1, "test/sums", "", 0);
+  const auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);
+  Silence silence;
+  pool->mark(9000);
+  pool->request(3000);
+  EXPECT_EQ(pool->largest_prefix(), 0);
+  draw_all({pool}, {.threads = 1}, silence);
+  EXPECT_EQ(pool->largest_prefix(), 3000);
+  EXPECT_THROW(pool->mark(4000), std::logic_error);
+  EXPECT_NO_THROW(pool->mark(3000));
+  EXPECT_NO_THROW(pool->mark(5000));
 }
 
 TEST(Pool, KeepsTheFirstValuesAsManyAsPlanned) {

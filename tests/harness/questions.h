@@ -31,7 +31,7 @@ inline std::unique_ptr<Asked> ask_text(const std::string& text) {
   asked->suite = load_suite(place.write("suite.yaml", text));
   asked->estimators = prepare_all(asked->suite);
   for (const TestEntry& test : asked->suite.tests) {
-    asked->questions.push_back(ask(test, asked->estimators));
+    asked->questions.push_back(ask(test, asked->estimators, 1));
   }
   return asked;
 }

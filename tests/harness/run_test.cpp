@@ -45,7 +45,10 @@ reports::Test raw(reports::Test test) {
   test.replay.clear();
   test.line = 0;
   for (reports::Sample& sample : test.samples) sample.cost.seconds = 0;
-  for (reports::Channel& channel : test.channels) channel.p_adjusted.reset();
+  for (reports::Channel& channel : test.channels) {
+    channel.p_adjusted.reset();
+    channel.log10_p_adjusted.reset();
+  }
   return test;
 }
 

@@ -48,7 +48,7 @@ bool is_tested(QuantityName name) {
   const Suite suite = suite_of_claim(
       {.claim = std::string(to_string(name)) + "(analytic/normal" + number + ") == " + side});
   const auto estimators = prepare_all(suite);
-  return refusal([&] { ask(suite.tests[0], estimators); }) == "(nothing was refused)";
+  return refusal([&] { ask(suite.tests[0], estimators, 1); }) == "(nothing was refused)";
 }
 
 TEST(SuiteSchema, OffersTheMethodsThereAre) {

@@ -1,0 +1,135 @@
+#include "harness/assumptions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/constant.h"
+#include "harness/plan.h"
+
+namespace assay::harness {
+namespace {
+
+std::string variance_without_spread(const Question& question, std::size_t channel,
+                                    std::span<const ChannelData> data) {
+  for (std::size_t subject = 0; subject < data.size(); ++subject) {
+    if (is_constant(question, subject, channel, data[subject].moments)) {
+      return fmt::format(
+          "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
+          "nothing of a variance, and a rare value may be unseen; take more observations",
+          question.subjects[subject].estimator->name, data[subject].moments.mean);
+    }
+  }
+  return "";
+}
+
+// A shift of a tenth of a standard error raises a tail of one per cent by a third.
+constexpr double tolerated_shift = 0.1;
+
+/// Why two means cannot be compared of which one is constant: what was never seen of it could
+/// decide. "" where they can.
+std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
+                                std::span<const ChannelData> data) {
+  const Question& question = outcome.question;
+  for (std::size_t subject = 0; subject < data.size() && question.of_two(); ++subject) {
+    const ChannelData& mine = data[subject];
+    const ChannelData& other = data[1 - subject];
+    if (!is_constant(question, subject, channel, mine.moments)) continue;
+    // On the scale of the first mean: the second enters times the factor.
+    const double factor = std::abs(question.factor);
+    const double shift = (subject == 1 ? factor : 1) *
+                         unseen_shift(question, subject, channel, mine, outcome.share().alpha);
+    const double error = (subject == 0 ? factor : 1) * other.moments.standard_error();
+    if (shift <= tolerated_shift * error) continue;
+    return fmt::format(
+        "every observation of `{}` is {:.10g}, and values never seen could move its mean by {:.3g} "
+        "where the comparison's standard error is {:.3g}; declare the range, or take more "
+        "observations",
+        question.subjects[subject].estimator->name, mine.moments.mean, shift, error);
+  }
+  return "";
+}
+
+}  // namespace
+
+reports::Gate gate_of(const stats::Gate& gate, const std::string& where) {
+  constexpr const char* states[] = {"green", "amber", "red"};
+  return {.name = gate.name + where,
+          .value = gate.value,
+          .limit = gate.limit,
+          .state = states[static_cast<int>(gate.state)]};
+}
+
+bool all_constant(const Question& question, std::size_t channel,
+                  std::span<const ChannelData> data) {
+  for (std::size_t subject = 0; subject < data.size(); ++subject) {
+    if (!is_constant(question, subject, channel, data[subject].moments)) return false;
+  }
+  return true;
+}
+
+std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t channel,
+                                      std::span<const ChannelData> data) {
+  std::vector<reports::Gate> gates;
+  const Question& question = outcome.question;
+  const bool several = question.channel_count() > 1;
+  const std::string name = several ? ", " + question.channel_name(channel) : "";
+  const double x = critical_value(outcome.share().alpha, outcome.plan.regions[channel].two_sided());
+  if (question.of_means()) {
+    gates.push_back(
+        gate_of(data.size() == 1
+                    ? stats::skewness_gate(data[0].moments, x)
+                    : stats::skewness_gate(data[0].moments, data[1].moments, question.factor, x),
+                name));
+  }
+  for (std::size_t subject = 0; subject < data.size(); ++subject) {
+    if (!(data[subject].moments.m2 > 0)) continue;
+    const std::string whose = name + " of " + question.subjects[subject].estimator->name;
+    if (question.of_means()) {
+      gates.push_back(gate_of(stats::dominance_gate(data[subject].moments), whose));
+    }
+    if (outcome.plan.method.name == "F" || outcome.plan.method.name == "chi-square") {
+      gates.push_back(gate_of(stats::kurtosis_gate(data[subject].moments), whose));
+    }
+  }
+  return gates;
+}
+
+std::string red_gates(const std::vector<reports::Gate>& gates) {
+  std::string text;
+  for (const reports::Gate& gate : gates) {
+    if (gate.state != "red") continue;
+    text += fmt::format("{}{} is {:.3g}, limit {:.3g}", text.empty() ? "" : "; ", gate.name,
+                        gate.value.value_or(0), gate.limit.value_or(0));
+  }
+  return text;
+}
+
+std::string what_would_help(const TestOutcome& outcome) {
+  const std::vector<Subject>& subjects = outcome.question.subjects;
+  const bool rows = std::any_of(subjects.begin(), subjects.end(), [](const Subject& subject) {
+    return subject.setup->observations().has_value();
+  });
+  double excess = 1;
+  for (const reports::Gate& gate : outcome.gates) {
+    // The skewness gate's logarithm falls like 1 / sqrt(n); it is green at a quarter.
+    if (gate.state != "red" || !gate.name.starts_with("skewness") || !gate.value) continue;
+    excess = std::max(excess, std::pow(std::log(*gate.value) / std::log(1.25), 2));
+  }
+  const std::string enough =
+      excess > 1 ? fmt::format("about {:.2g}", excess * static_cast<double>(outcome.secondaries()))
+                 : "more";
+  if (rows) return fmt::format("; {} rows would help, or rows that each average several", enough);
+  return fmt::format("; {} `secondaries` would help, or a larger `primaries`", enough);
+}
+
+std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,
+                           std::span<const ChannelData> data) {
+  if (outcome.question.of_variances()) {
+    return variance_without_spread(outcome.question, channel, data);
+  }
+  return outcome.question.of_means() ? unseen_could_decide(outcome, channel, data) : "";
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,77 @@
+#include "harness/looks.h"
+
+#include <algorithm>
+
+#include "harness/interrupt.h"
+#include "harness/scheduler.h"
+
+namespace assay::harness {
+namespace {
+
+/// One progress over all rounds: of the work that remains if no test ends before its last look.
+class Rounds final : public Progress {
+ public:
+  Rounds(Progress& progress, std::uint64_t total) : progress_(progress) {
+    progress_.begin("sampling", total);
+  }
+  ~Rounds() override { progress_.end(); }
+  Rounds(const Rounds&) = delete;
+  Rounds& operator=(const Rounds&) = delete;
+
+  void begin(const std::string&, std::uint64_t total) override {
+    before_ += round_;
+    round_ = total;
+  }
+  void advance(std::uint64_t done) override { progress_.advance(before_ + done); }
+  void end() override {}
+
+ private:
+  Progress& progress_;
+  std::uint64_t before_ = 0;
+  std::uint64_t round_ = 0;
+};
+
+std::uint64_t most_work(const std::vector<std::shared_ptr<Pool>>& pools) {
+  std::uint64_t total = 0;
+  for (const auto& pool : pools) total += pool->most_marked() * pool->primaries();
+  return total;
+}
+
+/// Whether a budget in seconds is spent, or would be by a look of twice the size.
+bool is_spent(const TestWork& work) {
+  const std::optional<Budget>& budget = work.outcome.question.test->budget;
+  if (!budget || !budget->seconds) return false;
+  double seconds = 0;
+  for (const auto& pool : work.pools) seconds += pool->prefix(work.outcome.secondaries()).seconds;
+  return 2 * seconds > *budget->seconds;
+}
+
+bool take_next(TestWork& work) {
+  take_look(work);
+  TestOutcome& outcome = work.outcome;
+  if (!outcome.decided && is_spent(work)) {
+    outcome.decided = true;
+    outcome.message += "; its budget in seconds ended here";
+  }
+  if (!outcome.decided) ++outcome.look;
+  return !outcome.decided;
+}
+
+}  // namespace
+
+void sample_in_looks(const std::vector<TestWork*>& tests,
+                     const std::vector<std::shared_ptr<Pool>>& pools, unsigned threads,
+                     Progress& progress) {
+  Rounds rounds(progress, most_work(pools));
+  std::vector<TestWork*> open = tests;
+  do {
+    for (TestWork* work : open) {
+      for (const auto& pool : work->pools) pool->request(work->outcome.secondaries());
+    }
+    draw_all(pools, {.threads = threads}, rounds);
+    if (interrupted()) return;
+    std::erase_if(open, [](TestWork* work) { return !take_next(*work); });
+  } while (!open.empty());
+}
+
+}  // namespace assay::harness
