@@ -3,6 +3,7 @@
 mpmath by other formulas than those of stats/. Run in this folder: /usr/bin/python3 make_ratios.py."""
 import math
 
+import mpmath as mp
 import numpy as np
 from scipy import optimize, stats
 
@@ -223,6 +224,37 @@ def band_rows():
             yield [case, confidence, gammas[low], gammas[high], 1 - lost(gammas[low] * (1 + 1e-9))]
 
 
+def anderson_darling_limit():
+    """One minus Anderson and Darling's series for the lower tail (1954), in 60 digits."""
+    mp.mp.dps = 60
+    for x in ("0.05", "0.2", "0.5", "1", "1.933", "2.492", "3.857", "6", "10", "20", "40"):
+        z = mp.mpf(x)
+        cdf = mp.mpf(0)
+        for j in range(200):
+            a = (4 * j + 1) ** 2 * mp.pi**2 / (8 * z)
+            inner = mp.quad(lambda w: mp.exp(z / (8 * (w * w + 1)) - a * w * w),
+                            [0, 1 / mp.sqrt(a), 4 / mp.sqrt(a), 18 / mp.sqrt(a)])
+            term = mp.binomial(mp.mpf(-1) / 2, j) * (4 * j + 1) * mp.exp(-a) * inner
+            cdf += term
+            if abs(term) < mp.mpf(10) ** -58:
+                break
+        cdf *= mp.sqrt(2 * mp.pi) / z
+        yield [x, mp.nstr(mp.log(1 - cdf), 20)]
+
+
+def anderson_darling_rows():
+    """k samples: scipy's statistic before it is standardised."""
+    from scipy.stats._morestats import _anderson_ksamp_midrank
+    for k, n, m in ((1, 20, 30), (2, 50, 40), (3, 25, 25)):
+        groups = [np.sort(sample(k, n)), np.sort(sample(k + 3, m)), np.round(np.sort(sample(k + 1, 15)))]
+        for used in (groups[:2], groups, [np.round(g) for g in groups]):
+            pooled = np.sort(np.concatenate(used))
+            sizes = np.array([len(g) for g in used])
+            value = _anderson_ksamp_midrank(used, pooled, np.unique(pooled), len(used), sizes,
+                                            len(pooled))
+            yield [k, n, m, len(used), int(used is not groups and len(used) == 3), value]
+
+
 if __name__ == "__main__":
     write("log_efficiency", "k,n,value,error,biased,biased_error,ratio_z,ratio_upper,cost_z",
           efficiency_rows())
@@ -230,3 +262,5 @@ if __name__ == "__main__":
     write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
     write("ledger", "k,nights,tau,u,log_e,detector,night,change,share_2", ledger_rows())
     write("band", "case,confidence,step,next_step,coverage", band_rows())
+    write("anderson_darling", "x,log_upper", anderson_darling_limit())
+    write("anderson_darling_k", "k,n,m,samples,rounded,statistic", anderson_darling_rows())

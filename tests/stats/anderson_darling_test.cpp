@@ -1,0 +1,175 @@
+#include "stats/anderson_darling.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <vector>
+
+#include "tests/stats/calibration.h"
+#include "tests/stats/samples.h"
+#include "tests/stats/table.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::calibrate;
+using tests::Experiment;
+using tests::Philox;
+using tests::Row;
+using tests::sample_of;
+using tests::Shape;
+using tests::sorted;
+
+const ContinuousLaw uniform_law{[](double u) { return u; }};
+const ContinuousLaw exponential_law{[](double x) { return -std::expm1(-x); }};
+
+// The data sets of make_ratios.py.
+std::vector<double> sample(int k, int size, bool rounded) {
+  std::vector<double> values;
+  for (int i = 1; i <= size; ++i) {
+    const double tooth = 1 + std::fmod(0.05 * k * i, 3);
+    const double value = std::cos(i * (0.7 + 0.1 * k)) * tooth + 0.01 * k * i + 0.3 * k;
+    values.push_back(rounded ? std::nearbyint(value) : value);
+  }
+  return sorted(values);
+}
+
+TEST(AndersonDarling, LimitLawAgreesWithTheSeriesOfTheOtherTail) {
+  constexpr std::uint64_t endless = 1'000'000'000'000'000;
+  for (const Row& row : tests::read_table("anderson_darling")) {
+    const double computed = log_anderson_darling_upper(row["x"], endless);
+    EXPECT_NEAR(computed, row["log_upper"], 1e-12 * (1 - row["log_upper"])) << row["x"];
+  }
+}
+
+TEST(AndersonDarling, GoldenStatistic) {
+  EXPECT_NEAR(anderson_darling_statistic(sorted(tests::golden_x), exponential_law),
+              .174383413363932, 1e-13);
+}
+
+TEST(AndersonDarling, KSampleStatisticAgreesWithScipyWithAndWithoutTies) {
+  for (const Row& row : tests::read_table("anderson_darling_k")) {
+    const int k = static_cast<int>(row["k"]);
+    const bool rounded = row["rounded"] == 1;
+    std::vector<std::vector<double>> samples{sample(k, static_cast<int>(row["n"]), rounded),
+                                             sample(k + 3, static_cast<int>(row["m"]), rounded)};
+    if (row["samples"] == 3) samples.push_back(sample(k + 1, 15, true));
+    EXPECT_NEAR(anderson_darling_k_statistic(samples) / row["statistic"], 1, 1e-11);
+  }
+}
+
+TEST(AndersonDarling, TailsStayFiniteAndFall) {
+  double before = 0;
+  for (const double x : {0.01, .1, 1.0, 10.0, 100.0, 1e4, 1e300}) {
+    const double log_p = log_anderson_darling_upper(x, 10);
+    EXPECT_LE(log_p, before);
+    EXPECT_TRUE(std::isfinite(log_p));
+    before = log_p;
+  }
+  // Either side of the change to Laplace's formula.
+  const std::uint64_t n = 1'000'000'000'000;
+  EXPECT_NEAR(log_anderson_darling_upper(999999, n) - log_anderson_darling_upper(1000001, n), 2,
+              1e-5);
+}
+
+TEST(AndersonDarling, AValueThatTheLawExcludesRejects) {
+  const std::vector<double> values{-1, .2, .3, .5, .7};
+  const ContinuousLaw clipped{[](double u) { return std::max(0.0, u); }};
+  EXPECT_LT(anderson_darling(values, clipped).log_p_upper, -1e300);
+}
+
+TEST(AndersonDarling, RefusesWhatItsLawDoesNotCover) {
+  const std::vector<double> four{.1, .2, .3, .4};
+  const std::vector<double> unsorted{.5, .4, .3, .2, .1};
+  const std::vector<double> good{.1, .2, .3, .4, .5};
+  EXPECT_THROW(anderson_darling(four, uniform_law), std::domain_error);
+  EXPECT_THROW(anderson_darling(unsorted, uniform_law), std::domain_error);
+  EXPECT_THROW(anderson_darling(good, {[](double) { return 2.0; }}), std::domain_error);
+  EXPECT_THROW(anderson_darling(good, {uniform_law.cdf, uniform_law.cdf}), std::domain_error);
+  EXPECT_THROW(anderson_darling_k_statistic({good}), std::domain_error);
+  EXPECT_THROW(anderson_darling_k_statistic({good, {}}), std::domain_error);
+  EXPECT_THROW(anderson_darling_k_statistic({{1, 1}, {1}}), std::domain_error);
+  EXPECT_THROW(log_anderson_darling_upper(std::nan(""), 10), std::domain_error);
+}
+
+// False alarm 1e-5 each (tests/stats/calibration.h).
+void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
+  const auto calibration = calibrate(experiment, draw);
+  EXPECT_TRUE(calibration.ok) << calibration.text();
+  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
+}
+
+void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
+  const auto calibration = calibrate(experiment, draw);
+  EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+TEST(AndersonDarling, OfOneSampleIsUniform) {
+  std::uint32_t test_case = 361;
+  for (const std::size_t n : {std::size_t{5}, std::size_t{20}, std::size_t{200}}) {
+    expect_calibrated({test_case++, n > 100 ? 10000UL : 40000UL}, [&](Philox& random) {
+      const auto u = sorted(sample_of(n, [&] { return random.uniform(); }));
+      return anderson_darling(u, uniform_law).log_p_upper;
+    });
+  }
+}
+
+std::vector<std::vector<double>> three_samples(Philox& random, double shift) {
+  std::vector<std::vector<double>> samples;
+  for (const std::size_t n : {std::size_t{8}, std::size_t{12}, std::size_t{10}}) {
+    samples.push_back(
+        sorted(sample_of(n, [&] { return std::round(2 * random.normal() + shift); })));
+    shift = 0;
+  }
+  return samples;
+}
+
+PermutationPlan permutations(Philox& random, std::uint64_t count) {
+  return {count, [&random](std::uint64_t bound) {
+            return static_cast<std::uint64_t>(random.uniform() * static_cast<double>(bound));
+          }};
+}
+
+TEST(AndersonDarling, OfThreeTiedSamplesIsAtMostUniform) {
+  expect_calibrated({364, 4000, Shape::at_most_uniform}, [](Philox& random) {
+    const auto samples = three_samples(random, 0);
+    return anderson_darling_k(samples, permutations(random, 199)).log_p_upper;
+  });
+}
+
+TEST(AndersonDarling, FindsAShiftOfOneSample) {
+  Philox random(365);
+  const auto result = anderson_darling_k(three_samples(random, 8), permutations(random, 999));
+  EXPECT_NEAR(std::exp(result.log_p_upper), 1e-3, 1e-12);
+}
+
+TEST(AndersonDarling, OneFewerInCountAndPermutationsIsCaught) {
+  expect_caught({366, 8000, Shape::at_most_uniform}, [](Philox& random) {
+    const auto samples = three_samples(random, 0);
+    const double p = std::exp(anderson_darling_k(samples, permutations(random, 19)).log_p_upper);
+    return std::log(std::max(1e-9, (20 * p - 1) / 19));
+  });
+}
+
+TEST(AndersonDarling, WeightsInTheWrongOrderAreCaught) {
+  expect_caught({367, 10000}, [](Philox& random) {
+    const auto u = sorted(sample_of(20, [&] { return random.uniform(); }));
+    double sum = 0;
+    for (std::size_t i = 0; i < 20; ++i) {
+      sum += static_cast<double>(2 * i + 1) * (std::log(u[i]) + std::log1p(-u[i]));
+    }
+    return log_anderson_darling_upper(std::max(.02, -20 - sum / 20), 20);
+  });
+}
+
+TEST(AndersonDarling, AParameterFittedFromTheSampleIsCaught) {
+  expect_caught({368, 10000}, [](Philox& random) {
+    const auto x = sorted(sample_of(50, [&] { return random.exponential(); }));
+    const double mean = tests::moments_of(x).mean;
+    return anderson_darling(x, {[&](double v) { return -std::expm1(-v / mean); }}).log_p_upper;
+  });
+}
+
+}  // namespace
+}  // namespace assay::stats
