@@ -1,0 +1,137 @@
+#include "stats/two_part_ks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <vector>
+
+#include "stats/tails.h"
+#include "tests/stats/calibration.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::calibrate;
+using tests::Experiment;
+using tests::Philox;
+using tests::sample_of;
+using tests::Shape;
+using tests::sorted;
+
+const AtomLaw half_black{0, .5, {[](double u) { return std::min(1.0, std::max(0.0, u)); }}};
+
+// Zero with this probability, uniform otherwise.
+std::vector<double> pixels(Philox& random, std::size_t n, double black) {
+  return sorted(sample_of(n, [&] {
+    const double u = random.uniform();
+    return random.uniform() < black ? 0 : u;
+  }));
+}
+
+TEST(TwoPartKs, SplitsTheValuesAtTheAtom) {
+  const std::vector<double> x{0, 0, 0, .2, .9};
+  const TwoPartTest result = two_part_ks(x, half_black);
+  EXPECT_EQ(result.atoms_x, 3U);
+  EXPECT_NEAR(std::exp(result.atom.log_p_upper), .5, 1e-12);
+  const std::vector<double> rest{.2, .9};
+  const TestResult ks = kolmogorov_smirnov(ks_distance(rest, half_black.rest));
+  EXPECT_EQ(result.rest.log_p_upper, ks.log_p_upper);
+}
+
+TEST(TwoPartKs, TheAtomsOfTwoSamplesAreComparedByFishersExactTest) {
+  // scipy: fisher_exact([[8, 2], [1, 5]], "greater")[1] = 0.024475524475524483
+  std::vector<double> x(8, 0.0);
+  x.insert(x.end(), {.3, .6});
+  const std::vector<double> y{0, .1, .2, .4, .7, .8};
+  const TwoPartTest result = two_part_ks(x, y, 0);
+  EXPECT_EQ(result.atoms_x, 8U);
+  EXPECT_EQ(result.atoms_y, 1U);
+  EXPECT_NEAR(std::exp(result.atom.log_p_upper), 0.024475524475524483, 1e-12);
+  EXPECT_EQ(result.atom.log_p_lower, 0);
+}
+
+TEST(TwoPartKs, NothingButAtomsSaysNothingAboutTheRest) {
+  const std::vector<double> x(5, 0.0);
+  const TwoPartTest two = two_part_ks(x, x, 0);
+  EXPECT_EQ(two.log_p, 0);
+  EXPECT_EQ(two_part_ks(x, half_black).rest.log_p_upper, 0);
+  EXPECT_NEAR(std::exp(two_part_ks(x, half_black).log_p), 4 * std::pow(.5, 5), 1e-12);
+}
+
+TEST(TwoPartKs, RefusesMalformedSamples) {
+  const std::vector<double> unsorted{1, 0};
+  const std::vector<double> good{0, 1};
+  EXPECT_THROW(two_part_ks(unsorted, half_black), std::domain_error);
+  EXPECT_THROW(two_part_ks({}, good, 0), std::domain_error);
+  EXPECT_THROW(two_part_ks(good, good, std::nan("")), std::domain_error);
+  EXPECT_THROW(two_part_ks(good, {0, 1.5, half_black.rest}), std::domain_error);
+}
+
+TEST(QuantisationGate, JudgesTheStepAgainstTheThreshold) {
+  // n = 1e6 and alpha = 1e-3: d = .00195. Eight bits fail, sixteen pass.
+  EXPECT_FALSE(quantisation_gate(0x1p-8, 1e6, 1e-3).sound());
+  EXPECT_TRUE(quantisation_gate(0x1p-16, 1e6, 1e-3).sound());
+  EXPECT_NEAR(quantisation_gate(0x1p-10, 1e6, 1e-3).value, .25, .001);
+  EXPECT_TRUE(quantisation_gate(0, 1e6, 1e-3).sound());
+  EXPECT_THROW(quantisation_gate(-1, 10, .1), std::domain_error);
+  EXPECT_THROW(quantisation_gate(.1, 0, .1), std::domain_error);
+}
+
+// False alarm 1e-5 each (tests/stats/calibration.h).
+void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
+  const auto calibration = calibrate(experiment, draw);
+  EXPECT_TRUE(calibration.ok) << calibration.text();
+  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
+}
+
+void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
+  const auto calibration = calibrate(experiment, draw);
+  EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+TEST(TwoPartKs, IsAtMostUniform) {
+  expect_calibrated({371, 20000, Shape::at_most_uniform},
+                    [](Philox& r) { return two_part_ks(pixels(r, 60, .5), half_black).log_p; });
+  expect_calibrated({372, 20000, Shape::at_most_uniform}, [](Philox& random) {
+    const auto x = pixels(random, 50, .3);
+    return two_part_ks(x, pixels(random, 70, .3), 0).log_p;
+  });
+}
+
+TEST(TwoPartKs, TakingTheSmallerOfTwoPValuesForOneIsCaught) {
+  expect_caught({373, 8000, Shape::at_most_uniform}, [](Philox& random) {
+    const auto x = pixels(random, 250, .5);
+    const TwoPartTest result = two_part_ks(x, half_black);
+    return std::min(log_p_two_sided(result.atom), result.rest.log_p_upper);
+  });
+}
+
+TEST(TwoPartKs, TheLawOfAllValuesTakenForThatOfTheRestIsCaught) {
+  AtomLaw wrong = half_black;
+  wrong.rest.cdf = [](double u) { return .5 + u / 2; };
+  expect_caught({374, 2000, Shape::at_most_uniform},
+                [&](Philox& random) { return two_part_ks(pixels(random, 60, .5), wrong).log_p; });
+}
+
+// Nine tenths black in both, the rest uniform in one and its square in the other, n = 1000 each,
+// alpha .01: the rest differs by .25 over 100 values, all values by .025 over 1000. Hoeffding at
+// 1e-5, R = 500: .11 each.
+TEST(TwoPartKs, FindsADifferenceInTheRestThatTheDistanceAloneMisses) {
+  Philox random(375);
+  int split = 0;
+  int alone = 0;
+  for (int i = 0; i < 500; ++i) {
+    const auto x = pixels(random, 1000, .9);
+    auto y = pixels(random, 1000, .9);
+    for (double& value : y) value *= value;
+    split += two_part_ks(x, y, 0).log_p <= std::log(.01);
+    alone += kolmogorov_smirnov(ks_distance(x, y)).log_p_upper <= std::log(.01);
+  }
+  std::cout << "  found " << split / 500.0 << ", by the distance alone " << alone / 500.0 << "\n";
+  EXPECT_GT(split / 500.0 - alone / 500.0, .22);
+}
+
+}  // namespace
+}  // namespace assay::stats
