@@ -41,11 +41,14 @@ ImageFamily image_pyramid(const ZMap& map);
 // tail. It needs independent elements. For others (reconstruction filters, Metropolis chains,
 // shared points) give the p-value of a sign flip (image_sign_flip.h) as `energy_log_p`.
 //
-// Asymptotic: Welch's law, and for one stack against a reference no strongly skewed replicates at
-// the critical value of a single element (README.md, limits).
+// Asymptotic: Welch's law.
 // Throws std::domain_error as welch_z does, and for a positive energy_log_p.
+// `single_elements = false` leaves single elements out of the family (their share stays unspent;
+// different constants still are certain): no sum thins out their skewness, and with 16 skewed
+// replicates of unlike variance their part of the level is exceeded sevenfold.
 struct PyramidOptions {
   std::optional<double> energy_log_p = {};
+  bool single_elements = true;
 };
 template <class Real>
 ImageFamily image_pyramid(const ImageStack<Real>& a, const ImageStack<Real>& b,

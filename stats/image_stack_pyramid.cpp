@@ -222,13 +222,15 @@ std::size_t largest(std::span<const double> z) {
 
 // Single elements: the best by z, its p-value exactly.
 template <class Real>
-void add_elements(ImageFamily& family, const ImagePair<Real>& pair, double share) {
+void add_elements(ImageFamily& family, const ImagePair<Real>& pair, const PyramidOptions& options,
+                  double share) {
   std::vector<double> z(pair.a.extent.elements());
   const WelchCounts counts = element_map(pair, z);
   family.tested = counts.tested;
   family.equal_constants = counts.equal_constants;
   family.different_constants = counts.different_constants;
-  if (counts.tested + counts.different_constants == 0) return;
+  const bool wanted = options.single_elements && counts.tested > 0;
+  if (!wanted && counts.different_constants == 0) return;
   const std::size_t element = largest(z);
   ImageFinding finding = certain_finding(pair.a.extent, element, z[element]);
   if (counts.different_constants == 0) {
@@ -275,7 +277,7 @@ ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options
   const ImageExtent& extent = pair.a.extent;
   const Groups groups = window_groups(extent, 1 - energy_share);
   ImageFamily family;
-  add_elements(family, pair, groups[0].share);
+  add_elements(family, pair, options, groups[0].share);
   if (family.different_constants == 0) {
     const auto half = halves_of(pair);
     std::vector<Best> best(groups.size());

@@ -244,6 +244,19 @@ TEST(ImagePyramid, OneDifferentConstantIsCertainAndPlaced) {
   EXPECT_LT(different.winner.z, 0);
 }
 
+TEST(ImagePyramid, WithoutSingleElementsOnlyDifferentConstantsAreOne) {
+  Philox random(843);
+  OwnedStack a = normal_stack(random, 16);
+  OwnedStack b = normal_stack(random, 16);
+  for (auto& image : a.images) image[27] += 30;
+  const PyramidOptions options{.single_elements = false};
+  EXPECT_EQ(image_pyramid(a.view(), b.view()).winner.size, 1);
+  EXPECT_EQ(image_pyramid(a.view(), b.view(), options).groups[0].size, 2);
+  for (auto& image : a.images) image[27] = 1;
+  for (auto& image : b.images) image[27] = 2;
+  EXPECT_EQ(image_pyramid(a.view(), b.view(), options).winner.size, 1);
+}
+
 TEST(ImagePyramid, EqualConstantsEverywhereAreNoEvidence) {
   const OwnedStack a = draw_stack(small, 16, [](std::size_t e) { return static_cast<double>(e); });
   const ImageFamily family = image_pyramid(a.view(), a.view());
