@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "harness/constant.h"
-#include "harness/plan.h"
+#include "harness/critical.h"
+#include "stats/skewness_corrected_t.h"
 
 namespace assay::harness {
 namespace {
@@ -51,6 +52,21 @@ std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
   return "";
 }
 
+stats::Gate skewness_gate(const Question& question, std::span<const ChannelData> data, double x) {
+  if (data.size() == 1) return stats::skewness_gate(data[0].moments, x);
+  return stats::skewness_gate(data[0].moments, data[1].moments, question.factor, x);
+}
+
+stats::Gate residual_gate(const Question& question, std::size_t channel,
+                          std::span<const ChannelData> data, double x) {
+  if (data.size() == 2) {
+    return stats::residual_skewness_gate(data[0].moments, data[1].moments, question.factor, x);
+  }
+  const Constant& reference = question.references[channel];
+  return stats::residual_skewness_gate(data[0].moments, {reference.value, reference.standard_error},
+                                       x);
+}
+
 }  // namespace
 
 reports::Gate gate_of(const stats::Gate& gate, const std::string& where) {
@@ -73,23 +89,24 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
                                       std::span<const ChannelData> data) {
   std::vector<reports::Gate> gates;
   const Question& question = outcome.question;
+  const std::string& method = outcome.plan.method.name;
   const bool several = question.channel_count() > 1;
   const std::string name = several ? ", " + question.channel_name(channel) : "";
-  const double x = critical_value(outcome.share().alpha, outcome.plan.regions[channel].two_sided());
-  if (question.of_means()) {
-    gates.push_back(
-        gate_of(data.size() == 1
-                    ? stats::skewness_gate(data[0].moments, x)
-                    : stats::skewness_gate(data[0].moments, data[1].moments, question.factor, x),
-                name));
+  const double x = critical_value(outcome.share().alpha, two_sided(question));
+  const bool exact = method == "binomial" || method == "bounded";
+  if (question.of_means() && !exact) {
+    gates.push_back(gate_of(method == "skewness-corrected-t"
+                                ? residual_gate(question, channel, data, x)
+                                : skewness_gate(question, data, x),
+                            name));
   }
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
     if (!(data[subject].moments.m2 > 0)) continue;
     const std::string whose = name + " of " + question.subjects[subject].estimator->name;
-    if (question.of_means()) {
+    if (question.of_means() && !exact) {
       gates.push_back(gate_of(stats::dominance_gate(data[subject].moments), whose));
     }
-    if (outcome.plan.method.name == "F" || outcome.plan.method.name == "chi-square") {
+    if (method == "F" || method == "chi-square") {
       gates.push_back(gate_of(stats::kurtosis_gate(data[subject].moments), whose));
     }
   }

@@ -249,7 +249,8 @@ void judge(TestWork& work) {
     // What stats cannot test: no spread where one is needed, too few cells.
     outcome.channels.clear();
     remember(outcome, false);
-    settle(outcome, Verdict::invalid, error.what());
+    settle(outcome, Verdict::invalid,
+           outcome.plan.invalid.empty() ? error.what() : outcome.plan.invalid);
   }
 }
 

@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "harness/inversion.h"
 #include "harness/law_cdf.h"
+#include "harness/mean_evidence.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_fit.h"
 #include "stats/chi_square_variance.h"
 #include "stats/f_ratio.h"
 #include "stats/kolmogorov_smirnov.h"
 #include "stats/log_variance.h"
-#include "stats/student_t.h"
-#include "stats/welch_t.h"
 
 namespace assay::harness {
 namespace {
@@ -32,86 +29,6 @@ Interval map_ends(const Interval& interval, const std::function<double(double)>&
   const double one = map(interval.low);
   const double other = map(interval.high);
   return {std::min(one, other), std::max(one, other), interval.confidence};
-}
-
-/// theta = (E x - r) / |r|, or E x - r.
-Evidence mean_against_number(const Question& question, std::size_t channel, const Moments& x) {
-  const Constant& reference = question.references[channel];
-  const bool relative = is_relative(question, channel);
-  const double unit = relative ? std::abs(reference.value) : 1;
-  const double slope = relative ? std::copysign(1, reference.value) : 0;
-  const auto at = [=](double theta) {
-    return stats::student_t(
-        x, {.value = reference.value + theta * unit,
-            .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
-  };
-  const auto interval = [=](double confidence) {
-    // Theta scales the reference's own error too: the interval is what `at` does not reject.
-    if (relative && reference.standard_error > 0) {
-      return interval_by_inversion(
-          at,
-          {.estimate = (x.mean - reference.value) / unit,
-           .step = std::hypot(x.standard_error(), reference.standard_error) / unit},
-          confidence);
-    }
-    return map_ends(
-        stats::student_t_interval(x, {reference.value, reference.standard_error}, confidence),
-        [=](double d) { return d / unit; });
-  };
-  return {.estimate = (x.mean - reference.value) / unit,
-          .at = at,
-          .interval = interval,
-          .quantity =
-              relative ? "relative difference from the reference" : "difference from the reference",
-          .relative = relative};
-}
-
-/// Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
-double log_p_of_no_sign(const Moments& y) {
-  if (y.m2 == 0) return y.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();
-  return stats::log_p_two_sided(stats::student_t(y, {.value = 0}));
-}
-
-/// theta = (E x - c E y) / |c E y|, tested as a contrast, or E x - c E y.
-Evidence mean_against_mean(const Question& question, std::size_t channel, const Moments& x,
-                           const Moments& y) {
-  const double factor = question.factor;
-  const double other = factor * y.mean;
-  if (!is_relative(question, channel)) {
-    const auto at = [=](double theta) {
-      return stats::welch_t(x, y, {.scale = factor, .offset = theta});
-    };
-    const auto interval = [=](double confidence) {
-      Moments scaled = y;  // of factor * y: only count, mean and m2 enter
-      scaled.mean *= factor;
-      scaled.m2 *= factor * factor;
-      return stats::welch_t_interval(x, scaled, confidence);
-    };
-    return {.estimate = x.mean - other,
-            .at = at,
-            .interval = interval,
-            .quantity = "difference of means"};
-  }
-  const double sign = std::copysign(1, other);
-  const auto at = [=](double theta) {
-    stats::TestResult result =
-        stats::welch_t(x, y, {.scale = factor * (1 + sign * theta), .offset = 0});
-    if (theta == 0) return result;
-    // Which contrast a relative margin is depends on the sign of E y, which y must show as well.
-    const double log_p_sign = log_p_of_no_sign(y);
-    result.log_p_lower = std::max(result.log_p_lower, log_p_sign);
-    result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
-    return result;
-  };
-  const auto interval = [=](double confidence) {
-    return map_ends(stats::welch_ratio_interval(x, y, confidence),
-                    [=](double ratio) { return sign * ((1 + ratio) / factor - 1); });
-  };
-  return {.estimate = sign * (x.mean / other - 1),
-          .at = at,
-          .interval = interval,
-          .quantity = "relative difference of means",
-          .relative = true};
 }
 
 /// theta = ln(Var x per primary / v0).
@@ -276,11 +193,14 @@ std::vector<Method> methods_for(const Question& question) {
   const bool within = question.test->claim.relation == Relation::within;
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      if (within) return {{"tost", Keeps::moments}};
-      return {{"t", Keeps::moments}};
+      return {{within ? "tost" : "t", Keeps::moments},
+              {"skewness-corrected-t", Keeps::moments},
+              {"binomial", Keeps::moments},
+              {"bounded", Keeps::moments}};
     case QuestionKind::mean_of_two:
-      if (within) return {{"tost", Keeps::moments}};
-      return {{"welch", Keeps::moments}};
+      return {{within ? "tost" : "welch", Keeps::moments},
+              {"skewness-corrected-t", Keeps::moments},
+              {"binomial", Keeps::moments}};
     case QuestionKind::variance_of_one:
       return {{"chi-square", Keeps::moments}, {"log-variance", Keeps::moments}};
     case QuestionKind::variance_of_two:
@@ -344,9 +264,9 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
                      std::span<const ChannelData> data) {
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return mean_against_number(question, channel, data[0].moments);
+      return mean_against_number(method, question, channel, data[0].moments);
     case QuestionKind::mean_of_two:
-      return mean_against_mean(question, channel, data[0].moments, data[1].moments);
+      return mean_against_mean(method, question, channel, data);
     case QuestionKind::variance_of_one:
       return variance_against_number(method, question, channel, data[0]);
     case QuestionKind::variance_of_two:

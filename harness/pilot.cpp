@@ -9,33 +9,57 @@ namespace {
 // against any test. One that does not average may be a chain or an image: fewer.
 constexpr std::uint64_t averaging_observations = 8192;
 constexpr std::uint64_t other_observations = 512;
+// Of an image's thousands of channels only the moments are kept.
+constexpr std::size_t kept_channels = 64;
 
 std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
   const bool averages = estimator.entry->information.averages;
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
   auto pool =
       std::make_shared<Pool>(estimator.setup, key_of(estimator, seed, 0, "pilot"), primaries);
-  pool->request(averages ? averaging_observations : other_observations);
+  const std::uint64_t count = estimator.setup->observations().value_or(
+      averages ? averaging_observations : other_observations);
+  if (pool->plan().size() <= kept_channels) {
+    for (ChannelPlan& channel : pool->plan()) channel.keep = count;
+  }
+  pool->request(count);
   return pool;
 }
 
 Pilot read(const Pool& pool) {
   Pilot pilot{.channels = {}, .primaries = pool.primaries(), .trouble = pool.trouble()};
   if (!pilot.trouble.empty()) return pilot;
-  for (const ChannelSummary& channel : pool.prefix(pool.requested()).channels) {
-    pilot.channels.push_back(channel.moments);
+  const std::vector<ChannelSummary>& channels = pool.prefix(pool.requested()).channels;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    pilot.channels.push_back(channels[i].moments);
+    const std::span<const double> kept = pool.values(i, pool.requested());
+    if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
   }
   return pilot;
 }
 
 }  // namespace
 
+const Pilot* pilot_of(const Subject& subject, const Pilots& pilots) {
+  const auto found = pilots.find(subject.estimator->name);
+  return found != pilots.end() && found->second.trouble.empty() ? &found->second : nullptr;
+}
+
+PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
+                           const Pilots& pilots) {
+  const Subject& side = question.subjects[subject];
+  const Pilot& pilot = pilots.at(side.estimator->name);
+  const std::size_t index = side.channels[channel];
+  return {.moments = pilot.channels[index],
+          .values = index < pilot.values.size() ? std::span<const double>(pilot.values[index])
+                                                : std::span<const double>()};
+}
+
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
                   Progress& progress) {
   std::vector<std::string> names;
   std::vector<std::shared_ptr<Pool>> pools;
   for (const PreparedEstimator* estimator : estimators) {
-    if (estimator->setup->observations()) continue;
     names.push_back(estimator->name);
     pools.push_back(pilot_pool(*estimator, run.seed));
   }

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,19 +17,31 @@ namespace assay::harness {
 
 /// What a pilot tells of an estimator, by channel.
 struct Pilot {
-  std::vector<stats::Moments> channels;  ///< of secondaries of `primaries` primaries
+  std::vector<stats::Moments> channels;          ///< of secondaries of `primaries` primaries
+  std::vector<std::vector<double>> values = {};  ///< of the first channels, as drawn
   std::uint64_t primaries = 1;
   std::string trouble = "";  ///< why there are no numbers: the estimator threw
 };
 
-/// By estimator name. Averaging estimators at one primary, others at the suite's `primaries`.
-/// Estimators of bounded data have none: their rows are the test's own.
+/// By estimator name. Averaging estimators at one primary, others at the suite's `primaries`. Of
+/// ready-made data it is all rows, which are the test's own: only the method is chosen by them.
 using Pilots = std::map<std::string, Pilot>;
 
 struct PilotRun {
   std::uint64_t seed;
   unsigned threads;
 };
+
+/// The pilot of a subject, if it has one that went well.
+const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);
+
+/// One channel of a question in the pilot of one of its subjects, which must have one.
+struct PilotChannel {
+  const stats::Moments& moments;
+  std::span<const double> values;  ///< empty beyond the channels that are kept
+};
+PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
+                           const Pilots& pilots);
 
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
                   Progress& progress);

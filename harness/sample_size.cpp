@@ -27,12 +27,6 @@ double averaged(const Question& question, const Plan& plan, std::size_t subject)
   return question.subjects[subject].averages ? static_cast<double>(plan.primaries[subject]) : 1;
 }
 
-const stats::Moments& pilot_of(const Question& question, std::size_t subject, std::size_t channel,
-                               const Pilots& pilots) {
-  const Subject& side = question.subjects[subject];
-  return pilots.at(side.estimator->name).channels[side.channels[channel]];
-}
-
 double unit_of(const Question& question, std::size_t channel, double other_mean) {
   if (!is_relative(question, channel)) return 1;
   return std::abs(question.of_two() ? question.factor * other_mean
@@ -46,7 +40,7 @@ double secondary_kurtosis(const stats::Moments& pilot, double primaries) {
 /// From the pilot; nullopt where it has no spread.
 std::optional<PlannedChannel> planned_channel(const Question& question, std::size_t channel,
                                               const Pilots& pilots, const Plan& plan) {
-  const stats::Moments& first = pilot_of(question, 0, channel, pilots);
+  const stats::Moments& first = pilot_channel(question, 0, channel, pilots).moments;
   PlannedChannel planned{.regions = plan.regions[channel]};
   const bool constant = is_constant(question, 0, channel, first);
   // A mean without spread may be compared with one that has some; nothing else can be planned.
@@ -57,7 +51,7 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   }
   double other_mean = 0;
   if (question.of_two()) {
-    const stats::Moments& second = pilot_of(question, 1, channel, pilots);
+    const stats::Moments& second = pilot_channel(question, 1, channel, pilots).moments;
     other_mean = second.mean;
     if (is_constant(question, 1, channel, second)) {
       if (constant || question.kind != QuestionKind::mean_of_two) return std::nullopt;
@@ -215,10 +209,8 @@ double equivalence_power(const Question& question, const TestSize& size,
 }
 
 bool all_piloted(const Question& question, const Pilots& pilots) {
-  return std::all_of(question.subjects.begin(), question.subjects.end(), [&](const Subject& s) {
-    const auto found = pilots.find(s.estimator->name);
-    return found != pilots.end() && found->second.trouble.empty();
-  });
+  return std::all_of(question.subjects.begin(), question.subjects.end(),
+                     [&](const Subject& s) { return pilot_of(s, pilots) != nullptr; });
 }
 
 }  // namespace

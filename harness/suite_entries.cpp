@@ -166,7 +166,8 @@ void refuse_levels(const Document& document, const Value& test) {
 
 const std::vector<std::string>& method_names() {
   static const std::vector<std::string> names{
-      "t", "welch", "tost", "F", "chi-square", "log-variance", "ks", "chi-square-fit"};
+      "t", "welch",      "skewness-corrected-t", "binomial", "bounded",       "tost",
+      "F", "chi-square", "log-variance",         "ks",       "chi-square-fit"};
   return names;
 }
 

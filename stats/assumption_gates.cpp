@@ -16,7 +16,7 @@ constexpr double false_red = 1e-4;
 constexpr double green_factor = 1.25;
 constexpr double red_factor = 2;
 constexpr double kurtosis_limit = 0.2;
-constexpr double dominance_limit = 0.1;
+constexpr double dominance_limit = 0.5;
 
 GateState state_of(const Gate& gate, double green_up_to) {
   if (gate.value <= green_up_to) return GateState::green;

@@ -62,9 +62,11 @@ Gate skewness_gate(const Moments& x, double critical_value);
 // The same of the contrast mean x - scale mean y: a = sum psi^3 / (6 (sum psi^2)^1.5).
 Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value);
 
-// Value: max |x_i - mean| / (s sqrt n): no observation may dominate. Limit .1, or where normal data
-// exceed it by themselves, the 1e-4 critical value of Grubbs (1950), which is the exact allowance,
-// so low = value; green up to .1 or the 5 % critical value.
+// Value: max |x_i - mean| / (s sqrt n), whose square is one observation's share of the sum of
+// squares: none may dominate. Limit .5, or where normal data exceed it by themselves, the 1e-4
+// critical value of Grubbs (1950), which is the exact allowance, so low = value; green up to .5 or
+// the 5 % critical value. At .5 one observation alone makes a skewness of 2a = .04, which is the
+// limit of the skewness gate at the level .01; smaller values go with sound levels (README.md).
 Gate dominance_gate(const Moments& x);
 
 // Value: excess kurtosis b2 - 3 for F and chi-square tests of variances, green <= .2, limit .2. The

@@ -87,7 +87,8 @@ TEST(SetParameter, SaysWhatIsWrong) {
             "no suite has an estimator `aera`; did you mean `area`?");
   EXPECT_EQ(refused(suites, "area.sceen=triangle"),
             "luminaire/area has no parameter `sceen`; did you mean `scene`?");
-  EXPECT_EQ(refused(suites, "area.primaries=0"), "`primaries` must be a whole number, 1 or more, but it is `0`");
+  EXPECT_EQ(refused(suites, "area.primaries=0"),
+            "`primaries` must be a whole number, 1 or more, but it is `0`");
 }
 
 TEST(SuiteOfClaim, TakesPluginsByTheirName) {

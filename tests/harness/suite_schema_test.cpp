@@ -53,7 +53,8 @@ bool is_tested(QuantityName name) {
 
 TEST(SuiteSchema, OffersTheMethodsThereAre) {
   std::vector<std::string> names;
-  for (const Value& name : schema_of("test").find("enum")->items()) names.push_back(name.text());
+  const Value schema = schema_of("test");
+  for (const Value& name : schema.find("enum")->items()) names.push_back(name.text());
   EXPECT_THAT(names, ElementsAreArray(method_names()));
 }
 

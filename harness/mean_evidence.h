@@ -1,0 +1,25 @@
+#pragma once
+
+// Evidence about means: the same contrasts, tested by the method that was chosen.
+
+#include <span>
+
+#include "harness/method.h"
+#include "stats/bounded_mean.h"
+
+namespace assay::harness {
+
+/// theta = (E x - r) / |r| where margins are relative, else E x - r.
+Evidence mean_against_number(const Method& method, const Question& question, std::size_t channel,
+                             const stats::Moments& x);
+
+/// theta = (E x - c E y) / |c E y| where margins are relative, tested as a contrast, else E x - c E
+/// y.
+Evidence mean_against_mean(const Method& method, const Question& question, std::size_t channel,
+                           std::span<const ChannelData> data);
+
+/// The values a channel is declared to lie between; of recorded data the smallest and the largest.
+stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
+                      const stats::Moments& moments);
+
+}  // namespace assay::harness

@@ -1,0 +1,316 @@
+#include "harness/method_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/assumptions.h"
+#include "harness/constant.h"
+#include "harness/critical.h"
+#include "harness/mean_evidence.h"
+#include "harness/sample_size.h"
+#include "stats/assumption_gates.h"
+#include "stats/log_variance_level.h"
+#include "stats/pareto_tail.h"
+#include "stats/skewness_corrected_t.h"
+
+namespace assay::harness {
+namespace {
+
+using stats::GateState;
+
+// Fewer say nothing about their own shape.
+constexpr std::uint64_t first_look = 100;
+// What a test without `detect` takes.
+constexpr std::uint64_t classical_secondaries = 1000;
+// log-variance is asymptotic: on normal data its level at .001 is 1.3 times nominal here.
+constexpr std::uint64_t log_variance_secondaries = 1000;
+// The most that a method may ask for to be valid; as primaries beyond this cost more than they
+// give.
+constexpr std::uint64_t most_for_a_mean = 64 * classical_secondaries;
+constexpr std::uint64_t most_for_a_variance = 1024 * classical_secondaries;
+constexpr double level_factor = 1.25;
+
+/// What is known beforehand of one channel of one subject.
+struct Known {
+  std::size_t subject;
+  std::size_t channel;
+  PilotChannel pilot;
+  double averaged;  ///< how many of the pilot's values make a secondary
+  bool rows;        ///< the test's own data, not a pilot's
+  std::string label;
+};
+
+std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
+                                  const Plan& plan) {
+  std::vector<Known> all;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (pilot == nullptr || !side.purpose.empty()) continue;
+    for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+      const PilotChannel data = pilot_channel(question, subject, channel, pilots);
+      if (is_constant(question, subject, channel, data.moments)) continue;
+      const std::string part = question.channel_count() > 1
+                                   ? "." + side.setup->channels()[side.channels[channel]].name
+                                   : "";
+      all.push_back({.subject = subject,
+                     .channel = channel,
+                     .pilot = data,
+                     .averaged = side.averages ? static_cast<double>(plan.primaries[subject]) : 1,
+                     .rows = side.setup->observations().has_value(),
+                     .label = fmt::format(", pilot of {}{}", side.estimator->name, part)});
+    }
+  }
+  return all;
+}
+
+/// Notes a gate of the pilot; rows of a file are judged with the test's own data.
+void note(Plan& plan, const Known& known, const stats::Gate& gate) {
+  if (!known.rows) plan.gates.push_back(gate_of(gate, known.label));
+}
+
+/// One tail's gate, from the values signed so that it is the right one.
+stats::Gate right_tail_gate(std::vector<double> values, stats::TailClaim claim) {
+  std::sort(values.begin(), values.end());
+  const std::size_t tail = stats::pareto_tail_size(values.size()) + 1;
+  return stats::pareto_gate(std::span<const double>(values).last(tail), values.size(), claim);
+}
+
+/// Whether a tail is seen to its declared end, so that nothing heavier can hide in it.
+bool ends_in_sight(double farthest, double mean, double declared) {
+  return std::isfinite(declared) && std::abs(farthest - mean) >= std::abs(declared - mean) / 2;
+}
+
+/// At the estimate. A lattice or a rare second part can look like a heavy tail; it is none while
+/// the variance of the variance, (kurtosis - 1) / n, is small. Large, it tells by itself that the
+/// pilot does not know the variance yet.
+GateState tail_state(const stats::Gate& gate, const stats::Moments& moments,
+                     stats::TailClaim claim) {
+  const bool mean = claim == stats::TailClaim::mean;
+  const double variance_of_variance = (moments.kurtosis() - 1) / static_cast<double>(moments.count);
+  // Below the limit, but only a surely light tail explains such a kurtosis.
+  if (!mean && variance_of_variance > 0.01 && gate.value > 0.1) return GateState::red;
+  if (gate.value <= gate.limit) return GateState::green;
+  return variance_of_variance > (mean ? 0.1 : 0.001) ? GateState::red : GateState::amber;
+}
+
+/// The heavier tail's gate, at the estimate: the pilot chooses, it does not accuse.
+std::optional<stats::Gate> tail_gate(const Question& question, const Known& known,
+                                     stats::TailClaim claim) {
+  const stats::Moments& moments = known.pilot.moments;
+  std::vector<double> values(known.pilot.values.begin(), known.pilot.values.end());
+  const bool finite =
+      std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  if (values.size() < classical_secondaries || !finite) return {};
+  std::optional<stats::Gate> heavier;
+  const stats::Range range = range_of(question, known.subject, known.channel, moments);
+  if (known.rows || !ends_in_sight(moments.maximum, moments.mean, range.high)) {
+    heavier = right_tail_gate(values, claim);
+  }
+  if (known.rows || !ends_in_sight(moments.minimum, moments.mean, range.low)) {
+    for (double& value : values) value = -value;
+    const stats::Gate left = right_tail_gate(values, claim);
+    if (!heavier || left.value > heavier->value) heavier = left;
+  }
+  if (!heavier) return {};
+  heavier->low = heavier->value;
+  heavier->state = tail_state(*heavier, moments, claim);
+  return heavier;
+}
+
+/// Notes the tails' gates; says why the claim cannot be tested where one is too heavy.
+std::string too_heavy(const Question& question, const std::vector<Known>& channels,
+                      stats::TailClaim claim, Plan& plan) {
+  std::string reason;
+  for (const Known& known : channels) {
+    const std::optional<stats::Gate> gate = tail_gate(question, known, claim);
+    if (!gate) continue;
+    note(plan, known, *gate);
+    if (gate->state != GateState::red) continue;
+    reason = fmt::format(
+        "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the {} moment that the test rests "
+        "on "
+        "may not exist; clamp the estimator, declare its range, or claim something of its "
+        "distribution",
+        gate->value, gate->limit, known.label,
+        claim == stats::TailClaim::mean ? "second" : "fourth");
+  }
+  return reason;
+}
+
+std::uint64_t whole(double count) {
+  return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
+}
+
+// ---- Means
+
+/// Secondaries at which the worse tail of Student's t is right within a quarter.
+std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) {
+  double needed = 2;
+  for (const Known& known : channels) {
+    const double skewness = stats::primary_shape(known.pilot.moments).skewness;
+    const double root = std::abs(skewness) * std::pow(critical, 3) / (3 * std::log(level_factor));
+    needed = std::max(needed, root * root / known.averaged);
+  }
+  return whole(needed);
+}
+
+/// The same of the skewness-corrected t.
+std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double critical) {
+  std::uint64_t needed = first_look;
+  for (const Known& known : channels) {
+    const stats::PrimaryShape primary = stats::primary_shape(known.pilot.moments);
+    const stats::PrimaryShape shape{.skewness = primary.skewness / std::sqrt(known.averaged),
+                                    .excess_kurtosis = primary.excess_kurtosis / known.averaged};
+    const auto factor = [&](std::uint64_t count) {
+      return stats::corrected_level_factor(shape, {.count = count, .critical_value = critical});
+    };
+    while (needed < impossible_secondaries && factor(needed) > level_factor)
+      needed += needed / 4 + 1;
+  }
+  return needed;
+}
+
+/// Whether every value known of every subject is one of the two ends of its range.
+bool are_two_valued(const Question& question, const std::vector<Known>& channels,
+                    const Plan& plan) {
+  if (question.of_two() ? question.factor <= 0 : question.references[0].standard_error > 0) {
+    return false;
+  }
+  return channels.size() == question.subjects.size() * question.channel_count() &&
+         std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
+           const stats::Range range =
+               range_of(question, known.subject, known.channel, known.pilot.moments);
+           return plan.primaries[known.subject] == 1 && !known.pilot.values.empty() &&
+                  std::all_of(known.pilot.values.begin(), known.pilot.values.end(),
+                              [&](double v) { return v == range.low || v == range.high; });
+         });
+}
+
+bool are_bounded(const Question& question, const std::vector<Known>& channels) {
+  if (question.of_two()) return false;
+  return std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
+    const stats::Range range = range_of(question, 0, known.channel, known.pilot.moments);
+    return !known.rows && std::isfinite(range.low) && std::isfinite(range.high) &&
+           question.references[known.channel].standard_error == 0;
+  });
+}
+
+/// How many secondaries the test has or is worth, before any look at shapes.
+std::uint64_t intended(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                       std::uint64_t most, const Plan& plan) {
+  if (question.test->secondaries) return std::min(*question.test->secondaries, most);
+  const bool rows =
+      std::any_of(question.subjects.begin(), question.subjects.end(),
+                  [](const Subject& subject) { return subject.setup->observations().has_value(); });
+  if (rows) return most;
+  const auto planned = planned_secondaries(question, place.share, pilots, plan);
+  return std::min(most, planned.value_or(classical_secondaries));
+}
+
+std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
+                              const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  const std::vector<Known> channels = known_channels(question, pilots, plan);
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  const std::string heavy = too_heavy(question, channels, stats::TailClaim::mean, plan);
+  const std::uint64_t for_t = enough_for_t(channels, x);
+  const std::uint64_t for_corrected = enough_for_corrected(channels, x);
+  const std::uint64_t size = intended(question, place, pilots, most, plan);
+  const bool fixed = question.test->secondaries || size == most;
+  // Where the size is open, validity may ask for more; the t test only if looks stay early.
+  const std::uint64_t affordable = fixed ? size : std::min(most, std::max(size, most_for_a_mean));
+  const std::uint64_t early = fixed || size <= classical_secondaries ? size : size / 4;
+  std::uint64_t least = std::max(first_look, for_t);
+  if (question.test->method) {
+    least = first_look;
+  } else if (are_two_valued(question, channels, plan)) {
+    plan.method = find_method(question, "binomial");
+    return first_look;
+  } else if (for_t > std::max(first_look, early) && for_corrected < for_t &&
+             for_corrected <= affordable) {
+    plan.method = find_method(question, "skewness-corrected-t");
+    least = for_corrected;
+  } else if (for_t > affordable && !channels.empty() && are_bounded(question, channels)) {
+    plan.method = find_method(question, "bounded");
+    return first_look;
+  }
+  for (const Known& known : channels) {
+    stats::Gate gate = stats::predicted_skewness_gate(
+        stats::primary_shape(known.pilot.moments), whole(known.averaged),
+        {.secondaries = std::clamp(std::max(least, size), std::uint64_t{2}, affordable),
+         .critical_value = x});
+    // Answered by the method chosen.
+    const bool answered = plan.method.name == "skewness-corrected-t";
+    if (answered && gate.state == GateState::red) gate.state = GateState::amber;
+    note(plan, known, gate);
+  }
+  if (!question.test->method) plan.invalid = heavy;
+  return std::min(least, affordable);
+}
+
+// ---- Variances
+
+std::uint64_t enough_for_log_variance(const Question& question, const std::vector<Known>& channels,
+                                      double critical) {
+  std::uint64_t needed = log_variance_secondaries;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    std::vector<stats::SixthOrderShape> shapes;
+    for (const Known& known : channels) {
+      if (known.channel != channel || known.pilot.values.empty()) continue;
+      shapes.push_back(
+          stats::averaged(stats::sixth_order_shape(known.pilot.values), whole(known.averaged)));
+    }
+    if (shapes.empty()) continue;
+    needed = std::max(needed, shapes.size() == 1
+                                  ? stats::values_for_log_variance(shapes[0], critical)
+                                  : stats::values_for_log_variance(shapes[0], shapes[1], critical));
+  }
+  return needed;
+}
+
+/// F and chi-square where the pilot predicts near-normal secondaries; else the logarithm of the
+/// variance with its own kurtosis, from as many secondaries on as that needs; else nothing.
+std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
+                                  const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  const std::vector<Known> channels = known_channels(question, pilots, plan);
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  const stats::ShapeLimits limits = shape_limits(x);
+  const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
+  bool normal = channels.size() == question.subjects.size() * question.channel_count();
+  for (const Known& known : channels) {
+    stats::Gate gate = stats::predicted_kurtosis_gate(stats::primary_shape(known.pilot.moments),
+                                                      whole(known.averaged), limits);
+    normal = normal && !known.rows && gate.state == GateState::green;
+    // Answered by the method chosen below.
+    if (!question.test->method && gate.state == GateState::red) gate.state = GateState::amber;
+    note(plan, known, gate);
+  }
+  if (question.test->method) return first_look;
+  plan.invalid = heavy;
+  if (normal) return first_look;
+  plan.method = find_method(question, "log-variance");
+  const std::uint64_t needed = enough_for_log_variance(question, channels, x);
+  const std::uint64_t size = intended(question, place, pilots, most, plan);
+  const bool fixed = question.test->secondaries || size == most;
+  if (plan.invalid.empty() && needed > (fixed ? size : most_for_a_variance)) {
+    plan.invalid = fmt::format(
+        "secondary estimates of this shape need about {:.2g} observations before any test of their "
+        "variance keeps its level; larger `primaries`, or rows that each average several, bring "
+        "them nearer to normal",
+        static_cast<double>(needed));
+  }
+  return std::min(needed, fixed ? size : most_for_a_variance);
+}
+
+}  // namespace
+
+std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
+                            const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  if (question.of_means()) return choose_for_mean(question, place, pilots, most, plan);
+  if (question.of_variances()) return choose_for_variance(question, place, pilots, most, plan);
+  return first_look;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,108 @@
+#include "stats/log_variance_level.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/check.h"
+#include "stats/errors.h"
+
+namespace assay::stats {
+namespace {
+
+// exp(700) is near the largest double.
+constexpr double largest_exponent = 700;
+
+// B sqrt n of one sample; `share` of the variance of the difference.
+double slope(const SixthOrderShape& x, double share) {
+  const double square = x.kurtosis - 1;
+  if (!(square > 0)) return 0;
+  const double c = std::sqrt(square);
+  const double g = (x.sixth - 3 * x.kurtosis + 2) / (square * c);
+  return std::abs(g / 3 - c / 2) * std::pow(share, 1.5);
+}
+
+double slope_of_both(const SixthOrderShape& x, const SixthOrderShape& y) {
+  const double of_x = std::max(0.0, x.kurtosis - 1);
+  const double of_y = std::max(0.0, y.kurtosis - 1);
+  if (of_x + of_y == 0) return 0;
+  return slope(x, of_x / (of_x + of_y)) + slope(y, of_y / (of_x + of_y));
+}
+
+double factor(double slope, PlannedLogVariance plan) {
+  check::at_least({"log_variance_level_factor", "count"}, plan.count, 2);
+  check::positive({"log_variance_level_factor", "critical_value"}, plan.critical_value);
+  const double cube = plan.critical_value * plan.critical_value * plan.critical_value;
+  const double exponent = slope * cube / std::sqrt(static_cast<double>(plan.count));
+  return std::exp(std::min(exponent, largest_exponent));
+}
+
+std::uint64_t needed(double slope, double critical_value, double level_factor) {
+  check::positive({"values_for_log_variance", "critical_value"}, critical_value);
+  if (!(level_factor > 1)) {
+    check::fail({"values_for_log_variance", "level_factor"}, level_factor, "above 1");
+  }
+  const double cube = critical_value * critical_value * critical_value;
+  const double root = slope * cube / std::log(level_factor);
+  const double count = std::ceil(root * root);
+  if (!(count < 0x1p53))
+    check::fail({"values_for_log_variance", "values needed"}, count, "below 2^53");
+  return static_cast<std::uint64_t>(std::max(2.0, count));
+}
+
+}  // namespace
+
+SixthOrderShape sixth_order_shape(std::span<const double> values) {
+  check::at_least({"sixth_order_shape", "count"}, values.size(), 2);
+  const double n = static_cast<double>(values.size());
+  double mean = 0;
+  for (const double value : values) mean += value / n;
+  double sums[7] = {};
+  for (const double value : values) {
+    const double d = value - mean;
+    double power = d;
+    for (int r = 2; r <= 6; ++r) sums[r] += (power *= d);
+  }
+  check::finite({"sixth_order_shape", "sum of sixth powers"}, sums[6]);
+  if (sums[2] == 0) throw ZeroVariance("sixth_order_shape: zero variance");
+  const auto standardised = [&](int r) { return sums[r] / n / std::pow(sums[2] / n, r / 2.0); };
+  return {.skewness = standardised(3),
+          .kurtosis = standardised(4),
+          .fifth = standardised(5),
+          .sixth = standardised(6)};
+}
+
+SixthOrderShape averaged(const SixthOrderShape& shape, std::uint64_t count) {
+  check::at_least({"averaged", "count"}, count, 1);
+  const double m = static_cast<double>(count);
+  // Cumulants of the standardised law from its moments, and back (mu_2 = 1).
+  const double k3 = shape.skewness / std::sqrt(m);
+  const double k4 = (shape.kurtosis - 3) / m;
+  const double k5 = (shape.fifth - 10 * shape.skewness) / (m * std::sqrt(m));
+  const double k6 =
+      (shape.sixth - 15 * shape.kurtosis - 10 * shape.skewness * shape.skewness + 30) / (m * m);
+  return {.skewness = k3,
+          .kurtosis = k4 + 3,
+          .fifth = k5 + 10 * k3,
+          .sixth = k6 + 15 * k4 + 10 * k3 * k3 + 15};
+}
+
+double log_variance_level_factor(const SixthOrderShape& x, PlannedLogVariance plan) {
+  return factor(slope(x, 1), plan);
+}
+
+double log_variance_level_factor(const SixthOrderShape& x, const SixthOrderShape& y,
+                                 PlannedLogVariance plan) {
+  return factor(slope_of_both(x, y), plan);
+}
+
+std::uint64_t values_for_log_variance(const SixthOrderShape& x, double critical_value,
+                                      double level_factor) {
+  return needed(slope(x, 1), critical_value, level_factor);
+}
+
+std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrderShape& y,
+                                      double critical_value, double level_factor) {
+  return needed(slope_of_both(x, y), critical_value, level_factor);
+}
+
+}  // namespace assay::stats
