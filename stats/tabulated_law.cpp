@@ -13,10 +13,10 @@ struct Part {
   Integral first;   // of the lower half
   Integral second;  // of the upper half
   double error = 0;
+  double chord = 0;
   double badness = 0;  // above 1: to be halved
   int depth = 0;
 
-  double chord() const { return std::abs(first.value - second.value) / 2; }
   bool operator<(const Part& other) const { return badness < other.badness; }
 };
 
@@ -26,15 +26,16 @@ class Table {
   Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule, TableLimits limits)
       : density_(density), rule_(rule), limits_(limits) {}
 
-  void add(Span span) { add(span, rule_.once(density_, span), 0); }
+  void add(Span span) { add(span, rule_.once(density_, span), {}); }
 
   void refine() {
     while (parts_.front().badness > 1 && !rule_.exhausted()) {
       std::pop_heap(parts_.begin(), parts_.end());
       const Part part = parts_.back();
       parts_.pop_back();
-      add({part.span.low, part.span.middle()}, part.first, part.depth + 1);
-      add({part.span.middle(), part.span.high}, part.second, part.depth + 1);
+      const Inherited inherited{part.chord / 4, part.depth + 1};
+      add({part.span.low, part.span.middle()}, part.first, inherited);
+      add({part.span.middle(), part.span.high}, part.second, inherited);
     }
   }
 
@@ -47,7 +48,7 @@ class Table {
       append(law, part.span.middle(), part.first.value);
       append(law, part.span.high, part.second.value);
       law.total_error += part.error;
-      largest_chord = std::max(largest_chord, part.chord());
+      largest_chord = std::max(largest_chord, part.chord);
     }
     check::positive({"tabulate", "mass"}, law.total());
     law.error = (largest_chord + law.total_error) / law.total();
@@ -55,16 +56,25 @@ class Table {
   }
 
  private:
-  void add(Span span, Integral whole, int depth) {
+  // Of the part that this is a half of. Halving takes a chord to a quarter where the density is
+  // smooth; a part with a symmetric peak has halves of equal mass and would show none.
+  struct Inherited {
+    double chord = 0;
+    int depth = 0;
+  };
+
+  void add(Span span, Integral whole, Inherited from) {
     Part part{.span = span,
               .first = rule_.once(density_, {span.low, span.middle()}),
               .second = rule_.once(density_, {span.middle(), span.high}),
-              .depth = depth};
+              .depth = from.depth};
     const Integral sum = part.first + part.second;
     part.error = std::max(std::abs(sum.value - whole.value), sum.error);
-    if (depth < limits_.deepest_bisection) {
-      part.badness = std::max(part.chord() / limits_.chord, part.error / rule_.limits().tolerance);
+    part.chord = std::max(std::abs(part.first.value - part.second.value) / 2, from.chord);
+    if (part.depth < limits_.deepest_bisection) {
+      part.badness = std::max(part.chord / limits_.chord, part.error / rule_.limits().tolerance);
     }
+    if (part.depth == 0) part.badness = std::max(part.badness, 2.0);  // it has inherited nothing
     parts_.push_back(part);
     std::push_heap(parts_.begin(), parts_.end());
   }

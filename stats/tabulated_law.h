@@ -14,8 +14,9 @@ struct TabulatedLaw {
   double total_error = 0;         // of the mass, estimated
   // Estimate of sup |table - law|: the largest chord plus the errors of all masses, over the mass.
   // The chord is half the difference of the masses of a part's halves, i.e. what the law departs
-  // from a line at the part's middle; as the middle is itself a place of the table, what is left
-  // is a quarter of that where the density is smooth and at most the whole where it jumps.
+  // from a line at the part's middle, and no less than a quarter of the chord of the part that it
+  // is a half of. As the middle is itself a place of the table, what is left is a quarter of the
+  // chord where the density is smooth and about the whole where it jumps.
   double error = 0;
 
   double total() const { return cumulated.back(); }

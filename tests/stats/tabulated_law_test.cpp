@@ -41,6 +41,16 @@ TEST(TabulatedLaw, FollowsANarrowLobeWithinItsError) {
   EXPECT_NEAR(table.total(), 1, 1e-9);
 }
 
+// Halves of equal mass about each peak show no chord of their own.
+TEST(TabulatedLaw, FollowsPeaksInTheMiddleOfItsPartsWithinItsError) {
+  constexpr double wave = 64 * std::numbers::pi;  // a whole wave to a part
+  const auto table = table_of([](double x) { return 1 - std::cos(wave * x); }, {0, 1});
+  const double distance =
+      largest_distance(table, {0, 1}, [](double x) { return x - std::sin(wave * x) / wave; });
+  EXPECT_LE(distance, table.error);
+  EXPECT_LT(table.error, 1e-5);
+}
+
 TEST(TabulatedLaw, FollowsAJumpWithinItsError) {
   const auto table = table_of([](double x) { return x < .437 ? 2.0 : .1; }, {0, 1});
   const double total = 2 * .437 + .1 * (1 - .437);
