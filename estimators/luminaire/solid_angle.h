@@ -116,10 +116,12 @@ class SolidAngleSampler final : public Sampler {
     return triangle ? primary_.weight(w, *triangle) / primary_.solid_angle() : 0;
   }
 
-  // The density jumps at the outline: some thirty nodes across a square of the same solid angle.
+  // The density jumps at the outline: more than thirty nodes across a square of the same solid
+  // angle. A corner of the outline thinner than the nodes' distance is not seen: at 8 x 16 parts
+  // the built-in triangle lacks 2.6e-4 of its mass, at 32 x 64 less than 1e-5.
   Panels panels() const override {
     const double across = std::sqrt(primary_.solid_angle());
-    const double parts = std::clamp(2 * std::numbers::pi / across, 8.0, 128.0);
+    const double parts = std::clamp(2 * std::numbers::pi / across, 32.0, 128.0);
     return {.first = static_cast<std::size_t>(parts),
             .second = static_cast<std::size_t>(2 * parts)};
   }
