@@ -3,6 +3,7 @@
 // A plugin's internal source of points with the density it declares, testable by itself.
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -45,6 +46,14 @@ struct Marginal {
 /// in [0, 2 pi). Interval: x (its bounds are the sampler's). Square and triangle: u and v.
 std::vector<Marginal> marginals(Domain domain);
 
+/// Numbers of equal parts of the ranges of a domain's coordinates (x; u and v; theta and phi) in
+/// which a density shows itself to a few nodes: a part is no wider than the narrowest lobe, and
+/// jumps along lines of a coordinate lie on borders of parts.
+struct Panels {
+  std::size_t first = 1;
+  std::size_t second = 1;
+};
+
 /// A source of points. Immutable: shared by all workers, its randomness is the stream's.
 class Sampler {
  public:
@@ -57,9 +66,15 @@ class Sampler {
   virtual double density(const Point& point) const = 0;
   /// The function whose integral the weight estimates (for a BRDF: f cos).
   virtual double evaluate(const Point& point) const = 0;
-  /// Largest number of cells along one coordinate on which the density is smooth enough for
-  /// quadrature is the tester's business; a narrow lobe may ask for subdivision here.
-  virtual int quadrature_subdivision() const { return 1; }
+  /// How finely a quadrature of the density must look.
+  virtual Panels panels() const { return {}; }
+  /// The discrete choices that a draw's `lobe` numbers from 0.
+  virtual int lobes() const { return 1; }
+  /// What a lobe adds to density(): its probability times its own density. They sum to density().
+  virtual double lobe_density(int /*lobe*/, const Point& point) const { return density(point); }
+  /// Probability of a lobe that has no density but sits on points, as a mirror's does: no part of
+  /// density(), and all its draws are one cell.
+  virtual double point_mass(int /*lobe*/) const { return 0; }
 };
 
 }  // namespace assay

@@ -137,14 +137,9 @@ std::string channel_text(const Channel& channel) {
   return hanging(text, 2, 6);
 }
 
-/// Parts are offered only where a claim can name them (sampler_setup.h).
 std::string sampler_text(const NamedSampler& named) {
   const Domain domain = named.sampler->domain();
-  std::string text = fmt::format("{}: {}", named.name, domain_name(domain));
-  if (domain != Domain::interval && domain != Domain::hemisphere) {
-    return hanging(text + "; this version has no test of it", 2, 6);
-  }
-  text += "; marginals";
+  std::string text = fmt::format("{}: {}; marginals", named.name, domain_name(domain));
   for (const Marginal& marginal : marginals(domain)) text += " " + marginal.name;
   return hanging(text, 2, 6);
 }

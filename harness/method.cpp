@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "harness/law_cdf.h"
+#include "harness/law_evidence.h"
 #include "harness/mean_evidence.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_fit.h"
 #include "stats/chi_square_variance.h"
 #include "stats/f_ratio.h"
-#include "stats/kolmogorov_smirnov.h"
 #include "stats/log_variance.h"
 
 namespace assay::harness {
@@ -80,56 +80,33 @@ Evidence variance_against_variance(const Method& method, const Question& questio
           .ratio = true};
 }
 
-std::vector<double> sorted_points(const Question& question, std::size_t subject,
-                                  std::size_t channel, std::span<const double> values) {
-  std::vector<double> points(values.begin(), values.end());
-  const Subject& side = question.subjects[subject];
-  if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
-    const double none = no_point(draws->marginals()[side.channels[channel]]);
-    std::erase(points, none);
-  }
-  std::sort(points.begin(), points.end());
-  return points;
-}
-
-/// theta = the sup distance, from either number of samples.
-template <class Distance>
-Evidence from_distance(const Distance& distance, double value) {
-  const auto at = [distance](double theta) {
-    return theta == 0 ? stats::kolmogorov_smirnov(distance)
-                      : stats::ks_margin(distance, std::max(0.0, theta));
-  };
-  const auto interval = [distance](double confidence) {
-    return stats::ks_interval(distance, confidence);
-  };
-  return {.estimate = value,
-          .at = at,
-          .interval = interval,
-          .quantity = "largest distance of distribution functions",
-          .distance = true};
-}
-
 Evidence law_against_law(const Question& question, std::size_t channel,
                          std::span<const ChannelData> data) {
-  const std::vector<double> x = sorted_points(question, 0, channel, data[0].values);
-  const std::vector<double> y = sorted_points(question, 1, channel, data[1].values);
-  const stats::TwoSampleDistance distance = stats::ks_distance(x, y);
-  return from_distance(distance, distance.distance());
+  return points_against_points(points_of(question, 0, channel, data[0].values),
+                               points_of(question, 1, channel, data[1].values));
 }
 
-stats::ContinuousLaw reference_law(const Question& question, std::size_t channel) {
+DeclaredLaw reference_law(const Question& question, std::size_t channel) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
+  DeclaredLaw declared;
   if (question.kind == QuestionKind::fit_to_law) {
-    return {.cdf = law_cdf(question.law), .left_limit = {}};
+    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}};
+  } else {
+    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
+    declared.law = {.cdf = std::cref(table), .left_limit = {}};
+    declared.error = table.error;
   }
-  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  return {.cdf = draws.marginal_cdf(question.channel_name(channel)), .left_limit = {}};
+  if (draws != nullptr) {
+    declared.missing = draws->cells().without_density();
+    declared.missing_error = draws->cells().tolerance();
+  }
+  return declared;
 }
 
 Evidence values_against_law(const Question& question, std::size_t channel,
                             const ChannelData& data) {
-  const std::vector<double> x = sorted_points(question, 0, channel, data.values);
-  const stats::OneSampleDistance distance = stats::ks_distance(x, reference_law(question, channel));
-  return from_distance(distance, distance.distance);
+  return points_against_law(points_of(question, 0, channel, data.values),
+                            reference_law(question, channel));
 }
 
 /// theta = w, Cohen's effect size over the cells.
@@ -138,9 +115,9 @@ Evidence cells_against_density(const Question& question, const ChannelData& data
   const stats::CellProbabilities& grid = draws.cells().grid;
   stats::CellCounts counts{.observed = {data.cells.begin(), data.cells.end()},
                            .probability = grid.probability};
-  counts.probability.push_back(std::max(0.0, 1 - grid.total));
-  const stats::ChiSquareFit fit = stats::chi_square_fit(
-      counts, {.probability_tolerance = std::max(1e-9, 2 * grid.total_error)});
+  counts.probability.push_back(draws.cells().missing());
+  const stats::ChiSquareFit fit =
+      stats::chi_square_fit(counts, {.probability_tolerance = draws.cells().tolerance()});
   const auto at = [fit](double theta) {
     return theta == 0 ? fit.test : stats::chi_square_fit_effect(fit, std::max(0.0, theta));
   };

@@ -4,44 +4,111 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <stdexcept>
+
+#include "harness/domain_chart.h"
 
 namespace assay::harness {
 namespace {
 
 // Fine enough to see a defect of one quadrant or a wrong exponent; cells that expect fewer than 20
 // points are pooled by the test.
-constexpr stats::HemisphereGrid hemisphere_grid{.cos_theta_cells = 16, .phi_cells = 32};
+constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
 constexpr std::size_t interval_cells = 64;
-// Tables of a marginal: so fine that the chord between two points is within 1e-4 of the law, and
-// cut across into strips, because quadrature of a long thin cell halves it along its short side as
-// well.
-constexpr std::size_t marginal_cells = 1024;
-constexpr std::size_t marginal_strips = 16;
-constexpr double marginal_tolerance = 1e-7;
+constexpr stats::QuadratureLimits cell_limits{.tolerance = 1e-9, .deepest_bisection = 24};
+constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7, .deepest_bisection = 24};
+// A table begins with no fewer parts.
+constexpr std::size_t least_parts = 32;
+// So many panels of both coordinates together cost about as much as the limits allow.
+constexpr std::size_t most_panels = std::size_t{1} << 15;
 
-stats::IntervalGrid interval_grid(const Sampler& sampler, std::size_t cells) {
-  return {.low = sampler.bounds()[0], .high = sampler.bounds()[1], .cells = cells};
+bool on_interval(const Sampler& sampler) { return sampler.domain() == Domain::interval; }
+
+stats::IntervalGrid interval_grid(const Sampler& sampler) {
+  return {.low = sampler.bounds()[0], .high = sampler.bounds()[1], .cells = interval_cells};
 }
 
-std::function<double(double)> density_on_interval(const Sampler& sampler) {
-  return [&sampler](double x) { return sampler.density({x, 0, 0}); };
-}
-
-std::function<double(stats::Direction)> density_on_hemisphere(const Sampler& sampler) {
-  return [&sampler](stats::Direction direction) {
-    const double sine = std::sqrt(std::max(0.0, 1 - direction.cos_theta * direction.cos_theta));
-    return sampler.density(
-        {sine * std::cos(direction.phi), sine * std::sin(direction.phi), direction.cos_theta});
-  };
-}
-
-stats::CellProbabilities cells_of(const Sampler& sampler) {
-  if (sampler.domain() == Domain::interval) {
-    return stats::cell_probabilities(interval_grid(sampler, interval_cells),
-                                     density_on_interval(sampler));
+/// Halved until they can be paid for: jumps then lie inside panels, and bisection finds them.
+Panels affordable(Panels panels) {
+  while (panels.first * panels.second > most_panels) {
+    std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
+    larger = (larger + 1) / 2;
   }
-  return stats::cell_probabilities(hemisphere_grid, density_on_hemisphere(sampler));
+  return panels;
+}
+
+using LobeDensity = std::function<double(const Point&)>;
+
+stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
+                                  LobeDensity density) {
+  const DomainChart chart = chart_by(sampler.domain(), marginal);
+  const Panels panels = affordable(sampler.panels());
+  const auto value = [chart, density](double first, double second) {
+    return density(chart.point(first, second)) * chart.jacobian(first, second);
+  };
+  return {.x = chart.first,
+          .y = chart.second,
+          .value = value,
+          .x_panels = marginal == 0 ? panels.first : panels.second,
+          .y_panels = marginal == 0 ? panels.second : panels.first};
+}
+
+stats::CellProbabilities cells_of_lobe(const Sampler& sampler, const stats::PlaneGrid& grid,
+                                       int lobe) {
+  if (on_interval(sampler)) {
+    return stats::cell_probabilities(interval_grid(sampler), [&](double x) {
+      return sampler.lobe_density(lobe, {x, 0, 0});
+    });
+  }
+  const LobeDensity density = [&](const Point& p) { return sampler.lobe_density(lobe, p); };
+  return stats::cell_probabilities(grid, plane_density(sampler, 0, density), cell_limits);
+}
+
+void append(stats::CellProbabilities& all, const stats::CellProbabilities& more) {
+  all.probability.insert(all.probability.end(), more.probability.begin(), more.probability.end());
+  all.error.insert(all.error.end(), more.error.begin(), more.error.end());
+  all.total += more.total;
+  all.total_error += more.total_error;
+}
+
+DensityCells cells_of(const Sampler& sampler, const stats::PlaneGrid& grid) {
+  DensityCells cells;
+  for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
+    append(cells.grid, cells_of_lobe(sampler, grid, lobe));
+  }
+  for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
+    const double mass = sampler.point_mass(lobe);
+    if (mass == 0) continue;
+    append(cells.grid, {.probability = {mass}, .error = {0}, .total = mass});
+    cells.point_masses += mass;
+  }
+  return cells;
+}
+
+stats::TabulatedLaw law_on_interval(const Sampler& sampler) {
+  stats::AdaptiveQuadrature rule(table_limits);
+  const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
+  const auto parts = stats::cut(range, range, std::max(sampler.panels().first, least_parts));
+  return stats::tabulate(
+      [&](double x) {
+        return rule.counted(sampler.density({x, 0, 0}));
+      },
+      parts, rule);
+}
+
+stats::TabulatedLaw law_of(const Sampler& sampler, std::size_t marginal) {
+  if (on_interval(sampler)) return law_on_interval(sampler);
+  const stats::PlaneDensity density =
+      plane_density(sampler, marginal, [&](const Point& p) { return sampler.density(p); });
+  stats::AdaptiveQuadrature rule(table_limits);
+  // A multiple of the panels, so that their borders stay borders.
+  const std::size_t each = (least_parts + density.x_panels - 1) / density.x_panels;
+  const auto parts = stats::cut(density.x, density.x, each * density.x_panels);
+  return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
+}
+
+bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
+  return draw.valid && sampler.point_mass(draw.lobe) == 0;
 }
 
 /// Draws of a sampler as an estimator yields observations.
@@ -52,8 +119,9 @@ class SamplerEstimator final : public Estimator {
 
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
     const SamplerDraw draw = setup_.sampler().sample(random);
+    const bool point = has_density(setup_.sampler(), draw);
     for (std::size_t i = 0; i < marginals_.size(); ++i) {
-      out[i] = draw.valid ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
+      out[i] = point ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
     }
     out[marginals_.size()] = static_cast<double>(setup_.cell(draw));
     cost.samples += 1;
@@ -64,25 +132,34 @@ class SamplerEstimator final : public Estimator {
   std::vector<Marginal> marginals_;
 };
 
-/// Distribution function through the cumulated probabilities of equal cells.
-std::function<double(double)> table(const std::vector<double>& probability, double low,
-                                    double high) {
-  std::vector<double> cumulated{0};
-  for (const double p : probability) cumulated.push_back(cumulated.back() + p);
-  for (double& value : cumulated) value /= cumulated.back();
-  return [cumulated, low, high](double x) {
-    const double cells = static_cast<double>(cumulated.size() - 1);
-    const double place = std::clamp((x - low) / (high - low), 0.0, 1.0) * cells;
-    const auto cell = std::min(static_cast<std::size_t>(place), cumulated.size() - 2);
-    return std::lerp(cumulated[cell], cumulated[cell + 1], place - static_cast<double>(cell));
-  };
+void require_sound(const NamedSampler& named, const Location& where) {
+  const Sampler& sampler = *named.sampler;
+  const auto [low, high] = sampler.bounds();
+  if (on_interval(sampler) && !(std::isfinite(low) && std::isfinite(high) && low < high)) {
+    throw InputError(where,
+                     fmt::format("sampler `{}` draws on [{}, {}]: no interval to divide into "
+                                 "cells",
+                                 named.name, low, high));
+  }
+  if (sampler.lobes() < 1) {
+    throw InputError(where, fmt::format("sampler `{}` has no lobe to draw from", named.name));
+  }
 }
 
 }  // namespace
 
+double DensityCells::tolerance() const { return std::max(1e-9, 2 * grid.total_error); }
+
+double DensityCells::missing() const {
+  const double rest = 1 - grid.total;
+  return rest <= tolerance() ? 0 : rest;
+}
+
 double no_point(const Marginal& marginal) { return marginal.low - 1; }
 
-SamplerSetup::SamplerSetup(NamedSampler named) : named_(std::move(named)) {}
+SamplerSetup::SamplerSetup(NamedSampler named) : named_(std::move(named)) {
+  if (!on_interval(sampler())) grid_ = equal_measure_grid(sampler().domain(), plane_cells);
+}
 
 std::vector<Marginal> SamplerSetup::marginals() const {
   std::vector<Marginal> all = assay::marginals(named_.sampler->domain());
@@ -107,52 +184,53 @@ std::unique_ptr<Estimator> SamplerSetup::make() const {
 }
 
 const DensityCells& SamplerSetup::cells() const {
-  if (!cells_) cells_ = std::make_shared<const DensityCells>(cells_of(*named_.sampler));
+  const std::scoped_lock lock(once_);
+  if (!cells_) cells_ = std::make_shared<const DensityCells>(cells_of(sampler(), grid_));
   return *cells_;
 }
 
 std::size_t SamplerSetup::cell(const SamplerDraw& draw) const {
-  const Sampler& sampler = *named_.sampler;
-  if (sampler.domain() == Domain::interval) {
-    const stats::IntervalGrid grid = interval_grid(sampler, interval_cells);
-    return draw.valid ? grid.index(draw.point[0]) : grid.size();
+  const std::size_t each = on_interval(sampler()) ? interval_cells : grid_.size();
+  const int lobes = sampler().lobes();
+  if (draw.lobe < 0 || draw.lobe >= lobes) {
+    throw std::domain_error(fmt::format("sampler `{}` drew from lobe {}, and declares {}",
+                                        named_.name, draw.lobe, lobes));
   }
-  if (!draw.valid) return hemisphere_grid.size();
-  return hemisphere_grid.index(
-      {.cos_theta = draw.point[2], .phi = std::atan2(draw.point[1], draw.point[0])});
+  const auto lobe = static_cast<std::size_t>(draw.lobe);
+  std::size_t next = static_cast<std::size_t>(lobes) * each;
+  for (int other = 0; other < lobes; ++other) {
+    if (sampler().point_mass(other) == 0) continue;
+    if (draw.valid && other == draw.lobe) return next;
+    ++next;
+  }
+  if (!draw.valid) return next;
+  if (on_interval(sampler())) return lobe * each + interval_grid(sampler()).index(draw.point[0]);
+  const auto [first, second] = chart_by(sampler().domain(), 0).coordinates(draw.point);
+  return lobe * each + grid_.index(first, second);
 }
 
-std::function<double(double)> SamplerSetup::marginal_cdf(const std::string& marginal) const {
-  const Sampler& sampler = *named_.sampler;
-  if (sampler.domain() == Domain::interval) {
-    return table(stats::cell_probabilities(interval_grid(sampler, marginal_cells),
-                                           density_on_interval(sampler))
-                     .probability,
-                 sampler.bounds()[0], sampler.bounds()[1]);
+const stats::TabulatedLaw& SamplerSetup::marginal_law(const std::string& marginal) const {
+  const std::scoped_lock lock(once_);
+  const auto found = laws_.find(marginal);
+  if (found != laws_.end()) return found->second;
+  const std::vector<Marginal> all = marginals();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].name == marginal) return laws_.emplace(marginal, law_of(sampler(), i)).first->second;
   }
-  const bool azimuth = marginal == "phi";
-  const stats::HemisphereGrid grid{.cos_theta_cells = azimuth ? marginal_strips : marginal_cells,
-                                   .phi_cells = azimuth ? marginal_cells : marginal_strips};
-  const stats::CellProbabilities cells = stats::cell_probabilities(
-      grid, density_on_hemisphere(sampler), {.tolerance = marginal_tolerance});
-  std::vector<double> sums(marginal_cells);
-  for (std::size_t cell = 0; cell < cells.probability.size(); ++cell) {
-    sums[azimuth ? cell % marginal_cells : cell / marginal_strips] += cells.probability[cell];
-  }
-  if (azimuth) return table(sums, 0, 2 * std::numbers::pi);
-  const auto of_cosine = table(sums, 0, 1);
-  return [of_cosine](double theta) { return 1 - of_cosine(std::cos(theta)); };
+  throw std::logic_error("no marginal " + marginal);
 }
 
 std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named,
                                                   const Location& where) {
-  const Domain domain = named.sampler->domain();
-  if (domain != Domain::interval && domain != Domain::hemisphere) {
-    throw InputError(where, fmt::format("sampler `{}` draws on a square, triangle or sphere; only "
-                                        "intervals and hemispheres can be divided into cells here",
-                                        named.name));
-  }
-  return std::make_shared<const SamplerSetup>(named);
+  require_sound(named, where);
+  static std::mutex once;
+  static std::map<const Sampler*, std::weak_ptr<const SamplerSetup>> known;
+  const std::scoped_lock lock(once);
+  std::weak_ptr<const SamplerSetup>& place = known[named.sampler.get()];
+  if (const auto setup = place.lock()) return setup;
+  const auto setup = std::make_shared<const SamplerSetup>(named);
+  place = setup;
+  return setup;
 }
 
 }  // namespace assay::harness

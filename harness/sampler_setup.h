@@ -3,24 +3,38 @@
 // A sampler's draws as observations: one channel per marginal and one with the number of the cell
 // that the point fell into. So samplers are drawn, counted and replayed like everything else.
 
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "estimators/estimator.h"
 #include "stats/cells.h"
+#include "stats/plane_cells.h"
+#include "stats/tabulated_law.h"
 
 namespace assay::harness {
 
 inline const std::string cell_channel = "cell";
 
-/// Cells of a sampler's domain on a fixed grid, with the probability its declared density gives
-/// each. The last cell is the draws that yield no point: 1 minus the density's integral.
+/// Cells of a sampler's domain on a fixed grid with the probability its declared density gives
+/// each: the grid once for every lobe, then a cell for every lobe that is a point mass. One more
+/// cell, the last, is the draws that yield no point.
 struct DensityCells {
   stats::CellProbabilities grid;
   std::size_t size() const { return grid.probability.size() + 1; }
+  /// What the quadrature may have missed of all probability: twice the estimated error, as little
+  /// as 1e-9.
+  double tolerance() const;
+  /// 1 minus the total, and exactly 0 where the tolerance could explain it.
+  double missing() const;
+  double point_masses = 0;  ///< part of the total
+  /// missing() and the point masses: the draws that no marginal's density is about.
+  double without_density() const { return missing() + point_masses; }
 };
 
-/// The value of a marginal's channel where a draw yields no point: below the marginal's range.
+/// The value of a marginal's channel where a draw yields no point, or one of a point mass: below
+/// the marginal's range.
 double no_point(const Marginal& marginal);
 
 class SamplerSetup final : public Setup {
@@ -30,22 +44,28 @@ class SamplerSetup final : public Setup {
   std::vector<Channel> channels() const override;
   std::unique_ptr<Estimator> make() const override;
 
-  /// By quadrature of the declared density, on first use.
+  /// By quadrature of the declared density, on first use; then kept.
   const DensityCells& cells() const;
-  /// P(marginal <= x | a point) under the declared density: a table of 1024 cells, linear between.
-  std::function<double(double)> marginal_cdf(const std::string& marginal) const;
+  /// The law of a marginal under the declared density, given a point; 1 - total() is the mass
+  /// without one. On first use; then kept.
+  const stats::TabulatedLaw& marginal_law(const std::string& marginal) const;
   const Sampler& sampler() const { return *named_.sampler; }
   std::vector<Marginal> marginals() const;
 
-  /// Number of the cell of a draw.
+  /// Number of the cell of a draw. Throws std::domain_error for a point outside the domain and a
+  /// lobe that the sampler does not have.
   std::size_t cell(const SamplerDraw& draw) const;
 
  private:
   NamedSampler named_;
+  stats::PlaneGrid grid_;  // of a domain of two coordinates
+  mutable std::mutex once_;
   mutable std::shared_ptr<const DensityCells> cells_;
+  mutable std::map<std::string, stats::TabulatedLaw> laws_;
 };
 
-/// InputError at `where` for a domain that has no cells here (square, triangle, sphere).
+/// The same set-up for the same sampler, so that its tables are made once. InputError at `where`
+/// for a sampler without lobes and for an interval whose bounds are not finite and ascending.
 std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where);
 
 }  // namespace assay::harness

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -26,9 +27,13 @@ class BrdfSampler : public Sampler {
   double evaluate(const Point& p) const override {
     return p[2] > 0 ? brdf_->target(Target::brdf_cosine, vector(p)) : 0;
   }
-  // Some eight nodes to a standard deviation of the lobe of w_o, twice as wide as that of h.
-  int quadrature_subdivision() const override {
-    return std::max(1, static_cast<int>(std::ceil(0.25 / brdf_->width())));
+  // Four standard deviations of the lobe of w_o, twice as wide as that of h, to a part.
+  Panels panels() const override {
+    const double part = 8 * brdf_->width();
+    const auto parts = [&](double range) {
+      return static_cast<std::size_t>(std::ceil(range / part));
+    };
+    return {.first = parts(std::numbers::pi / 2), .second = parts(2 * std::numbers::pi)};
   }
 
  protected:

@@ -54,9 +54,9 @@ class EmittanceSampler final : public Sampler {
     Cost uncounted;
     return grey(sky_->map().radiance(w)) * received(w, uncounted);
   }
-  // The density jumps between texels: as many cells as there are columns find the jumps.
-  int quadrature_subdivision() const override {
-    return static_cast<int>(std::min<std::size_t>(sky_->map().resolution().width, 64));
+  // The density jumps between texels: rows in theta, columns in phi.
+  Panels panels() const override {
+    return {.first = sky_->map().resolution().height, .second = sky_->map().resolution().width};
   }
 
   Choice choose(Stream& random) const {

@@ -3,6 +3,8 @@
 // The parts of the estimator by directions uniform in the luminaire's solid angle.
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "luminaire/direction_sampler.h"
@@ -114,8 +116,22 @@ class SolidAngleSampler final : public Sampler {
     return triangle ? primary_.weight(w, *triangle) / primary_.solid_angle() : 0;
   }
 
-  // The density jumps at the outline.
-  int quadrature_subdivision() const override { return 8; }
+  // The density jumps at the outline: more than thirty nodes across a square of the same solid
+  // angle. A corner of the outline thinner than the nodes' distance is not seen: at 8 x 16 parts
+  // the built-in triangle lacks 2.6e-4 of its mass, at 32 x 64 less than 1e-5.
+  Panels panels() const override {
+    const double across = std::sqrt(primary_.solid_angle());
+    const double parts = std::clamp(2 * std::numbers::pi / across, 32.0, 128.0);
+    return {.first = static_cast<std::size_t>(parts),
+            .second = static_cast<std::size_t>(2 * parts)};
+  }
+  // A triangle each.
+  int lobes() const override { return static_cast<int>(primary_.triangles().size()); }
+  double lobe_density(int lobe, const Point& point) const override {
+    const LitTriangle* triangle = containing(direction_of(point));
+    const LitTriangle* own = &primary_.triangles()[static_cast<std::size_t>(lobe)];
+    return triangle == own ? 1 / primary_.solid_angle() : 0;
+  }
 
  private:
   const LitTriangle* containing(const render::Vector3& w) const {

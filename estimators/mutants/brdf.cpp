@@ -82,7 +82,7 @@ class Redrawn final : public Sampler {
   }
   double density(const Point& p) const override { return original_->density(p); }
   double evaluate(const Point& p) const override { return original_->evaluate(p); }
-  int quadrature_subdivision() const override { return original_->quadrature_subdivision(); }
+  Panels panels() const override { return original_->panels(); }
 
  private:
   std::shared_ptr<const Sampler> original_;

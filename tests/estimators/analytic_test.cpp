@@ -66,8 +66,23 @@ TEST(Analytic, MeansAreClosedForms) {
   EXPECT_DOUBLE_EQ(*channel("analytic/heavy_tail", "{index: 3}").mean, 1.5);
   EXPECT_DOUBLE_EQ(*channel("analytic/heavy_tail", "{index: 3}").variance, 0.75);
   EXPECT_FALSE(channel("analytic/heavy_tail", "{index: 2}").variance.has_value());
+  EXPECT_FALSE(channel("analytic/heavy_tail", "{index: 2.6}").variance.has_value());
   EXPECT_DOUBLE_EQ(*channel("analytic/rare_spike").mean, 0.51);
   EXPECT_DOUBLE_EQ(*channel("analytic/two_level").mean, 17.0 / 6);
+}
+
+// u^-s of all 2^52 values that u takes: by zeta(s, 1/2) = (2^s - 1) zeta(s) they miss the share
+// -(1 - s) zeta(s, 1/2) 2^(-52 (1 - s)) of the integral 1 / (1 - s). Below 1e-4 for what is
+// declared.
+TEST(Analytic, HeavyTailsDeclareOnlyWhatTheirStreamCanReach) {
+  const auto missed = [](double s) {
+    return -(1 - s) * std::exp2(-52 * (1 - s)) * (std::exp2(s) - 1) * std::riemann_zeta(s);
+  };
+  EXPECT_THROW(channel("analytic/heavy_tail", "{index: 1.33}"), InputError);
+  EXPECT_TRUE(channel("analytic/heavy_tail", "{index: 1.34}").mean.has_value());
+  EXPECT_LT(missed(1 / 1.34), 1e-4);
+  EXPECT_TRUE(channel("analytic/heavy_tail", "{index: 2.67}").variance.has_value());
+  EXPECT_LT(missed(2 / 2.67), 1e-4);
 }
 
 struct Sampled {

@@ -1,0 +1,179 @@
+#include "harness/law_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "harness/sampler_setup.h"
+#include "stats/binomial.h"
+#include "stats/two_valued.h"
+
+namespace assay::harness {
+namespace {
+
+using stats::Interval;
+using stats::TestResult;
+
+constexpr const char* quantity = "largest distance of distribution functions";
+constexpr const char* quantity_of_both =
+    "largest distance of distribution functions, or of the masses without a point";
+
+/// A sup distance of which the law's table leaves a range.
+Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
+  stats::OneSampleDistance least = measured;
+  stats::OneSampleDistance most = measured;
+  least.distance = std::max(0.0, measured.distance - error);
+  most.distance = std::min(1.0, measured.distance + error);
+  const auto at = [least, most](double theta) {
+    if (theta <= 0) return stats::kolmogorov_smirnov(least);
+    TestResult result = stats::ks_margin(least, theta);
+    result.log_p_lower = stats::ks_margin(most, theta).log_p_lower;
+    return result;
+  };
+  const auto interval = [least, most](double confidence) -> Interval {
+    return {stats::ks_interval(least, confidence).low, stats::ks_interval(most, confidence).high,
+            confidence};
+  };
+  return {.estimate = measured.distance,
+          .at = at,
+          .interval = interval,
+          .quantity = quantity,
+          .distance = true};
+}
+
+Evidence from_distance(const stats::TwoSampleDistance& distance) {
+  return {.estimate = distance.distance(),
+          .at =
+              [distance](double theta) {
+                return theta <= 0 ? stats::kolmogorov_smirnov(distance)
+                                  : stats::ks_margin(distance, theta);
+              },
+          .interval =
+              [distance](double confidence) { return stats::ks_interval(distance, confidence); },
+          .quantity = quantity,
+          .distance = true};
+}
+
+double clamp_unit(double p) { return std::clamp(p, 0.0, 1.0); }
+
+/// theta = |P(no point) - declared|; exact binomial at the ends of what the error leaves.
+Evidence from_proportion(stats::Successes missing, const DeclaredLaw& declared) {
+  const double low = declared.missing - declared.missing_error;
+  const double high = declared.missing + declared.missing_error;
+  const auto at = [=](double theta) {
+    // "at most theta": the mass lies within [low - theta, high + theta].
+    const TestResult above = stats::binomial(missing, clamp_unit(high + theta));
+    const TestResult below = stats::binomial(missing, clamp_unit(low - theta));
+    TestResult result = above;
+    result.log_p_upper =
+        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
+    // "at least theta": it lies beyond one of the nearer ends, if probabilities reach there.
+    const double upper_end = low + theta;
+    const double lower_end = high - theta;
+    const double not_above =
+        upper_end > 1 ? -HUGE_VAL : stats::binomial(missing, clamp_unit(upper_end)).log_p_lower;
+    const double not_below =
+        lower_end < 0 ? -HUGE_VAL : stats::binomial(missing, clamp_unit(lower_end)).log_p_upper;
+    result.log_p_lower = std::max({not_above, not_below, std::numeric_limits<double>::lowest()});
+    return result;
+  };
+  const auto interval = [=](double confidence) -> Interval {
+    const Interval p = stats::clopper_pearson(missing, confidence);
+    return {std::max({0.0, p.low - high, low - p.high}), std::max(p.high - low, high - p.low),
+            confidence};
+  };
+  const double share = static_cast<double>(missing.successes) / static_cast<double>(missing.trials);
+  return {.estimate = std::abs(share - declared.missing), .at = at, .interval = interval};
+}
+
+stats::TwoValued no_point_or_point(const Points& points) {
+  return {.range = {0, 1}, .high = {.successes = points.missing(), .trials = points.draws}};
+}
+
+/// theta = |difference of the probabilities of no point|.
+Evidence from_proportions(const Points& x, const Points& y) {
+  const stats::TwoValued one = no_point_or_point(x);
+  const stats::TwoValued other = no_point_or_point(y);
+  const auto at = [=](double theta) {
+    const TestResult above = stats::two_valued_contrast(one, other, {.scale = 1, .offset = theta});
+    const TestResult below = stats::two_valued_contrast(one, other, {.scale = 1, .offset = -theta});
+    TestResult result = above;
+    result.log_p_upper =
+        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
+    result.log_p_lower = std::max(above.log_p_lower, below.log_p_upper);
+    return result;
+  };
+  const auto interval = [=](double confidence) -> Interval {
+    const Interval d = stats::two_valued_difference_interval(one, other, confidence);
+    return {std::max({0.0, d.low, -d.high}), std::max(std::abs(d.low), std::abs(d.high)),
+            confidence};
+  };
+  const auto share = [](const Points& p) {
+    return static_cast<double>(p.missing()) / static_cast<double>(p.draws);
+  };
+  return {.estimate = std::abs(share(x) - share(y)), .at = at, .interval = interval};
+}
+
+/// theta = the larger of the two. "At most" is rejected where either part rejects it at half the
+/// level (Bonferroni), "at least" where both do (intersection of unions).
+Evidence larger_of(const Evidence& points, const Evidence& missing) {
+  const auto at = [points, missing](double theta) {
+    const TestResult one = points.at(theta);
+    const TestResult other = missing.at(theta);
+    TestResult result = other.log_p_upper < one.log_p_upper ? other : one;
+    result.log_p_upper = std::min(0.0, result.log_p_upper + std::numbers::ln2);
+    result.log_p_lower = std::max(one.log_p_lower, other.log_p_lower);
+    return result;
+  };
+  const auto interval = [points, missing](double confidence) -> Interval {
+    const double halved = 1 - (1 - confidence) / 2;
+    return {std::max(points.interval(halved).low, missing.interval(halved).low),
+            std::max(points.interval(confidence).high, missing.interval(confidence).high),
+            confidence};
+  };
+  return {.estimate = std::max(points.estimate, missing.estimate),
+          .at = at,
+          .interval = interval,
+          .quantity = quantity_of_both,
+          .distance = true};
+}
+
+/// A sample without a point says nothing of the points' law.
+void require_points(const Points& points) {
+  if (points.sorted.empty()) {
+    throw std::domain_error("no draw yielded a point: there is nothing to compare");
+  }
+}
+
+}  // namespace
+
+Points points_of(const Question& question, std::size_t subject, std::size_t channel,
+                 std::span<const double> values) {
+  Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
+  const Subject& side = question.subjects[subject];
+  if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
+    points.of_a_sampler = true;
+    std::erase(points.sorted, no_point(draws->marginals()[side.channels[channel]]));
+  }
+  std::sort(points.sorted.begin(), points.sorted.end());
+  return points;
+}
+
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
+  require_points(points);
+  const Evidence rest =
+      from_distance(stats::ks_distance(points.sorted, declared.law), declared.error);
+  if (declared.missing == 0 && points.missing() == 0) return rest;
+  return larger_of(
+      rest, from_proportion({.successes = points.missing(), .trials = points.draws}, declared));
+}
+
+Evidence points_against_points(const Points& x, const Points& y) {
+  require_points(x);
+  require_points(y);
+  const Evidence rest = from_distance(stats::ks_distance(x.sorted, y.sorted));
+  if (!x.of_a_sampler && !y.of_a_sampler) return rest;
+  return larger_of(rest, from_proportions(x, y));
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,48 @@
+#pragma once
+
+// Evidence about the law of a marginal: the points by Kolmogorov and Smirnov, and the mass that
+// yields no point by its proportion. theta is the larger of the two distances: that of the
+// distribution functions given a point, and that of the probabilities of no point.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "harness/evidence.h"
+#include "harness/question.h"
+#include "stats/kolmogorov_smirnov.h"
+
+namespace assay::harness {
+
+/// A sample as its points, sorted, and the number of draws.
+struct Points {
+  std::vector<double> sorted;
+  std::uint64_t draws = 0;
+  bool of_a_sampler = false;  ///< only a sampler's draw may yield no point
+
+  std::uint64_t missing() const { return draws - sorted.size(); }
+};
+
+Points points_of(const Question& question, std::size_t subject, std::size_t channel,
+                 std::span<const double> values);
+
+/// What a sample of points is held against. The law may be a table: its distance to the declared
+/// law is at most `error`, so that the true distance lies within `error` of the measured one. The
+/// p-value against "theta is at most" takes D - error, that against "theta is at least" D + error.
+struct DeclaredLaw {
+  stats::ContinuousLaw law;
+  double error = 0;
+  double missing = 0;        ///< probability of no point
+  double missing_error = 0;  ///< of it
+};
+
+/// Where mass is declared missing the two parts share the level, each half (Bonferroni). Where none
+/// is and the sample misses none there is nothing to test and the points have it whole: under the
+/// null hypothesis the other case has probability 0 (up to the error).
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared);
+
+/// Two samplers share the level always: whether mass is missing is not known beforehand.
+Evidence points_against_points(const Points& x, const Points& y);
+
+}  // namespace assay::harness

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace assay::stats {
+
+struct Span {
+  double low = 0;
+  double high = 1;
+
+  double middle() const { return (low + high) / 2; }
+  double width() const { return high - low; }
+};
+
+struct Integral {
+  double value = 0;
+  double error = 0;  // estimated, absolute
+};
+
+inline Integral operator+(Integral a, Integral b) { return {a.value + b.value, a.error + b.error}; }
+
+// When an adaptive quadrature stops halving a part: its error is below the tolerance, it has been
+// halved this often, or the evaluations of the whole computation are used up. What is left is in
+// the error estimate.
+struct QuadratureLimits {
+  double tolerance = 1e-10;
+  int deepest_bisection = 24;
+  std::uint64_t evaluations = 20'000'000;
+};
+
+// Integrates functions of one variable, each value with an error of its own, part by part: 7-point
+// Gauss-Legendre on a part against its two halves. A function that is zero at all nodes and not at
+// an end of the part (or the reverse) hides a border of its support in the 2.5 % of the part beyond
+// the outermost node: what may be hidden counts as error. Next to a jump the two rules may agree by
+// luck, so that the error is right within some ten tolerances only. Densities are integrated so: a
+// negative or non-finite value throws std::domain_error.
+class AdaptiveQuadrature {
+ public:
+  using Function = std::function<Integral(double)>;
+
+  explicit AdaptiveQuadrature(QuadratureLimits limits) : limits_(limits) {}
+
+  Integral over(const Function& function, Span span);
+  // Without halving: the integral and, as error, what the values' own errors and a hidden border
+  // of the support may come to.
+  Integral once(const Function& function, Span span);
+  // Values of a density count against the limit; throws as above.
+  Integral counted(double density);
+  bool exhausted() const { return used_ >= limits_.evaluations; }
+  const QuadratureLimits& limits() const { return limits_; }
+  double largest() const { return largest_; }  // of the densities counted
+
+ private:
+  Integral refined(const Function& function, Span span, Integral whole, int depth);
+
+  QuadratureLimits limits_;
+  std::uint64_t used_ = 0;
+  double largest_ = 0;
+};
+
+// The parts that the borders of `panels` equal panels of `whole` cut `span` into.
+std::vector<Span> cut(Span span, Span whole, std::size_t panels);
+
+}  // namespace assay::stats

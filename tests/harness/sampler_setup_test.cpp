@@ -1,0 +1,208 @@
+#include "harness/sampler_setup.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "questions.h"
+#include "refusal.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+constexpr double pi = std::numbers::pi;
+
+std::shared_ptr<const SamplerSetup> setup_of(const Sampler& sampler) {
+  return std::make_shared<const SamplerSetup>(
+      NamedSampler{"test", std::shared_ptr<const Sampler>(std::shared_ptr<void>(), &sampler)});
+}
+
+/// The set-up behind the sampler of a plugin with these parameters.
+std::shared_ptr<const SamplerSetup> setup_of(const std::string& plugin, const std::string& part) {
+  const auto asked =
+      ask_text("suite: one\nestimators: {e: " + plugin +
+               "}\ntests: [{name: t, claim: distribution(e." + part + ") == density}]\n");
+  return std::dynamic_pointer_cast<const SamplerSetup>(asked->question("t").subjects[0].setup);
+}
+
+// With the incident direction along the normal the half vector's angle is theta / 2 and
+// P(theta <= t) = 1 - exp(-tan^2(t / 2) / alpha^2), over its value at the horizon (Walter 2005).
+TEST(SamplerSetup, PolarAngleOfANarrowLobeFollowsItsClosedForm) {
+  for (const double alpha : {0.02, 0.05, 0.4}) {
+    const std::string a = std::to_string(alpha);
+    const auto setup = setup_of(
+        "{plugin: brdf/ward, alpha_x: " + a + ", alpha_y: " + a + ", theta_i: 0}", "direction");
+    const stats::TabulatedLaw& law = setup->marginal_law("theta");
+    const auto below = [&](double t) { return -std::expm1(-std::pow(std::tan(t / 2) / alpha, 2)); };
+    double distance = 0;
+    for (int k = 0; k <= 4000; ++k) {
+      const double t = pi / 2 * k / 4000;
+      distance = std::max(distance, std::abs(law(t) - below(t) / below(pi / 2)));
+    }
+    EXPECT_LE(distance, law.error) << alpha;
+    EXPECT_LT(law.error, 2e-5) << alpha;
+    EXPECT_NEAR(law.total(), below(pi / 2), 1e-6) << alpha;
+  }
+}
+
+TEST(SamplerSetup, AzimuthOfANarrowLobeOffTheNormalIsTabulated) {
+  const auto setup = setup_of(
+      "{plugin: brdf/ward, alpha_x: 0.02, alpha_y: 0.02, theta_i: 0.8, phi_i: 0.5}", "direction");
+  const stats::TabulatedLaw& law = setup->marginal_law("phi");
+  // The mirrored direction's azimuth is phi_i + pi, about which the lobe is symmetric.
+  EXPECT_NEAR(law(0.5 + pi), 0.5, 1e-5);
+  EXPECT_LT(law.error, 2e-5);
+  EXPECT_NEAR(law.total(), setup->cells().grid.total, 1e-5);
+}
+
+TEST(SamplerSetup, ADensityThatJumpsIsTabulatedInBoundedWork) {
+  const auto setup = setup_of("{plugin: luminaire/solid_angle, scene: triangle}", "direction");
+  for (const char* marginal : {"theta", "phi"}) {
+    const stats::TabulatedLaw& law = setup->marginal_law(marginal);
+    EXPECT_LT(law.error, 1e-4) << marginal;
+    EXPECT_NEAR(law.total(), 1, 1e-5) << marginal;
+  }
+  EXPECT_LT(setup->cells().tolerance(), 1e-4);
+  EXPECT_EQ(setup->cells().missing(), 0) << "what the quadrature's error explains is not missing";
+}
+
+TEST(SamplerSetup, ReflectanceBelowTheHorizonIsMissing) {
+  const auto setup = setup_of("{plugin: brdf/ward}", "direction");
+  EXPECT_NEAR(setup->cells().missing(), 1 - 0.980181, 1e-6);
+}
+
+TEST(SamplerSetup, IsOneForOneSampler) {
+  const auto asked = ask_text(
+      "suite: two\nestimators: {e: {plugin: brdf/ward}}\ntests:\n"
+      "  - {name: a, claim: distribution(e.direction) == density}\n"
+      "  - {name: b, claim: distribution(e.direction.theta) == density}\n");
+  EXPECT_EQ(asked->question("a").subjects[0].setup, asked->question("b").subjects[0].setup);
+}
+
+/// Uniform on its domain.
+class Uniform : public Sampler {
+ public:
+  explicit Uniform(Domain domain) : domain_(domain) {}
+  Domain domain() const override { return domain_; }
+  SamplerDraw sample(Stream&) const override { return {}; }
+  double density(const Point&) const override {
+    switch (domain_) {
+      case Domain::triangle:
+        return 2;
+      case Domain::hemisphere:
+        return 1 / (2 * pi);
+      case Domain::sphere:
+        return 1 / (4 * pi);
+      default:
+        return 1;
+    }
+  }
+  double evaluate(const Point&) const override { return 0; }
+
+ private:
+  Domain domain_;
+};
+
+TEST(SamplerSetup, CellsOfEveryDomainHaveEqualMeasure) {
+  for (const Domain domain :
+       {Domain::interval, Domain::square, Domain::triangle, Domain::hemisphere, Domain::sphere}) {
+    const Uniform uniform(domain);
+    const auto setup = setup_of(uniform);
+    const stats::CellProbabilities& cells = setup->cells().grid;
+    for (const double p : cells.probability) {
+      ASSERT_NEAR(p * static_cast<double>(cells.probability.size()), 1, 1e-9);
+    }
+    EXPECT_EQ(setup->cells().missing(), 0);
+  }
+}
+
+// In a triangle of area 1/2 both barycentric coordinates have P(u <= x) = 1 - (1 - x)^2.
+TEST(SamplerSetup, MarginalsOfATriangleAreThoseOfItsCoordinates) {
+  const Uniform uniform(Domain::triangle);
+  const auto setup = setup_of(uniform);
+  for (const char* marginal : {"u", "v"}) {
+    const stats::TabulatedLaw& law = setup->marginal_law(marginal);
+    for (const double x : {.01, .3, .77, .999}) {
+      EXPECT_NEAR(law(x), 1 - (1 - x) * (1 - x), law.error) << marginal;
+    }
+  }
+}
+
+TEST(SamplerSetup, MarginalsOfASphereAreItsAngles) {
+  const Uniform uniform(Domain::sphere);
+  const auto setup = setup_of(uniform);
+  EXPECT_NEAR(setup->marginal_law("theta")(2), (1 - std::cos(2.0)) / 2, 1e-5);
+  EXPECT_NEAR(setup->marginal_law("phi")(2), 1 / pi, 1e-5);
+}
+
+/// Three parts in ten from a mirror, one in ten nowhere, the rest uniform in two halves.
+class Lobes final : public Uniform {
+ public:
+  Lobes() : Uniform(Domain::square) {}
+  double density(const Point& p) const override { return lobe_density(0, p) + lobe_density(1, p); }
+  int lobes() const override { return 3; }
+  double lobe_density(int lobe, const Point& p) const override {
+    if (lobe == 0) return p[0] < .5 ? .8 : 0;
+    return lobe == 1 && p[0] >= .5 ? .4 : 0;
+  }
+  double point_mass(int lobe) const override { return lobe == 2 ? .3 : 0; }
+};
+
+TEST(SamplerSetup, LobesAndPointMassesAreCellsOfTheirOwn) {
+  const Lobes sampler;
+  const auto setup = setup_of(sampler);
+  const auto p = [&](const SamplerDraw& draw) {
+    return setup->cells().grid.probability[setup->cell(draw)];
+  };
+  EXPECT_NEAR(p({.point = {.1, .1, 0}, .lobe = 0}), .8 / 512, 1e-9);
+  EXPECT_NEAR(p({.point = {.1, .1, 0}, .lobe = 1}), 0, 1e-9);
+  EXPECT_NEAR(p({.point = {.9, .1, 0}, .lobe = 1}), .4 / 512, 1e-9);
+  EXPECT_NEAR(p({.point = {.9, .1, 0}, .lobe = 2}), .3, 1e-9);
+  EXPECT_EQ(setup->cell({.valid = false}), setup->cells().size() - 1);
+  EXPECT_NEAR(setup->cells().missing(), .1, 1e-9);
+  EXPECT_NEAR(setup->cells().without_density(), .4, 1e-9);
+  EXPECT_THROW(setup->cell({.lobe = 3}), std::domain_error);
+  EXPECT_THROW(setup->cell({.point = {1.1, 0, 0}}), std::domain_error);
+}
+
+constexpr const char* estimators = R"(suite: samplers
+estimators:
+  narrow: {plugin: brdf/ward, alpha_x: 0.02, alpha_y: 0.02, theta_i: 0}
+  ward: {plugin: brdf/ward}
+  redrawn: {plugin: mutants/ward_redrawn}
+  area: {plugin: luminaire/area, scene: triangle}
+  uneven: {plugin: mutants/nonuniform_triangle, scene: triangle}
+  solid_angle: {plugin: luminaire/solid_angle, scene: rectangle}
+tests:
+)";
+
+// The suite's alpha of 1e-4 is the false-alarm rate of all passes together.
+TEST(SamplerSetup, SoundSamplersPassAndBrokenOnesFail) {
+  const reports::Record record = run_text(
+      std::string(estimators) +
+          "  - {claim: distribution(narrow.direction.theta) == density, secondaries: 200000}\n"
+          "  - {claim: distribution(solid_angle.direction) == density, secondaries: 200000}\n"
+          "  - {claim: distribution(solid_angle.direction.theta) == density, detect: 0.02}\n"
+          "  - {claim: distribution(solid_angle.direction.phi) == density, detect: 0.02}\n"
+          "  - {claim: distribution(area.point) == density, secondaries: 100000}\n"
+          "  - {claim: distribution(area.point.v) == density, detect: 0.02}\n"
+          "  - {claim: distribution(ward.direction.theta) == density, detect: 0.02}\n"
+          "  - {name: redrawn theta, claim: distribution(redrawn.direction.theta) == density,"
+          " secondaries: 20000, expect: fail}\n"
+          "  - {name: redrawn beside, claim: distribution(redrawn.direction) =="
+          " distribution(ward.direction), secondaries: 20000, expect: fail}\n"
+          "  - {name: uneven, claim: distribution(uneven.point) == density, secondaries: 20000,"
+          " expect: fail}\n"
+          "  - {name: uneven u, claim: distribution(uneven.point.u) == density, secondaries: 20000,"
+          " expect: fail}\n",
+      {.alpha = 1e-4});
+  for (const reports::Test& test : record.suites[0].tests) {
+    EXPECT_TRUE(test.ok) << test.name << ": " << test.message;
+  }
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,112 @@
+#include "stats/plane_cells.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace assay::stats {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+PlaneGrid unit_grid(std::size_t cells) {
+  PlaneGrid grid;
+  for (std::size_t k = 0; k <= cells; ++k) {
+    grid.x_borders.push_back(static_cast<double>(k) / static_cast<double>(cells));
+  }
+  grid.y_borders = grid.x_borders;
+  return grid;
+}
+
+TEST(PlaneCells, IndicesRunFastestInY) {
+  const PlaneGrid grid = unit_grid(4);
+  EXPECT_EQ(grid.index(0, 0), 0U);
+  EXPECT_EQ(grid.index(0, .3), 1U);
+  EXPECT_EQ(grid.index(.25, 0), 4U) << "a border belongs to the cell above it";
+  EXPECT_EQ(grid.index(1, 1), 15U) << "but the last one";
+  EXPECT_THROW(grid.index(1.01, 0), std::domain_error);
+  EXPECT_THROW(grid.index(0, std::nan("")), std::domain_error);
+}
+
+// Of f = 4 x y a cell has the product of the differences of squares.
+TEST(PlaneCells, ProbabilitiesOfASmoothDensityAreExact) {
+  const PlaneGrid grid = unit_grid(4);
+  const CellProbabilities cells = cell_probabilities(
+      grid, {.x = {0, 1}, .y = {0, 1}, .value = [](double x, double y) { return 4 * x * y; }});
+  EXPECT_NEAR(cells.probability[grid.index(.3, .8)], (4 - 1) / 16.0 * (16 - 9) / 16.0, 1e-14);
+  EXPECT_NEAR(cells.total, 1, 1e-13);
+  EXPECT_LT(cells.total_error, 1e-9);
+}
+
+// A disc of radius r about the middle, density 1 / (pi r^2): it jumps along a curve. The four
+// middle cells of 4 x 4 hold a quarter each but for the caps beyond them.
+TEST(PlaneCells, AJumpAlongACurveIsFoundWithinItsErrorAndTheLimit) {
+  constexpr double r = .22;
+  const PlaneGrid grid = unit_grid(4);
+  std::uint64_t evaluations = 0;
+  const PlaneDensity disc{.x = {0, 1}, .y = {0, 1}, .value = [&](double x, double y) {
+                            ++evaluations;
+                            return std::hypot(x - .5, y - .5) < r ? 1 / (pi * r * r) : 0;
+                          }};
+  const CellProbabilities cells =
+      cell_probabilities(grid, disc, {.tolerance = 1e-9, .evaluations = 5'000'000});
+  EXPECT_NEAR(cells.probability[grid.index(.4, .4)], .25, 1e-7);
+  EXPECT_NEAR(cells.total, 1, cells.total_error);
+  EXPECT_LT(cells.total_error, 2e-4) << "next to the disc a corner may hide";
+  EXPECT_LT(evaluations, 6'000'000U);
+}
+
+// The corner of a square reaches 1/100 of a cell beyond its border, between the outermost nodes.
+TEST(PlaneCells, ACornerOfTheSupportIsFoundInTheNextCell) {
+  constexpr double tip = .2525;
+  const PlaneGrid grid = unit_grid(4);
+  const PlaneDensity wedge{.x = {0, 1}, .y = {0, 1}, .value = [](double x, double y) {
+                             return x + std::abs(y - .135) < tip ? 1.0 : 0;
+                           }};
+  const CellProbabilities cells = cell_probabilities(grid, wedge);
+  const std::size_t next = grid.index(.26, .135);
+  const double hidden = (tip - .25) * (tip - .25);
+  EXPECT_NEAR(cells.probability[next], hidden, 0.01 * hidden);
+  EXPECT_LE(std::abs(cells.probability[next] - hidden), cells.error[next]);
+}
+
+TEST(PlaneCells, ACellThatMayHideACornerSaysSo) {
+  const PlaneGrid grid = unit_grid(4);
+  const CellProbabilities cells =
+      cell_probabilities(grid, {.x = {0, 1}, .y = {0, 1}, .value = [](double x, double y) {
+                                  return x < .25 && y < .25 ? 16.0 : 0;
+                                }});
+  EXPECT_EQ(cells.probability[grid.index(.3, .1)], 0);
+  EXPECT_GT(cells.error[grid.index(.3, .1)], 0);
+  EXPECT_EQ(cells.error[grid.index(.6, .6)], 0) << "far from the support";
+}
+
+TEST(PlaneCells, JumpsOnPanelBordersCostNothing) {
+  std::uint64_t evaluations = 0;
+  const PlaneDensity board{.x = {0, 1},
+                           .y = {0, 1},
+                           .value =
+                               [&](double x, double y) {
+                                 ++evaluations;
+                                 return int(x * 10) % 2 == int(y * 6) % 2 ? 2.0 : 0;
+                               },
+                           .x_panels = 10,
+                           .y_panels = 6};
+  const CellProbabilities cells = cell_probabilities(unit_grid(4), board);
+  EXPECT_NEAR(cells.total, 1, 1e-12);
+  EXPECT_LT(evaluations, 400'000U);
+}
+
+TEST(PlaneCells, BadDensitiesAndGridsThrow) {
+  const PlaneDensity negative{.x = {0, 1}, .y = {0, 1}, .value = [](double, double) { return -1; }};
+  EXPECT_THROW(cell_probabilities(unit_grid(2), negative), std::domain_error);
+  const PlaneDensity nan{
+      .x = {0, 1}, .y = {0, 1}, .value = [](double, double) { return std::nan(""); }};
+  EXPECT_THROW(cell_probabilities(unit_grid(2), nan), std::domain_error);
+  EXPECT_THROW(cell_probabilities({{0, 1}, {1, 0}}, negative), std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats

@@ -1,0 +1,106 @@
+#include "stats/tabulated_law.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "stats/plane_cells.h"
+
+namespace assay::stats {
+namespace {
+
+/// The largest distance of a table to its law, at 20001 places.
+template <class Law>
+double largest_distance(const TabulatedLaw& table, Span range, Law law) {
+  double largest = 0;
+  for (int k = 0; k <= 20000; ++k) {
+    const double x = range.low + range.width() * k / 20000;
+    largest = std::max(largest, std::abs(table(x) - law(x)));
+  }
+  return largest;
+}
+
+template <class Density>
+TabulatedLaw table_of(Density density, Span range, QuadratureLimits limits = {}) {
+  AdaptiveQuadrature rule(limits);
+  return tabulate([&](double x) { return rule.counted(density(x)); }, cut(range, range, 32), rule);
+}
+
+// A lobe of standard deviation 1e-3 in a range of 1: as narrow as a part's 7 nodes can still see.
+TEST(TabulatedLaw, FollowsANarrowLobeWithinItsError) {
+  constexpr double w = 1e-3;
+  const auto table =
+      table_of([](double x) { return x / (w * w) * std::exp(-x * x / (2 * w * w)); }, {0, 1});
+  const double distance =
+      largest_distance(table, {0, 1}, [](double x) { return -std::expm1(-x * x / (2 * w * w)); });
+  EXPECT_LE(distance, table.error);
+  EXPECT_LT(table.error, 5e-6);
+  EXPECT_NEAR(table.total(), 1, 1e-9);
+}
+
+// Halves of equal mass about each peak show no chord of their own.
+TEST(TabulatedLaw, FollowsPeaksInTheMiddleOfItsPartsWithinItsError) {
+  constexpr double wave = 64 * std::numbers::pi;  // a whole wave to a part
+  const auto table = table_of([](double x) { return 1 - std::cos(wave * x); }, {0, 1});
+  const double distance =
+      largest_distance(table, {0, 1}, [](double x) { return x - std::sin(wave * x) / wave; });
+  EXPECT_LE(distance, table.error);
+  EXPECT_LT(table.error, 1e-5);
+}
+
+TEST(TabulatedLaw, FollowsAJumpWithinItsError) {
+  const auto table = table_of([](double x) { return x < .437 ? 2.0 : .1; }, {0, 1});
+  const double total = 2 * .437 + .1 * (1 - .437);
+  const double distance = largest_distance(table, {0, 1}, [&](double x) {
+    return (x < .437 ? 2 * x : 2 * .437 + .1 * (x - .437)) / total;
+  });
+  EXPECT_LE(distance, table.error);
+  EXPECT_LT(table.error, 5e-6);
+  EXPECT_NEAR(table.total(), total, 1e-8) << "next to a jump two rules may agree by luck";
+}
+
+TEST(TabulatedLaw, SaysHowWrongItIsWhenItsEvaluationsRunOut) {
+  const auto density = [](double x) { return 1 + std::sin(200 * x); };
+  const auto law = [](double x) {
+    return (x + (1 - std::cos(200 * x)) / 200) / (1 + (1 - std::cos(200.0)) / 200);
+  };
+  const auto table = table_of(density, {0, 1}, {.evaluations = 300});
+  EXPECT_GT(table.error, 1e-5);
+  EXPECT_LE(largest_distance(table, {0, 1}, law), table.error);
+}
+
+// A disc's marginal: 2 sqrt(r^2 - (x - 1/2)^2) / (pi r^2), whose density jumps along a curve.
+TEST(TabulatedLaw, OfAMarginalAcrossAJumpIsItsClosedForm) {
+  constexpr double r = .3;
+  const PlaneDensity disc{.x = {0, 1}, .y = {0, 1}, .value = [](double x, double y) {
+                            return std::hypot(x - .5, y - .5) < r ? 1 / (std::numbers::pi * r * r)
+                                                                  : 0;
+                          }};
+  AdaptiveQuadrature rule({.tolerance = 1e-7});
+  const auto table = tabulate(marginal_density(disc, rule), cut({0, 1}, {0, 1}, 32), rule);
+  const auto law = [](double x) {
+    const double t = std::clamp((x - .5) / r, -1.0, 1.0);
+    return .5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / std::numbers::pi;
+  };
+  EXPECT_LE(largest_distance(table, {0, 1}, law), table.error);
+  EXPECT_LT(table.error, 1e-5);
+  EXPECT_FALSE(rule.exhausted());
+}
+
+TEST(TabulatedLaw, IsZeroBelowAndOneAbove) {
+  const auto table = table_of([](double) { return 1.0; }, {2, 3});
+  EXPECT_EQ(table(1), 0);
+  EXPECT_EQ(table(4), 1);
+  EXPECT_NEAR(table(2.25), .25, 1e-12);
+}
+
+TEST(TabulatedLaw, NeedsMassAndADensity) {
+  EXPECT_THROW(table_of([](double) { return 0.0; }, {0, 1}), std::domain_error);
+  EXPECT_THROW(table_of([](double) { return -1.0; }, {0, 1}), std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats
