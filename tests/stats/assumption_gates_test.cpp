@@ -9,6 +9,7 @@
 
 #include "stats/errors.h"
 #include "tests/stats/samples.h"
+#include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
@@ -45,6 +46,116 @@ TEST(AssumptionGates, SkewnessValueIsTheFactorOfTheFormula) {
   // Against itself the skewness of a difference cancels.
   EXPECT_NEAR(skewness_gate(x, x, 1, 3).value, 1, 1e-12);
   EXPECT_GT(skewness_gate(x, x, -1, 3).value, 1.05);
+}
+
+// What each observation adds to a contrast's mean: (x - mean x) / n_x, or -scale (y - mean y) /
+// n_y.
+std::vector<double> influences(const std::vector<double>& values, double scale) {
+  const double mean = moments_of(values).mean;
+  std::vector<double> psi;
+  for (const double value : values) {
+    psi.push_back(scale * (value - mean) / static_cast<double>(values.size()));
+  }
+  return psi;
+}
+
+std::vector<double> skewed_values(std::size_t n, double rate) {
+  std::vector<double> values(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    values[i] = std::exp(rate * static_cast<double>(i) / static_cast<double>(n));
+  }
+  return values;
+}
+
+// 2 |a| x^3 with a = sum psi^3 / (6 (sum psi^2)^1.5) over both samples' influences. The gate's
+// variances divide by n - 1: half a per cent of the exponent at these sizes.
+TEST(AssumptionGates, TheSkewnessOfAContrastIsThatOfItsInfluences) {
+  const std::vector<double> x = skewed_values(400, 4);
+  const std::vector<double> y = skewed_values(150, 5);
+  for (const double scale : {.05, .3, -.3, 1.0, -2.0}) {
+    double squares = 0;
+    double cubes = 0;
+    for (const auto& psi : {influences(x, 1), influences(y, -scale)}) {
+      for (const double each : psi) squares += each * each, cubes += each * each * each;
+    }
+    const double exponent = 2 * std::abs(cubes / (6 * std::pow(squares, 1.5))) * 27;
+    const Gate gate = skewness_gate(moments_of(x), moments_of(y), scale, 3);
+    EXPECT_NEAR(std::log(gate.value), exponent, .01 * exponent) << scale;
+  }
+}
+
+// n observations of skewness g1 and kurtosis b2, mean 0 and m2 = n.
+Moments shaped(double n, double g1, double b2) {
+  Moments x;
+  x.count = static_cast<std::uint64_t>(n);
+  x.m2 = n;
+  x.m3 = n * g1;
+  x.m4 = n * b2;
+  return x;
+}
+
+// tests/tables/gates.csv: what g1 and b2 of normal data may show, times the widening to a gamma law
+// from the influence of one observation, integrated over its density.
+TEST(AssumptionGates, ConfidenceLimitsTakeOffTheWidenedNormalQuantile) {
+  for (const tests::Row& row : tests::read_table("gates")) {
+    const double cube = row["x"] * row["x"] * row["x"];
+    const double allowance = row["skewness_quantile"] * row["skewness_widening"];
+    const Gate skewness = skewness_gate(shaped(row["n"], allowance + 1, 10), row["x"]);
+    ASSERT_LT(std::log(skewness.value), 700);
+    EXPECT_NEAR(std::log(skewness.value / skewness.low) / cube * 3 * std::sqrt(row["n"]), allowance,
+                1e-9 * allowance)
+        << row.text("n");
+    const double spread = row["kurtosis_quantile"] * row["kurtosis_widening"];
+    const Gate kurtosis = kurtosis_gate(shaped(row["n"], 0, 3 + spread + 1));
+    EXPECT_NEAR(kurtosis.value - kurtosis.low, spread, 1e-9 * spread) << row.text("n");
+  }
+}
+
+// Both samples' allowances, each times its share of the variance to the power 1.5, at right angles.
+TEST(AssumptionGates, TheConfidenceLimitOfAContrastHasBothAllowances) {
+  const auto rows = tests::read_table("gates");
+  const tests::Row& of_x = rows.at(4);
+  const tests::Row& of_y = rows.at(2);
+  ASSERT_EQ(of_x["x"], of_y["x"]);
+  const double n = of_x["n"];
+  const double m = of_y["n"];
+  const double vx = 1 / (n - 1);
+  const double vy = .25 / (m - 1);
+  const auto weight = [&](double v, double size) {
+    return std::pow(v / (vx + vy), 1.5) / (3 * std::sqrt(size));
+  };
+  const double allowance =
+      std::hypot(weight(vx, n) * of_x["skewness_quantile"] * of_x["skewness_widening"],
+                 weight(vy, m) * of_y["skewness_quantile"] * of_y["skewness_widening"]);
+  const Gate gate = skewness_gate(shaped(n, 5, 30), shaped(m, -5, 30), .5, of_x["x"]);
+  const double cube = std::pow(of_x["x"], 3);
+  EXPECT_NEAR(std::log(gate.value / gate.low) / cube, allowance, 1e-9 * allowance);
+}
+
+// A sample of n with s = 1 whose largest deviation is this.
+Moments with_largest(double n, double deviation) {
+  Moments x = shaped(n, 0, 3);
+  x.m2 = n - 1;
+  x.minimum = -.1;
+  x.maximum = deviation;
+  return x;
+}
+
+// The 5 % and 1e-4 critical values, from the Beta law of one residual. Grubbs (1969) prints 2.71
+// for n = 20 at 2.5 % one-sided.
+TEST(AssumptionGates, DominanceTurnsAtTheCriticalValuesOfGrubbs) {
+  for (const tests::Row& row : tests::read_table("gates")) {
+    const double n = row["n"];
+    const double root = std::sqrt(n);
+    const double limit = std::max(.1, row["grubbs_0001"] / root);
+    EXPECT_NEAR(dominance_gate(with_largest(n, 1)).limit, limit, 1e-9) << n;
+    const double green = std::max(.1, row["grubbs_05"] / root) * root;
+    EXPECT_EQ(dominance_gate(with_largest(n, green * (1 - 1e-6))).state, GateState::green) << n;
+    EXPECT_NE(dominance_gate(with_largest(n, green * (1 + 1e-6))).state, GateState::green) << n;
+    const double red = limit * root;
+    EXPECT_NE(dominance_gate(with_largest(n, red * (1 - 1e-6))).state, GateState::red) << n;
+    EXPECT_EQ(dominance_gate(with_largest(n, red * (1 + 1e-6))).state, GateState::red) << n;
+  }
 }
 
 struct Study {

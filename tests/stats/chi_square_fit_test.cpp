@@ -42,6 +42,17 @@ TEST(ChiSquareFit, SmallCellsAreGatheredInIndexOrderAndTheLastPoolIsFlushed) {
   EXPECT_EQ(more.degrees_of_freedom, 3);
 }
 
+// No other pool is there to take the small cell: the lesser of the large cells, 45 expected, does.
+// Then 55 and 45 observed where 50 and 50 are expected: X2 = 2 * 25 / 50 = 1, p = .31731051.
+TEST(ChiSquareFit, ALoneRestJoinsTheLeastExpectedOfTheLargeCells) {
+  const ChiSquareFit fit = chi_square_fit({{55, 40, 5}, {.5, .45, .05}});
+  ASSERT_EQ(fit.cells.size(), 2U);
+  EXPECT_EQ(fit.cells[0].members, (std::vector<std::size_t>{0}));
+  EXPECT_EQ(fit.cells[1].members, (std::vector<std::size_t>{1, 2}));
+  EXPECT_NEAR(fit.test.statistic, 1, 1e-12);
+  EXPECT_NEAR(std::exp(fit.test.log_p_upper), .31731051, 5e-9);
+}
+
 TEST(ChiSquareFit, PoolingDoesNotLookAtTheObservations) {
   CellCounts a{{1, 59, 20, 40}, {.1, .4, .1, .4}};
   CellCounts b{{59, 1, 40, 20}, {.1, .4, .1, .4}};

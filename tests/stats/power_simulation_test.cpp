@@ -126,6 +126,70 @@ TEST(PowerSimulation, KolmogorovSmirnovReachesItsBound) {
   EXPECT_GE(rate, .8 - bound(4000));
 }
 
+// log P(K = k), k of n at probability p.
+double log_binomial(std::uint64_t k, std::uint64_t n, double p) {
+  const double x = static_cast<double>(k);
+  const double size = static_cast<double>(n);
+  return std::lgamma(size + 1) - std::lgamma(x + 1) - std::lgamma(size - x + 1) + x * std::log(p) +
+         (size - x) * std::log1p(-p);
+}
+
+// The probability that two samples of n differ by at least `steps` / n, of laws on {0, 1} that
+// differ by `distance` at 0: the hardest of that distance, and nothing here is simulated.
+double probability_of_steps(std::uint64_t steps, std::uint64_t n, double distance) {
+  std::vector<double> one;
+  std::vector<double> other;
+  for (std::uint64_t k = 0; k <= n; ++k) {
+    one.push_back(std::exp(log_binomial(k, n, .5 + distance / 2)));
+    other.push_back(std::exp(log_binomial(k, n, .5 - distance / 2)));
+  }
+  double sum = 0;
+  for (std::uint64_t k = 0; k <= n; ++k) {
+    for (std::uint64_t l = 0; l <= n; ++l) {
+      if ((k > l ? k - l : l - k) >= steps) sum += one[k] * other[l];
+    }
+  }
+  return sum;
+}
+
+// The least number of steps that the test itself rejects.
+std::uint64_t rejected_steps(const DistancePlan& plan, std::uint64_t n) {
+  std::uint64_t steps = 0;
+  for (;; ++steps) {
+    const TwoSampleDistance seen{{steps, n, n}, 0, 0};
+    const TestResult result =
+        plan.allow == 0 ? kolmogorov_smirnov(seen) : ks_margin(seen, plan.allow);
+    if (result.log_p_upper <= std::log(plan.rates.alpha)) return steps;
+  }
+}
+
+TEST(PowerSimulation, TwoSampleKolmogorovSmirnovKeepsWhatItPromises) {
+  for (const double beta : {.01, .001}) {
+    for (const double allow : {0.0, .1}) {
+      const DistancePlan plan{.two_samples = true, .allow = allow, .rates = {.01, beta, true}};
+      const auto n = ks_sample_size(plan, allow + .25).value();
+      EXPECT_GE(probability_of_steps(rejected_steps(plan, n), n, allow + .25), 1 - beta)
+          << allow << " " << beta << " n = " << n;
+    }
+  }
+}
+
+// What is detectable is the critical distance of the test itself and Hoeffding's sqrt(ln(1/beta) /
+// n). With a margin the critical distance is no lattice point: the test lies within a step of it.
+TEST(PowerSimulation, TwoSampleKolmogorovSmirnovIsPlannedForItsOwnCriticalDistance) {
+  for (const double allow : {0.0, .1}) {
+    const DistancePlan plan{.two_samples = true, .allow = allow, .rates = {.01, .05, true}};
+    const double n = 400;
+    const double critical = ks_detectable(plan, n) - std::sqrt(std::log(1 / .05) / n);
+    const double of_test = static_cast<double>(rejected_steps(plan, 400)) / n;
+    EXPECT_LE(critical, of_test + 1e-9) << allow;
+    EXPECT_GT(critical, of_test - 1 / n - 1e-9) << allow;
+    if (allow == 0) {
+      EXPECT_NEAR(critical, of_test, 1e-12);
+    }
+  }
+}
+
 TEST(PowerSimulation, ChiSquareFit) {
   const std::vector<double> flat(10, .1);
   const double effect = std::sqrt(2 * .02 * .02 / .1);
