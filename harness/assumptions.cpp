@@ -7,6 +7,7 @@
 
 #include "harness/constant.h"
 #include "harness/critical.h"
+#include "harness/evidence_slope.h"
 #include "stats/skewness_corrected_t.h"
 
 namespace assay::harness {
@@ -14,7 +15,7 @@ namespace {
 
 std::string variance_without_spread(const Question& question, std::size_t channel,
                                     std::span<const ChannelData> data) {
-  for (std::size_t subject = 0; subject < data.size(); ++subject) {
+  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
     if (is_constant(question, subject, channel, data[subject].moments)) {
       return fmt::format(
           "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
@@ -63,8 +64,8 @@ stats::Gate residual_gate(const Question& question, std::size_t channel,
     return stats::residual_skewness_gate(data[0].moments, data[1].moments, question.factor, x);
   }
   const Constant& reference = question.references[channel];
-  return stats::residual_skewness_gate(data[0].moments, {reference.value, reference.standard_error},
-                                       x);
+  return stats::residual_skewness_gate(
+      data[0].moments, {reference.value + question.offset, reference.standard_error}, x);
 }
 
 }  // namespace
@@ -110,6 +111,9 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
       gates.push_back(gate_of(stats::kurtosis_gate(data[subject].moments), whose));
     }
   }
+  if (question.kind == QuestionKind::slope) {
+    gates.push_back(power_law_gate(question, channel, data));
+  }
   return gates;
 }
 
@@ -143,7 +147,8 @@ std::string what_would_help(const TestOutcome& outcome) {
 
 std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,
                            std::span<const ChannelData> data) {
-  if (outcome.question.of_variances()) {
+  const QuestionKind kind = outcome.question.kind;
+  if (outcome.question.of_variances() || kind == QuestionKind::efficiency) {
     return variance_without_spread(outcome.question, channel, data);
   }
   return outcome.question.of_means() ? unseen_could_decide(outcome, channel, data) : "";

@@ -16,11 +16,7 @@ const std::vector<QuantityName>& quantity_names() {
   return names;
 }
 
-const std::vector<QuantityName>& offered_quantities() {
-  using enum QuantityName;
-  static const std::vector<QuantityName> names{mean, variance, distribution};
-  return names;
-}
+const std::vector<QuantityName>& offered_quantities() { return quantity_names(); }
 
 const char* to_string(QuantityName name) {
   switch (name) {

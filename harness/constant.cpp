@@ -53,7 +53,7 @@ Difference from_number(const Question& question, std::size_t channel, const Chan
   const double part = reference.standard_error > 0 ? level / 2 : level;
   const double reach = reach_of(reference, part);
   const Difference mean = mean_of(channel_of(question, 0, channel), data, part);
-  return {.value = mean.value - reference.value,
+  return {.value = mean.value - question.offset - reference.value,
           .below = mean.below + reach,
           .above = mean.above + reach,
           .scale = is_relative(question, channel) ? std::abs(reference.value) : 1};
@@ -66,7 +66,7 @@ Difference from_other(const Question& question, std::size_t channel,
   const double factor = std::abs(question.factor);
   const bool same_sign = question.factor > 0;
   const double reference = question.factor * two.value;
-  return {.value = one.value - reference,
+  return {.value = one.value - question.offset - reference,
           .below = one.below + factor * (same_sign ? two.above : two.below),
           .above = one.above + factor * (same_sign ? two.below : two.above),
           .scale = is_relative(question, channel) && reference != 0 ? std::abs(reference) : 1};

@@ -119,9 +119,9 @@ ChannelOutcome channel_outcome(const TestOutcome& outcome, std::size_t channel,
   result.detectable = detectable_effect(question, full_size(outcome), outcome.plan,
                                         observed_channel(question, regions, channel, data));
   if (question.kind == QuestionKind::mean_of_one) {
-    result.reference = question.references[channel].value;
+    result.reference = question.references[channel].value + question.offset;
   } else if (question.kind == QuestionKind::mean_of_two) {
-    result.reference = question.factor * data[1].moments.mean;
+    result.reference = question.factor * data[1].moments.mean + question.offset;
   }
   return result;
 }
@@ -254,6 +254,22 @@ void judge(TestWork& work) {
   }
 }
 
+/// The observations of this look in equal runs of whole blocks.
+std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
+                                     std::size_t channel) {
+  const std::uint64_t size = work.outcome.secondaries() / replicate_count;
+  std::vector<Replicate> replicates(1);
+  for (const Pool::BlockSums& block : work.pools[subject]->blocks()) {
+    if (replicates.back().count >= size) replicates.emplace_back();
+    if (replicates.size() > replicate_count) break;
+    replicates.back().count += block.count;
+    replicates.back().moments.merge(block.channels[channel]);
+    replicates.back().seconds += block.seconds;
+  }
+  replicates.resize(replicate_count);
+  return replicates;
+}
+
 }  // namespace
 
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
@@ -264,7 +280,12 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
     data.push_back({.primaries = work.outcome.plan.primaries[subject],
                     .moments = summary.moments,
                     .values = work.pools[subject]->values(index, work.outcome.secondaries()),
-                    .cells = summary.cells});
+                    .cells = summary.cells,
+                    .with_cost = summary.with_cost,
+                    .group_variances = summary_of(work, subject).group_variances});
+    if (work.outcome.plan.method.keeps == Keeps::blocks) {
+      data.back().replicates = replicates_of(work, subject, index);
+    }
   }
   return data;
 }

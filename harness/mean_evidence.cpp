@@ -75,30 +75,34 @@ double spread_of(const Moments& x, double factor) {
   return std::abs(factor) * std::sqrt(x.variance() / static_cast<double>(x.count));
 }
 
-Evidence difference_of_means(const Method& method, double factor, const Moments& x,
+Evidence difference_of_means(const Method& method, const Question& question, const Moments& x,
                              const Moments& y, const ContrastTest& test) {
-  const double estimate = x.mean - factor * y.mean;
-  const auto at = [=](double theta) { return test({.scale = factor, .offset = theta}); };
+  const double factor = question.factor;
+  const double offset = question.offset;
+  const double estimate = x.mean - factor * y.mean - offset;
+  const auto at = [=](double theta) { return test({.scale = factor, .offset = offset + theta}); };
   const auto interval = [=](double confidence) {
     if (!has_closed_interval(method)) {
       const double step = std::hypot(spread_of(x, 1), spread_of(y, factor));
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
     Moments scaled = y;  // of factor * y: only count, mean and m2 enter
-    scaled.mean *= factor;
+    scaled.mean = factor * y.mean + offset;
     scaled.m2 *= factor * factor;
     return stats::welch_t_interval(x, scaled, confidence);
   };
   return {.estimate = estimate, .at = at, .interval = interval, .quantity = "difference of means"};
 }
 
-Evidence ratio_of_means(const Method& method, double factor, const Moments& x, const Moments& y,
-                        const ContrastTest& test) {
+Evidence ratio_of_means(const Method& method, const Question& question, const Moments& x,
+                        const Moments& y, const ContrastTest& test) {
+  const double factor = question.factor;
+  const double offset = question.offset;
   const double other = factor * y.mean;
   const double sign = std::copysign(1, other);
-  const double estimate = sign * (x.mean / other - 1);
+  const double estimate = sign * ((x.mean - offset) / other - 1);
   const auto contrast = [=](double theta) {
-    return test({.scale = factor * (1 + sign * theta), .offset = 0});
+    return test({.scale = factor * (1 + sign * theta), .offset = offset});
   };
   const auto at = [=](double theta) {
     TestResult result = contrast(theta);
@@ -110,7 +114,7 @@ Evidence ratio_of_means(const Method& method, double factor, const Moments& x, c
     return result;
   };
   const auto interval = [=](double confidence) {
-    if (!has_closed_interval(method)) {
+    if (!has_closed_interval(method) || offset != 0) {
       const double step = std::hypot(spread_of(x, 1), spread_of(y, factor)) / std::abs(other);
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
@@ -140,10 +144,11 @@ Evidence mean_against_number(const Method& method, const Question& question, std
   const bool relative = is_relative(question, channel);
   const double unit = relative ? std::abs(reference.value) : 1;
   const double slope = relative ? std::copysign(1, reference.value) : 0;
-  const double estimate = (x.mean - reference.value) / unit;
+  const double null = reference.value + question.offset;
+  const double estimate = (x.mean - null) / unit;
   const OneMeanTest test = one_mean_test(method, x, range_of(question, 0, channel, x));
   const auto at = [=](double theta) {
-    return test({.value = reference.value + theta * unit,
+    return test({.value = null + theta * unit,
                  .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
   };
   const auto interval = [=](double confidence) {
@@ -152,9 +157,8 @@ Evidence mean_against_number(const Method& method, const Question& question, std
       const double step = std::hypot(spread_of(x, 1), reference.standard_error) / unit;
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
-    return map_ends(
-        stats::student_t_interval(x, {reference.value, reference.standard_error}, confidence),
-        [=](double d) { return d / unit; });
+    return map_ends(stats::student_t_interval(x, {null, reference.standard_error}, confidence),
+                    [=](double d) { return d / unit; });
   };
   return {.estimate = estimate,
           .at = at,
@@ -170,8 +174,8 @@ Evidence mean_against_mean(const Method& method, const Question& question, std::
   const Moments& y = data[1].moments;
   const ContrastTest test = contrast_test(method, x, y, range_of(question, 0, channel, x),
                                           range_of(question, 1, channel, y));
-  return is_relative(question, channel) ? ratio_of_means(method, question.factor, x, y, test)
-                                        : difference_of_means(method, question.factor, x, y, test);
+  return is_relative(question, channel) ? ratio_of_means(method, question, x, y, test)
+                                        : difference_of_means(method, question, x, y, test);
 }
 
 }  // namespace assay::harness

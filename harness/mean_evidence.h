@@ -9,6 +9,8 @@
 
 namespace assay::harness {
 
+// Of a claimed bias b (question.offset), E x - b takes the place of E x.
+
 /// theta = (E x - r) / |r| where margins are relative, else E x - r.
 Evidence mean_against_number(const Method& method, const Question& question, std::size_t channel,
                              const stats::Moments& x);

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/evidence_quantile.h"
+#include "harness/evidence_ratio.h"
+#include "harness/evidence_slope.h"
 #include "harness/law_cdf.h"
 #include "harness/law_evidence.h"
 #include "harness/mean_evidence.h"
@@ -131,16 +134,33 @@ Evidence cells_against_density(const Question& question, const ChannelData& data
           .distance = true};
 }
 
-std::string quantity_text(const Quantity& quantity) {
-  const std::string part = quantity.source.part.empty() ? "" : "." + quantity.source.part;
-  return fmt::format("{}({}{})", to_string(quantity.name), quantity.source.estimator, part);
+/// What the claim does not say itself: of what a bias or an error is taken, what is counted.
+std::string circumstances(const Question& question) {
+  const TestEntry& test = *question.test;
+  std::string text;
+  const QuantityName name = test.claim.left.name;
+  if (test.reference) {
+    text += fmt::format(", reference mean({})", to_string(*test.reference));
+  } else if (name == QuantityName::bias && !question.of_two() && !question.references.empty() &&
+             question.kind != QuestionKind::slope) {
+    text += fmt::format(", reference {}", question.references[0].value);
+  }
+  if (name == QuantityName::cost || name == QuantityName::efficiency) {
+    constexpr const char* kinds[] = {"rays", "samples", "seconds"};
+    text += fmt::format(", cost in {}", kinds[static_cast<int>(test.cost)]);
+  }
+  if (test.over) text += fmt::format(" over {}", test.over->parameter);
+  return text;
 }
 
 std::string side_text(const Question& question, std::size_t channel) {
   const Claim& claim = question.test->claim;
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
     return (other->factor == 1 ? "" : fmt::format("{} * ", other->factor)) +
-           quantity_text(other->quantity);
+           to_string(other->quantity);
+  }
+  if (question.test->claim.left.name == QuantityName::bias && !question.test->claim.left.slope) {
+    return fmt::format("{}", question.offset);
   }
   if (!question.references.empty()) return fmt::format("{}", question.references[channel].value);
   if (question.kind == QuestionKind::fit_to_density) return "its declared density";
@@ -191,6 +211,18 @@ std::vector<Method> methods_for(const Question& question) {
     case QuestionKind::fit_to_law:
     case QuestionKind::same_law:
       return {{"ks", Keeps::values}};
+    case QuestionKind::cost:
+    case QuestionKind::efficiency:
+      if (question.test->cost == CostKind::seconds) return {{"replicates", Keeps::blocks}};
+      if (question.kind == QuestionKind::cost) return {{"log-cost", Keeps::costs}};
+      return {{"log-efficiency", Keeps::costs}};
+    case QuestionKind::quantile:
+      return {{question.of_two() ? "quantile" : "binomial", Keeps::values}};
+    case QuestionKind::total_variance:
+      return {{"log-total-variance", Keeps::group_variances}};
+    case QuestionKind::slope:
+      return {{"slope", question.test->claim.left.name == QuantityName::cost ? Keeps::costs
+                                                                             : Keeps::moments}};
   }
   return {};
 }
@@ -207,8 +239,9 @@ Method find_method(const Question& question, const std::string& name) {
 
 std::string null_hypothesis(const Method&, const Question& question, std::size_t channel) {
   const TestEntry& test = *question.test;
-  std::string text = fmt::format("{} {} {}", quantity_text(test.claim.left), relation_text(test),
+  std::string text = fmt::format("{} {} {}", to_string(test.claim.left), relation_text(test),
                                  side_text(question, channel));
+  text += circumstances(question);
   if (question.channel_count() > 1) {
     text += fmt::format(" in channel {}", question.channel_name(channel));
   }
@@ -219,20 +252,23 @@ std::string null_hypothesis(const Method&, const Question& question, std::size_t
 
 bool is_relative(const Question& question, std::size_t channel) {
   const TestEntry& test = *question.test;
-  if (question.kind != QuestionKind::mean_of_one && question.kind != QuestionKind::mean_of_two) {
-    return false;
+  const bool quantile = question.kind == QuestionKind::quantile && !question.of_two();
+  if (!question.of_means() && !quantile) return false;
+  const bool within = test.claim.relation == Relation::within;
+  if (quantile || test.claim.left.name == QuantityName::bias) {
+    return (test.detect && test.detect->relative) ||
+           (test.allow && test.allow->relative && test.allow->value > 0) ||
+           (within && test.claim.margin.relative);
   }
   const bool absolute = (test.detect && !test.detect->relative) ||
                         (test.allow && !test.allow->relative && test.allow->value > 0) ||
-                        (test.claim.relation == Relation::within && !test.claim.margin.relative);
+                        (within && !test.claim.margin.relative);
   return !absolute &&
          (question.kind == QuestionKind::mean_of_two || question.references[channel].value != 0);
 }
 
 double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin) {
-  const bool variance = question.kind == QuestionKind::variance_of_one ||
-                        question.kind == QuestionKind::variance_of_two;
-  if (!variance) return margin.value;
+  if (!question.on_log_scale()) return margin.value;
   if (margin.relative) return std::log1p(margin.value);
   return std::log1p(margin.value / question.references[channel].value);
 }
@@ -255,6 +291,15 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
       return values_against_law(question, channel, data[0]);
     case QuestionKind::same_law:
       return law_against_law(question, channel, data);
+    case QuestionKind::cost:
+    case QuestionKind::efficiency:
+    case QuestionKind::total_variance:
+      if (method.keeps == Keeps::blocks) return evidence_of_replicates(question, channel, data);
+      return evidence_of_ratio(question, channel, data);
+    case QuestionKind::quantile:
+      return evidence_of_quantile(question, channel, data);
+    case QuestionKind::slope:
+      return evidence_of_slope(question, channel, data);
   }
   throw std::logic_error("a question of no kind");
 }

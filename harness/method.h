@@ -13,16 +13,30 @@
 
 namespace assay::harness {
 
+/// A run of consecutive observations with the time that drawing it took.
+struct Replicate {
+  std::uint64_t count = 0;
+  stats::Moments moments = {};
+  double seconds = 0;
+};
+
 /// One subject's data of one channel.
 struct ChannelData {
   std::uint64_t primaries = 1;
   stats::Moments moments = {};
   std::span<const double> values = {};  ///< where the method needs them
   std::span<const std::uint64_t> cells = {};
+  std::span<const stats::JointMoments> with_cost = {};  ///< by CountedCost
+  stats::Moments group_variances = {};
+  std::vector<Replicate> replicates = {};
 };
 
 /// What a method needs kept of its observations.
-enum class Keeps { moments, values, cells };
+enum class Keeps { moments, values, cells, costs, group_variances, blocks };
+
+/// Into how many replicates the observations of a method that keeps blocks are cut: enough for the
+/// tails of Student's t to be near the normal's.
+inline constexpr std::uint64_t replicate_count = 32;
 
 struct Method {
   std::string name;  ///< as in suites and records

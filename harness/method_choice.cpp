@@ -49,12 +49,11 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
     const Subject& side = question.subjects[subject];
     const Pilot* pilot = pilot_of(side, pilots);
     if (pilot == nullptr || !side.purpose.empty()) continue;
-    for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel data = pilot_channel(question, subject, channel, pilots);
       if (is_constant(question, subject, channel, data.moments)) continue;
-      const std::string part = question.channel_count() > 1
-                                   ? "." + side.setup->channels()[side.channels[channel]].name
-                                   : "";
+      const std::string part =
+          side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";
       all.push_back({.subject = subject,
                      .channel = channel,
                      .pilot = data,
@@ -270,6 +269,14 @@ std::uint64_t enough_for_log_variance(const Question& question, const std::vecto
   return needed;
 }
 
+std::string too_few(std::uint64_t needed) {
+  return fmt::format(
+      "secondary estimates of this shape need about {:.2g} observations before any test of their "
+      "variance keeps its level; larger `primaries`, or rows that each average several, bring "
+      "them nearer to normal",
+      static_cast<double>(needed));
+}
+
 /// F and chi-square where the pilot predicts near-normal secondaries; else the logarithm of the
 /// variance with its own kurtosis, from as many secondaries on as that needs; else nothing.
 std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
@@ -295,13 +302,45 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
   if (plan.invalid.empty() && needed > (fixed ? size : most_for_a_variance)) {
-    plan.invalid = fmt::format(
-        "secondary estimates of this shape need about {:.2g} observations before any test of their "
-        "variance keeps its level; larger `primaries`, or rows that each average several, bring "
-        "them nearer to normal",
-        static_cast<double>(needed));
+    plan.invalid = too_few(needed);
   }
   return std::min(needed, fixed ? size : most_for_a_variance);
+}
+
+// ---- Costs, efficiencies, total variances, slopes: one method each
+
+/// From how many secondaries on the logarithm of every variance that is part of the claim is near
+/// normal.
+std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& place,
+                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  std::vector<Known> channels = known_channels(question, pilots, plan);
+  // A reference comes last, and only its mean is used.
+  while (!channels.empty() && channels.back().subject >= question.compared()) channels.pop_back();
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
+  if (question.test->method) return first_look;
+  plan.invalid = heavy;
+  std::uint64_t needed = log_variance_secondaries;
+  for (const Known& known : channels) {
+    if (known.pilot.values.empty()) continue;
+    const stats::SixthOrderShape shape =
+        stats::averaged(stats::sixth_order_shape(known.pilot.values), whole(known.averaged));
+    needed = std::max(needed, stats::values_for_log_variance(shape, x));
+  }
+  const std::uint64_t size = intended(question, place, pilots, most, plan);
+  const std::uint64_t affordable =
+      question.test->secondaries || size == most ? size : most_for_a_variance;
+  if (plan.invalid.empty() && needed > affordable) plan.invalid = too_few(needed);
+  return std::min(needed, affordable);
+}
+
+/// Of means and costs at the points of a slope, or of a cost alone.
+std::uint64_t choose_for_points(const Question& question, const FamilyPlace& place,
+                                const Pilots& pilots, Plan& plan) {
+  if (question.kind == QuestionKind::cost) return log_variance_secondaries;
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  return std::clamp(enough_for_t(known_channels(question, pilots, plan), x), first_look,
+                    most_for_a_mean);
 }
 
 }  // namespace
@@ -310,7 +349,9 @@ std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
                             const Pilots& pilots, std::uint64_t most, Plan& plan) {
   if (question.of_means()) return choose_for_mean(question, place, pilots, most, plan);
   if (question.of_variances()) return choose_for_variance(question, place, pilots, most, plan);
-  return first_look;
+  if (question.of_laws()) return first_look;
+  if (question.of_spread()) return choose_for_spread(question, place, pilots, most, plan);
+  return choose_for_points(question, place, pilots, plan);
 }
 
 }  // namespace assay::harness

@@ -27,11 +27,13 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
 }
 
 Pilot read(const Pool& pool) {
-  Pilot pilot{.channels = {}, .primaries = pool.primaries(), .trouble = pool.trouble()};
+  Pilot pilot{
+      .channels = {}, .primaries = pool.primaries(), .with_cost = {}, .trouble = pool.trouble()};
   if (!pilot.trouble.empty()) return pilot;
   const std::vector<ChannelSummary>& channels = pool.prefix(pool.requested()).channels;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     pilot.channels.push_back(channels[i].moments);
+    pilot.with_cost.push_back(channels[i].with_cost);
     const std::span<const double> kept = pool.values(i, pool.requested());
     if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
   }
@@ -62,6 +64,8 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   for (const PreparedEstimator* estimator : estimators) {
     names.push_back(estimator->name);
     pools.push_back(pilot_pool(*estimator, run.seed));
+    if (!run.with_cost.contains(estimator->name)) continue;
+    for (ChannelPlan& channel : pools.back()->plan()) channel.with_cost = true;
   }
   draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
   Pilots pilots;

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct Pilot {
   std::vector<stats::Moments> channels;          ///< of secondaries of `primaries` primaries
   std::vector<std::vector<double>> values = {};  ///< of the first channels, as drawn
   std::uint64_t primaries = 1;
+  /// By channel, then CountedCost; empty where not wanted.
+  std::vector<std::vector<stats::JointMoments>> with_cost = {};
   std::string trouble = "";  ///< why there are no numbers: the estimator threw
 };
 
@@ -30,6 +33,7 @@ using Pilots = std::map<std::string, Pilot>;
 struct PilotRun {
   std::uint64_t seed;
   unsigned threads;
+  std::set<std::string> with_cost = {};  ///< names of those whose costs are wanted
 };
 
 /// The pilot of a subject, if it has one that went well.

@@ -10,6 +10,7 @@
 
 #include "harness/critical.h"
 #include "harness/method_choice.h"
+#include "harness/pool.h"
 #include "harness/sample_size.h"
 
 namespace assay::harness {
@@ -52,6 +53,17 @@ void require_possible(const Question& question, const Plan& plan, std::uint64_t 
 
 stats::LookSchedule one_look(std::uint64_t secondaries) { return {{secondaries}, {1}}; }
 
+/// Of a method in seconds: replicates of whole blocks, as many observations in those of each
+/// subject; one look.
+stats::LookSchedule timed_look(const Plan& plan, std::uint64_t secondaries) {
+  std::uint64_t block = 1;
+  for (const std::uint64_t primaries : plan.primaries) {
+    block = std::max(block, block_size_of(primaries));
+  }
+  const std::uint64_t unit = block * replicate_count;
+  return one_look((secondaries + unit - 1) / unit * unit);
+}
+
 bool is_bounded(const Question& question) {
   return std::any_of(question.subjects.begin(), question.subjects.end(),
                      [](const Subject& s) { return s.setup->observations().has_value(); });
@@ -63,6 +75,11 @@ bool is_bounded(const Question& question) {
 stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, const Plan& plan, std::uint64_t first) {
   const std::uint64_t most = most_available(question, plan);
+  if (plan.method.keeps == Keeps::blocks) {
+    const auto planned = planned_secondaries(question, place.share, pilots, plan);
+    return timed_look(plan, std::min(most, question.test->secondaries.value_or(
+                                               planned.value_or(classical_secondaries))));
+  }
   if (question.test->secondaries) return one_look(std::min(*question.test->secondaries, most));
   if (is_bounded(question)) return one_look(most);
   const std::optional<std::uint64_t> alone =
@@ -104,9 +121,8 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
   Plan plan{
       .method = test.method ? find_method(question, *test.method) : methods_for(question).front(),
       .regions = regions_of(question)};
-  const bool laws = !question.of_means() && !question.of_variances();
   for (const Subject& subject : question.subjects) {
-    const bool single = laws && !subject.estimator->primaries;
+    const bool single = question.of_laws() && !subject.estimator->primaries;
     plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
   }
   try {

@@ -9,6 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "harness/group_variance.h"
+
 namespace assay::harness {
 namespace {
 
@@ -28,7 +30,22 @@ double thread_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+Pool::BlockSums sums_of(const Summary& block) {
+  Pool::BlockSums sums{.count = block.count, .seconds = block.seconds};
+  for (const ChannelSummary& channel : block.channels) sums.channels.push_back(channel.moments);
+  return sums;
+}
+
+ObservationCost difference(const Cost& after, const Cost& before) {
+  return {static_cast<double>(after.rays() - before.rays()),
+          static_cast<double>(after.samples - before.samples)};
+}
+
 }  // namespace
+
+std::uint64_t block_size_of(std::uint64_t primaries) {
+  return std::bit_floor(std::clamp(primaries_per_block / primaries, least_block, most_block));
+}
 
 FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | flush_bits); }
 FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
@@ -37,8 +54,7 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
     : setup_(std::move(setup)),
       key_(key),
       primaries_(primaries),
-      block_size_(
-          std::bit_floor(std::clamp(primaries_per_block / primaries, least_block, most_block))),
+      block_size_(block_size_of(primaries)),
       plan_(setup_->channels().size()) {}
 
 void Pool::mark(std::uint64_t count) {
@@ -76,15 +92,19 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   auto mark = prefixes_.upper_bound(first);
   const double start = thread_seconds();
   std::uint64_t index = first;
+  GroupVariance groups(grouped_channels_);
   const FlushDenormals flush;
   try {
     for (; index < last; ++index) {
       Stream random(key_, index);
+      const Cost before = block.whole.cost;
       estimator.secondary(random, primaries_, out, block.whole.cost);
+      const ObservationCost cost = difference(block.whole.cost, before);
       for (std::size_t c = 0; c < out.size(); ++c) {
-        add_observation(block.whole.channels[c], out[c], index);
+        add_observation(block.whole.channels[c], out[c], index, cost);
         if (index < plan_[c].keep) block.values[c].push_back(out[c]);
       }
+      if (const auto variance = groups.add(out)) block.whole.group_variances.add(*variance);
       ++block.whole.count;
       if (mark != prefixes_.end() && index + 1 == mark->first) {
         block.partial.emplace_back(mark->first, block.whole);
@@ -112,6 +132,7 @@ void Pool::fold(Block&& block) {
     prefixes_.at(count) = std::move(prefix);
   }
   running_.append(block.whole);
+  if (keeps_blocks_) blocks_.push_back(sums_of(block.whole));
   for (std::size_t c = 0; c < values_.size(); ++c) {
     values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
   }

@@ -28,6 +28,9 @@ class FlushDenormals {
   unsigned saved_;
 };
 
+/// Observations of a block, a power of two that depends on `primaries` alone.
+std::uint64_t block_size_of(std::uint64_t primaries);
+
 class Pool {
  public:
   Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries);
@@ -39,6 +42,14 @@ class Pool {
   /// What to keep; before anything is drawn.
   void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
   std::vector<ChannelPlan>& plan() { return plan_; }
+
+  /// To sum the variances of these channels in groups; before anything is drawn.
+  void keep_group_variances(std::vector<std::size_t> channels) {
+    grouped_channels_ = std::move(channels);
+  }
+  /// To keep every block by itself (some hundred bytes for each 16384 primaries); before anything
+  /// is drawn.
+  void keep_blocks() { keeps_blocks_ = true; }
 
   /// Observations [0, count) may be read as a prefix. std::logic_error once they are drawn.
   void mark(std::uint64_t count);
@@ -55,6 +66,14 @@ class Pool {
   std::uint64_t largest_prefix() const;
   /// The first values of a channel, at most `count` and as many as were to be kept.
   std::span<const double> values(std::size_t channel, std::uint64_t count) const;
+  /// A whole block by itself.
+  struct BlockSums {
+    std::uint64_t count = 0;
+    std::vector<stats::Moments> channels = {};
+    double seconds = 0;
+  };
+  /// Every block drawn so far, where they are kept.
+  std::span<const BlockSums> blocks() const { return blocks_; }
   /// Why drawing ended early: an estimator threw. Empty when it did not.
   const std::string& trouble() const { return trouble_; }
   /// Whether the first `count` observations, once drawn, are there: no trouble came before.
@@ -89,6 +108,9 @@ class Pool {
   std::uint64_t requested_ = 0;
   Summary running_;
   std::vector<std::vector<double>> values_;
+  std::vector<std::size_t> grouped_channels_;
+  bool keeps_blocks_ = false;
+  std::vector<BlockSums> blocks_;
   bool started_ = false;
   std::string trouble_;
 };

@@ -79,6 +79,14 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   return plan;
 }
 
+void keep_for(const Method& method, const Subject& side, Pool& pool) {
+  if (method.keeps == Keeps::costs) {
+    for (const std::size_t channel : side.channels) pool.plan()[channel].with_cost = true;
+  }
+  if (method.keeps == Keeps::group_variances) pool.keep_group_variances(side.channels);
+  if (method.keeps == Keeps::blocks) pool.keep_blocks();
+}
+
 }  // namespace
 
 std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t seed,
@@ -116,6 +124,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
       keep = std::max(keep, plan.most_secondaries());
     }
   }
+  keep_for(plan.method, side, *pool);
   for (const std::uint64_t size : plan.looks.sizes) pool->mark(size);
   return pool;
 }

@@ -38,6 +38,7 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
   const Entry& plugin = find_plugin(entry.plugin, entry.where);
   Parameters parameters(entry.plugin, plugin.information.parameters, entry.parameters, folder);
   PreparedEstimator prepared{.name = entry.name,
+                             .listed = entry.name,
                              .entry = &plugin,
                              .setup = set_up(plugin, parameters),
                              .parameters = parameters.canonical(),
@@ -46,7 +47,8 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
                              .key_parameters = parameters.canonical(),
                              .primaries = entry.primaries,
                              .original = nullptr,
-                             .where = entry.where};
+                             .where = entry.where,
+                             .given = entry.parameters};
   if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
     throw InputError(
         entry.where,

@@ -14,7 +14,8 @@
 namespace assay::harness {
 
 struct PreparedEstimator {
-  std::string name;  ///< in the suite
+  std::string name;    ///< in the suite; of a point of a sweep with the value it has there
+  std::string listed;  ///< in the suite
   const Entry* entry;
   std::shared_ptr<const Setup> setup;
   std::string parameters;  ///< canonical, as recorded
@@ -24,6 +25,7 @@ struct PreparedEstimator {
   std::optional<std::uint64_t> primaries;  ///< as the suite says; nullopt: auto
   std::shared_ptr<const Setup> original;   ///< of a mutant: its original at the same parameters
   Location where;
+  Value given = {};  ///< the parameters as the suite gives them
 };
 
 /// The names of the parameters an estimator's streams depend on.

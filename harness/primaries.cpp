@@ -26,13 +26,13 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
                                std::size_t subject, const Pilots& pilots) {
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   std::uint64_t wanted = least_primaries;
-  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+  for (std::size_t channel = 0; channel < question.subjects[subject].channels.size(); ++channel) {
     const stats::Moments& pilot = pilot_channel(question, subject, channel, pilots).moments;
     if (is_constant(question, subject, channel, pilot)) continue;
     const stats::PrimaryShape shape = stats::primary_shape(pilot);
     const stats::PlannedTest test{
         .secondaries = question.test->secondaries.value_or(usual_secondaries), .critical_value = x};
-    wanted = std::max(wanted, question.of_variances()
+    wanted = std::max(wanted, question.of_spread()
                                   ? stats::primaries_for_variance(shape, shape_limits(x))
                                   : stats::primaries_for_mean(shape, test));
   }
@@ -46,7 +46,7 @@ Primaries choose_primaries(const std::vector<Question>& questions,
   Primaries chosen;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Question& question = questions[i];
-    if (!question.of_means() && !question.of_variances()) continue;
+    if (question.of_laws()) continue;
     for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
       const Subject& side = question.subjects[subject];
       if (!chooses_primaries(side) || pilot_of(side, pilots) == nullptr) continue;

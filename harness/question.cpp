@@ -4,146 +4,17 @@
 
 #include <algorithm>
 
-#include "harness/sampler_setup.h"
+#include "harness/question_claims.h"
 
 namespace assay::harness {
 namespace {
-
-using Estimators = std::map<std::string, PreparedEstimator>;
-
-const PreparedEstimator& estimator_of(const Source& source, const Estimators& estimators) {
-  const auto found = estimators.find(source.estimator);
-  if (found != estimators.end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [name, unused] : estimators) names.push_back(name);
-  const std::string near = nearest(source.estimator, names);
-  throw InputError(source.where, fmt::format("no estimator `{}` in this suite{}", source.estimator,
-                                             near.empty() ? "" : "; did you mean `" + near + "`?"));
-}
-
-std::string parts_of(const PreparedEstimator& estimator) {
-  std::string text;
-  const auto add = [&](const std::string& name) {
-    text += (text.empty() ? "`" : ", `") + name + "`";
-  };
-  for (const Channel& channel : estimator.setup->channels()) add(channel.name);
-  for (const NamedSampler& named : estimator.setup->samplers()) {
-    add(named.name);
-    for (const Marginal& marginal : marginals(named.sampler->domain())) {
-      add(named.name + "." + marginal.name);
-    }
-  }
-  return text;
-}
-
-[[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
-  throw InputError(source.where, fmt::format("`{}` has no part `{}`; it has {}", source.estimator,
-                                             source.part, parts_of(estimator)));
-}
-
-std::vector<std::size_t> tested_channels(const std::vector<Channel>& channels) {
-  std::vector<std::size_t> tested;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!channels[i].diagnostic) tested.push_back(i);
-  }
-  return tested;
-}
-
-std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
-                                        const std::string& name) {
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (channels[i].name == name) return {i};
-  }
-  return {};
-}
-
-/// The estimator's secondary estimates: all channels, or the one the part names.
-Subject estimates(const Source& source, const Estimators& estimators) {
-  const PreparedEstimator& estimator = estimator_of(source, estimators);
-  const std::vector<Channel> channels = estimator.setup->channels();
-  Subject subject{.estimator = &estimator,
-                  .setup = estimator.setup,
-                  .channels = source.part.empty() ? tested_channels(channels)
-                                                  : channels_named(channels, source.part),
-                  .averages = estimator.entry->information.averages};
-  if (subject.channels.empty()) no_such_part(source, estimator);
-  return subject;
-}
-
-/// The sampler a part names, itself or before a marginal's name; the only one when it names none.
-const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
-                                  const std::string& part, std::string& rest) {
-  const auto dot = part.find('.');
-  for (const NamedSampler& named : samplers) {
-    if (named.name == part.substr(0, dot)) {
-      rest = dot == std::string::npos ? "" : part.substr(dot + 1);
-      return &named;
-    }
-  }
-  rest = part;
-  return samplers.size() == 1 ? &samplers[0] : nullptr;
-}
-
-/// A sampler's draws: cells of the whole domain, all marginals, or the marginal the part names.
-enum class Draws { cells, marginals };
-
-Subject draws(const Source& source, const Estimators& estimators, Draws what) {
-  const PreparedEstimator& estimator = estimator_of(source, estimators);
-  std::string rest;
-  const std::vector<NamedSampler> samplers = estimator.setup->samplers();
-  const NamedSampler* named = sampler_named(samplers, source.part, rest);
-  if (named == nullptr) no_such_part(source, estimator);
-  Subject subject{.estimator = &estimator,
-                  .setup = sampler_setup(*named, source.where),
-                  .purpose = named->name,
-                  .channels = {},
-                  .averages = false};
-  const std::vector<Channel> channels = subject.setup->channels();
-  if (!rest.empty()) {
-    subject.channels = channels_named(channels, rest);
-    if (rest == cell_channel) subject.channels.clear();
-  } else if (what == Draws::cells) {
-    subject.channels = channels_named(channels, cell_channel);
-  } else {
-    subject.channels = tested_channels(channels);
-  }
-  if (subject.channels.empty()) no_such_part(source, estimator);
-  return subject;
-}
-
-/// A distribution's source: a channel where the part names one, else a sampler.
-Subject values(const Source& source, const Estimators& estimators) {
-  const PreparedEstimator& estimator = estimator_of(source, estimators);
-  const std::vector<Channel> channels = estimator.setup->channels();
-  if (source.part.empty() || !channels_named(channels, source.part).empty()) {
-    return estimates(source, estimators);
-  }
-  return draws(source, estimators, Draws::marginals);
-}
-
-Constant analytic_mean(const Channel& channel, const Source& source) {
-  if (channel.mean) return {*channel.mean, channel.mean_error};
-  throw InputError(
-      source.where,
-      fmt::format("`{}` knows no analytic mean of `{}` with these parameters; give the "
-                  "number, or compare with an estimator you trust",
-                  source.estimator, channel.name));
-}
-
-Constant analytic_variance(const Channel& channel, const Source& source) {
-  if (channel.variance) return {*channel.variance, 0};
-  throw InputError(source.where,
-                   fmt::format("`{}` knows no exact variance of `{}` with these parameters; give "
-                               "the number",
-                               source.estimator, channel.name));
-}
 
 std::vector<Constant> references(const Claim& claim, const Subject& subject) {
   std::vector<Constant> numbers;
   const std::vector<Channel> channels = subject.setup->channels();
   for (const std::size_t i : subject.channels) {
     if (const auto* constant = std::get_if<Constant>(&claim.right)) {
-      if (claim.left.name == QuantityName::variance && constant->standard_error > 0) {
+      if (claim.left.name != QuantityName::mean && constant->standard_error > 0) {
         throw InputError(claim.left.where,
                          "a variance is tested against an exact number: `+-` has no method here");
       }
@@ -158,19 +29,25 @@ std::vector<Constant> references(const Claim& claim, const Subject& subject) {
 }
 
 void require_pairs(const Question& question, const Claim& claim) {
+  if (question.pooled()) return;
   const std::size_t first = question.subjects[0].channels.size();
-  const std::size_t second = question.subjects[1].channels.size();
-  if (first == second) return;
-  throw InputError(claim.left.where,
-                   fmt::format("the two sides have {} and {} channels; name one of each, as in "
-                               "`{}.channel`",
-                               first, second, claim.left.source.estimator));
+  for (const Subject& other : question.subjects) {
+    if (other.channels.size() == first) continue;
+    throw InputError(claim.left.where,
+                     fmt::format("the two sides have {} and {} channels; name one of each, as in "
+                                 "`{}.channel`",
+                                 first, other.channels.size(), claim.left.source.estimator));
+  }
 }
 
 /// Rows of one file belong together: two columns of it are no independent samples.
 void require_different_data(const Question& question, const Claim& claim) {
   const std::string first = question.subjects[0].setup->data_file();
-  if (first.empty() || first != question.subjects[1].setup->data_file()) return;
+  const auto same = [&](const Subject& other) { return other.setup->data_file() == first; };
+  if (first.empty() ||
+      std::count_if(question.subjects.begin(), question.subjects.end(), same) < 2) {
+    return;
+  }
   throw InputError(claim.left.where,
                    fmt::format("both sides are read from `{}`: its rows belong together and are no "
                                "independent samples; record the difference as a column of its own "
@@ -178,29 +55,36 @@ void require_different_data(const Question& question, const Claim& claim) {
                                first));
 }
 
-/// The stream that a subject's observations are or were drawn from.
-StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
-  return subject.setup->data_stream().value_or(
-      key_of(*subject.estimator, seed, subject.copy, subject.purpose));
-}
-
-/// Sources of one key would draw the same numbers: one of them, the second if it is drawn at all,
-/// gets a copy of its own.
-void separate_streams(Question& question, const Claim& claim, std::uint64_t seed) {
-  Subject& first = question.subjects[0];
-  Subject& second = question.subjects[1];
-  if (!(stream_of(first, seed) == stream_of(second, seed))) return;
+/// Of two sources of one key, the second, if it is drawn at all, gets a copy of its own.
+bool separate_pair(Subject& first, Subject& second, const Claim& claim, std::uint64_t seed) {
+  if (!(stream_of(first, seed) == stream_of(second, seed))) return false;
   if (first.setup->data_stream() && second.setup->data_stream()) {
     throw InputError(claim.left.where,
                      "both files say that they were drawn from the same stream: they are not "
                      "independent; draw one of them with another `--seed`");
   }
-  (second.setup->data_stream() ? first : second).copy = 1;
+  ++(second.setup->data_stream() ? first : second).copy;
+  return true;
+}
+
+/// Sources of one key would draw the same numbers: all but one get copies of their own.
+void separate_streams(Question& question, const Claim& claim, std::uint64_t seed) {
+  std::vector<Subject>& subjects = question.subjects;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+      for (std::size_t j = i + 1; j < subjects.size(); ++j) {
+        moved = separate_pair(subjects[i], subjects[j], claim, seed) || moved;
+      }
+    }
+  }
 }
 
 Question about_moments(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   const bool mean = claim.left.name == QuantityName::mean;
+  // A worst variance that is bounded is every channel's variance bounded.
+  if (claim.left.name == QuantityName::worst_variance) check_worst_variance(claim, estimators);
   Question question{.test = &test,
                     .kind = mean ? QuestionKind::mean_of_one : QuestionKind::variance_of_one,
                     .subjects = {estimates(claim.left.source, estimators)}};
@@ -243,6 +127,11 @@ void require_absolute(const std::optional<Margin>& margin, const TestEntry& test
   }
 }
 
+const char* ratio_of(QuantityName name) {
+  if (name == QuantityName::cost) return "costs";
+  return name == QuantityName::efficiency ? "efficiencies" : "variances";
+}
+
 void check_margins(const Question& question) {
   const TestEntry& test = *question.test;
   std::optional<Margin> within;
@@ -256,11 +145,19 @@ void check_margins(const Question& question) {
       require_absolute(margin, test, "a distance between laws is a probability");
     }
     for (const Constant& reference : question.references) {
+      if (question.kind == QuestionKind::slope) break;
       if (reference.value == 0) require_absolute(margin, test, "the reference is zero");
     }
-    if (margin && !margin->relative && question.kind == QuestionKind::variance_of_two) {
+    if (margin && !margin->relative && question.on_log_scale() && question.of_two()) {
       throw InputError(test.where,
-                       "a margin on a ratio of variances is relative; give it in per cent");
+                       fmt::format("a margin on a ratio of {} is relative; give it in per cent",
+                                   ratio_of(test.claim.left.name)));
+    }
+    if (question.kind == QuestionKind::slope) {
+      require_absolute(margin, test, "a slope is an exponent");
+    }
+    if (question.kind == QuestionKind::quantile && question.of_two()) {
+      require_absolute(margin, test, "two quantiles differ by a number");
     }
   }
 }
@@ -278,24 +175,48 @@ void check_sizes(const Question& question) {
   }
 }
 
+Question asked(const TestEntry& test, const Estimators& estimators) {
+  using enum QuantityName;
+  if (test.claim.left.slope) return about_slope(test, estimators);
+  switch (test.claim.left.name) {
+    case mean:
+    case variance:
+    case worst_variance:
+      return about_moments(test, estimators);
+    case distribution:
+      return about_distribution(test, estimators);
+    case bias:
+      return about_bias(test, estimators);
+    case cost:
+      return about_cost(test, estimators);
+    case efficiency:
+      return about_efficiency(test, estimators);
+    case quantile:
+      return about_quantile(test, estimators);
+    case total_variance:
+      return about_total_variance(test, estimators);
+  }
+  throw std::logic_error("a claim about no quantity");
+}
+
 }  // namespace
 
+bool Question::of_spread() const {
+  return of_variances() || kind == QuestionKind::efficiency ||
+         kind == QuestionKind::total_variance ||
+         (kind == QuestionKind::slope && test->claim.left.name == QuantityName::variance);
+}
+
 std::string Question::channel_name(std::size_t channel) const {
+  if (kind == QuestionKind::cost) return "cost";
+  if (kind == QuestionKind::total_variance && subjects[0].channels.size() > 1)
+    return "all channels";
   return subjects[0].setup->channels()[subjects[0].channels[channel]].name;
 }
 
 Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
-  const QuantityName name = test.claim.left.name;
-  if (test.claim.left.slope || (name != QuantityName::mean && name != QuantityName::variance &&
-                                name != QuantityName::distribution)) {
-    throw InputError(test.claim.left.where,
-                     fmt::format("this version tests `mean`, `variance` and `distribution`; it has "
-                                 "no method for `{}`",
-                                 test.claim.left.slope ? "slope" : to_string(name)));
-  }
-  Question question = name == QuantityName::distribution ? about_distribution(test, estimators)
-                                                         : about_moments(test, estimators);
-  if (question.of_two()) {
+  Question question = asked(test, estimators);
+  if (question.subjects.size() > 1) {
     require_pairs(question, test.claim);
     require_different_data(question, test.claim);
     separate_streams(question, test.claim, seed);

@@ -23,6 +23,8 @@ struct Subject {
   std::uint32_t copy = 0;
   std::vector<std::size_t> channels;  ///< of the set-up, those the claim is about
   bool averages = true;               ///< variance falls like 1 / primaries
+  /// Where `estimator` is this question's own: a point of a sweep.
+  std::shared_ptr<const PreparedEstimator> own = nullptr;
 };
 
 enum class QuestionKind {
@@ -32,33 +34,60 @@ enum class QuestionKind {
   variance_of_two,
   fit_to_density,  ///< a sampler's draws against its declared density, in cells
   fit_to_law,      ///< values against a law's distribution function
-  same_law         ///< values of two against each other
+  same_law,        ///< values of two against each other
+  cost,            ///< of one primary where the estimator averages; the kinds from here on are
+  efficiency,      ///< of one estimator against a number or of two, as the subjects say
+  quantile,
+  total_variance,  ///< summed over the channels
+  slope            ///< a power law over the subjects, one a point of the sweep
 };
 
 /// What a claim asks of the suite's estimators.
 struct Question {
   const TestEntry* test;
   QuestionKind kind;
-  std::vector<Subject> subjects;          ///< one or two
-  double factor = 1;                      ///< first against factor * second
+  std::vector<Subject> subjects;  ///< one or two (a slope: one a point), then perhaps a reference
+  double factor = 1;              ///< first against factor * second
+  double offset = 0;              ///< of a bias: E x against the reference + offset
   std::vector<Constant> references = {};  ///< a number per channel, for the kinds "of one"
   Law law = {};                           ///< for fit_to_law
+  bool has_reference_subject = false;     ///< the last subject's mean is the truth of the others
+  /// Of each subject and channel the truth its error is taken about: of a mean squared error in an
+  /// efficiency, of a bias in a slope. Empty: the variance, the mean itself.
+  std::vector<std::vector<Constant>> truths = {};
+  std::vector<double> sizes = {};  ///< of a slope: the values of the swept parameter
 
-  std::size_t channel_count() const { return subjects[0].channels.size(); }
+  /// One number from all channels together.
+  bool pooled() const { return kind == QuestionKind::cost || kind == QuestionKind::total_variance; }
+  std::size_t channel_count() const { return pooled() ? 1 : subjects[0].channels.size(); }
   std::string channel_name(std::size_t channel) const;
-  bool of_two() const { return subjects.size() == 2; }
+  /// Subjects without a reference.
+  std::size_t compared() const { return subjects.size() - (has_reference_subject ? 1 : 0); }
+  bool of_two() const { return kind != QuestionKind::slope && compared() == 2; }
   bool of_means() const {
     return kind == QuestionKind::mean_of_one || kind == QuestionKind::mean_of_two;
   }
   bool of_variances() const {
     return kind == QuestionKind::variance_of_one || kind == QuestionKind::variance_of_two;
   }
+  /// Theta is the logarithm of a ratio.
+  bool on_log_scale() const {
+    return of_variances() || kind == QuestionKind::cost || kind == QuestionKind::efficiency ||
+           kind == QuestionKind::total_variance;
+  }
+  /// What is tested is or contains a variance.
+  bool of_spread() const;
+  /// The law of single values is the subject, not a mean over them.
+  bool of_laws() const {
+    return kind == QuestionKind::fit_to_density || kind == QuestionKind::fit_to_law ||
+           kind == QuestionKind::same_law || kind == QuestionKind::quantile;
+  }
 };
 
 /// InputError at the claim's place: a part that does not exist, an analytic reference that the
-/// plugin does not know, channels that do not pair, a quantity there is no method for, a margin in
-/// per cent where there is nothing to take it of.
-/// Two sources that would share a stream under this seed are told apart.
+/// plugin does not know, channels that do not pair, a margin in per cent where there is nothing to
+/// take it of, an estimator of the sweep that its plugin refuses.
+/// Sources that would share a stream under this seed are told apart.
 Question ask(const TestEntry& test, const std::map<std::string, PreparedEstimator>& estimators,
              std::uint64_t seed);
 

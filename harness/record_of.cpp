@@ -53,7 +53,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
   const ChannelSummary& kept = summary.channels[index];
   const stats::Moments& moments = kept.moments;
   const bool spread = moments.count > 1 && moments.m2 > 0;
-  reports::Sample sample{.estimator = side.estimator->name,
+  reports::Sample sample{.estimator = side.estimator->listed,
                          .plugin = side.estimator->entry->information.name,
                          .parameters = side.estimator->parameters,
                          .channel = side.setup->channels()[index].name,
@@ -82,8 +82,11 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
 
 std::vector<reports::Sample> samples_of(const TestWork& work) {
   std::vector<reports::Sample> samples;
-  for (std::size_t channel = 0; channel < work.outcome.question.channel_count(); ++channel) {
+  const std::vector<Subject>& subjects = work.outcome.question.subjects;
+  // All channels, also where one number is made of them.
+  for (std::size_t channel = 0; channel < subjects[0].channels.size(); ++channel) {
     for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
+      if (channel >= subjects[subject].channels.size()) continue;
       if (work.pools[subject]->has(work.outcome.secondaries())) {
         samples.push_back(sample_of(work, subject, channel));
       }
@@ -140,6 +143,9 @@ Number margin(const Regions& regions) {
   if (regions.relation == Relation::within) return regions.within;
   return regions.detect ? Number(*regions.detect) : Number();
 }
+
+/// Seconds are never the same again.
+bool is_timed(const TestWork& work) { return work.outcome.plan.method.keeps == Keeps::blocks; }
 
 std::string id_filter(const std::string& id) { return " --filter " + shell_quoted(id); }
 
@@ -200,6 +206,7 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
               : options.command + fmt::format(" --seed {}", run->seed) +
                     (run->suite.file.empty() ? "" : id_filter(suite.tests.back().id));
     }
+    suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
     whole = whole && run->holm;
     add_pictures(*run, suite);
     record.suites.push_back(std::move(suite));

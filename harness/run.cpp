@@ -6,6 +6,7 @@
 #include <chrono>
 #include <ctime>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "harness/holm_verdict.h"
@@ -54,12 +55,36 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
     bool wanted = all;
     for (std::size_t i = 0; i < questions.size(); ++i) {
       for (const Subject& subject : questions[i].subjects) {
-        wanted = wanted || (chosen[i] && subject.estimator == &estimator);
+        wanted = wanted || (chosen[i] && subject.estimator->listed == estimator.name);
       }
     }
     if (wanted) used.push_back(&estimator);
   }
   return used;
+}
+
+/// And the points of their sweeps.
+std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEstimator*> estimators,
+                                                  const std::vector<Question>& questions,
+                                                  const std::vector<bool>& chosen) {
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    for (const Subject& subject : questions[i].subjects) {
+      if (!chosen[i] || !subject.own || !known.insert(subject.own->name).second) continue;
+      estimators.push_back(subject.own.get());
+    }
+  }
+  return estimators;
+}
+
+/// Names of the estimators whose costs some claim is about.
+std::set<std::string> costly(const std::vector<Question>& questions) {
+  std::set<std::string> names;
+  for (const Question& question : questions) {
+    if (methods_for(question).front().keeps != Keeps::costs) continue;
+    for (const Subject& subject : question.subjects) names.insert(subject.estimator->name);
+  }
+  return names;
 }
 
 void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& used,
@@ -93,7 +118,9 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
   const std::vector<FamilyPlace> place = places(run.suite, questions);
   const auto used = used_by(questions, chosen, run);
-  const Pilots pilots = run_pilots(used, {.seed = run.seed, .threads = options.threads}, progress);
+  const Pilots pilots = run_pilots(
+      with_sweeps(used, questions, chosen),
+      {.seed = run.seed, .threads = options.threads, .with_cost = costly(questions)}, progress);
   stop_if_interrupted();
   const Primaries primaries = choose_primaries(questions, place, pilots);
   for (std::size_t i = 0; i < questions.size(); ++i) {

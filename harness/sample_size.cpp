@@ -4,7 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "harness/claim_size.h"
 #include "harness/constant.h"
+#include "harness/evidence_ratio.h"
 #include "harness/sampler_setup.h"
 #include "stats/power.h"
 #include "stats/tails.h"
@@ -37,9 +39,42 @@ double secondary_kurtosis(const stats::Moments& pilot, double primaries) {
   return 3 + (pilot.kurtosis() - 3) / primaries;
 }
 
+/// Costs, efficiencies and total variances: 1 + the spread of their logarithm takes the place of
+/// the kurtosis in planning a logarithm of a variance.
+bool has_log_spread(const Question& question) {
+  return question.on_log_scale() && !question.of_variances();
+}
+
+/// The largest over the subject's channels: a sum of variances spreads no more than its worst part.
+std::optional<double> pilot_log_spread(const Question& question, std::size_t subject,
+                                       const Pilots& pilots, const Plan& plan) {
+  const Subject& side = question.subjects[subject];
+  const Pilot& pilot = pilots.at(side.estimator->name);
+  std::optional<double> most;
+  for (const std::size_t channel : side.channels) {
+    const auto spread = planned_log_spread(
+        question, {.values = pilot.channels[channel], .with_cost = pilot.with_cost[channel]},
+        averaged(question, plan, subject));
+    if (spread) most = std::max(most.value_or(0), *spread);
+  }
+  return most;
+}
+
+std::optional<PlannedChannel> log_spread_channel(const Regions& regions,
+                                                 std::optional<double> first,
+                                                 std::optional<double> second) {
+  if (!first || !second || !(*first + *second > 0)) return std::nullopt;
+  return PlannedChannel{.regions = regions, .kurtosis = 1 + *first, .other_kurtosis = 1 + *second};
+}
+
 /// From the pilot; nullopt where it has no spread.
 std::optional<PlannedChannel> planned_channel(const Question& question, std::size_t channel,
                                               const Pilots& pilots, const Plan& plan) {
+  if (has_log_spread(question)) {
+    return log_spread_channel(
+        plan.regions[channel], pilot_log_spread(question, 0, pilots, plan),
+        question.of_two() ? pilot_log_spread(question, 1, pilots, plan) : std::optional(0.0));
+  }
   const stats::Moments& first = pilot_channel(question, 0, channel, pilots).moments;
   PlannedChannel planned{.regions = plan.regions[channel]};
   const bool constant = is_constant(question, 0, channel, first);
@@ -154,7 +189,7 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
   const std::optional<PlannedChannel> channel = planned_channel(question, index, pilots, plan);
   if (!channel || (!equivalence && !regions.detect)) return std::nullopt;
   std::optional<std::uint64_t> count;
-  if (question.of_variances()) {
+  if (question.on_log_scale()) {
     count = for_variances(share, *channel);
   } else if (equivalence) {
     count = for_equivalence(share, *channel);
@@ -192,7 +227,7 @@ std::optional<std::uint64_t> for_laws(const Question& question, const ErrorShare
 double equivalence_power(const Question& question, const TestSize& size,
                          const PlannedChannel& channel) {
   const double n = static_cast<double>(size.secondaries);
-  if (question.of_variances()) {
+  if (question.on_log_scale()) {
     const double one_margin =
         stats::log_variance_power(variance_plan(equivalence_rates(size.share), 0, channel), n,
                                   std::exp(channel.regions.within));
@@ -208,6 +243,12 @@ double equivalence_power(const Question& question, const TestSize& size,
                                   n, 0);
 }
 
+/// Quantiles and slopes have none here; nor has a comparison of numbers without a spread.
+bool has_power(const Question& question, const PlannedChannel& channel) {
+  if (question.kind == QuestionKind::quantile || question.kind == QuestionKind::slope) return false;
+  return !has_log_spread(question) || channel.kurtosis + channel.other_kurtosis > 2;
+}
+
 bool all_piloted(const Question& question, const Pilots& pilots) {
   return std::all_of(question.subjects.begin(), question.subjects.end(),
                      [&](const Subject& s) { return pilot_of(s, pilots) != nullptr; });
@@ -217,8 +258,16 @@ bool all_piloted(const Question& question, const Pilots& pilots) {
 
 std::optional<std::uint64_t> planned_secondaries(const Question& question, const ErrorShare& share,
                                                  const Pilots& pilots, const Plan& plan) {
-  if (!question.of_means() && !question.of_variances()) return for_laws(question, share, plan);
+  if (question.of_laws() && question.kind != QuestionKind::quantile) {
+    return for_laws(question, share, plan);
+  }
   if (!all_piloted(question, pilots)) return std::nullopt;
+  if (question.kind == QuestionKind::quantile) {
+    return quantile_secondaries(question, share, pilots, plan);
+  }
+  if (question.kind == QuestionKind::slope) {
+    return slope_secondaries(question, share, pilots, plan);
+  }
   std::optional<std::uint64_t> most;
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const auto count = one_channel(question, channel, share, pilots, plan);
@@ -236,13 +285,14 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
   const ErrorShare& share = size.share;
   const Regions& regions = channel.regions;
   if (regions.relation == Relation::within) return std::nullopt;  // it finds nothing, it shows
+  if (!has_power(question, channel)) return std::nullopt;
   const stats::ErrorRates rates = rates_of(share, regions);
   double found = 0;
   if (both_spread(question, channel) && question.of_means()) {
     found = stats::welch_detectable(means_plan(rates, regions.allow, channel), n) / channel.unit;
   } else if (question.of_means()) {
     found = stats::student_t_detectable(mean_plan(rates, regions.allow, channel), n) / channel.unit;
-  } else if (question.of_variances()) {
+  } else if (question.on_log_scale()) {
     found =
         std::log(stats::log_variance_detectable(variance_plan(rates, regions.allow, channel), n));
   } else if (plan.method.keeps == Keeps::cells) {
@@ -260,6 +310,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
   const ErrorShare& share = size.share;
   const Regions& regions = channel.regions;
   const stats::ErrorRates rates = rates_of(share, regions);
+  if (!has_power(question, channel)) return std::nullopt;
   if (regions.relation == Relation::within) return equivalence_power(question, size, channel);
   switch (question.kind) {
     case QuestionKind::mean_of_one:
@@ -272,6 +323,9 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
                                     effect * channel.unit);
     case QuestionKind::variance_of_one:
     case QuestionKind::variance_of_two:
+    case QuestionKind::cost:
+    case QuestionKind::efficiency:
+    case QuestionKind::total_variance:
       return stats::log_variance_power(variance_plan(rates, regions.allow, channel), n,
                                        std::exp(effect));
     case QuestionKind::fit_to_density:
@@ -282,6 +336,9 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
     case QuestionKind::fit_to_law:
     case QuestionKind::same_law:
       return stats::ks_power_bound(distance_plan(question, share, regions.allow), n, effect);
+    case QuestionKind::quantile:
+    case QuestionKind::slope:
+      break;
   }
   return std::nullopt;
 }
@@ -289,6 +346,13 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
 PlannedChannel observed_channel(const Question& question, const Regions& regions,
                                 std::size_t channel, std::span<const ChannelData> data) {
   PlannedChannel observed{.regions = regions};
+  if (has_log_spread(question)) {
+    const std::optional<double> second =
+        question.of_two() ? log_spread(question, 1, channel, data) : std::optional(0.0);
+    observed.kurtosis = 1 + log_spread(question, 0, channel, data).value_or(0);
+    observed.other_kurtosis = 1 + second.value_or(0);
+    return observed;
+  }
   if (!question.of_means() && !question.of_variances()) return observed;
   observed.standard_deviation = data[0].moments.standard_deviation();
   if (question.of_variances()) observed.kurtosis = data[0].moments.kurtosis();

@@ -49,7 +49,8 @@ struct TestEntry {
   std::optional<std::uint64_t> secondaries = {};  ///< fixed instead of planned
   std::optional<Budget> budget = {};
   std::optional<Sweep> over = {};
-  std::optional<Source> reference = {};
+  std::optional<Source> reference = {};           ///< `reference:`, an estimator
+  std::optional<Constant> reference_number = {};  ///< `reference:`, a number
   CostKind cost = CostKind::rays;
   Expectation expect = Expectation::pass;
   std::vector<std::string> tags = {};

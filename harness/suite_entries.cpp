@@ -106,6 +106,29 @@ std::vector<std::string> read_tags(const Value& value) {
   return tags;
 }
 
+/// `reference: trusted`, `reference: 6.36` or `reference: 6.36 +- 0.01`.
+void read_reference(const Value& value, TestEntry& test) {
+  const std::string text = one_line(value, "`reference`");
+  if (text.find_first_of("0123456789") != text.find_first_not_of(" +-.")) {
+    test.reference = parse_source(text, value.where());
+    return;
+  }
+  const std::size_t error = text.find("+-");
+  const auto number = [&](const std::string& part) {
+    const std::size_t end = part.find_last_not_of(' ');
+    const std::size_t begin = part.find_first_not_of(' ');
+    const std::string bare = begin == std::string::npos ? "" : part.substr(begin, end - begin + 1);
+    return Value::scalar(bare, value.where()).number("a number of `reference`");
+  };
+  Constant reference{.value = number(text.substr(0, error))};
+  if (error != std::string::npos) reference.standard_error = number(text.substr(error + 2));
+  if (!std::isfinite(reference.value) || !(reference.standard_error >= 0) ||
+      std::isinf(reference.standard_error)) {
+    throw InputError(value.where(), "`reference` must be finite, and its error not negative");
+  }
+  test.reference_number = reference;
+}
+
 void read_sampling(const Document& document, const Keys& keys, TestEntry& test) {
   if (const Value* v = keys.find("test")) {
     test.method = method_names()[choice(*v, "`test`", method_names())];
@@ -116,7 +139,7 @@ void read_sampling(const Document& document, const Keys& keys, TestEntry& test) 
   if (const Value* v = keys.find("budget")) test.budget = read_budget(document, *v);
   if (const Value* v = keys.find("over")) test.over = read_sweep(*v);
   if (const Value* v = keys.find("reference")) {
-    test.reference = parse_source(one_line(*v, "`reference`"), v->where());
+    read_reference(*v, test);
   }
   if (const Value* v = keys.find("cost")) {
     test.cost = static_cast<CostKind>(choice(*v, "`cost`", {"rays", "samples", "seconds"}));
@@ -165,9 +188,23 @@ void refuse_levels(const Document& document, const Value& test) {
 }  // namespace
 
 const std::vector<std::string>& method_names() {
-  static const std::vector<std::string> names{
-      "t", "welch",      "skewness-corrected-t", "binomial", "bounded",       "tost",
-      "F", "chi-square", "log-variance",         "ks",       "chi-square-fit"};
+  static const std::vector<std::string> names{"t",
+                                              "welch",
+                                              "skewness-corrected-t",
+                                              "binomial",
+                                              "bounded",
+                                              "tost",
+                                              "F",
+                                              "chi-square",
+                                              "log-variance",
+                                              "ks",
+                                              "chi-square-fit",
+                                              "log-cost",
+                                              "log-efficiency",
+                                              "replicates",
+                                              "log-total-variance",
+                                              "quantile",
+                                              "slope"};
   return names;
 }
 
@@ -240,8 +277,7 @@ TestEntry read_test(const Document& document, const Value& value) {
   refuse_levels(document, value);
   const Keys keys(document, value, "a test",
                   {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
-                   "expect", "tags"},
-                  {"over", "reference", "cost"});
+                   "over", "reference", "cost", "expect", "tags"});
   TestEntry test{.claim = read_claim(document, keys.require("claim")), .where = value.where()};
   const Value* name = keys.find("name");
   test.name = name ? one_line(*name, "`name`") : test.claim.text;
@@ -271,7 +307,7 @@ void check_test(const TestEntry& test, const PlaceOf& place) {
   }
   if (!claim.left.slope && test.over) refuse("over", "`over` has no meaning but for `slope(…)`");
   using enum QuantityName;
-  if (test.reference && !is_about(claim, {bias, efficiency})) {
+  if ((test.reference || test.reference_number) && !is_about(claim, {bias, efficiency})) {
     refuse("reference", "`reference` has no meaning but for `bias` and `efficiency`");
   }
   if (test.cost != CostKind::rays && !is_about(claim, {cost, efficiency})) {

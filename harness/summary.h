@@ -3,6 +3,7 @@
 // What is kept of many observations: moments, a histogram, counts of cells. Mergeable and of fixed
 // size.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "estimators/cost.h"
+#include "stats/joint_moments.h"
 #include "stats/moments.h"
 
 namespace assay::harness {
@@ -42,6 +44,7 @@ struct ChannelPlan {
   double histogram_high = 0;
   std::uint64_t keep = 0;  ///< the values of the first `keep` observations are stored
   std::size_t cells = 0;   ///< the channel's values are cell numbers 0 … cells - 1 to be counted
+  bool with_cost = false;  ///< keep the joint moments of value and cost
 };
 
 inline constexpr std::size_t histogram_bins = 60;
@@ -51,14 +54,20 @@ struct ChannelSummary {
   stats::Moments moments = {};  ///< of the finite values
   Histogram histogram = {};
   std::vector<std::uint64_t> cells = {};
+  std::vector<stats::JointMoments> with_cost = {};  ///< by CountedCost, where they are kept
   std::uint64_t nonfinite = 0;
   std::uint64_t first_nonfinite = std::numeric_limits<std::uint64_t>::max();
 };
+
+/// What an observation cost, as far as it is counted: the index of a channel's joint moments.
+enum CountedCost : std::size_t { rays_cost, samples_cost, counted_costs };
+using ObservationCost = std::array<double, counted_costs>;
 
 /// Observations [0, count) of a pool, or those of one block.
 struct Summary {
   std::uint64_t count = 0;
   std::vector<ChannelSummary> channels = {};
+  stats::Moments group_variances = {};  ///< of whole groups, where they are kept (GroupVariance)
   Cost cost = {};
   double seconds = 0;  ///< CPU seconds of drawing
 
@@ -69,12 +78,16 @@ struct Summary {
 };
 
 /// Takes one channel's value of observation `index` into the summary.
-inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index) {
+inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index,
+                            const ObservationCost& cost = {}) {
   if (!(value - value == 0)) {  // not finite
     if (summary.nonfinite++ == 0) summary.first_nonfinite = index;
   } else {
     summary.moments.add(value);
     if (!summary.histogram.counts.empty()) summary.histogram.add(value);
+    for (std::size_t k = 0; k < summary.with_cost.size(); ++k) {
+      summary.with_cost[k].add(value, cost[k]);
+    }
     if (!summary.cells.empty()) ++summary.cells[static_cast<std::size_t>(value)];
   }
 }

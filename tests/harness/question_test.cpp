@@ -95,11 +95,5 @@ TEST(Question, RefusesAVarianceAgainstANumberWithAnError) {
       << refused("claim: variance(normal) == 1 +- 0.1");
 }
 
-TEST(Question, SaysWhichQuantitiesItHasNoMethodFor) {
-  EXPECT_NE(
-      refused("claim: efficiency(darts) > efficiency(normal)").find("no method for `efficiency`"),
-      std::string::npos);
-}
-
 }  // namespace
 }  // namespace assay::harness

@@ -67,6 +67,7 @@ TEST(SuiteSchema, OffersTheQuantitiesThatAreTested) {
   for (const QuantityName name : offered_quantities()) offered.emplace_back(to_string(name));
   EXPECT_THAT(tested, ElementsAreArray(offered));
   const std::string pattern = schema_of("claim").find("pattern")->text();
+  offered.insert(offered.begin(), "slope");
   EXPECT_THAT(matches_of(pattern, "([a-z_]{2,})"), ElementsAreArray(offered)) << pattern;
 }
 

@@ -1,0 +1,171 @@
+#include "harness/claim_size.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "harness/sample_size.h"
+#include "stats/quantile_test.h"
+#include "stats/slope.h"
+#include "stats/tails.h"
+
+namespace assay::harness {
+namespace {
+
+// A pilot that does not see the power law cannot say how much it takes to measure its exponent.
+constexpr double least_visibility = 3;
+
+const stats::Moments& moments_of(const Question& question, std::size_t subject, std::size_t channel,
+                                 const Pilots& pilots) {
+  return pilot_channel(question, subject, channel, pilots).moments;
+}
+
+double averaged(const Question& question, const Plan& plan, std::size_t subject) {
+  return question.subjects[subject].averages ? static_cast<double>(plan.primaries[subject]) : 1;
+}
+
+double deviation(const Question& question, std::size_t subject, std::size_t channel,
+                 const Pilots& pilots, const Plan& plan) {
+  return std::sqrt(moments_of(question, subject, channel, pilots).variance() /
+                   averaged(question, plan, subject));
+}
+
+stats::ErrorRates rates_of(const ErrorShare& share, const Regions& regions) {
+  if (regions.relation == Relation::within) {
+    return {.alpha = share.beta, .beta = share.beta / 2, .two_sided = false};
+  }
+  if (regions.proof()) return {.alpha = share.beta, .beta = share.beta, .two_sided = false};
+  return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
+}
+
+/// What is to be told from the claimed region's edge; 0 where nothing is.
+double distance_of(const Regions& regions) {
+  if (regions.relation == Relation::within) return regions.within;
+  return regions.detect ? *regions.detect - regions.allow : 0;
+}
+
+double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi); }
+
+/// The variance of b at size i with this many observations each, or of ln b.
+double point_variance(const Question& question, std::size_t i, std::size_t channel,
+                      const Pilots& pilots, const Plan& plan) {
+  const stats::Moments& pilot = moments_of(question, i, channel, pilots);
+  const double n = averaged(question, plan, i);
+  if (question.test->claim.left.name == QuantityName::variance) {
+    return 2 + (pilot.kurtosis() - 3) / n;
+  }
+  return pilot.variance() / n;
+}
+
+/// C of C M^s by least squares at the claimed exponent, with its standard error.
+struct Fit {
+  double constant;
+  double standard_error;
+};
+
+Fit fit_constant(const Question& question, std::size_t channel, const Pilots& pilots,
+                 double exponent) {
+  double weight = 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const stats::Moments& pilot = moments_of(question, i, channel, pilots);
+    const double shape = std::pow(question.sizes[i], exponent);
+    double truth = 0;
+    if (question.has_reference_subject) {
+      truth = moments_of(question, question.compared(), channel, pilots).mean;
+    } else if (!question.truths.empty()) {
+      truth = question.truths[i][channel].value;
+    }
+    const double error = pilot.standard_error();
+    weight += shape * shape / error / error;
+    sum += shape * (pilot.mean - truth) / error / error;
+  }
+  return {.constant = sum / weight, .standard_error = 1 / std::sqrt(weight)};
+}
+
+/// The points as one observation each would show them if the claim held with this exponent.
+std::optional<stats::SlopeData> expected_points(const Question& question, std::size_t channel,
+                                                const Pilots& pilots, const Plan& plan,
+                                                double exponent) {
+  const bool logarithms = question.test->claim.left.name == QuantityName::variance;
+  stats::SlopeData data{.scale =
+                            logarithms ? stats::SlopeScale::logarithms : stats::SlopeScale::values};
+  Fit fit{.constant = 1, .standard_error = 0};
+  if (!logarithms) {
+    fit = fit_constant(question, channel, pilots, question.references[channel].value);
+    if (std::abs(fit.constant) < least_visibility * fit.standard_error) return std::nullopt;
+  }
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const double size = question.sizes[i];
+    const double variance = point_variance(question, i, channel, pilots, plan);
+    data.points.push_back({.size = size,
+                           .estimate = logarithms ? exponent * std::log(size)
+                                                  : fit.constant * std::pow(size, exponent),
+                           .standard_error = std::sqrt(variance)});
+  }
+  return data;
+}
+
+std::optional<std::uint64_t> slope_channel(const Question& question, std::size_t channel,
+                                           const ErrorShare& share, const Pilots& pilots,
+                                           const Plan& plan) {
+  const Regions& regions = plan.regions[channel];
+  const double distance = distance_of(regions);
+  if (!(distance > 0)) return std::nullopt;
+  const double null = question.references[channel].value;
+  const stats::ErrorRates rates = rates_of(share, regions);
+  const auto expected = expected_points(question, channel, pilots, plan, null);
+  if (!expected) return std::nullopt;
+  double most = 0;
+  for (const double edge : {null - distance, null + distance}) {
+    const auto factor = stats::slope_sample_factor(
+        *expected, edge,
+        {.alpha = rates.two_sided ? rates.alpha / 2 : rates.alpha, .beta = rates.beta});
+    if (!factor) return impossible_secondaries;
+    most = std::max(most, *factor);
+  }
+  const double count = std::ceil(most);
+  return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
+}
+
+template <class Channel>
+std::optional<std::uint64_t> most_of(const Question& question, const Channel& of_channel) {
+  std::optional<std::uint64_t> most;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    const std::optional<std::uint64_t> count = of_channel(channel);
+    if (count) most = std::max(most.value_or(0), *count);
+  }
+  return most;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> quantile_secondaries(const Question& question, const ErrorShare& share,
+                                                  const Pilots& pilots, const Plan& plan) {
+  const double probability = question.test->claim.left.arguments[0];
+  const double z = stats::normal_quantile({stats::Tail::lower, std::log(probability)});
+  const double spread = stats::quantile_standard_deviation(probability, normal_density(z));
+  return most_of(question, [&](std::size_t channel) -> std::optional<std::uint64_t> {
+    const double unit =
+        is_relative(question, channel) ? std::abs(question.references[channel].value) : 1;
+    const double distance = distance_of(plan.regions[channel]) * unit;
+    double sd = spread * deviation(question, 0, channel, pilots, plan);
+    if (question.of_two()) {
+      sd = std::hypot(sd, spread * question.factor * deviation(question, 1, channel, pilots, plan));
+    }
+    if (!(distance > 0) || !(sd > 0)) return std::nullopt;
+    const double count = std::ceil(stats::normal_sample_size(
+        sd, {.allow = 0, .detect = distance}, rates_of(share, plan.regions[channel])));
+    return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
+  });
+}
+
+std::optional<std::uint64_t> slope_secondaries(const Question& question, const ErrorShare& share,
+                                               const Pilots& pilots, const Plan& plan) {
+  if (question.test->claim.left.name == QuantityName::cost) return std::nullopt;
+  return most_of(question, [&](std::size_t channel) {
+    return slope_channel(question, channel, share, pilots, plan);
+  });
+}
+
+}  // namespace assay::harness

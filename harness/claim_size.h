@@ -1,0 +1,24 @@
+#pragma once
+
+// How many secondaries claims about quantiles and slopes take: a helper of sample_size.
+
+#include <cstdint>
+#include <optional>
+
+#include "harness/outcome.h"
+#include "harness/pilot.h"
+
+namespace assay::harness {
+
+/// As if the secondary estimates were normal with the pilot's standard deviation: their density at
+/// the quantile says how counts move with the value. Of another law the plan is off by the ratio of
+/// the densities, and the verdict may be inconclusive; the test itself is exact for every law.
+std::optional<std::uint64_t> quantile_secondaries(const Question& question, const ErrorShare& share,
+                                                  const Pilots& pilots, const Plan& plan);
+
+/// For each subject, from a pilot that shows the claimed power law: its constant, fitted at the
+/// claimed exponent, exceeds three of its standard errors. Nothing where it does not.
+std::optional<std::uint64_t> slope_secondaries(const Question& question, const ErrorShare& share,
+                                               const Pilots& pilots, const Plan& plan);
+
+}  // namespace assay::harness

@@ -1,0 +1,142 @@
+#include "harness/question_sources.h"
+
+#include <fmt/format.h>
+
+#include "harness/sampler_setup.h"
+
+namespace assay::harness {
+namespace {
+
+std::string parts_of(const PreparedEstimator& estimator) {
+  std::string text;
+  const auto add = [&](const std::string& name) {
+    text += (text.empty() ? "`" : ", `") + name + "`";
+  };
+  for (const Channel& channel : estimator.setup->channels()) add(channel.name);
+  for (const NamedSampler& named : estimator.setup->samplers()) {
+    add(named.name);
+    for (const Marginal& marginal : marginals(named.sampler->domain())) {
+      add(named.name + "." + marginal.name);
+    }
+  }
+  return text;
+}
+
+[[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
+  throw InputError(source.where, fmt::format("`{}` has no part `{}`; it has {}", source.estimator,
+                                             source.part, parts_of(estimator)));
+}
+
+std::vector<std::size_t> tested_channels(const std::vector<Channel>& channels) {
+  std::vector<std::size_t> tested;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!channels[i].diagnostic) tested.push_back(i);
+  }
+  return tested;
+}
+
+std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
+                                        const std::string& name) {
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i].name == name) return {i};
+  }
+  return {};
+}
+
+/// The sampler a part names, itself or before a marginal's name; the only one when it names none.
+const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
+                                  const std::string& part, std::string& rest) {
+  const auto dot = part.find('.');
+  for (const NamedSampler& named : samplers) {
+    if (named.name == part.substr(0, dot)) {
+      rest = dot == std::string::npos ? "" : part.substr(dot + 1);
+      return &named;
+    }
+  }
+  rest = part;
+  return samplers.size() == 1 ? &samplers[0] : nullptr;
+}
+
+}  // namespace
+
+const PreparedEstimator& estimator_of(const Source& source, const Estimators& estimators) {
+  const auto found = estimators.find(source.estimator);
+  if (found != estimators.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : estimators) names.push_back(name);
+  const std::string near = nearest(source.estimator, names);
+  throw InputError(source.where, fmt::format("no estimator `{}` in this suite{}", source.estimator,
+                                             near.empty() ? "" : "; did you mean `" + near + "`?"));
+}
+
+Subject estimates(const Source& source, const PreparedEstimator& estimator) {
+  const std::vector<Channel> channels = estimator.setup->channels();
+  Subject subject{.estimator = &estimator,
+                  .setup = estimator.setup,
+                  .channels = source.part.empty() ? tested_channels(channels)
+                                                  : channels_named(channels, source.part),
+                  .averages = estimator.entry->information.averages};
+  if (subject.channels.empty()) no_such_part(source, estimator);
+  return subject;
+}
+
+Subject estimates(const Source& source, const Estimators& estimators) {
+  return estimates(source, estimator_of(source, estimators));
+}
+
+Subject draws(const Source& source, const Estimators& estimators, Draws what) {
+  const PreparedEstimator& estimator = estimator_of(source, estimators);
+  std::string rest;
+  const std::vector<NamedSampler> samplers = estimator.setup->samplers();
+  const NamedSampler* named = sampler_named(samplers, source.part, rest);
+  if (named == nullptr) no_such_part(source, estimator);
+  Subject subject{.estimator = &estimator,
+                  .setup = sampler_setup(*named, source.where),
+                  .purpose = named->name,
+                  .channels = {},
+                  .averages = false};
+  const std::vector<Channel> channels = subject.setup->channels();
+  if (!rest.empty()) {
+    subject.channels = channels_named(channels, rest);
+    if (rest == cell_channel) subject.channels.clear();
+  } else if (what == Draws::cells) {
+    subject.channels = channels_named(channels, cell_channel);
+  } else {
+    subject.channels = tested_channels(channels);
+  }
+  if (subject.channels.empty()) no_such_part(source, estimator);
+  return subject;
+}
+
+Subject values(const Source& source, const Estimators& estimators) {
+  const PreparedEstimator& estimator = estimator_of(source, estimators);
+  const std::vector<Channel> channels = estimator.setup->channels();
+  if (source.part.empty() || !channels_named(channels, source.part).empty()) {
+    return estimates(source, estimators);
+  }
+  return draws(source, estimators, Draws::marginals);
+}
+
+Constant analytic_mean(const Channel& channel, const Source& source) {
+  if (channel.mean) return {*channel.mean, channel.mean_error};
+  throw InputError(
+      source.where,
+      fmt::format("`{}` knows no analytic mean of `{}` with these parameters; give the "
+                  "number, or compare with an estimator you trust",
+                  source.estimator, channel.name));
+}
+
+Constant analytic_variance(const Channel& channel, const Source& source) {
+  if (channel.variance) return {*channel.variance, 0};
+  throw InputError(source.where,
+                   fmt::format("`{}` knows no exact variance of `{}` with these parameters; give "
+                               "the number",
+                               source.estimator, channel.name));
+}
+
+StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
+  return subject.setup->data_stream().value_or(
+      key_of(*subject.estimator, seed, subject.copy, subject.purpose));
+}
+
+}  // namespace assay::harness
