@@ -82,26 +82,6 @@ reports::Effect effect_of(const Evidence& evidence, const Regions& regions,
           .relative = evidence.relative};
 }
 
-/// The test at its last look: what its detectable effect and its power are quoted for.
-TestSize full_size(const TestOutcome& outcome) {
-  const double weight = outcome.plan.looks.weights.back();
-  return {.share = {.alpha = outcome.place.share.alpha * weight,
-                    .beta = outcome.place.share.beta * weight},
-          .secondaries = outcome.plan.most_secondaries()};
-}
-
-/// The least power over the channels: at `detect`; of `within`, of showing a theta of 0.
-void note_power(TestOutcome& outcome, std::size_t channel, std::span<const ChannelData> data) {
-  const Regions& regions = outcome.plan.regions[channel];
-  const bool equivalence = regions.relation == Relation::within;
-  if (!equivalence && !regions.detect) return;
-  const std::optional<double> power =
-      power_at(outcome.question, full_size(outcome), outcome.plan,
-               observed_channel(outcome.question, regions, channel, data),
-               equivalence ? 0 : *regions.detect);
-  if (power) outcome.power = std::min(*power, outcome.power.value_or(1));
-}
-
 ChannelOutcome channel_outcome(const TestOutcome& outcome, std::size_t channel,
                                std::span<const ChannelData> data) {
   const Question& question = outcome.question;
@@ -116,8 +96,6 @@ ChannelOutcome channel_outcome(const TestOutcome& outcome, std::size_t channel,
   result.decision = {.log_p_claimed = log_p_claimed(result.evidence, regions),
                      .log_p_forbidden = log_p_forbidden(result.evidence, regions)};
   result.effect = effect_of(result.evidence, regions, outcome.share());
-  result.detectable = detectable_effect(question, full_size(outcome), outcome.plan,
-                                        observed_channel(question, regions, channel, data));
   if (question.kind == QuestionKind::mean_of_one) {
     result.reference = question.references[channel].value + question.offset;
   } else if (question.kind == QuestionKind::mean_of_two) {
@@ -165,9 +143,35 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
       outcome.gates.push_back(std::move(gate));
     }
     outcome.channels.push_back(channel_outcome(outcome, channel, data));
-    note_power(outcome, channel, data);
   }
   return constants;
+}
+
+/// The test at its last look: what its detectable effect and its power are quoted for.
+TestSize full_size(const TestOutcome& outcome) {
+  const double weight = outcome.plan.looks.weights.back();
+  return {.share = {.alpha = outcome.place.share.alpha * weight,
+                    .beta = outcome.place.share.beta * weight},
+          .secondaries = outcome.plan.most_secondaries()};
+}
+
+/// What a decided test could have found: the least detectable effect of every channel, and the
+/// least power over them, at `detect` or, of `within`, of showing a theta of 0.
+void note_sizes(TestWork& work) {
+  TestOutcome& outcome = work.outcome;
+  for (ChannelOutcome& channel : outcome.channels) {
+    const std::vector<ChannelData> data = data_of(work, channel.index);
+    const PlannedChannel observed =
+        observed_channel(outcome.question, channel.regions, channel.index, data);
+    channel.detectable =
+        detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
+    const bool equivalence = channel.regions.relation == Relation::within;
+    if (!equivalence && !channel.regions.detect) continue;
+    const std::optional<double> power =
+        power_at(outcome.question, full_size(outcome), outcome.plan, observed,
+                 equivalence ? 0 : *channel.regions.detect);
+    if (power) outcome.power = std::min(*power, outcome.power.value_or(1));
+  }
 }
 
 /// Takes the look's p-values, or nothing where it does not count, into those of all looks.
@@ -220,7 +224,6 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
       }
     }
   }
-  if (outcome.message.empty()) outcome.message = narrate(outcome);
 }
 
 void require_activation(TestWork& work) {
@@ -290,17 +293,19 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
   return data;
 }
 
-void take_look(TestWork& work) {
+void take_look(TestWork& work, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   outcome.decided = true;
   if (!could_be_drawn(work) || !density_is_proper(outcome)) return;
   judge(work);
   const bool last = outcome.look + 1 == outcome.plan.looks.sizes.size();
   const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;
-  if (!last && !settled && outcome.plan.invalid.empty()) {
+  if (may_go_on && !last && !settled && outcome.plan.invalid.empty()) {
     outcome.decided = false;
     return;
   }
+  note_sizes(work);
+  if (outcome.message.empty()) outcome.message = narrate(outcome);
   require_activation(work);
 }
 

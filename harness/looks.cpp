@@ -42,17 +42,20 @@ bool is_spent(const TestWork& work) {
   const std::optional<Budget>& budget = work.outcome.question.test->budget;
   if (!budget || !budget->seconds) return false;
   double seconds = 0;
-  for (const auto& pool : work.pools) seconds += pool->prefix(work.outcome.secondaries()).seconds;
+  for (const auto& pool : work.pools) {
+    if (!pool->has(work.outcome.secondaries())) return false;
+    seconds += pool->prefix(work.outcome.secondaries()).seconds;
+  }
   return 2 * seconds > *budget->seconds;
 }
 
 bool take_next(TestWork& work) {
-  take_look(work);
   TestOutcome& outcome = work.outcome;
-  if (!outcome.decided && is_spent(work)) {
-    outcome.decided = true;
-    outcome.message += "; its budget in seconds ended here";
-  }
+  const bool spent = is_spent(work);
+  take_look(work, !spent);
+  const bool ended_early = outcome.look + 1 < outcome.plan.looks.sizes.size() &&
+                           outcome.verdict == reports::Verdict::inconclusive;
+  if (spent && ended_early) outcome.message += "; its budget in seconds ended here";
   if (!outcome.decided) ++outcome.look;
   return !outcome.decided;
 }

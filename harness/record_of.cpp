@@ -144,8 +144,11 @@ Number margin(const Regions& regions) {
   return regions.detect ? Number(*regions.detect) : Number();
 }
 
-/// Seconds are never the same again.
-bool is_timed(const TestWork& work) { return work.outcome.plan.method.keeps == Keeps::blocks; }
+/// Whether the clock had a say in the numbers.
+bool is_timed(const TestWork& work) {
+  const std::optional<Budget>& budget = work.outcome.question.test->budget;
+  return work.outcome.plan.method.keeps == Keeps::blocks || (budget && budget->seconds);
+}
 
 std::string id_filter(const std::string& id) { return " --filter " + shell_quoted(id); }
 

@@ -15,6 +15,8 @@ constexpr const char* suite = R"(suite: constants
 estimators:
   zero: {plugin: analytic/zero_variance}                # its range is the constant, to rounding
   normal: {plugin: analytic/normal, mean: 2, deviation: 0}   # no range is declared
+  nil: {plugin: analytic/normal, deviation: 0}
+  none: {plugin: analytic/normal, deviation: 0}
   spike: {plugin: analytic/rare_spike, height: 10}      # values in [0.5, 10.5]
 tests:
   - {name: classical, claim: mean(spike) == 0.5}
@@ -34,6 +36,8 @@ tests:
   - {name: allowed, claim: mean(spike) == 0.499, allow: 1%, detect: 20%}
   - {name: uncertain, claim: mean(spike) == 0.4 +- 0.5}
   - {name: two, claim: mean(spike) == mean(normal), detect: 1%}
+  - {name: nothing, claim: mean(nil) == mean(none)}
+  - {name: nothing to find, claim: mean(nil) == mean(none), detect: 1%}
   - {name: two alike, claim: mean(spike) == 0.25 * mean(normal), detect: 1}
 )";
 
@@ -139,6 +143,12 @@ TEST(Constant, MayDifferByWhatIsAllowed) {
 TEST(Constant, CarriesTheReferencesError) {
   EXPECT_EQ(judge("uncertain", 100000, {0.5}).verdict, Verdict::invalid)
       << "0.1 off a reference known to 0.5 refutes nothing";
+}
+
+// A difference of 0 relative to 0 is none.
+TEST(Constant, ComparesTwoZeros) {
+  EXPECT_EQ(judge("nothing", 1000, {0, 0}).verdict, Verdict::pass);
+  EXPECT_EQ(judge("nothing to find", 1000, {0, 0}).verdict, Verdict::inconclusive);
 }
 
 TEST(Constant, ComparesTwoByBothRanges) {

@@ -40,6 +40,26 @@ TEST(Narrate, NeverSaysThatAClaimIsAccepted) {
   EXPECT_EQ(told("claim: mean(normal) == 2").message.find("accept"), std::string::npos);
 }
 
+// Of an inequality, how much of its room is left; an effect the other way is no threat.
+TEST(Narrate, OneSidedPassSaysHowMuchThereIsToSpare) {
+  expect_said(told("claim: mean(normal) <= 4, detect: 10%, secondaries: 1000"), Verdict::pass,
+              "no evidence against the claim, which holds with 4");
+  expect_said(told("claim: mean(normal) >= 1, detect: 10%, secondaries: 1000"), Verdict::pass,
+              "no evidence against the claim, which holds with 9");
+  expect_said(told("claim: mean(normal) >= 1, detect: 10%, secondaries: 1000"), Verdict::pass,
+              " % to spare at ");
+}
+
+// Five per cent on the wrong side, three standard errors, of which ten are allowed.
+TEST(Narrate, OneSidedPassNearItsBoundSaysWhatIsExcluded) {
+  for (const char* side : {"<= 1.9", ">= 2.1"}) {
+    const reports::Test test = told(std::string("claim: mean(normal) ") + side +
+                                    ", allow: 10%, detect: 20%, secondaries: 1000");
+    expect_said(test, Verdict::pass, " % or more is excluded at ");
+    EXPECT_EQ(test.message.find("-"), std::string::npos) << test.message;
+  }
+}
+
 TEST(Narrate, FailSaysHowFarOffAndHowSure) {
   const reports::Test test = told("claim: mean(normal) == 2.5");
   expect_said(test, Verdict::fail, "relative difference from the reference is -");

@@ -6,7 +6,9 @@
 
 #include "harness/critical.h"
 #include "questions.h"
+#include "refusal.h"
 #include "stats/power.h"
+#include "stats/tails.h"
 
 namespace assay::harness {
 namespace {
@@ -78,6 +80,44 @@ TEST(Plan, FindsDetectWithTheSuitesErrorRates) {
   };
   EXPECT_GE(static_cast<double>(planned.plans[0].most_secondaries()), exact(1));
   EXPECT_LE(static_cast<double>(planned.plans[0].most_secondaries()), exact(1.12));
+}
+
+// Two one-sided tests at the last look's share of beta, each missing with half of it: SE = margin /
+// (z_b + z_b/2). The variance of ln s2 is (kurtosis - 1) / n, and the pilot of 8192 has a
+// kurtosis of 3 +- .054: four of these are 11 % of n, 1e-4.
+TEST(Plan, OfWithinGivesBothMarginsTheirShareOfBeta) {
+  const Planned planned = plan_text("  - {claim: variance(single) within 25% of 1}\n");
+  const stats::LookSchedule& looks = planned.plans[0].looks;
+  const double share = 0.01 * looks.weights.back();
+  const auto z = [](double p) { return stats::normal_quantile({stats::Tail::upper, std::log(p)}); };
+  const double wanted = std::log(1.25) / (z(share) + z(share / 2));
+  const auto n = static_cast<double>(planned.plans[0].most_secondaries());
+  EXPECT_NEAR(n * wanted * wanted / 2, 1, 0.11);
+}
+
+// The reference's error leaves the samples less of the margin: SE^2 = (margin / z)^2 - u^2.
+TEST(Plan, OfWithinLeavesRoomForTheReferencesError) {
+  const auto secondaries = [](const std::string& reference) {
+    const Planned planned =
+        plan_text("  - {claim: mean(single) within 0.2 of " + reference + "}\n");
+    const double share = 0.01 * planned.plans[0].looks.weights.back();
+    const auto z = [](double p) {
+      return stats::normal_quantile({stats::Tail::upper, std::log(p)});
+    };
+    return std::pair(static_cast<double>(planned.plans[0].most_secondaries()),
+                     0.2 / (z(share) + z(share / 2)));
+  };
+  const auto [exact, wanted] = secondaries("2");
+  EXPECT_GE(exact, 1 / (wanted * wanted));
+  EXPECT_LE(exact, 1.12 / (wanted * wanted) + 3);
+  const auto [uncertain, of_both] = secondaries("2 +- 0.025");
+  const double left = of_both * of_both - 0.025 * 0.025;
+  EXPECT_GE(uncertain, 1 / left);
+  EXPECT_LE(uncertain, 1.12 / left + 3);
+  EXPECT_NE(refusal([] {
+              plan_text("  - {claim: mean(single) within 0.2 of 2 +- 0.1}\n");
+            }).find("no number of observations would decide"),
+            std::string::npos);
 }
 
 TEST(Plan, AsksForMoreAtASmallerShare) {

@@ -51,6 +51,49 @@ TEST(Question, GivesTwoSourcesOfOneKeyDisjointCopies) {
   EXPECT_EQ(question_of(apart).subjects[1].copy, 0U);
 }
 
+std::string of_files(const std::string& claim) {
+  return "suite: q\nestimators:\n  first: {plugin: recorded, file: a.txt, column: x}\n"
+         "  second: {plugin: recorded, file: a.txt, column: y}\n"
+         "  same-way: {plugin: recorded, file: ./a.txt, column: y}\n"
+         "  elsewhere: {plugin: recorded, file: b.txt, column: x}\n"
+         "tests:\n  - {claim: " +
+         claim + "}\n";
+}
+
+std::string refused_of_files(const std::string& claim) {
+  const Workplace place;
+  place.write("a.txt", "# columns: x y\n1 2\n2 3\n3 5\n");
+  place.write("b.txt", "# columns: x y\n1 2\n2 3\n3 5\n");
+  const Suite suite = load_suite(place.write("suite.yaml", of_files(claim)));
+  const auto estimators = prepare_all(suite);
+  return refusal([&] { ask(suite.tests[0], estimators, 1); });
+}
+
+TEST(Question, RefusesTwoColumnsOfOneFileAsIndependentSamples) {
+  for (const char* claim : {"mean(first) == mean(second)", "variance(first) <= variance(second)",
+                            "distribution(first) == distribution(second)"}) {
+    EXPECT_NE(refused_of_files(claim).find("rows belong together"), std::string::npos) << claim;
+  }
+  EXPECT_NE(refused_of_files("mean(first) == mean(same-way)").find("rows belong together"),
+            std::string::npos)
+      << "whatever its path is written like";
+  EXPECT_EQ(refused_of_files("mean(first) == mean(elsewhere)"), "(nothing was refused)");
+  EXPECT_EQ(refused_of_files("mean(first) == 2"), "(nothing was refused)");
+}
+
+TEST(Question, RefusesPrimariesOfObservationsThatAreReadyMade) {
+  const Workplace place;
+  place.write("a.txt", "1\n2\n");
+  const auto refused_with = [&](const std::string& primaries) {
+    const Suite suite = load_suite(
+        place.write("suite.yaml", "suite: q\nestimators:\n  a: {plugin: recorded, file: a.txt" +
+                                      primaries + "}\ntests:\n  - {claim: mean(a) == 1}\n"));
+    return refusal([&] { prepare_all(suite); });
+  };
+  EXPECT_NE(refused_with(", primaries: 64").find("leave `primaries` out"), std::string::npos);
+  EXPECT_EQ(refused_with(""), "(nothing was refused)");
+}
+
 TEST(Question, AsksASamplersCellsOrOneMarginal) {
   const auto cells = ask_text(suite_of("claim: distribution(hemisphere.direction) == density"));
   EXPECT_EQ(question_of(cells).kind, QuestionKind::fit_to_density);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "refusal.h"
 #include "reports/json.h"
 #include "running.h"
 
@@ -138,6 +139,47 @@ TEST(Run, KeepsATestsNumbersWhenASuiteIsRunBesideIt) {
   for (std::size_t i = 0; i < alone.suites[0].tests.size(); ++i) {
     EXPECT_EQ(raw(both.suites[1].tests[i]), raw(alone.suites[0].tests[i]));
   }
+}
+
+// Both name `data.txt`, each beside itself: the numbers of one are not those of the other.
+TEST(Run, KeepsFilesOfOneNameInTwoFoldersApart) {
+  const Workplace place;
+  const std::string text =
+      "suite: data\nestimators:\n  data: {plugin: recorded, file: data.txt}\n"
+      "tests:\n  - {claim: mean(data) == 2}\n";
+  for (const char* folder : {"one", "two"}) std::filesystem::create_directory(place.file(folder));
+  place.write("one/data.txt", "1\n2\n3\n");
+  place.write("two/data.txt", "11\n12\n13\n14\n");
+  const reports::Record record = run_files(
+      {place.write("one/suite.yaml", text), place.write("two/suite.yaml", text)}, {.threads = 1});
+  EXPECT_EQ(record.suites[0].tests[0].samples[0].mean, 2);
+  EXPECT_EQ(record.suites[1].tests[0].samples[0].mean, 12.5);
+  EXPECT_EQ(record.suites[1].tests[0].samples[0].secondaries, 4);
+}
+
+std::string refused(const std::string& test, const RunOptions& options = {}) {
+  return refusal([&] { run_text(estimators + test, options); });
+}
+
+TEST(Run, RefusesToCoarsenDetectBelowWhatIsAllowed) {
+  const std::string test = "  - {claim: mean(normal) == 2, allow: 1%, detect: 4%}\n";
+  const char* const words = "brings `detect` down to `allow`";
+  EXPECT_NE(refused(test, {.coarsen = 0.2}).find(words), std::string::npos);
+  EXPECT_NE(refused(test, {.coarsen = 0.25}).find(words), std::string::npos);
+  EXPECT_EQ(refused(test, {.coarsen = 0.75}), "(nothing was refused)");
+}
+
+TEST(Run, RefusesADetectThatWouldTakeDaysAndSaysHowMuch) {
+  const std::string text = refused("  - {claim: mean(normal) == 2, detect: 1e-7}\n");
+  const std::string words = "this claim would take about ";
+  ASSERT_NE(text.find(words), std::string::npos) << text;
+  const double primaries = std::stod(text.substr(text.find(words) + words.size()));
+  // (z_.005 + z_.01)^2 / 1e-14 = 2.403e15, printed to two digits; the pilot knows the variance to a
+  // tenth.
+  EXPECT_GE(primaries, 2.35e15);
+  EXPECT_LE(primaries, 2.403e15 * 1.12);
+  EXPECT_EQ(refused("  - {claim: mean(normal) == 2, detect: 1e-7, budget: 2000}\n"),
+            "(nothing was refused)");
 }
 
 TEST(Run, SeedsChangeTheNumbers) {

@@ -64,6 +64,48 @@ TEST(Sample, RefusesAPartThatIsNotThere) {
   EXPECT_NE(text.find("no part `directions`"), std::string::npos) << text;
 }
 
+// The file says which stream it was drawn from, and the estimator steps aside.
+TEST(Sample, IsComparedWithItsOwnEstimatorOnAnotherCopyOfTheStream) {
+  const Workplace place;
+  place.write("data.txt", sampled({.source = "analytic/normal", .secondaries = 300}));
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: copies
+estimators:
+  direct: {plugin: analytic/normal, primaries: 1}
+  data: {plugin: recorded, file: data.txt}
+tests:
+  - {name: first, claim: mean(direct) == mean(data)}
+  - {name: second, claim: mean(data) == mean(direct)}
+  - {name: laws, claim: distribution(data) == distribution(direct)}
+  - {name: alone, claim: mean(direct) == 0, secondaries: 300}
+)")});
+  const reports::Number of_stream = test_named(record, "alone").samples[0].mean;
+  EXPECT_EQ(test_named(record, "first").samples[1].mean, of_stream);
+  EXPECT_NE(test_named(record, "first").samples[0].mean, of_stream);
+  EXPECT_EQ(test_named(record, "second").samples[0].mean, of_stream);
+  EXPECT_NE(test_named(record, "second").samples[1].mean, of_stream);
+  EXPECT_NE(test_named(record, "laws").channels[0].statistic, 0);
+}
+
+TEST(Sample, TwiceOfOneStreamIsNotIndependent) {
+  const Workplace place;
+  place.write("few.txt", sampled({.source = "analytic/normal", .secondaries = 30}));
+  place.write("many.txt", sampled({.source = "analytic/normal", .secondaries = 50}));
+  place.write("seed2.txt", sampled({.source = "analytic/normal", .secondaries = 50, .seed = 2}));
+  const auto refused = [&](const std::string& other) {
+    return refusal([&] {
+      run_files({place.write("suite.yaml", R"(suite: copies
+estimators:
+  few: {plugin: recorded, file: few.txt}
+  many: {plugin: recorded, file: )" + other + R"(}
+tests:
+  - {claim: mean(few) == mean(many)}
+)")});
+    });
+  };
+  EXPECT_NE(refused("many.txt").find("drawn from the same stream"), std::string::npos);
+  EXPECT_EQ(refused("seed2.txt"), "(nothing was refused)");
+}
+
 // What `sample` prints, `recorded` reads: the moments are those of the estimator itself.
 TEST(Sample, IsWhatRecordedReads) {
   const Workplace place;

@@ -147,9 +147,9 @@ TEST(AssumptionGates, DominanceTurnsAtTheCriticalValuesOfGrubbs) {
   for (const tests::Row& row : tests::read_table("gates")) {
     const double n = row["n"];
     const double root = std::sqrt(n);
-    const double limit = std::max(.1, row["grubbs_0001"] / root);
+    const double limit = std::max(.5, row["grubbs_0001"] / root);
     EXPECT_NEAR(dominance_gate(with_largest(n, 1)).limit, limit, 1e-9) << n;
-    const double green = std::max(.1, row["grubbs_05"] / root) * root;
+    const double green = std::max(.5, row["grubbs_05"] / root) * root;
     EXPECT_EQ(dominance_gate(with_largest(n, green * (1 - 1e-6))).state, GateState::green) << n;
     EXPECT_NE(dominance_gate(with_largest(n, green * (1 + 1e-6))).state, GateState::green) << n;
     const double red = limit * root;
