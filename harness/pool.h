@@ -39,6 +39,7 @@ class Pool {
   /// What to keep; before anything is drawn.
   void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
   std::vector<ChannelPlan>& plan() { return plan_; }
+  const std::vector<ChannelPlan>& plan() const { return plan_; }
 
   /// Observations [0, count) may be read as a prefix. std::logic_error once they are drawn.
   void mark(std::uint64_t count);
