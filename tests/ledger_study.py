@@ -52,7 +52,9 @@ def alarms(assay, count, nights, shift, spread):
             if done.returncode not in (0, 1, 3):
                 raise RuntimeError(f"night {night}: exit code {done.returncode}: {done.stderr}")
         series = json.loads(done.stdout)["ledger"]["series"]
-        assert len(series) == count and all(each["nights"] == nights for each in series)
+        assert len(series) == count
+        # A gate on a night's own data is red now and then: that night is invalid and adds nothing.
+        assert sum(each["nights"] for each in series) > 0.99 * count * nights
         return sum(each["alarm"] for each in series)
 
 
@@ -60,7 +62,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--assay", required=True)
-    parser.add_argument("--ledgers", type=int, default=1000)
+    parser.add_argument("--ledgers", type=int, default=200)
     arguments = parser.parse_args()
     n = arguments.ledgers
 
