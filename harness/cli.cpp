@@ -155,8 +155,14 @@ std::string replayable_check(const Given& given) {
 Command run_command(const Given& given, const CLI::App& sub) {
   require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
   RunCommand command{given.suites, given.sets, options(given), output(given)};
+  command.options.ledger = given.ledger;
   command.options.command = replayable_run(given);
   return command;
+}
+
+Command plan_command(const Given& given, const CLI::App& sub) {
+  require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
+  return PlanCommand{given.suites, given.sets, options(given), given.quiet};
 }
 
 Command check_command(const Given& given, const CLI::App& sub) {
@@ -215,6 +221,7 @@ Command describe_command(const Given& given, const CLI::App& sub) {
 Command command_of(const Given& given, const CLI::App& sub) {
   const std::string& name = sub.get_name();
   if (name == "run") return run_command(given, sub);
+  if (name == "plan") return plan_command(given, sub);
   if (name == "check") return check_command(given, sub);
   if (name == "sample") return sample_command(given, sub);
   if (name == "list") return list_command(given, sub);

@@ -18,6 +18,13 @@ struct RunCommand {
   Output output;
 };
 
+struct PlanCommand {
+  std::vector<std::string> suites;
+  std::vector<std::string> assignments;  ///< of --set
+  RunOptions options;
+  bool quiet = false;
+};
+
 struct CheckCommand {
   CheckArguments arguments;
   RunOptions options;
@@ -43,7 +50,7 @@ struct TextCommand {
   std::string text;
 };
 
-using Command = std::variant<RunCommand, CheckCommand, SampleArguments, ListCommand,
+using Command = std::variant<RunCommand, PlanCommand, CheckCommand, SampleArguments, ListCommand,
                              DescribeCommand, ReplayArguments, ReportCommand, TextCommand>;
 
 /// Parses the arguments after the program's name. InputError, with what was meant where that can be

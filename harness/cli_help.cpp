@@ -16,6 +16,7 @@ Examples:
 
 Commands (each has its own --help, with examples and defaults):
   run       test the claims of suite files
+  plan      what a run would do and cost; only the pilots are drawn
   check     test one claim
   sample    print observations of an estimator
   list      list plugins, or the tests of suites
@@ -29,7 +30,7 @@ Options:
 
 Exit codes:
   0    every test came out as expected
-  1    at least one did not: it failed, was invalid or could not be tested
+  1    at least one did not: it failed, was invalid or could not be tested; or the ledger alarms
   2    a mistake in what was asked for, or trouble
   3    none of these, but at least one is inconclusive
   4    no test ran: --filter or --shard selected none
@@ -48,6 +49,15 @@ Examples:
   assay run suites/luminaire.yaml --report json=run.json --report html=run.html
   assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
   assay run suites/luminaire.yaml --coarsen 4      a quick look: four times coarser effects
+  assay run suites/luminaire.yaml --seed random --ledger nightly.ledger      every night
+)"},
+      {"plan",
+       R"(Prints what a run of suites would do: of each test its method, sample sizes, expected cost and the
+effect it finds. Runs the pilots only.
+
+Examples:
+  assay plan suites/luminaire.yaml
+  assay plan suites/*.yaml --filter '*/variance*' --coarsen 4
 )"},
       {"check", R"(Tests one claim. The names in it are plugins, or names given with --estimator.
 

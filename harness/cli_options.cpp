@@ -34,13 +34,17 @@ struct Running {
   const char* alpha;
 };
 
-void add_running(CLI::App* sub, Given& given, const Running& about) {
+void add_sampling(CLI::App* sub, Given& given, const Running& about) {
   one(sub, "--seed", given.seed, "N|random", about.seed);
   one(sub, "--threads", given.threads, "N", "worker threads; default one for each core");
   one(sub, "--alpha", given.alpha, "A", about.alpha);
+  sub->add_flag("--quiet", given.quiet, "no progress on standard error; default shown");
+}
+
+void add_running(CLI::App* sub, Given& given, const Running& about) {
+  add_sampling(sub, given, about);
   one(sub, "--inconclusive", given.inconclusive, "fail|pass",
       "count undecided tests as failed or as passed; default neither: exit code 3");
-  sub->add_flag("--quiet", given.quiet, "no progress on standard error; default shown");
   add_output(sub, given);
 }
 
@@ -57,19 +61,35 @@ void add_estimators(CLI::App* sub, Given& given, const Sizes& about) {
   one(sub, "--secondaries", given.secondaries, "M", about.secondaries);
 }
 
-void define_run(CLI::App& app, Given& given) {
-  CLI::App* sub = subcommand(app, "run");
+void add_suites(CLI::App* sub, Given& given) {
   sub->add_option("SUITE", given.suites, "suite files")->type_name("");
   one(sub, "--filter", given.filter, "GLOB",
       "only tests whose id, suite/name, matches; * and ? are wild; default all");
   one(sub, "--coarsen", given.coarsen, "F", "multiply every `detect` by F, above 0; default 1");
   many(sub, "--set", given.sets, "estimator.key=value",
        "set a parameter; repeatable; default as in the suite");
+}
+
+constexpr Running of_suites{
+    .seed = "seed of all streams, or a fresh one; default the suite's, else 1",
+    .alpha =
+        "probability that a suite whose claims hold fails, in (0, 0.5]; default the suite's, "
+        "else 0.01"};
+
+void define_plan(CLI::App& app, Given& given) {
+  CLI::App* sub = subcommand(app, "plan");
+  add_suites(sub, given);
+  add_sampling(sub, given, of_suites);
+}
+
+void define_run(CLI::App& app, Given& given) {
+  CLI::App* sub = subcommand(app, "run");
+  add_suites(sub, given);
   one(sub, "--shard", given.shard, "I/N", "only the I-th of N parts of the tests; default 1/1");
-  add_running(sub, given,
-              {.seed = "seed of all streams, or a fresh one; default the suite's, else 1",
-               .alpha = "probability that a suite whose claims hold fails, in (0, 0.5]; default "
-                        "the suite's, else 0.01"});
+  one(sub, "--ledger", given.ledger, "FILE",
+      "add the run's evidence to a file of nights with fresh seeds and alarm at what they say "
+      "together; default none");
+  add_running(sub, given, of_suites);
 }
 
 void define_check(CLI::App& app, Given& given) {
@@ -122,6 +142,7 @@ void define_others(CLI::App& app, Given& given) {
 
 void define_options(CLI::App& app, Given& given) {
   define_run(app, given);
+  define_plan(app, given);
   define_check(app, given);
   define_others(app, given);
 }

@@ -15,7 +15,7 @@ using Texts = std::vector<std::string>;
 struct Given {
   std::string claim, source, what, plugin, record, test, observation;
   Texts suites, estimators, sets, reports;
-  std::string filter, seed, threads, alpha, coarsen, shard, inconclusive, colour;
+  std::string filter, seed, threads, alpha, coarsen, shard, ledger, inconclusive, colour;
   std::string detect, allow, method, primaries, secondaries;
   bool quiet = false;
 };

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "harness/plan_table.h"
 #include "harness/progress_terminal.h"
 #include "harness/replay.h"
 #include "reports/console.h"
@@ -87,6 +88,14 @@ void write_reports(const reports::Record& record, const Output& output) {
   fmt::print("{}", to_stdout);
 }
 
+/// Says so where the filter matches no test.
+bool selects_nothing(const std::vector<Suite>& suites, const RunOptions& options) {
+  if (options.filter.empty()) return false;
+  const std::string unmatched = unmatched_filter(suites, options.filter);
+  if (!unmatched.empty()) fmt::print(stderr, "assay: {}", unmatched);
+  return !unmatched.empty();
+}
+
 }  // namespace
 
 std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter) {
@@ -118,15 +127,19 @@ std::string unmatched_filter(const std::vector<Suite>& suites, const std::string
 
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
   require_writable(output);
-  if (!options.filter.empty()) {
-    const std::string unmatched = unmatched_filter(suites, options.filter);
-    fmt::print(stderr, "{}{}", unmatched.empty() ? "" : "assay: ", unmatched);
-    if (!unmatched.empty()) return nothing_ran;
-  }
+  if (selects_nothing(suites, options)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Record record = run(suites, options, *progress);
   write_reports(record, output);
   return exit_code(record, output.inconclusive);
+}
+
+int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet) {
+  if (selects_nothing(suites, options)) return nothing_ran;
+  const std::unique_ptr<Progress> progress = make_progress(quiet);
+  const PlannedRun planned = plan_run(suites, options, *progress);
+  fmt::print("{}", plan_text(planned, measure_costs(planned, options.threads, *progress)));
+  return plan_exit_code(planned);
 }
 
 int report_saved_run(const std::string& file, const Output& output) {

@@ -30,6 +30,9 @@ std::string unmatched_filter(const std::vector<Suite>& suites, const std::string
 
 /// Runs, writes the reports. 4 without a report when the filter matches no test.
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
+/// Prints what a run of the suites would do; only pilots are drawn. 4 when the filter matches no
+/// test, 1 when a test cannot come out as expected by its plan.
+int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
 int report_saved_run(const std::string& file, const Output& output);
 
 struct ReplayArguments {

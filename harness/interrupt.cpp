@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <stdexcept>
 
 namespace assay::harness {
 
@@ -25,5 +26,9 @@ void watch_interrupts() {
 }
 
 bool interrupted() { return asked.load(); }
+
+void stop_if_interrupted() {
+  if (interrupted()) throw std::runtime_error("interrupted; nothing is written");
+}
 
 }  // namespace assay::harness

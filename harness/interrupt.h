@@ -9,4 +9,8 @@ void watch_interrupts();
 /// Whether the user asked to stop. Anything that takes long polls it.
 bool interrupted();
 
+/// Throws std::runtime_error where the user asked to stop: pools are short then and must not be
+/// read.
+void stop_if_interrupted();
+
 }  // namespace assay::harness

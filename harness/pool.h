@@ -42,6 +42,7 @@ class Pool {
   /// What to keep; before anything is drawn.
   void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
   std::vector<ChannelPlan>& plan() { return plan_; }
+  const std::vector<ChannelPlan>& plan() const { return plan_; }
 
   /// To sum the variances of these channels in groups; before anything is drawn.
   void keep_group_variances(std::vector<std::size_t> channels) {

@@ -39,6 +39,12 @@ int act(const RunCommand& command) {
   return run_suites(suites, command.options, command.output);
 }
 
+int act(const PlanCommand& command) {
+  std::vector<Suite> suites = load(command.suites);
+  for (const std::string& text : command.assignments) set_parameter(suites, text);
+  return plan_suites(suites, command.options, command.quiet);
+}
+
 int act(const CheckCommand& command) {
   return run_suites({suite_of_claim(command.arguments)}, command.options, command.output);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/evaluate.h"
+#include "harness/pilot.h"
 #include "harness/run.h"
 #include "reports/record.h"
 
@@ -24,6 +25,7 @@ struct SuiteRun {
   Suite suite;
   std::uint64_t seed = 1;
   std::map<std::string, PreparedEstimator> estimators;
+  Pilots pilots = {};  ///< of the estimators of the selected tests
   std::vector<TestWork> tests = {};
   std::vector<Picture> pictures = {};
   bool holm = false;  ///< the whole family ran

@@ -20,6 +20,7 @@ struct RunOptions {
   double coarsen = 1;                                       ///< multiplies every `detect`
   std::string filter = "";                                  ///< glob on test ids; "" selects all
   std::optional<std::pair<unsigned, unsigned>> shard = {};  ///< I of N, I from 1
+  std::string ledger = "";   ///< file to add the evidence to; "": none
   std::string command = "";  ///< how to run the same again, for replay lines
 };
 
@@ -29,8 +30,8 @@ reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
 
 enum class InconclusivePolicy { report, fail, pass };
 
-/// 0 every test ok; 1 at least one not; 3 nothing failed but something is inconclusive; 4 nothing
-/// ran; 77 all skipped.
+/// 0 every test ok; 1 at least one not, or an alarm of the ledger; 3 nothing failed but something
+/// is inconclusive; 4 nothing ran; 77 all skipped.
 int exit_code(const reports::Record&, InconclusivePolicy);
 
 /// Whether a glob (`*`, `?`) matches the whole of a text.

@@ -7,6 +7,7 @@
 #include "reports/columns.h"
 #include "reports/console_rows.h"
 #include "reports/describe.h"
+#include "reports/ledger.h"
 #include "reports/number.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
@@ -52,6 +53,7 @@ class Screen {
   void run(const Record& record) {
     for (const Suite& suite : record.suites) write(suite);
     if (!record.note.empty()) paragraph(record.note);
+    if (!record.ledger.file.empty()) write(record.ledger);
     summary(record);
   }
   std::string take() { return std::move(out_); }
@@ -172,6 +174,26 @@ class Screen {
     return fmt::format("{} [{}, {}]", value, human(estimate.low), human(estimate.high));
   }
 
+  void write(const Ledger& ledger) {
+    blank();
+    const Outcome result = alarms(ledger) > 0 ? Outcome::failed : Outcome::passed;
+    for (const std::string& part : wrapped(one_line(ledger_title(ledger)), options_.width)) {
+      line(part, colour_of(result));
+    }
+    for (const LedgerSeries& series : ledger.series) {
+      if (!series.alarm) continue;
+      for (const std::string& part :
+           wrapped(one_line("ALARM " + series_name(ledger, series)), options_.width - 2)) {
+        line("  " + part);
+      }
+      fact("nights", series_sentence(series));
+      fact("alarm", alarm_sentence(series));
+    }
+    if (const std::string text = quiet_sentence(ledger); !text.empty())
+      paragraph(one_line(text) + ".");
+    for (const std::string& note : ledger_notes(ledger)) paragraph(one_line(note) + ".");
+  }
+
   void list(const Record& record, Outcome kind, const std::string& heading) {
     bool first = true;
     for (const Suite& suite : record.suites) {
@@ -195,6 +217,9 @@ class Screen {
     const std::string took =
         record.seconds > 0 ? " in " + plain(duration(record.seconds)) : std::string();
     const std::string verdicts = verdict_counts(record);
+    if (const std::string alarm = alarm_count(record); !alarm.empty()) {
+      line("Not ok: " + alarm, colour_of(Outcome::failed));
+    }
     paragraph(tally_sentence(counts) + took + (verdicts.empty() ? "." : ": " + verdicts + "."));
     paragraph(error_rates(record));
     if (counts.inconclusive > 0)

@@ -222,6 +222,37 @@ void fields(Archive& a, T& suite) {
   a("tests", suite.tests);
 }
 
+template <class Archive, maybe_const<LedgerSeries> T>
+void fields(Archive& a, T& series) {
+  a("test", series.test);
+  a("channel", series.channel);
+  a("series", series.series);
+  a("quantity", series.quantity);
+  a("relative", series.relative);
+  a("nights", series.nights);
+  a("first", series.first);
+  a("last", series.last);
+  a("score", series.score);
+  a("information", series.information);
+  a("log_e", series.log_e);
+  a("limit", series.limit);
+  a("alarm", series.alarm);
+  a("since", series.since);
+  a("moved", series.moved);
+  a("moved_commit", series.moved_commit);
+  a("moved_from", series.moved_from);
+  a("moved_to", series.moved_to);
+  a("added", series.added);
+  a("note", series.note);
+}
+
+template <class Archive, maybe_const<Ledger> T>
+void fields(Archive& a, T& ledger) {
+  a("file", ledger.file);
+  a("budget", ledger.budget);
+  a("series", ledger.series);
+}
+
 template <class Archive, maybe_const<Record> T>
 void fields(Archive& a, T& record) {
   a("schema", record.schema);
@@ -232,6 +263,7 @@ void fields(Archive& a, T& record) {
   a("seconds", record.seconds);
   a("note", record.note);
   a("suites", record.suites);
+  a("ledger", record.ledger);
 }
 
 }  // namespace assay::reports

@@ -4,6 +4,7 @@
 
 #include "reports/describe.h"
 #include "reports/html_parts.h"
+#include "reports/ledger.h"
 #include "reports/number.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
@@ -11,8 +12,8 @@
 namespace assay::reports {
 namespace {
 
-const char* overall_style(const Tally& counts) {
-  if (counts.failed > 0) return "failed";
+const char* overall_style(const Record& record, const Tally& counts) {
+  if (counts.failed > 0 || alarms(record.ledger) > 0) return "failed";
   if (counts.inconclusive > 0 || counts.passed == 0) return "inconclusive";
   return "passed";
 }
@@ -97,15 +98,17 @@ std::string figure(const std::string& chart, const std::string& caption) {
 
 std::string html(const Record& record) {
   const Tally counts = tally(record);
-  const std::string sentence = tally_sentence(counts);
+  const std::string alarm = alarm_count(record);
+  const std::string sentence = tally_sentence(counts) + (alarm.empty() ? "" : "; " + alarm);
   std::string out = head(fmt::format("Assay: {}", sentence));
   out += fmt::format("<body>\n<h1 class=\"{}\">{}</h1>\n<p>{}</p>\n<p>{}</p>\n",
-                     overall_style(counts), escape_xml(sentence),
+                     overall_style(record, counts), escape_xml(sentence),
                      escape_xml(verdict_counts(record)), escape_xml(error_rates(record)));
   out += about_the_run(record);
   out += reading_help;
   out += "<p class=\"tools\"></p>\n";
   if (!record.suites.empty()) out += overview(record);
+  out += ledger_section(record.ledger);
   for (std::size_t s = 0; s < record.suites.size(); ++s) out += suite_section(record, s);
   return out + fmt::format("<script>{}</script>\n</body>\n</html>\n", page_script);
 }

@@ -47,6 +47,9 @@ std::string overview(const Record&);
 /// The estimators of a suite as bars, in numbers, and in pairs.
 std::string estimator_pictures(const Suite&);
 
+/// What the nights of the ledger say, alarms first; empty where none is kept.
+std::string ledger_section(const Ledger&);
+
 std::string suite_section(const Record&, std::size_t suite);
 std::string test_section(const Test&, TestPlace);
 

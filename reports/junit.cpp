@@ -10,6 +10,7 @@
 #include "reports/describe.h"
 #include "reports/effect.h"
 #include "reports/evidence.h"
+#include "reports/ledger.h"
 #include "reports/number.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
@@ -119,8 +120,11 @@ class UniqueNames {
  public:
   std::pair<std::string, std::string> of(const Suite& suite, const Test& test) {
     const std::size_t slash = test.id.find('/');
-    std::string group = slash == std::string::npos ? suite.name : test.id.substr(0, slash);
-    std::string name = slash == std::string::npos ? test.name : test.id.substr(slash + 1);
+    const std::string group = slash == std::string::npos ? suite.name : test.id.substr(0, slash);
+    return of(group, slash == std::string::npos ? test.name : test.id.substr(slash + 1));
+  }
+
+  std::pair<std::string, std::string> of(std::string group, std::string name) {
     group = tidy(group, "suite");
     name = tidy(name, "test");
     std::string unique = name;
@@ -172,6 +176,12 @@ struct Counts {
   }
 };
 
+/// A series is a case of its own: servers know no other way to say that something is wrong.
+Counts ledger_counts(const Ledger& ledger) {
+  if (ledger.file.empty()) return {};
+  return {.tests = static_cast<int>(ledger.series.size()), .failures = alarms(ledger)};
+}
+
 std::string suite_properties(const Record& record, const Suite& suite) {
   std::string out;
   add(out, "seed", fmt::format("{}", suite.seed));
@@ -197,6 +207,39 @@ std::string test_suite(const Record& record, const Suite& suite, UniqueNames& na
   return out + " </testsuite>\n";
 }
 
+std::string series_case(const Ledger& ledger, const LedgerSeries& series, UniqueNames& names) {
+  const auto [group, name] = names.of("ledger", series_name(ledger, series));
+  std::string out = "  <testcase" + attribute("classname", group) + attribute("name", name) +
+                    time_attribute(0) + ">\n   <properties>\n";
+  add(out, "series", series.series);
+  add(out, "nights", fmt::format("{}", series.nights));
+  add(out, "score", series.score);
+  add(out, "information", series.information);
+  add(out, "log_e", series.log_e);
+  add(out, "limit", series.limit);
+  add(out, "since", series.since);
+  add(out, "moved", series.moved);
+  out += "   </properties>\n";
+  const std::string text = series_sentence(series) + "\n" +
+                           (series.alarm ? alarm_sentence(series) + "\n" : "") + series.note;
+  if (series.alarm) {
+    out += element("failure",
+                   attribute("message", alarm_sentence(series)) + attribute("type", "alarm"), text);
+  }
+  return out + element("system-out", "", text) + "  </testcase>\n";
+}
+
+std::string ledger_suite(const Record& record, UniqueNames& names) {
+  const Ledger& ledger = record.ledger;
+  if (ledger.file.empty()) return {};
+  std::string out =
+      " <testsuite" + attribute("name", ledger_title(ledger)) + ledger_counts(ledger).attributes();
+  if (!record.started.empty()) out += attribute("timestamp", record.started);
+  out += ">\n";
+  for (const LedgerSeries& series : ledger.series) out += series_case(ledger, series, names);
+  return out + " </testsuite>\n";
+}
+
 }  // namespace
 
 std::string junit(const Record& record) {
@@ -204,12 +247,15 @@ std::string junit(const Record& record) {
   for (const Suite& suite : record.suites) {
     for (const Test& test : suite.tests) counts.add(test);
   }
+  const Counts nights = ledger_counts(record.ledger);
+  counts.tests += nights.tests;
+  counts.failures += nights.failures;
   std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" +
                     attribute("name", record.tool.name.empty() ? "assay" : record.tool.name) +
                     counts.attributes() + ">\n";
   UniqueNames names;
   for (const Suite& suite : record.suites) out += test_suite(record, suite, names);
-  return out + "</testsuites>\n";
+  return out + ledger_suite(record, names) + "</testsuites>\n";
 }
 
 }  // namespace assay::reports

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "reports/describe.h"
+#include "reports/ledger.h"
 #include "reports/number.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
@@ -75,7 +76,9 @@ class Page {
 };
 
 std::string title(const Record& record) {
-  std::string out = fmt::format("# {}\n\n", tally_sentence(tally(record)));
+  const std::string alarm = alarm_count(record);
+  std::string out =
+      fmt::format("# {}{}{}\n\n", tally_sentence(tally(record)), alarm.empty() ? "" : "; ", alarm);
   out += cell(fmt::format("{} {} {}, seed {}, {}", record.tool.name, record.tool.version,
                           record.tool.commit, record.seed, record.started)) +
          "\n\n";
@@ -83,6 +86,22 @@ std::string title(const Record& record) {
     out += cell(verdicts + ". " + error_rates(record)) + "\n\n";
   if (!record.note.empty()) out += cell(record.note, paragraph_limit) + "\n\n";
   return out;
+}
+
+std::string ledger_section(const Ledger& ledger) {
+  std::string out = fmt::format("## {}\n\n", cell(ledger_title(ledger)));
+  for (const LedgerSeries& series : ledger.series) {
+    if (!series.alarm) continue;
+    out += fmt::format("- {} **alarm** {}: {}; {}\n", mark(Outcome::failed),
+                       cell(series_name(ledger, series)),
+                       cell(series_sentence(series), paragraph_limit),
+                       cell(alarm_sentence(series), paragraph_limit));
+  }
+  if (const std::string text = quiet_sentence(ledger); !text.empty())
+    out += fmt::format("- {}\n", cell(text, paragraph_limit));
+  for (const std::string& note : ledger_notes(ledger))
+    out += fmt::format("- {}\n", cell(note, paragraph_limit));
+  return out + "\n";
 }
 
 int add_problems(const Record& record, Outcome kind, Page& page) {
@@ -111,6 +130,7 @@ int add_table(const Suite& suite, Page& page) {
 std::string markdown(const Record& record, std::size_t limit) {
   Page page(limit);
   page.add(title(record));
+  if (!record.ledger.file.empty()) page.add(ledger_section(record.ledger));
   int problems = add_problems(record, Outcome::failed, page);
   problems += add_problems(record, Outcome::inconclusive, page);
   int rows = 0;

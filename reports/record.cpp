@@ -62,6 +62,12 @@ Tally tally(const Record& record) {
   return result;
 }
 
+int alarms(const Ledger& ledger) {
+  int count = 0;
+  for (const LedgerSeries& series : ledger.series) count += series.alarm;
+  return count;
+}
+
 Record without_times(Record record) {
   record.started.clear();
   record.seconds = 0;

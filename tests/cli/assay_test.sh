@@ -99,6 +99,52 @@ test_filter_that_matches_nothing_is_4() {
   [ ! -e run.html ] || fail 'a report of nothing was written'
 }
 
+test_plan_prints_and_draws_no_test() {
+  write_suite good.yaml "$good" "$long"
+  expect 0 plan good.yaml --quiet
+  contains out '  long'
+  contains out 'share observations'
+  empty err
+  ! grep -qE '^.{101,}$' out || fail 'a line is wider than 100 columns'
+  expect 4 plan good.yaml --filter 'good/nothing'
+  expect 2 plan no-such-suite.yaml
+}
+
+# Three tenths of a standard deviation, 100 observations: three standard errors a night, too few for
+# a test at alpha 1e-9 and more than enough for ten nights.
+test_ledger_alarm_is_1() {
+  local night code=0
+  write_suite nights.yaml '  - {name: off, claim: mean(normal) == 2.3, secondaries: 100}'
+  for night in 1 2 3 4 5 6 7 8 9 10; do
+    "$assay" run nights.yaml --alpha 1e-9 --seed "$night" --ledger n.ledger --quiet >out 2>err
+    code=$?
+  done
+  [ "$code" -eq 1 ] || fail "ended with $code, not 1"
+  contains out 'ALARM nights/off'
+  contains out 'Not ok: 1 ledger alarm'
+  contains out '1 passed, 0 failed, 0 skipped'
+}
+
+test_ledger_keeps_nights_and_refuses_changed_lines() {
+  write_suite good.yaml "$good"
+  expect 0 run good.yaml --seed 1 --ledger n.ledger --quiet
+  expect 0 run good.yaml --seed 2 --ledger n.ledger --quiet
+  contains out 'Ledger n.ledger, budget 0.003 a suite: 0 alarms in 1 series'
+  [ "$(tail -n 1 n.ledger)" = 'end 2' ] || fail 'not two nights'
+  cp n.ledger before
+  expect 0 run good.yaml --seed 2 --ledger n.ledger --quiet
+  contains out 'seed 2 is in the ledger already'
+  cmp n.ledger before || fail 'a seed seen before changed the ledger'
+  sed -i 's/seed 1 /seed 3 /' n.ledger
+  expect 2 run good.yaml --seed 4 --ledger n.ledger --quiet
+  empty out
+  contains err 'n.ledger:9:1: '
+  contains err 'version control'
+  head -n -1 before >n.ledger
+  expect 2 run good.yaml --seed 4 --ledger n.ledger --quiet
+  contains err 'cut short'
+}
+
 test_suite_given_twice_is_2() {
   write_suite good.yaml "$good"
   expect 2 run good.yaml good.yaml

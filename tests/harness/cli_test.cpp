@@ -56,6 +56,28 @@ TEST(CommandLine, RunsSuitesWithEveryOption) {
             "--coarsen 4");
 }
 
+TEST(CommandLine, PlansSuitesAsTheyWouldRun) {
+  const auto command = parsed<PlanCommand>({"plan", "a.yaml", "b.yaml", "--filter", "a/*",
+                                            "--alpha", "0.05", "--coarsen", "2", "--set", "x.n=1",
+                                            "--seed", "3", "--threads", "1", "--quiet"});
+  EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
+  EXPECT_THAT(command.assignments, ElementsAre("x.n=1"));
+  EXPECT_EQ(command.options.filter, "a/*");
+  EXPECT_EQ(command.options.alpha, 0.05);
+  EXPECT_EQ(command.options.coarsen, 2);
+  EXPECT_EQ(command.options.seed, 3U);
+  EXPECT_EQ(command.options.threads, 1U);
+  EXPECT_TRUE(command.quiet);
+  EXPECT_THAT(refused({"plan"}), HasSubstr("`assay plan` needs a suite file"));
+  EXPECT_THAT(refused({"plan", "a.yaml", "--ledger", "f"}), HasSubstr("no option `--ledger`"));
+}
+
+TEST(CommandLine, ALedgerIsNoPartOfAReplay) {
+  const auto command = parsed<RunCommand>({"run", "a.yaml", "--ledger", "n.ledger"});
+  EXPECT_EQ(command.options.ledger, "n.ledger");
+  EXPECT_EQ(command.options.command, "assay run a.yaml");
+}
+
 TEST(CommandLine, RepeatedOptionsTakeOneValueEach) {
   const auto command = parsed<RunCommand>({"run", "--set", "x.n=1", "a.yaml", "b.yaml"});
   EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
@@ -106,7 +128,8 @@ TEST(CommandLine, ARandomSeedIsFresh) {
 }
 
 TEST(CommandLine, HelpLeadsWithExamples) {
-  for (const char* name : {"run", "check", "sample", "list", "describe", "replay", "report"}) {
+  for (const char* name :
+       {"run", "plan", "check", "sample", "list", "describe", "replay", "report"}) {
     const std::string help = parsed<TextCommand>({name, "--help"}).text;
     const std::size_t examples = help.find("Examples:\n  assay " + std::string(name));
     ASSERT_NE(examples, std::string::npos) << help;
@@ -139,11 +162,11 @@ TEST(CommandLine, SuggestsWhatWasMeant) {
 }
 
 TEST(CommandLine, OffersNothingOfLaterVersions) {
-  for (const char* name : {"plan", "calibrate", "merge", "images"}) {
+  for (const char* name : {"calibrate", "merge", "images"}) {
     EXPECT_THAT(refused({name}), StartsWith("unknown command `"));
   }
-  EXPECT_THAT(refused({"run", "a.yaml", "--ledger", "f"}),
-              StartsWith("`assay run` has no option `--ledger`"));
+  EXPECT_THAT(refused({"check", "mean(a) == 1", "--ledger", "f"}),
+              StartsWith("`assay check` has no option `--ledger`"));
 }
 
 TEST(CommandLine, NamesWhatIsMissingOrTooMuch) {
@@ -225,7 +248,8 @@ TEST(CommandLine, NamesTheOptionAndWhatItTakes) {
 }
 
 TEST(CommandLine, HelpTellsEveryDefaultInAHundredColumns) {
-  for (const char* name : {"run", "check", "sample", "list", "describe", "replay", "report"}) {
+  for (const char* name :
+       {"run", "plan", "check", "sample", "list", "describe", "replay", "report"}) {
     const std::string help = parsed<TextCommand>({name, "--help"}).text;
     std::string option;
     const auto finish = [&] {

@@ -380,6 +380,44 @@ Suite hostile() {
   return s;
 }
 
+// One series with an alarm, one of e-values without a night of this run, one of a second channel.
+Ledger nights() {
+  Ledger ledger{.file = "nightly.ledger", .budget = 0.003, .series = {}};
+  ledger.series.push_back({.test = "triangle/mean(area) == analytic",
+                           .channel = "irradiance",
+                           .series = "17ab1f5b7c630505",
+                           .quantity = "relative difference from the reference",
+                           .relative = true,
+                           .nights = 12,
+                           .first = "2026-11-09T02:00:00Z",
+                           .last = "2026-11-20T02:00:00Z",
+                           .score = 15625,
+                           .information = 15625000,
+                           .log_e = 9.5,
+                           .limit = 6.5,
+                           .alarm = true,
+                           .since = "2026-11-18T02:00:00Z",
+                           .moved = "2026-11-13T02:00:00Z",
+                           .moved_commit = "14467a0bbe61",
+                           .moved_from = "2026-11-11T02:00:00Z",
+                           .moved_to = "2026-11-15T02:00:00Z",
+                           .added = true,
+                           .note = ""});
+  ledger.series.push_back(ledger.series[0]);
+  ledger.series[1].channel = "<b>|shadow|";
+  ledger.series[1].alarm = false;
+  ledger.series[1].log_e = -1.5;
+  ledger.series[1].since = ledger.series[1].moved = ledger.series[1].moved_commit = "";
+  ledger.series[1].moved_from = ledger.series[1].moved_to = "";
+  ledger.series.push_back({.test = "triangle/a law",
+                           .channel = "theta",
+                           .series = "a0",
+                           .quantity = "",
+                           .log_e = {},
+                           .note = "nothing added: its verdict is invalid"});
+  return ledger;
+}
+
 }  // namespace
 
 Record example_record() {
@@ -391,6 +429,7 @@ Record example_record() {
   r.seconds = 83.25;
   r.note = "filtered: verdicts rest on fixed shares";
   r.suites = {triangle(), hostile()};
+  r.ledger = nights();
   r.suites.push_back({});
   r.suites.back().name = "an empty suite";
   return r;

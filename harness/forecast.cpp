@@ -1,0 +1,100 @@
+#include "harness/forecast.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/sample_size.h"
+#include "harness/theta_error.h"
+#include "stats/tails.h"
+
+namespace assay::harness {
+namespace {
+
+/// The edge of the forbidden region where theta = 0 is claimed and can be told from it.
+std::optional<double> margin_of(const Regions& regions) {
+  if (regions.relation == Relation::within) return regions.within;
+  if (regions.proof()) return std::nullopt;
+  return regions.detect;
+}
+
+/// P(look `k` does not pass this channel) where theta = 0.
+std::optional<double> not_passed(const TestOutcome& test, std::size_t channel, std::size_t k,
+                                 const Pilots& pilots) {
+  const Regions& regions = test.plan.regions[channel];
+  const std::optional<double> margin = margin_of(regions);
+  if (!margin) return std::nullopt;
+  const auto data = expected_data(test, channel, pilots, test.plan.looks.sizes[k]);
+  if (!data) return std::nullopt;
+  const std::optional<ThetaError> error = theta_error(test.question, channel, *data);
+  if (!error) return std::nullopt;
+  const double beta = test.place.share.beta * test.plan.looks.weights[k];
+  const double z = stats::normal_quantile({stats::Tail::upper, std::log(beta)});
+  const double room = *margin / std::hypot(error->drawn, error->fixed) - z;
+  const double tail = std::exp(stats::normal_tails(room).upper);
+  return std::min(1.0, regions.two_sided() ? 2 * tail : tail);
+}
+
+/// P(still open after look k), at most.
+std::optional<double> open_after(const TestOutcome& test, std::size_t k, const Pilots& pilots) {
+  double sum = 0;
+  for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
+    const std::optional<double> share = not_passed(test, channel, k, pilots);
+    if (!share) return std::nullopt;
+    sum += *share;
+  }
+  return std::min(1.0, sum);
+}
+
+std::optional<double> share_of(const TestOutcome& test, const Pilots& pilots) {
+  const std::vector<std::uint64_t>& sizes = test.plan.looks.sizes;
+  if (sizes.size() < 2) return std::nullopt;
+  double open = 1;
+  double drawn = static_cast<double>(sizes[0]);
+  for (std::size_t k = 1; k < sizes.size(); ++k) {
+    const std::optional<double> left = open_after(test, k - 1, pilots);
+    if (!left) return std::nullopt;
+    open = std::min(open, *left);
+    drawn += open * static_cast<double>(sizes[k] - sizes[k - 1]);
+  }
+  return drawn / static_cast<double>(sizes.back());
+}
+
+std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilots) {
+  const Plan& plan = test.plan;
+  const double weight = plan.looks.weights.back();
+  const TestSize size{
+      .share = {.alpha = test.place.share.alpha * weight, .beta = test.place.share.beta * weight},
+      .secondaries = plan.most_secondaries()};
+  const bool of_moments = test.question.of_means() || test.question.of_variances();
+  std::optional<double> largest;
+  for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
+    const Regions& regions = plan.regions[channel];
+    PlannedChannel planned{.regions = regions};
+    if (of_moments) {
+      for (const Subject& side : test.question.subjects) {
+        if (side.setup->observations()) return std::nullopt;
+      }
+      const auto data = expected_data(test, channel, pilots, size.secondaries);
+      if (!data) return std::nullopt;
+      planned = observed_channel(test.question, regions, channel, *data);
+    }
+    const auto found = detectable_effect(test.question, size, plan, planned);
+    if (found) largest = std::max(*found, largest.value_or(0));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Forecast forecast(const TestOutcome& test, const Pilots& pilots) {
+  if (!test.plan.invalid.empty()) return {};
+  return {.detectable = detectable_of(test, pilots), .share = share_of(test, pilots)};
+}
+
+std::uint64_t expected_secondaries(const TestOutcome& test, const Pilots& pilots) {
+  const double share = share_of(test, pilots).value_or(1);
+  return static_cast<std::uint64_t>(
+      std::ceil(share * static_cast<double>(test.plan.most_secondaries())));
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+
+#include "harness/outcome.h"
+#include "harness/pilot.h"
+
+namespace assay::harness {
+
+/// What a frozen plan is expected to do, from the pilots.
+struct Forecast {
+  /// The least theta that the last look finds with probability 1 - beta, the largest over the
+  /// channels; nullopt where nothing is planned for that (proofs by `within`, no pilot).
+  std::optional<double> detectable = {};
+  /// Of the last look's secondaries, the share that is drawn on average if theta = 0: an upper
+  /// bound. nullopt where a test cannot pass early there or has one look.
+  std::optional<double> share = {};
+};
+
+/// The share counts a test as open after look k with the least, over the looks j <= k, of the sum
+/// over the channels of P(look j does not pass the channel); by the normal law, look j passes when
+/// the estimate lies z(beta w_j) standard errors inside the margin.
+Forecast forecast(const TestOutcome& test, const Pilots& pilots);
+
+/// Secondaries that a test is expected to take if theta = 0: the last look's where no share is
+/// known.
+std::uint64_t expected_secondaries(const TestOutcome& test, const Pilots& pilots);
+
+}  // namespace assay::harness

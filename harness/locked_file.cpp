@@ -1,0 +1,56 @@
+#include "harness/locked_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+#include "reports/file.h"
+
+namespace assay::harness {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, int error) {
+  throw std::runtime_error(
+      fmt::format("cannot lock {}: {}", path, std::generic_category().message(error)));
+}
+
+int locked(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(path, errno);
+  while (::flock(descriptor, LOCK_EX) != 0) {
+    if (errno == EINTR) continue;
+    const int error = errno;
+    ::close(descriptor);
+    fail(path, error);
+  }
+  return descriptor;
+}
+
+/// Whether the path still names the open file.
+bool is_current(int descriptor, const std::string& path) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
+}  // namespace
+
+LockedFile::LockedFile(std::string path) : path_(std::move(path)), descriptor_(locked(path_)) {
+  while (!is_current(descriptor_, path_)) {
+    ::close(descriptor_);
+    descriptor_ = locked(path_);
+  }
+}
+
+LockedFile::~LockedFile() { ::close(descriptor_); }
+
+void LockedFile::replace(const std::string& text) const { reports::write_whole(path_, text); }
+
+}  // namespace assay::harness

@@ -1,0 +1,137 @@
+#include "harness/night_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/forecast.h"
+#include "harness/text_hash.h"
+#include "harness/theta_error.h"
+#include "stats/log_variance.h"
+#include "stats/tails.h"
+
+namespace assay::harness {
+namespace {
+
+// (effect / a night's standard error)^2: near the best for one standard error a night found within
+// some twenty nights, and little is lost at a third or three times of it (README.md).
+constexpr double prior_variance = 0.2;
+
+bool is_recorded(const Subject& side) { return side.setup->observations().has_value(); }
+
+const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
+  for (const ChannelOutcome& outcome : test.channels) {
+    if (outcome.index == channel) return &outcome;
+  }
+  return nullptr;
+}
+
+/// Why a test says nothing that the next run could add to; "" where it does.
+std::string obstacle(const TestWork& work, std::size_t channel) {
+  const TestOutcome& test = work.outcome;
+  if (test.verdict == reports::Verdict::error || test.verdict == reports::Verdict::invalid) {
+    return fmt::format("its verdict is {}", reports::to_string(test.verdict));
+  }
+  const std::vector<Subject>& sides = test.question.subjects;
+  if (std::all_of(sides.begin(), sides.end(), is_recorded)) {
+    return "its data are recorded: the same in every run";
+  }
+  const bool laws = !test.question.of_means() && !test.question.of_variances();
+  if (laws && std::any_of(sides.begin(), sides.end(), is_recorded)) {
+    return "one side is recorded, the same in every run, and distances from it do not add up";
+  }
+  if (outcome_of(test, channel) == nullptr) return "its observations have no spread";
+  return "";
+}
+
+/// The normal quantile of the p-value of theta = 0, positive where theta seems to be; 0 where a
+/// conservative method finds neither side likelier.
+double z_of(const stats::TestResult& at_null) {
+  const double log_p = std::min(at_null.log_p_upper, at_null.log_p_lower);
+  if (log_p >= std::log(0.5)) return 0;
+  const double z = stats::normal_quantile({stats::Tail::upper, log_p});
+  return at_null.log_p_upper < at_null.log_p_lower ? z : -z;
+}
+
+/// What E ln s^2 lacks of ln Var x, first minus second source, where the method leaves it.
+double bias_of(const TestOutcome& test, std::span<const ChannelData> data) {
+  if (test.plan.method.name != "log-variance") return 0;
+  double bias = 0;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const double error = stats::log_variance_standard_error(data[i].moments);
+    bias += (i == 0 ? 1 : -1) * error * error / 2;
+  }
+  return bias;
+}
+
+/// The effect a series looks for, from the pilot; nullopt where it has no spread.
+std::optional<double> prior_effect(const TestOutcome& test, std::size_t channel,
+                                   const Pilots& pilots) {
+  const auto data = expected_data(test, channel, pilots, expected_secondaries(test, pilots));
+  if (!data) return std::nullopt;
+  const std::optional<ThetaError> error = theta_error(test.question, channel, *data);
+  if (!error || !(error->drawn > 0)) return std::nullopt;
+  return std::sqrt(prior_variance) * error->drawn;
+}
+
+NightEvidence of_score(const TestWork& work, std::size_t channel, const Pilots& pilots) {
+  const TestOutcome& test = work.outcome;
+  const std::optional<double> effect = prior_effect(test, channel, pilots);
+  if (!effect) return {.missing = "its pilot has no spread to expect a night's error from"};
+  const std::vector<ChannelData> data = data_of(work, channel);
+  const ThetaError error = theta_error(test.question, channel, data).value();
+  if (!(error.drawn > 0)) return {.missing = "its observations have no spread"};
+  const double total = std::hypot(error.drawn, error.fixed);
+  const double difference = z_of(outcome_of(test, channel)->at_null) * total + bias_of(test, data);
+  return {.evidence = stats::evidence_of({difference, error.drawn}),
+          .prior = {.effect = *effect, .reference_error = error.fixed}};
+}
+
+std::string margin_text(const std::optional<Margin>& margin) {
+  return margin ? to_string(*margin) : "none";
+}
+
+std::string side_text(const TestWork& work, std::size_t subject, std::size_t channel) {
+  const Subject& side = work.outcome.question.subjects[subject];
+  const PreparedEstimator& estimator = *side.estimator;
+  std::string text = fmt::format(
+      "\n{} {} {} {}", estimator.entry->information.name, estimator.parameters,
+      estimator.primaries ? fmt::format("{}", *estimator.primaries) : "auto", side.purpose);
+  if (is_recorded(side) && work.pools[subject]->has(work.outcome.secondaries())) {
+    const stats::Moments moments = data_of(work, channel)[subject].moments;
+    text += fmt::format(" {} {} {}", moments.count, moments.mean, moments.m2);
+  }
+  return text;
+}
+
+}  // namespace
+
+NightEvidence night_evidence(const TestWork& work, std::size_t channel, const Pilots& pilots) {
+  if (std::string missing = obstacle(work, channel); !missing.empty()) {
+    return {.missing = std::move(missing)};
+  }
+  const TestOutcome& test = work.outcome;
+  if (test.question.of_means() || test.question.of_variances()) {
+    return of_score(work, channel, pilots);
+  }
+  return {.kind = EvidenceKind::log_e,
+          .log_e = stats::log_e_from_log_p(outcome_of(test, channel)->decision.log_p_claimed)};
+}
+
+std::string series_hash(const TestWork& work, std::size_t channel) {
+  const Question& question = work.outcome.question;
+  const TestEntry& entry = *question.test;
+  std::string text = fmt::format("{}\nallow {} detect {}\nchannel {}", to_string(entry.claim),
+                                 margin_text(entry.allow), margin_text(entry.detect),
+                                 question.channel_name(channel));
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) text += side_text(work, i, channel);
+  if (!question.references.empty()) {
+    const Constant& reference = question.references[channel];
+    // Twelve digits: quadratures may differ in the last ones between machines.
+    text += fmt::format("\n{:.12g} {:.12g}", reference.value, reference.standard_error);
+  }
+  return fmt::format("{:016x}", text_hash(text));
+}
+
+}  // namespace assay::harness

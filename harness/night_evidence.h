@@ -1,0 +1,42 @@
+#pragma once
+
+// What one run says of a claim, in a form that adds up over runs.
+//
+// Means and variances: score and information on theta at the last look taken,
+//   V = 1 / e^2,   S = z E / e^2,
+// e: the drawn data's standard error of theta (theta_error.h), E: hypot(e, what is the same in all
+// runs), z: the normal quantile of the test's own p-value of theta = 0. For a mean that is
+// S = sum (x - r) / sigma^2 and V = n / sigma^2 in units of theta, up to Student's t made normal;
+// e of ln s^2 is corrected for its bias of -SE^2 / 2 where the method does not do so itself.
+// A run that stopped early gives the S and V it has. Its z is not normal then, since a small
+// estimate stops sooner; but S is a Brownian motion observed at the time V, wherever it is stopped,
+// and the ledger's E-value a martingale in V (optional stopping), so its level holds all the same.
+//
+// Distances between laws: ln of the e-value of the p-value over the looks taken, which is valid
+// wherever one stops.
+
+#include <string>
+
+#include "harness/evaluate.h"
+#include "harness/ledger_book.h"
+#include "harness/pilot.h"
+
+namespace assay::harness {
+
+struct NightEvidence {
+  EvidenceKind kind = EvidenceKind::score;
+  stats::Evidence evidence = {};
+  double log_e = 0;
+  /// Of a series that begins: from this run's pilot, whose streams no test sees. The effect is
+  /// sqrt(0.2) of the standard error that a run is expected to end with if theta = 0.
+  stats::LedgerPrior prior = {};
+  std::string missing = "";  ///< why there is none
+};
+
+NightEvidence night_evidence(const TestWork& work, std::size_t channel, const Pilots& pilots);
+
+/// Hash of what a series is about: the claim, its margins, plugins, parameters and primaries of
+/// its estimators, references, recorded data.
+std::string series_hash(const TestWork& work, std::size_t channel);
+
+}  // namespace assay::harness

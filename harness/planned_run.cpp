@@ -1,0 +1,150 @@
+#include "harness/planned_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "harness/interrupt.h"
+#include "harness/plan.h"
+
+namespace assay::harness {
+namespace {
+
+// For the suite's picture, of an estimator that no selected mean or variance claim draws.
+constexpr std::uint64_t picture_secondaries = 1000;
+constexpr std::uint64_t picture_primaries = 64;
+
+bool selected(const TestEntry& test, std::size_t index, const RunOptions& options) {
+  if (options.shard && index % options.shard->second != options.shard->first - 1) return false;
+  return options.filter.empty() || matches(options.filter, test.id);
+}
+
+/// The suite as this run wants it.
+Suite adjusted(Suite suite, const RunOptions& options) {
+  if (options.alpha) suite.alpha = *options.alpha;
+  for (TestEntry& test : suite.tests) {
+    if (!test.detect) continue;
+    test.detect->value *= options.coarsen;
+    if (test.allow && test.detect->value <= test.allow->value) {
+      throw InputError(test.where, fmt::format("`--coarsen {:g}` brings `detect` down to `allow`; "
+                                               "`detect` must stay above it",
+                                               options.coarsen));
+    }
+  }
+  return suite;
+}
+
+/// Estimators that a set of questions is about, in the suite's order.
+std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& questions,
+                                              const std::vector<bool>& chosen,
+                                              const SuiteRun& run) {
+  std::vector<const PreparedEstimator*> used;
+  const bool all = std::all_of(chosen.begin(), chosen.end(), [](bool c) { return c; });
+  for (const EstimatorEntry& entry : run.suite.estimators) {
+    const PreparedEstimator& estimator = run.estimators.at(entry.name);
+    bool wanted = all;
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      for (const Subject& subject : questions[i].subjects) {
+        wanted = wanted || (chosen[i] && subject.estimator->listed == estimator.name);
+      }
+    }
+    if (wanted) used.push_back(&estimator);
+  }
+  return used;
+}
+
+/// And the points of their sweeps.
+std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEstimator*> estimators,
+                                                  const std::vector<Question>& questions,
+                                                  const std::vector<bool>& chosen) {
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    for (const Subject& subject : questions[i].subjects) {
+      if (!chosen[i] || !subject.own || !known.insert(subject.own->name).second) continue;
+      estimators.push_back(subject.own.get());
+    }
+  }
+  return estimators;
+}
+
+/// Names of the estimators whose costs some claim is about.
+std::set<std::string> costly(const std::vector<Question>& questions) {
+  std::set<std::string> names;
+  for (const Question& question : questions) {
+    if (methods_for(question).front().keeps != Keeps::costs) continue;
+    for (const Subject& subject : question.subjects) names.insert(subject.estimator->name);
+  }
+  return names;
+}
+
+void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& used,
+                  const Primaries& primaries, const Pilots& pilots, Pools& pools) {
+  for (const PreparedEstimator* estimator : used) {
+    const auto found = primaries.find(estimator->name);
+    const std::uint64_t automatic = !estimator->entry->information.averages ? 1
+                                    : found != primaries.end()              ? found->second
+                                                                            : picture_primaries;
+    const auto pool =
+        pools.for_picture(*estimator, estimator->primaries.value_or(automatic), run.seed, pilots);
+    if (!pool->is_marked()) {
+      pool->request(estimator->setup->observations().value_or(picture_secondaries));
+    }
+    run.pictures.push_back({estimator, pool});
+  }
+}
+
+void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress& progress) {
+  std::vector<Question> questions;
+  std::vector<bool> chosen;
+  for (std::size_t i = 0; i < run.suite.tests.size(); ++i) {
+    questions.push_back(ask(run.suite.tests[i], run.estimators, run.seed));
+    chosen.push_back(selected(run.suite.tests[i], i, options));
+  }
+  if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
+  const std::vector<FamilyPlace> place = places(run.suite, questions);
+  const auto used = used_by(questions, chosen, run);
+  run.pilots = run_pilots(
+      with_sweeps(used, questions, chosen),
+      {.seed = run.seed, .threads = options.threads, .with_cost = costly(questions)}, progress);
+  const Pilots& pilots = run.pilots;
+  stop_if_interrupted();
+  const Primaries primaries = choose_primaries(questions, place, pilots);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!chosen[i]) continue;
+    Plan plan = plan_test(questions[i], place[i], pilots, primaries);
+    TestWork work{
+        .outcome = {.question = questions[i], .place = place[i], .plan = std::move(plan)}};
+    for (std::size_t subject = 0; subject < work.outcome.question.subjects.size(); ++subject) {
+      work.pools.push_back(
+          pools.for_subject(work.outcome.question, subject, work.outcome.plan, run.seed, pilots));
+    }
+    run.tests.push_back(std::move(work));
+  }
+  plan_picture(run, used, primaries, pilots, pools);
+}
+
+/// Everything a user may have got wrong is found here, before anything is sampled.
+std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options) {
+  auto run = std::make_unique<SuiteRun>();
+  run->suite = adjusted(suite, options);
+  run->seed = options.seed.value_or(suite.seed.value_or(1));
+  run->estimators = prepare_all(run->suite);
+  for (const TestEntry& test : run->suite.tests) {
+    const Question question = ask(test, run->estimators, run->seed);
+    if (test.method) find_method(question, *test.method);
+  }
+  return run;
+}
+
+}  // namespace
+
+PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
+                    Progress& progress) {
+  PlannedRun planned;
+  for (const Suite& suite : suites) planned.suites.push_back(prepare_suite(suite, options));
+  for (auto& run : planned.suites) plan_suite(*run, options, planned.pools, progress);
+  return planned;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,80 @@
+#include "harness/theta_error.h"
+
+#include <cmath>
+
+#include "harness/constant.h"
+#include "stats/log_variance.h"
+
+namespace assay::harness {
+namespace {
+
+double unit_of(const Question& question, std::size_t channel, std::span<const ChannelData> data) {
+  if (!is_relative(question, channel)) return 1;
+  return std::abs(question.of_two() ? question.factor * data[1].moments.mean
+                                    : question.references[channel].value);
+}
+
+/// Of one side's share in theta, before its unit.
+double side_error(const Question& question, std::size_t subject, const ChannelData& data) {
+  if (question.of_variances()) return stats::log_variance_standard_error(data.moments);
+  return (subject == 0 ? 1 : std::abs(question.factor)) * data.moments.standard_error();
+}
+
+/// As if `count` means of `averaged` primaries each had been drawn.
+stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_t count) {
+  const double n = static_cast<double>(count);
+  stats::Moments moments = pilot;
+  const double spread = pilot.variance() / averaged;
+  const double kurtosis = 3 + (pilot.kurtosis() - 3) / averaged;
+  const double skewness = pilot.skewness() / std::sqrt(averaged);
+  moments.count = count;
+  moments.m2 = spread * (n - 1);
+  moments.m3 = skewness * n * std::pow(moments.m2 / n, 1.5);
+  moments.m4 = kurtosis * moments.m2 * moments.m2 / n;
+  return moments;
+}
+
+}  // namespace
+
+std::optional<ThetaError> theta_error(const Question& question, std::size_t channel,
+                                      std::span<const ChannelData> data) {
+  if (!question.of_means() && !question.of_variances()) return std::nullopt;
+  const double unit = unit_of(question, channel, data);
+  ThetaError error;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const double side = side_error(question, i, data[i]) / unit;
+    double& part = question.subjects[i].setup->observations() ? error.fixed : error.drawn;
+    part = std::hypot(part, side);
+  }
+  if (!question.references.empty()) {
+    error.fixed = std::hypot(error.fixed, question.references[channel].standard_error / unit);
+  }
+  return error;
+}
+
+std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, std::size_t channel,
+                                                      const Pilots& pilots,
+                                                      std::uint64_t secondaries) {
+  const Question& question = test.question;
+  std::vector<ChannelData> data(question.subjects.size());
+  const ChannelData* known = nullptr;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const Subject& side = question.subjects[i];
+    if (side.setup->observations()) continue;
+    const auto found = pilots.find(side.estimator->name);
+    if (found == pilots.end() || !found->second.trouble.empty()) return std::nullopt;
+    const stats::Moments& pilot = found->second.channels[side.channels[channel]];
+    if (is_constant(question, i, channel, pilot)) return std::nullopt;
+    const double averaged = side.averages ? static_cast<double>(test.plan.primaries[i]) : 1;
+    data[i] = {.primaries = test.plan.primaries[i],
+               .moments = scaled(pilot, averaged, secondaries)};
+    known = &data[i];
+  }
+  if (known == nullptr) return std::nullopt;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    if (question.subjects[i].setup->observations()) data[i] = *known;
+  }
+  return data;
+}
+
+}  // namespace assay::harness

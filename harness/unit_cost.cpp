@@ -1,0 +1,70 @@
+#include "harness/unit_cost.h"
+
+#include <algorithm>
+
+#include "harness/interrupt.h"
+#include "harness/scheduler.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr std::uint64_t timed_primaries = 16384;
+
+struct Timed {
+  const Pool* of;
+  std::shared_ptr<Pool> pool;
+};
+
+class Timings {
+ public:
+  void add(const Pool& pool, const PreparedEstimator& estimator, const std::string& purpose,
+           std::uint64_t seed) {
+    const auto same = [&](const Timed& timed) { return timed.of == &pool; };
+    if (pool.setup()->observations() || std::any_of(all_.begin(), all_.end(), same)) return;
+    const StreamKey key = key_of(estimator, seed, 0, purpose.empty() ? "cost" : purpose + "#cost");
+    all_.push_back({&pool, std::make_shared<Pool>(pool.setup(), key, pool.primaries())});
+    std::vector<ChannelPlan>& plan = all_.back().pool->plan();
+    for (std::size_t i = 0; i < plan.size(); ++i) plan[i].cells = pool.plan()[i].cells;
+    all_.back().pool->request(std::max<std::uint64_t>(1, timed_primaries / pool.primaries()));
+  }
+  const std::vector<Timed>& all() const { return all_; }
+
+ private:
+  std::vector<Timed> all_;
+};
+
+UnitCost unit_cost(const Pool& pool) {
+  const Summary& summary = pool.prefix(pool.requested());
+  const double n = static_cast<double>(summary.count);
+  return {.rays = static_cast<double>(summary.cost.rays()) / n,
+          .samples = static_cast<double>(summary.cost.samples) / n,
+          .seconds = summary.seconds / n};
+}
+
+}  // namespace
+
+UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& progress) {
+  Timings timings;
+  for (const auto& run : planned.suites) {
+    for (const TestWork& work : run->tests) {
+      for (std::size_t i = 0; i < work.pools.size(); ++i) {
+        const Subject& side = work.outcome.question.subjects[i];
+        timings.add(*work.pools[i], *side.estimator, side.purpose, run->seed);
+      }
+    }
+    for (const Picture& picture : run->pictures) {
+      timings.add(*picture.pool, *picture.estimator, "", run->seed);
+    }
+  }
+  std::vector<std::shared_ptr<Pool>> pools;
+  for (const Timed& timed : timings.all()) pools.push_back(timed.pool);
+  draw_all(pools, {.threads = threads, .phase = "costs"}, progress);
+  stop_if_interrupted();
+  UnitCosts costs;
+  for (const Timed& timed : timings.all()) {
+    if (timed.pool->has(timed.pool->requested())) costs.emplace(timed.of, unit_cost(*timed.pool));
+  }
+  return costs;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,26 @@
+#pragma once
+
+// What one secondary estimate costs, measured on a few of them from streams of their own.
+
+#include <map>
+
+#include "harness/planned_run.h"
+
+namespace assay::harness {
+
+struct UnitCost {
+  double rays = 0;
+  double samples = 0;
+  double seconds = 0;  ///< CPU seconds
+};
+
+/// By the pool that a test reads or a picture is drawn from. Missing are recorded data, which are
+/// only read, and estimators that threw.
+using UnitCosts = std::map<const Pool*, UnitCost>;
+
+/// Draws about 16 thousand primaries of each pool's estimator or sampler, at the pool's own
+/// primaries a secondary: one primary alone costs more than its share of many. The pools themselves
+/// stay as they are.
+UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& progress);
+
+}  // namespace assay::harness

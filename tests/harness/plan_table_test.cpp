@@ -1,0 +1,166 @@
+#include "harness/plan_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "harness/forecast.h"
+#include "harness/looks.h"
+#include "reports/columns.h"
+#include "running.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* suite = R"(suite: planned
+estimators:
+  uniform: {plugin: analytic/exponential_uniform}
+  normal: {plugin: analytic/normal, mean: 2, primaries: 4}
+  area: {plugin: luminaire/area, scene: triangle}
+tests:
+  - {claim: mean(area) == analytic, detect: 0.5%}
+  - {claim: mean(area) == analytic, name: coarser, detect: 2%}
+  - {claim: mean(uniform) == analytic}
+  - {claim: mean(normal) == 2, secondaries: 500}
+  - {claim: variance(normal) == analytic, detect: 10%}
+  - {claim: 'distribution(normal) == normal(2, 0.5)', detect: 0.05}
+)";
+
+std::vector<Suite> suites_of(const Workplace& place) {
+  return {load_suite(place.write("planned.yaml", suite))};
+}
+
+PlannedRun planned_of(const std::vector<Suite>& suites, const RunOptions& options = {}) {
+  Silence silence;
+  return plan_run(suites, options, silence);
+}
+
+UnitCosts costs_of(const PlannedRun& planned) {
+  Silence silence;
+  return measure_costs(planned, 1, silence);
+}
+
+TEST(PlanTable, PlansWhatARunThenDoes) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites);
+  Silence silence;
+  const reports::Record record = run(suites, {}, silence);
+  ASSERT_EQ(planned.suites[0]->tests.size(), record.suites[0].tests.size());
+  for (std::size_t i = 0; i < record.suites[0].tests.size(); ++i) {
+    const reports::Test& test = record.suites[0].tests[i];
+    const Plan& plan = planned.suites[0]->tests[i].outcome.plan;
+    EXPECT_EQ(plan.method.name, test.method) << test.name;
+    EXPECT_EQ(plan.primaries[0], test.samples[0].primaries) << test.name;
+    ASSERT_LE(test.looks.size(), plan.looks.sizes.size()) << test.name;
+    for (std::size_t k = 0; k < test.looks.size(); ++k) {
+      EXPECT_EQ(plan.looks.sizes[k], test.looks[k].secondaries) << test.name;
+      EXPECT_EQ(plan.looks.weights[k], test.looks[k].weight) << test.name;
+    }
+  }
+}
+
+TEST(PlanTable, DrawsNoObservationOfATest) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites);
+  const UnitCosts costs = costs_of(planned);
+  EXPECT_FALSE(plan_text(planned, costs).empty());
+  for (const auto& pool : planned.pools.all()) {
+    EXPECT_EQ(pool->drawn(), 0U);
+    EXPECT_TRUE(costs.contains(pool.get()));
+  }
+}
+
+// Counted rays do not depend on the machine: one shadow ray a primary.
+TEST(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites);
+  const Pool& area = *planned.suites[0]->tests[0].pools[0];
+  const UnitCost cost = costs_of(planned).at(&area);
+  EXPECT_EQ(cost.rays, static_cast<double>(area.primaries()));
+  EXPECT_EQ(cost.samples, static_cast<double>(area.primaries()));
+  EXPECT_GT(cost.seconds, 0);
+}
+
+TEST(PlanTable, ShowsEveryTestInAHundredColumns) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites);
+  const std::string text = plan_text(planned, costs_of(planned));
+  for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
+  for (const char* heading : {"method", "primaries", "looks", "CPU time", "effect", "if true"}) {
+    EXPECT_THAT(text, HasSubstr(heading));
+  }
+  EXPECT_THAT(text, HasSubstr("0.5 %"));
+  EXPECT_THAT(text, HasSubstr("green"));
+  EXPECT_THAT(text, HasSubstr("share observations"));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(reports::columns(line), 100) << line;
+  EXPECT_EQ(plan_exit_code(planned), 0);
+}
+
+TEST(PlanTable, AFilterPlansTheSameTestTheSameWay) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun whole = planned_of(suites);
+  const PlannedRun alone = planned_of(suites, {.filter = "*/coarser"});
+  ASSERT_EQ(alone.suites[0]->tests.size(), 1U);
+  EXPECT_EQ(alone.suites[0]->tests[0].outcome.plan.looks.sizes,
+            whole.suites[0]->tests[1].outcome.plan.looks.sizes);
+}
+
+TEST(PlanTable, APlanWithoutAValidMethodIsNotOk) {
+  const Workplace place;
+  const std::vector<Suite> suites = {load_suite(place.write("heavy.yaml", R"(suite: heavy
+estimators:
+  heavy: {plugin: analytic/heavy_tail, index: 3, primaries: 1}
+tests:
+  - {claim: variance(heavy) <= 1, detect: 50%}
+)"))};
+  const PlannedRun planned = planned_of(suites);
+  EXPECT_EQ(plan_exit_code(planned), 1);
+  EXPECT_THAT(plan_text(planned, costs_of(planned)), HasSubstr("invalid: "));
+}
+
+TEST(PlanTable, NothingSelectedIsNothingPlanned) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites, {.filter = "planned/none"});
+  EXPECT_EQ(plan_exit_code(planned), 4);
+}
+
+// The bound on the share must hold for the mean of runs: 40 seeds, normal data, theta = 0. The mean
+// share of the runs has a standard error below 0.05 (each lies in (0, 1], most near the bound), so
+// that it exceeds the bound by 0.2, four of them, with probability 3e-5 at most.
+TEST(Forecast, BoundsTheMeanShareOfALastLook) {
+  const Workplace place;
+  const std::vector<Suite> suites = {load_suite(place.write("share.yaml", R"(suite: share
+estimators:
+  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+tests:
+  - {claim: mean(normal) == 2, detect: 2%}
+)"))};
+  double bound = 0;
+  double share = 0;
+  constexpr int seeds = 40;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    PlannedRun planned = planned_of(suites, {.seed = seed});
+    TestWork& work = planned.suites[0]->tests[0];
+    bound += forecast(work.outcome, planned.suites[0]->pilots).share.value() / seeds;
+    Silence silence;
+    sample_in_looks({&work}, planned.pools.all(), 1, silence);
+    share += static_cast<double>(work.outcome.secondaries()) /
+             static_cast<double>(work.outcome.plan.most_secondaries()) / seeds;
+  }
+  EXPECT_LT(share, bound + 0.2);
+  EXPECT_GT(bound, share / 2);
+  EXPECT_LT(bound, 0.9);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,104 @@
+#include "reports/ledger.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "reports/console.h"
+#include "reports/html.h"
+#include "reports/json.h"
+#include "reports/junit.h"
+#include "reports/markdown.h"
+#include "reports/number.h"
+#include "reports/read_json.h"
+#include "tests/reports/example_record.h"
+
+namespace assay::reports {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Record without_alarm() {
+  Record record = example_record();
+  record.ledger.series.erase(record.ledger.series.begin());
+  return record;
+}
+
+TEST(LedgerText, SaysWhatTheNightsSayTogether) {
+  const LedgerSeries series = example_record().ledger.series[0];
+  EXPECT_EQ(series_sentence(series),
+            "12 nights since 2026-11-09: relative difference from the reference +0.1 %, standard "
+            "error 0.0253 %, E = 13360, alarm at 665");
+  EXPECT_EQ(alarm_sentence(series),
+            "the nights together refute the claim since 2026-11-18T02:00:00Z; it moved most likely "
+            "on the night of 2026-11-13T02:00:00Z, commit 14467a0bbe61 (90 %: 2026-11-11T02:00:00Z "
+            "to 2026-11-15T02:00:00Z)");
+  EXPECT_EQ(series_sentence(example_record().ledger.series[2]), "no night yet");
+}
+
+TEST(LedgerText, NamesTheChannelWhereThereAreSeveral) {
+  const Ledger ledger = example_record().ledger;
+  EXPECT_EQ(series_name(ledger, ledger.series[0]), "triangle/mean(area) == analytic [irradiance]");
+  EXPECT_EQ(series_name(ledger, ledger.series[2]), "triangle/a law");
+}
+
+TEST(LedgerText, WritesEValuesOfAnySize) {
+  EXPECT_EQ(e_text(0.0), "1");
+  EXPECT_EQ(e_text(std::log(2003.4)), "2003");
+  EXPECT_EQ(e_text(std::log(31.66)), "31.7");
+  EXPECT_EQ(e_text(5000.0), "3.0e2171");
+  EXPECT_EQ(e_text(-5000.0), "3.4e-2172");
+  EXPECT_EQ(e_text(Number()), no_number);
+}
+
+TEST(LedgerText, OneNoteStandsForAllSeriesThatShareIt) {
+  Ledger ledger;
+  ledger.series = {{.test = "a", .note = "same"}, {.test = "b", .note = "same"}, {.test = "c"}};
+  EXPECT_THAT(ledger_notes(ledger), testing::ElementsAre("a and 1 more: same"));
+}
+
+TEST(LedgerReports, EveryFormatShowsAnAlarm) {
+  const Record record = example_record();
+  EXPECT_THAT(console(record), HasSubstr("ALARM triangle/mean(area) == analytic [irradiance]"));
+  EXPECT_THAT(console(record), HasSubstr("Not ok: 1 ledger alarm"));
+  EXPECT_THAT(markdown(record), HasSubstr("; 1 ledger alarm\n"));
+  EXPECT_THAT(markdown(record), HasSubstr("**alarm**"));
+  EXPECT_THAT(junit(record), HasSubstr("type=\"alarm\""));
+  EXPECT_THAT(html(record), HasSubstr("id=\"ledger\""));
+  EXPECT_THAT(html(record), HasSubstr("✗ alarm"));
+}
+
+TEST(LedgerReports, NoFormatShowsAnAlarmWhereThereIsNone) {
+  const Record record = without_alarm();
+  for (const std::string& text : {console(record), markdown(record), junit(record)}) {
+    EXPECT_THAT(text, HasSubstr("Ledger nightly.ledger"));
+    EXPECT_THAT(text, Not(HasSubstr("1 ledger alarm")));
+    EXPECT_THAT(text, Not(HasSubstr("type=\"alarm\"")));
+  }
+  EXPECT_THAT(html(record), Not(HasSubstr("✗ alarm")));
+}
+
+TEST(LedgerReports, NothingIsSaidWhereNoLedgerIsKept) {
+  Record record = example_record();
+  record.ledger = {};
+  for (const std::string& text : {console(record), markdown(record), junit(record)}) {
+    EXPECT_THAT(text, Not(HasSubstr("Ledger")));
+  }
+  EXPECT_THAT(html(record), Not(HasSubstr("id=\"ledger\"")));
+}
+
+TEST(LedgerReports, ACleanPageIsNoPassWithAnAlarm) {
+  Record record = example_record();
+  record.suites.clear();
+  EXPECT_THAT(html(record), HasSubstr("<h1 class=\"failed\">"));
+}
+
+TEST(LedgerReports, JsonReadsBack) {
+  const Record record = example_record();
+  EXPECT_EQ(read_json(json(record), "run.json").ledger, record.ledger);
+}
+
+}  // namespace
+}  // namespace assay::reports
