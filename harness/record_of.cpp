@@ -139,6 +139,30 @@ std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& r
   return looks;
 }
 
+std::string over_text(const TestEntry& test) {
+  if (!test.over) return "";
+  std::string values;
+  for (const Value& value : test.over->values) {
+    values += (values.empty() ? "" : ", ") + value.text();
+  }
+  return fmt::format("{{{}: [{}]}}", test.over->parameter, values);
+}
+
+std::string reference_text(const TestEntry& test) {
+  if (test.reference) return to_string(*test.reference);
+  if (!test.reference_number) return "";
+  const Constant& number = *test.reference_number;
+  if (number.standard_error == 0) return fmt::format("{}", number.value);
+  return fmt::format("{} +- {}", number.value, number.standard_error);
+}
+
+std::string cost_text(const TestEntry& test) {
+  const QuantityName name = test.claim.left.name;
+  if (name != QuantityName::cost && name != QuantityName::efficiency) return "";
+  constexpr const char* kinds[] = {"rays", "samples", "seconds"};
+  return kinds[static_cast<int>(test.cost)];
+}
+
 Number margin(const Regions& regions) {
   if (regions.relation == Relation::within) return regions.within;
   return regions.detect ? Number(*regions.detect) : Number();
@@ -164,6 +188,9 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
                      .file = file,
                      .line = entry.where.line,
                      .tags = entry.tags,
+                     .over = over_text(entry),
+                     .reference = reference_text(entry),
+                     .cost = cost_text(entry),
                      .verdict = outcome.verdict,
                      .expected = expected_verdict(entry.expect)};
   test.ok = test.verdict == test.expected;

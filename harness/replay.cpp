@@ -14,6 +14,7 @@
 #include "harness/pools.h"
 #include "harness/progress_terminal.h"
 #include "harness/record_of.h"
+#include "harness/suite_entries.h"
 #include "harness/yaml.h"
 #include "reports/read_json.h"
 
@@ -67,6 +68,22 @@ Value parameters_of(const reports::Sample& sample, const Location& where) {
   return Value::map(std::move(members), where);
 }
 
+/// What the claim needs besides itself.
+void read_keys(const reports::Test& recorded, TestEntry& test) {
+  const Location where{.file = recorded.file};
+  if (!recorded.over.empty()) test.over = read_sweep(read_flow(recorded.over, where));
+  if (!recorded.reference.empty()) {
+    read_reference(Value::scalar(recorded.reference, where), test);
+  }
+  if (!recorded.cost.empty()) test.cost = read_cost(Value::scalar(recorded.cost, where));
+}
+
+bool has_relative_effect(const Claim& claim) {
+  if (claim.left.slope) return false;
+  return claim.left.name == QuantityName::mean || claim.left.name == QuantityName::bias ||
+         claim.left.name == QuantityName::quantile;
+}
+
 /// The suite of this one test, rebuilt from the record alone.
 Suite suite_of(const Recorded& recorded) {
   const std::filesystem::path folder = std::filesystem::path(recorded.suite.file).parent_path();
@@ -91,9 +108,10 @@ Suite suite_of(const Recorded& recorded) {
                  .id = recorded.test.id,
                  .claim = parse_claim(recorded.test.claim, {.file = recorded.suite.file}),
                  .method = recorded.test.method};
+  read_keys(recorded.test, test);
   // Margins are recorded on theta's scale; here they only tell whether means are compared in units
   // of the reference. The plan has the numbers.
-  if (test.claim.left.name == QuantityName::mean && test.claim.relation != Relation::within) {
+  if (has_relative_effect(test.claim) && test.claim.relation != Relation::within) {
     const bool relative =
         !recorded.test.channels.empty() && recorded.test.channels[0].effect.relative;
     if (recorded.test.detect) test.detect = Margin{*recorded.test.detect, relative};
@@ -118,10 +136,15 @@ stats::LookSchedule recorded_looks(const reports::Test& test) {
 /// The plan as it was: nothing is chosen anew, so no pilot is drawn.
 Plan recorded_plan(const Question& question, const reports::Test& test) {
   Plan plan{.method = find_method(question, test.method), .looks = recorded_looks(test)};
-  for (const Subject& subject : question.subjects) {
-    const auto sample = std::find_if(
-        test.samples.begin(), test.samples.end(),
-        [&](const reports::Sample& s) { return s.estimator == subject.estimator->name; });
+  // Of each channel the subjects in order.
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    const bool drawn = i < test.samples.size() &&
+                       test.samples[i].estimator == question.subjects[i].estimator->listed;
+    const std::string& name = question.subjects[i].estimator->listed;
+    const auto sample =
+        drawn ? test.samples.begin() + static_cast<std::ptrdiff_t>(i)
+              : std::find_if(test.samples.begin(), test.samples.end(),
+                             [&](const reports::Sample& s) { return s.estimator == name; });
     plan.primaries.push_back(sample->primaries);
   }
   const Relation relation = question.test->claim.relation;

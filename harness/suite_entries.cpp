@@ -79,24 +79,6 @@ void require_increasing(const Sweep& sweep) {
   }
 }
 
-Sweep read_sweep(const Value& value) {
-  const bool one = value.kind() == Value::Kind::map && value.members().size() == 1;
-  if (!one || value.members()[0].second.kind() != Value::Kind::list) {
-    throw InputError(value.where(),
-                     "`over` is one parameter and its values: `over: {primaries: [8, 16, 32]}`");
-  }
-  const auto& [parameter, values] = value.members()[0];
-  Sweep sweep{.parameter = parameter, .values = values.items()};
-  if (sweep.values.size() < 2) {
-    throw InputError(values.where(), "a slope needs at least two values in `over`");
-  }
-  require_increasing(sweep);
-  if (parameter == "primaries") {
-    for (const Value& count : sweep.values) count_from(count, "a number of primaries", 1);
-  }
-  return sweep;
-}
-
 std::vector<std::string> read_tags(const Value& value) {
   if (value.kind() != Value::Kind::list) {
     throw InputError(value.where(), "`tags` must be a list: `tags: [slow, images]`");
@@ -104,29 +86,6 @@ std::vector<std::string> read_tags(const Value& value) {
   std::vector<std::string> tags;
   for (const Value& tag : value.items()) tags.push_back(one_line(tag, "a tag"));
   return tags;
-}
-
-/// `reference: trusted`, `reference: 6.36` or `reference: 6.36 +- 0.01`.
-void read_reference(const Value& value, TestEntry& test) {
-  const std::string text = one_line(value, "`reference`");
-  if (text.find_first_of("0123456789") != text.find_first_not_of(" +-.")) {
-    test.reference = parse_source(text, value.where());
-    return;
-  }
-  const std::size_t error = text.find("+-");
-  const auto number = [&](const std::string& part) {
-    const std::size_t end = part.find_last_not_of(' ');
-    const std::size_t begin = part.find_first_not_of(' ');
-    const std::string bare = begin == std::string::npos ? "" : part.substr(begin, end - begin + 1);
-    return Value::scalar(bare, value.where()).number("a number of `reference`");
-  };
-  Constant reference{.value = number(text.substr(0, error))};
-  if (error != std::string::npos) reference.standard_error = number(text.substr(error + 2));
-  if (!std::isfinite(reference.value) || !(reference.standard_error >= 0) ||
-      std::isinf(reference.standard_error)) {
-    throw InputError(value.where(), "`reference` must be finite, and its error not negative");
-  }
-  test.reference_number = reference;
 }
 
 void read_sampling(const Document& document, const Keys& keys, TestEntry& test) {
@@ -138,12 +97,8 @@ void read_sampling(const Document& document, const Keys& keys, TestEntry& test) 
   }
   if (const Value* v = keys.find("budget")) test.budget = read_budget(document, *v);
   if (const Value* v = keys.find("over")) test.over = read_sweep(*v);
-  if (const Value* v = keys.find("reference")) {
-    read_reference(*v, test);
-  }
-  if (const Value* v = keys.find("cost")) {
-    test.cost = static_cast<CostKind>(choice(*v, "`cost`", {"rays", "samples", "seconds"}));
-  }
+  if (const Value* v = keys.find("reference")) read_reference(*v, test);
+  if (const Value* v = keys.find("cost")) test.cost = read_cost(*v);
 }
 
 bool is_about(const Claim& claim, std::initializer_list<QuantityName> names) {
@@ -206,6 +161,51 @@ const std::vector<std::string>& method_names() {
                                               "quantile",
                                               "slope"};
   return names;
+}
+
+Sweep read_sweep(const Value& value) {
+  const bool one = value.kind() == Value::Kind::map && value.members().size() == 1;
+  if (!one || value.members()[0].second.kind() != Value::Kind::list) {
+    throw InputError(value.where(),
+                     "`over` is one parameter and its values: `over: {primaries: [8, 16, 32]}`");
+  }
+  const auto& [parameter, values] = value.members()[0];
+  Sweep sweep{.parameter = parameter, .values = values.items()};
+  if (sweep.values.size() < 2) {
+    throw InputError(values.where(), "a slope needs at least two values in `over`");
+  }
+  require_increasing(sweep);
+  if (parameter == "primaries") {
+    for (const Value& count : sweep.values) count_from(count, "a number of primaries", 1);
+  }
+  return sweep;
+}
+
+/// `reference: trusted`, `reference: 6.36` or `reference: 6.36 +- 0.01`.
+void read_reference(const Value& value, TestEntry& test) {
+  const std::string text = one_line(value, "`reference`");
+  if (text.find_first_of("0123456789") != text.find_first_not_of(" +-.")) {
+    test.reference = parse_source(text, value.where());
+    return;
+  }
+  const std::size_t error = text.find("+-");
+  const auto number = [&](const std::string& part) {
+    const std::size_t end = part.find_last_not_of(' ');
+    const std::size_t begin = part.find_first_not_of(' ');
+    const std::string bare = begin == std::string::npos ? "" : part.substr(begin, end - begin + 1);
+    return Value::scalar(bare, value.where()).number("a number of `reference`");
+  };
+  Constant reference{.value = number(text.substr(0, error))};
+  if (error != std::string::npos) reference.standard_error = number(text.substr(error + 2));
+  if (!std::isfinite(reference.value) || !(reference.standard_error >= 0) ||
+      std::isinf(reference.standard_error)) {
+    throw InputError(value.where(), "`reference` must be finite, and its error not negative");
+  }
+  test.reference_number = reference;
+}
+
+CostKind read_cost(const Value& value) {
+  return static_cast<CostKind>(choice(value, "`cost`", {"rays", "samples", "seconds"}));
 }
 
 const Value& scene_or(const Value& value, const Value& scenes) {

@@ -23,6 +23,11 @@ Claim read_claim(const Document& document, const Value& value);
 /// An entry of `tests:`, without its id; estimators are not looked up yet.
 TestEntry read_test(const Document& document, const Value& value);
 
+/// `over:`, `reference:` and `cost:` of a test.
+Sweep read_sweep(const Value& value);
+void read_reference(const Value& value, TestEntry& test);
+CostKind read_cost(const Value& value);
+
 /// `primaries:` of an estimator: a count from 1, or auto (nullopt).
 std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view what);
 

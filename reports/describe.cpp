@@ -197,7 +197,7 @@ std::string plain_text(const Test& test) {
 
 std::string levels_text(const Suite& suite) {
   return fmt::format("alpha {} (false alarms), beta {} (misses), seed {}{}", human(suite.alpha),
-                     human(suite.beta), suite.seed, suite.timed ? ", ended by a time budget" : "");
+                     human(suite.beta), suite.seed, suite.timed ? ", timed (numbers do not repeat to the bit)" : "");
 }
 
 }  // namespace assay::reports

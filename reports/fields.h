@@ -139,6 +139,9 @@ void fields(Archive& a, T& test) {
   a("file", test.file);
   a("line", test.line);
   a("tags", test.tags);
+  a("over", test.over);
+  a("reference", test.reference);
+  a("cost", test.cost);
   a("verdict", test.verdict);
   a("expected", test.expected);
   a("ok", test.ok);

@@ -141,6 +141,7 @@ struct Test {
   std::string file;
   int line = 0;
   std::vector<std::string> tags;
+  std::string over, reference, cost;  ///< these keys of the test, as replay needs them; "" if unset
   Verdict verdict = Verdict::skipped;
   Verdict expected = Verdict::pass;
   bool ok = false;
@@ -208,7 +209,7 @@ struct Suite {
   std::uint64_t seed = 0;  ///< of this suite's streams
   double alpha = 0;
   double beta = 0;
-  bool timed = false;  ///< a budget in seconds ended sampling: exempt from bit identity
+  bool timed = false;  ///< seconds decided something: exempt from bit identity
   std::vector<EstimatorSummary> estimators;
   std::vector<Comparison> comparisons;
   std::vector<Test> tests;

@@ -95,6 +95,9 @@ Test base(const std::string& name, int line) {
   t.file = "suites/triangle.yaml";
   t.line = line;
   t.tags = {"main"};
+  t.over = "{primaries: [8, 16]}";
+  t.reference = "trusted";
+  t.cost = "samples";
   t.method = "t";
   t.tail = "two-sided";
   t.null_hypothesis = "the mean equals 0.481046907316";

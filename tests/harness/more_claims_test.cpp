@@ -1,0 +1,268 @@
+// Claims about bias, cost, efficiency, quantiles, total and worst variance and slopes, from YAML to
+// verdict: what is true passes, each quantity's defect fails, and true claims raise an alarm no
+// more often than alpha says.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/group_variance.h"
+#include "questions.h"
+#include "refusal.h"
+#include "running.h"
+#include "stats/binomial.h"
+#include "stats/moments.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+const std::string estimators = R"(suite: claims
+alpha: 0.0001
+beta: 0.0001
+estimators:
+  uniform: {plugin: analytic/exponential_uniform, primaries: 64}
+  importance: {plugin: analytic/exponential_importance, primaries: 64}
+  scaled: {plugin: mutants/scaled, factor: 1.05, primaries: 64}
+  wis: {plugin: analytic/ratio, primaries: 8}
+  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+  area: {plugin: luminaire/area, scene: triangle}
+  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
+tests:
+  - )";
+
+reports::Test tested(const std::string& test) {
+  return run_text(estimators + test + "\n", {.threads = 1}).suites[0].tests[0];
+}
+
+Verdict verdict_of(const std::string& test) {
+  const reports::Test result = tested(test);
+  testing::Test::RecordProperty("message", result.message);
+  return result.verdict;
+}
+
+std::string refused(const std::string& test) {
+  return refusal([&] { ask_text(estimators + test + "\n"); });
+}
+
+// Verdicts below are right with probability 1 - alpha - beta = 0.9998 at least, with the seed 1.
+
+TEST(BiasClaim, IsHeldAgainstTheAnalyticMean) {
+  EXPECT_EQ(verdict_of("{claim: bias(uniform) == 0, detect: 2%}"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: bias(uniform) within 2% of 0}"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: bias(scaled) == 0, detect: 2%}"), Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: bias(scaled) <= 0.1, detect: 0.2}"), Verdict::fail);
+  // 5 % of 6.361846.
+  EXPECT_EQ(verdict_of("{claim: bias(scaled) within 0.1 of 0.3180923}"), Verdict::pass);
+}
+
+TEST(BiasClaim, IsHeldAgainstAReferenceOfTheTest) {
+  EXPECT_EQ(verdict_of("{claim: bias(uniform) == 0, reference: importance, detect: 2%}"),
+            Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: bias(scaled) == 0, reference: importance, detect: 2%}"),
+            Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: bias(uniform) <= 0, reference: 6, detect: 0.1}"), Verdict::fail);
+  const reports::Test shown =
+      tested("{claim: bias(uniform) == 0, reference: 6.36 +- 0.01, detect: 0.2}");
+  EXPECT_EQ(shown.verdict, Verdict::pass);
+  EXPECT_EQ(shown.null_hypothesis, "bias(uniform) = 0, reference 6.36");
+  EXPECT_EQ(shown.reference, "6.36 +- 0.01");
+}
+
+TEST(BiasClaim, RefusesWhatItCannotMean) {
+  EXPECT_NE(refused("claim: bias(uniform) == bias(importance)").find("compared with a number"),
+            std::string::npos);
+  EXPECT_NE(refused("claim: bias(uniform) within 1% of 0.5").find("per cent of what"),
+            std::string::npos);
+  EXPECT_NE(refused("{claim: bias(uniform) == 0, reference: absent}").find("no estimator `absent`"),
+            std::string::npos);
+}
+
+TEST(CostClaim, OfACostThatNeverVariesIsExact) {
+  EXPECT_EQ(verdict_of("{claim: cost(area) == 1}"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: cost(area) == cost(hemisphere)}"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: cost(area) <= 0.999}"), Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: cost(area) <= 0.999 * cost(hemisphere)}"), Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: cost(wis) == 8, cost: samples}"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: cost(wis) <= cost(normal), cost: samples}"), Verdict::fail);
+}
+
+TEST(CostClaim, WithoutAnythingCountedIsInvalid) {
+  const reports::Test test = tested("{claim: cost(normal) <= 1}");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_NE(test.message.find("cost: samples"), std::string::npos) << test.message;
+}
+
+TEST(CostClaim, RefusesZeroAndErrors) {
+  EXPECT_NE(refused("claim: cost(area) <= 0").find("above 0"), std::string::npos);
+  EXPECT_NE(refused("claim: cost(area) <= 2 +- 1").find("exact number"), std::string::npos);
+  EXPECT_NE(refused("{claim: cost(area) <= cost(wis), detect: 0.1}").find("ratio of costs"),
+            std::string::npos);
+}
+
+TEST(CostClaim, InSecondsTellsAFactorOfManyAndMarksTheRun) {
+  // 64 primaries that trace a ray against one normal number.
+  const reports::Record record = run_text(
+      std::string(estimators) + "{claim: cost(area) > 1.5 * cost(normal), cost: seconds}\n");
+  EXPECT_EQ(record.suites[0].tests[0].method, "replicates");
+  EXPECT_TRUE(record.suites[0].timed);
+}
+
+TEST(EfficiencyClaim, WeighsVarianceAgainstCost) {
+  EXPECT_EQ(verdict_of("claim: efficiency(area) > 1.1 * efficiency(hemisphere)"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: efficiency(hemisphere) >= efficiency(area), detect: 10%}"),
+            Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: efficiency(normal) == 1, cost: samples, detect: 20%}"),
+            Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: efficiency(normal) >= 1.5, cost: samples, detect: 10%}"),
+            Verdict::fail);
+}
+
+TEST(EfficiencyClaim, OfABiasedEstimatorTakesTheMeanSquaredError) {
+  // Of 64 primaries the original has the variance 0.416, the mutant 1.1025 times that: efficiency
+  // 0.907. Its bias of 0.318 makes the mean squared error 0.560: efficiency 0.743.
+  EXPECT_EQ(verdict_of("{claim: efficiency(scaled) >= 0.85 * efficiency(uniform), cost: samples, "
+                       "detect: 10%}"),
+            Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: efficiency(scaled) >= 0.85 * efficiency(uniform), cost: samples, "
+                       "reference: 6.361845641, detect: 10%}"),
+            Verdict::fail);
+}
+
+TEST(QuantileClaim, IsExactOfOneAndOfTwo) {
+  EXPECT_EQ(verdict_of("{claim: \"quantile(normal, 0.5) == 2\", detect: 0.2}"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: \"quantile(normal, 0.5) == 2.3\", detect: 5%}"), Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: \"quantile(normal, 0.9) <= 2.8\", detect: 0.2}"), Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: \"quantile(normal, 0.9) == quantile(normal, 0.9)\", detect: 0.2}"),
+            Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: \"quantile(normal, 0.9) == 1.5 * quantile(normal, 0.9)\", "
+                       "detect: 0.2}"),
+            Verdict::fail);
+}
+
+TEST(QuantileClaim, RefusesTwoProbabilities) {
+  EXPECT_NE(
+      refused("claim: quantile(normal, 0.5) == quantile(normal, 0.9)").find("same probability"),
+      std::string::npos);
+}
+
+TEST(TotalVarianceClaim, AddsTheChannels) {
+  EXPECT_EQ(verdict_of("{claim: total_variance(normal) == 1, detect: 20%}"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: total_variance(normal) <= 0.7, detect: 20%}"), Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: total_variance(hemisphere) <= total_variance(area), detect: 20%}"),
+            Verdict::fail);
+}
+
+TEST(GroupVariance, OfTwoEqualChannelsIsTwiceTheSampleVarianceOfTheGroup) {
+  GroupVariance groups({0, 2});
+  stats::Moments one;
+  std::optional<double> total;
+  for (int i = 0; i < 8; ++i) {
+    const double value = 1e6 + i * i;
+    const double values[] = {value, 77, value};
+    one.add(value);
+    EXPECT_FALSE(total.has_value());
+    total = groups.add(values);
+  }
+  ASSERT_TRUE(total.has_value());
+  EXPECT_NEAR(*total, 2 * one.variance(), 1e-9 * one.variance());
+}
+
+TEST(GroupVariance, LeavesOutAGroupWithAValueThatIsNotFinite) {
+  GroupVariance groups({0});
+  for (int i = 0; i < 16; ++i) {
+    const double values[] = {i == 3 ? std::nan("") : i};
+    EXPECT_EQ(groups.add(values).has_value(), i == 15) << i;
+  }
+}
+
+TEST(SlopeClaim, SeesTheBiasOfARatioVanishLikeOneOverN) {
+  const std::string over = ", over: {primaries: [8, 16, 32, 64]}}";
+  EXPECT_EQ(verdict_of("{claim: slope(bias(wis)) within 0.15 of -1" + over), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: slope(variance(wis)) within 0.15 of -1" + over), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: slope(cost(wis)) == 1, cost: samples" + over), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: slope(variance(wis)) == -2, detect: 0.2" + over), Verdict::fail);
+  EXPECT_EQ(verdict_of("{claim: slope(cost(wis)) <= 0.9, cost: samples" + over), Verdict::fail);
+}
+
+TEST(SlopeClaim, SweepsAParameterOfThePlugin) {
+  // The variance is the square of the standard deviation.
+  EXPECT_EQ(
+      verdict_of("{claim: slope(variance(normal)) within 0.2 of 2, over: {deviation: [1, 2, 4]}}"),
+      Verdict::pass);
+  // The factor scales the whole estimate: its mean goes like the factor itself.
+  EXPECT_EQ(verdict_of("{claim: slope(mean(scaled)) within 0.1 of 1, over: {factor: [1, 2, 4]}}"),
+            Verdict::pass);
+}
+
+TEST(SlopeClaim, ReferenceMayBeAnEstimatorOrANumber) {
+  EXPECT_EQ(verdict_of("{claim: slope(bias(wis)) <= -0.5, reference: 6.361845641, "
+                       "over: {primaries: [2, 4, 8]}}"),
+            Verdict::pass);
+  // Far from the truth the bias does not vanish.
+  EXPECT_EQ(verdict_of("{claim: slope(bias(wis)) <= -0.5, reference: 3, "
+                       "over: {primaries: [2, 4, 8]}}"),
+            Verdict::fail);
+}
+
+TEST(SlopeClaim, RefusesWhatHasNoSlope) {
+  const std::string over = ", over: {primaries: [8, 16]}}";
+  EXPECT_NE(refused("{claim: slope(efficiency(wis)) == 1" + over).find("takes a mean, bias"),
+            std::string::npos);
+  EXPECT_NE(refused("{claim: slope(bias(wis)) within 10% of -1" + over).find("exponent"),
+            std::string::npos);
+  EXPECT_NE(refused("{claim: slope(cost(wis)) == 1, cost: seconds" + over).find("no method"),
+            std::string::npos);
+}
+
+TEST(WorstVarianceClaim, IsAboutEveryChannel) {
+  EXPECT_EQ(verdict_of("{claim: worst_variance(normal) <= 1.5, detect: 20%}"), Verdict::pass);
+  EXPECT_EQ(verdict_of("{claim: worst_variance(normal) <= 0.7, detect: 20%}"), Verdict::fail);
+}
+
+/// Whether so many alarms in 200 runs of true claims are likelier than 1e-5 at a rate of alpha =
+/// 0.1 (the suite's); seeds 1, 2, 3, ….
+bool keeps_alpha(const std::string& test) {
+  constexpr std::uint64_t runs = 200;
+  std::string text = estimators + test + "\n";
+  text.replace(text.find("0.0001"), 6, "0.1");
+  const Workplace place;
+  const std::string file = place.write("suite.yaml", text);
+  std::uint64_t alarms = 0;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    alarms +=
+        run_files({file}, {.seed = seed, .threads = 1}).suites[0].tests[0].verdict == Verdict::fail;
+  }
+  testing::Test::RecordProperty("alarms", static_cast<int>(alarms));
+  return stats::binomial({alarms, runs}, 0.1).log_p_upper > std::log(1e-5);
+}
+
+TEST(MoreClaimsLevel, OfBiasIsAtMostAlpha) {
+  EXPECT_TRUE(keeps_alpha("{claim: bias(uniform) == 0, reference: importance, secondaries: 200}"));
+}
+
+TEST(MoreClaimsLevel, OfEfficiencyIsAtMostAlpha) {
+  EXPECT_TRUE(keeps_alpha("{claim: efficiency(normal) == 1, cost: samples, secondaries: 1000}"));
+}
+
+TEST(MoreClaimsLevel, OfTotalVarianceIsAtMostAlpha) {
+  EXPECT_TRUE(keeps_alpha("{claim: total_variance(normal) == 1, secondaries: 1000}"));
+}
+
+TEST(MoreClaimsLevel, OfQuantileIsAtMostAlpha) {
+  EXPECT_TRUE(keeps_alpha("{claim: \"quantile(normal, 0.5) == 2\", secondaries: 300}"));
+}
+
+TEST(MoreClaimsLevel, OfSlopeIsAtMostAlpha) {
+  EXPECT_TRUE(keeps_alpha(
+      "{claim: slope(variance(normal)) == 2, over: {deviation: [1, 2, 4]}, secondaries: 1000}"));
+}
+
+// The same machinery calls a wrong level wrong: 1.1 is two standard errors of ln s2 away.
+TEST(MoreClaimsLevel, IsMoreThanAlphaWhereOneIsWrong) {
+  EXPECT_FALSE(keeps_alpha("{claim: efficiency(normal) == 1.1, cost: samples, secondaries: 1000}"));
+}
+
+}  // namespace
+}  // namespace assay::harness
