@@ -147,12 +147,15 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
   return constants;
 }
 
-/// The test at its last look: what its detectable effect and its power are quoted for.
+/// What the detectable effect and the power are quoted for: the last look, or the one at which a
+/// budget ended the test.
 TestSize full_size(const TestOutcome& outcome) {
-  const double weight = outcome.plan.looks.weights.back();
-  return {.share = {.alpha = outcome.place.share.alpha * weight,
-                    .beta = outcome.place.share.beta * weight},
-          .secondaries = outcome.plan.most_secondaries()};
+  const stats::LookSchedule& looks = outcome.plan.looks;
+  const bool ended = outcome.verdict == Verdict::inconclusive;
+  const std::size_t look = ended ? outcome.look : looks.sizes.size() - 1;
+  return {.share = {.alpha = outcome.place.share.alpha * looks.weights[look],
+                    .beta = outcome.place.share.beta * looks.weights[look]},
+          .secondaries = looks.sizes[look]};
 }
 
 /// What a decided test could have found: the least detectable effect of every channel, and the

@@ -96,23 +96,36 @@ std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
                      in_channel(outcome, channel), p_text(channel.decision.log_p_claimed));
 }
 
-/// How far theta is from the edge of the forbidden region, the reference's own error apart.
-double distance_to_forbidden(const Regions& regions, double estimate) {
+/// In an alarm any estimate decides once the room between the margins holds a standard error
+/// z_alpha and z_beta times; in a proof it decides by how far it lies from the forbidden region,
+/// with one standard error to spare.
+struct Room {
+  double size = 0;
+  double standard_errors = 1;  ///< that it must hold
+};
+
+Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const auto z = [](double level) {
+    return stats::normal_quantile({stats::Tail::upper, std::log(level)});
+  };
+  const Regions& regions = channel.regions;
+  const ErrorShare share = outcome.share();
+  const double estimate = channel.evidence.estimate;
+  const double beyond = z(share.beta) + 1;
   switch (regions.relation) {
-    case Relation::equal:
-      return regions.detect.value_or(0) - std::abs(estimate);
     case Relation::within:
-      return regions.within - std::abs(estimate);
-    case Relation::at_most:
-      return regions.detect.value_or(0) - estimate;
-    case Relation::at_least:
-      return regions.detect.value_or(0) + estimate;
+      return {regions.within - std::abs(estimate), beyond};
     case Relation::less:
-      return -estimate;
+      return {-estimate, beyond};
     case Relation::greater:
-      return estimate;
+      return {estimate, beyond};
+    case Relation::equal:
+    case Relation::at_most:
+    case Relation::at_least:
+      break;
   }
-  return 0;
+  const double alpha = regions.two_sided() ? share.alpha / 2 : share.alpha;
+  return {regions.detect.value_or(0) - regions.allow, z(alpha) + z(share.beta)};
 }
 
 /// The standard error of the reference on theta's scale: what no number of samples takes away.
@@ -133,22 +146,24 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const double beta = outcome.share().beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
   const double half = (interval.high - interval.low) / 2;
-  const double room = distance_to_forbidden(channel.regions, channel.evidence.estimate);
-  if (!(half > 0) || !std::isfinite(half) || !(room > 0)) {
+  const Room room = room_of(outcome, channel);
+  if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
     return "the estimate lies where the claim must not pass, yet not clearly so";
   }
   const double z = stats::normal_quantile({stats::Tail::upper, std::log(beta)});
   // Half the interval is z standard errors; those of the samples must shrink to what the
-  // reference's leaves of the room, with one more of them to spare.
+  // reference's leaves of the room.
   const double fixed = reference_error(outcome, channel);
   const double sampled = half * half / (z * z) - fixed * fixed;
-  const double wanted = std::pow(room / (z + 1), 2) - fixed * fixed;
+  const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
   if (!(wanted > 0)) {
     return "no number of samples would decide: the reference's own error forbids it";
   }
   const double factor = std::max(0.0, sampled) / wanted;
-  return fmt::format("about {:.2g} secondaries would decide if the estimate stands",
-                     std::max(1.1, factor) * static_cast<double>(outcome.secondaries()));
+  return fmt::format(
+      "about {} secondaries would decide{}",
+      reports::human(std::max(1.1, factor) * static_cast<double>(outcome.secondaries()), 2),
+      channel.regions.proof() ? " if the estimate stands" : "");
 }
 
 std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
