@@ -99,6 +99,9 @@ Margin parse_margin(std::string_view text, const Location& where, std::string_vi
 /// "0.5%" or "0.002".
 std::string to_string(const Margin&);
 
+/// "normal(0, 1)" or "density".
+std::string to_string(const Law&);
+
 /// "estimator" or "estimator.part".
 std::string to_string(const Source&);
 

@@ -103,6 +103,8 @@ std::string to_string(const Margin& margin) {
   return margin.relative ? percent_text(margin.value) + "%" : fmt::format("{}", margin.value);
 }
 
+std::string to_string(const Law& law) { return text_of(law); }
+
 std::string to_string(const Source& source) {
   return source.part.empty() ? source.estimator : source.estimator + "." + source.part;
 }

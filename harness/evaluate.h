@@ -17,8 +17,8 @@ struct TestWork {
 };
 
 /// Numbers, gates and the verdict on the test's fixed share at the current look, once its
-/// observations are drawn; `decided` is set where no further look can or need change it, or none may
-/// be taken.
+/// observations are drawn; `decided` is set where no further look can or need change it, or none
+/// may be taken.
 void take_look(TestWork& work, bool may_go_on = true);
 
 /// The data a channel of the test is judged by.

@@ -97,13 +97,22 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
 
 reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entry& entry) {
   const TestOutcome& test = entry.work.outcome;
-  const NightEvidence night = night_evidence(entry.work, entry.channel, entry.run.pilots);
-  const bool of_moments = test.question.of_means() || test.question.of_variances();
-  const LedgerSeries series{.hash = series_hash(entry.work, entry.channel),
-                            .kind = of_moments ? EvidenceKind::score : EvidenceKind::log_e,
-                            .prior = night.prior,
-                            .test = test.question.test->id,
-                            .channel = test.question.channel_name(entry.channel)};
+  NightEvidence night = night_evidence(entry.work, entry.channel, entry.run.pilots);
+  const EvidenceKind kind = evidence_kind(test);
+  const bool of_moments = kind == EvidenceKind::score;
+  LedgerSeries series{.hash = series_hash(entry.work, entry.channel),
+                      .kind = kind,
+                      .prior = night.prior,
+                      .test = test.question.test->id,
+                      .channel = test.question.channel_name(entry.channel)};
+  // The pilot chose the method, not the night's data: leaving the night out favours nobody.
+  LedgerSeries other = series;
+  other.kind = of_moments ? EvidenceKind::log_e : EvidenceKind::score;
+  if (book.open_series(series) == nullptr && book.open_series(other) != nullptr) {
+    night.missing = fmt::format("its method this time, {}, gives evidence of another kind",
+                                test.plan.method.name);
+    series.kind = other.kind;
+  }
   const Added added = add_night(book, ledger, entry, series, night);
   reports::LedgerSeries result{
       .test = series.test,

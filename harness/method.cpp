@@ -164,7 +164,7 @@ std::string side_text(const Question& question, std::size_t channel) {
   }
   if (!question.references.empty()) return fmt::format("{}", question.references[channel].value);
   if (question.kind == QuestionKind::fit_to_density) return "its declared density";
-  return question.law.name;
+  return to_string(question.law);
 }
 
 std::string relation_text(const TestEntry& test) {
@@ -234,7 +234,7 @@ Method find_method(const Question& question, const std::string& name) {
     known += (known.empty() ? "`" : ", `") + method.name + "`";
   }
   throw InputError(question.test->where,
-                   fmt::format("`test: {}` does not answer this claim; {} does", name, known));
+                   fmt::format("`test: {}` does not answer this claim; there is {}", name, known));
 }
 
 std::string null_hypothesis(const Method&, const Question& question, std::size_t channel) {

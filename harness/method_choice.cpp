@@ -175,13 +175,15 @@ std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double cr
 /// Whether every value known of every subject is one of the two ends of its range.
 bool are_two_valued(const Question& question, const std::vector<Known>& channels,
                     const Plan& plan) {
-  if (question.of_two() ? question.factor <= 0 : question.references[0].standard_error > 0) {
-    return false;
-  }
+  if (question.of_two() && question.factor <= 0) return false;
+  const auto uncertain = [](const Constant& reference) { return reference.standard_error > 0; };
+  if (std::any_of(question.references.begin(), question.references.end(), uncertain)) return false;
   return channels.size() == question.subjects.size() * question.channel_count() &&
          std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
            const stats::Range range =
                range_of(question, known.subject, known.channel, known.pilot.moments);
+           // Rows declare no range: only 0 and 1 are surely a count of successes.
+           if (known.rows && (range.low != 0 || range.high != 1)) return false;
            return plan.primaries[known.subject] == 1 && !known.pilot.values.empty() &&
                   std::all_of(known.pilot.values.begin(), known.pilot.values.end(),
                               [&](double v) { return v == range.low || v == range.high; });
@@ -245,7 +247,20 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
     if (answered && gate.state == GateState::red) gate.state = GateState::amber;
     note(plan, known, gate);
   }
-  if (!question.test->method) plan.invalid = heavy;
+  if (question.test->method) return least;
+  plan.invalid = heavy;
+  const bool rows =
+      std::any_of(channels.begin(), channels.end(), [](const Known& k) { return k.rows; });
+  // Red: at this size the t test's worse tail is off by more than a factor of two.
+  const double red = std::pow(std::log(level_factor) / std::log(2.0), 2);
+  const bool t_is_red = red * static_cast<double>(for_t) > static_cast<double>(affordable);
+  if (fixed && !rows && plan.invalid.empty() && t_is_red && for_corrected > affordable) {
+    plan.invalid = fmt::format(
+        "secondary estimates of this shape need about {:.2g} observations before any test of their "
+        "mean keeps its level; a larger `primaries` brings them nearer to normal, or declare the "
+        "range",
+        static_cast<double>(std::min(for_t, for_corrected)));
+  }
   return std::min(least, affordable);
 }
 
@@ -301,7 +316,7 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const std::uint64_t needed = enough_for_log_variance(question, channels, x);
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
-  if (plan.invalid.empty() && needed > (fixed ? size : most_for_a_variance)) {
+  if (plan.invalid.empty() && needed > (fixed ? size : std::max(size, most_for_a_variance))) {
     plan.invalid = too_few(needed);
   }
   return std::min(needed, fixed ? size : most_for_a_variance);

@@ -27,6 +27,12 @@ const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
   return nullptr;
 }
 
+/// Methods whose estimate says nothing of its own standard error, so that scores have mean 0.
+bool gives_a_score(const std::string& method) {
+  return method == "t" || method == "welch" || method == "tost" || method == "chi-square" ||
+         method == "F";
+}
+
 /// Why a test says nothing that the next run could add to; "" where it does.
 std::string obstacle(const TestWork& work, std::size_t channel) {
   const TestOutcome& test = work.outcome;
@@ -41,7 +47,8 @@ std::string obstacle(const TestWork& work, std::size_t channel) {
   if (laws && std::any_of(sides.begin(), sides.end(), is_recorded)) {
     return "one side is recorded, the same in every run, and distances from it do not add up";
   }
-  if (outcome_of(test, channel) == nullptr) return "its observations have no spread";
+  const bool scored = evidence_kind(test) == EvidenceKind::score;
+  if (scored && outcome_of(test, channel) == nullptr) return "its observations have no spread";
   return "";
 }
 
@@ -107,16 +114,22 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
 
 }  // namespace
 
+EvidenceKind evidence_kind(const TestOutcome& test) {
+  const bool moments = test.question.of_means() || test.question.of_variances();
+  return moments && gives_a_score(test.plan.method.name) ? EvidenceKind::score
+                                                         : EvidenceKind::log_e;
+}
+
 NightEvidence night_evidence(const TestWork& work, std::size_t channel, const Pilots& pilots) {
   if (std::string missing = obstacle(work, channel); !missing.empty()) {
     return {.missing = std::move(missing)};
   }
   const TestOutcome& test = work.outcome;
-  if (test.question.of_means() || test.question.of_variances()) {
-    return of_score(work, channel, pilots);
-  }
-  return {.kind = EvidenceKind::log_e,
-          .log_e = stats::log_e_from_log_p(outcome_of(test, channel)->decision.log_p_claimed)};
+  if (evidence_kind(test) == EvidenceKind::score) return of_score(work, channel, pilots);
+  // Without spread there is no test: p = 1, which weighs against an alarm.
+  const ChannelOutcome* outcome = outcome_of(test, channel);
+  const double log_p = outcome != nullptr ? outcome->decision.log_p_claimed : 0;
+  return {.kind = EvidenceKind::log_e, .log_e = stats::log_e_from_log_p(log_p)};
 }
 
 std::string series_hash(const TestWork& work, std::size_t channel) {

@@ -2,7 +2,8 @@
 
 // What one run says of a claim, in a form that adds up over runs.
 //
-// Means and variances: score and information on theta at the last look taken,
+// Means and variances, by the methods whose estimate says nothing of its standard error (t, Welch,
+// two one-sided tests, chi-square, F): score and information on theta at the last look taken,
 //   V = 1 / e^2,   S = z E / e^2,
 // e: the drawn data's standard error of theta (theta_error.h), E: hypot(e, what is the same in all
 // runs), z: the normal quantile of the test's own p-value of theta = 0. For a mean that is
@@ -12,8 +13,9 @@
 // estimate stops sooner; but S is a Brownian motion observed at the time V, wherever it is stopped,
 // and the ledger's E-value a martingale in V (optional stopping), so its level holds all the same.
 //
-// Distances between laws: ln of the e-value of the p-value over the looks taken, which is valid
-// wherever one stops.
+// Everything else: ln of the e-value of the p-value over the looks taken, which is valid wherever
+// one stops. A binomial count or a skewed mean that is small has a small standard error too: its
+// score would drift night after night.
 
 #include <string>
 
@@ -32,6 +34,9 @@ struct NightEvidence {
   stats::LedgerPrior prior = {};
   std::string missing = "";  ///< why there is none
 };
+
+/// A score by t, welch, tost, chi-square and F; ln of an e-value by any other method.
+EvidenceKind evidence_kind(const TestOutcome& test);
 
 NightEvidence night_evidence(const TestWork& work, std::size_t channel, const Pilots& pilots);
 

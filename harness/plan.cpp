@@ -19,6 +19,8 @@ namespace {
 constexpr std::uint64_t classical_secondaries = 1000;
 // Half a day at 40 ns a primary.
 constexpr double most_planned_primaries = 1e12;
+// Ten looks cost twice the observations of one at most, where no reference's error takes part.
+constexpr std::uint64_t dearest_looks = 4;
 
 /// The most secondaries there are, or that a budget in primaries pays for, all subjects together.
 std::uint64_t most_available(const Question& question, const Plan& plan) {
@@ -61,7 +63,7 @@ stats::LookSchedule timed_look(const Plan& plan, std::uint64_t secondaries) {
     block = std::max(block, block_size_of(primaries));
   }
   const std::uint64_t unit = block * replicate_count;
-  return one_look((secondaries + unit - 1) / unit * unit);
+  return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit);
 }
 
 bool is_bounded(const Question& question) {
@@ -76,26 +78,39 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
                                const Pilots& pilots, const Plan& plan, std::uint64_t first) {
   const std::uint64_t most = most_available(question, plan);
   if (plan.method.keeps == Keeps::blocks) {
+    if (question.test->secondaries || question.test->budget) {
+      throw InputError(question.test->where,
+                       "a claim in seconds is timed on whole replicates: `secondaries` and "
+                       "`budget` cannot be chosen; leave them out");
+    }
     const auto planned = planned_secondaries(question, place.share, pilots, plan);
-    return timed_look(plan, std::min(most, question.test->secondaries.value_or(
-                                               planned.value_or(classical_secondaries))));
+    if (planned) require_possible(question, plan, *planned);
+    return timed_look(plan, std::max(first, planned.value_or(classical_secondaries)));
   }
-  if (question.test->secondaries) return one_look(std::min(*question.test->secondaries, most));
+  if (question.test->secondaries) {
+    const std::uint64_t given = std::min(*question.test->secondaries, most);
+    if (!question.test->budget) require_possible(question, plan, given);
+    return one_look(given);
+  }
   if (is_bounded(question)) return one_look(most);
   const std::optional<std::uint64_t> alone =
       planned_secondaries(question, place.share, pilots, plan);
   if (!alone) return one_look(std::min(std::max(first, classical_secondaries), most));
   if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
   if (*alone <= first) return one_look(std::min(first, most));
-  const std::size_t count =
-      std::min<std::size_t>(most_looks, 1 + std::bit_width((*alone - 1) / first));
-  const double weight = 1 / static_cast<double>(count);
-  const ErrorShare share{.alpha = place.share.alpha * weight, .beta = place.share.beta * weight};
-  const std::uint64_t last =
-      std::min(most, planned_secondaries(question, share, pilots, plan).value_or(*alone));
-  if (last <= first) return one_look(last);
-  return stats::geometric_looks({.first = std::max(first, (last >> (count - 1)) + 1), .last = last},
-                                look_growth);
+  std::size_t count = std::min<std::size_t>(most_looks, 1 + std::bit_width((*alone - 1) / first));
+  for (; count > 1; --count) {
+    const double weight = 1 / static_cast<double>(count);
+    const ErrorShare share{.alpha = place.share.alpha * weight, .beta = place.share.beta * weight};
+    const std::uint64_t last = std::min(
+        most, planned_secondaries(question, share, pilots, plan).value_or(impossible_secondaries));
+    // Near what the reference's error allows, smaller shares may be beyond any number: fewer looks.
+    if (last > dearest_looks * *alone) continue;
+    if (last <= first) return one_look(last);
+    return stats::geometric_looks(
+        {.first = std::max(first, (last >> (count - 1)) + 1), .last = last}, look_growth);
+  }
+  return one_look(std::min(*alone, most));
 }
 
 std::vector<Regions> regions_of(const Question& question) {

@@ -165,7 +165,7 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
 class Page {
  public:
   void line(const std::string& text) {
-    std::string whole = plain(reports::shorten(text, page_width));
+    std::string whole = plain(text);
     whole.erase(whole.find_last_not_of(' ') + 1);
     out_ += whole + "\n";
   }

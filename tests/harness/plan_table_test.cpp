@@ -27,6 +27,7 @@ tests:
   - {claim: mean(normal) == 2, secondaries: 500}
   - {claim: variance(normal) == analytic, detect: 10%}
   - {claim: 'distribution(normal) == normal(2, 0.5)', detect: 0.05}
+  - {claim: distribution(area.point.v) == density, detect: 0.05}
 )";
 
 std::vector<Suite> suites_of(const Workplace& place) {

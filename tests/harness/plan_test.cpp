@@ -169,6 +169,18 @@ TEST(Plan, CorrectsForSkewnessWhereTheTTestWouldNeedMore) {
   EXPECT_EQ(normal.plans[0].method.name, "t");
 }
 
+// One look decides at z = 5.0 errors of the reference, ten looks would take 6.9 of them.
+TEST(Plan, TakesFewerLooksWhereTheReferencesErrorAllowsNoMore) {
+  const Planned planned = plan_text("  - {claim: mean(single) == 2 +- 0.001, detect: 0.0055}\n");
+  EXPECT_LT(planned.plans[0].most_secondaries(), 1e8);
+  EXPECT_LT(planned.plans[0].looks.sizes.size(), 10);
+}
+
+TEST(Plan, IsInvalidWhereAFixedSizeIsTooSmallForAnyMethod) {
+  const Planned planned = plan_text("  - {claim: mean(heavy-single) == 1.5, secondaries: 30}\n");
+  EXPECT_NE(planned.plans[0].invalid.find("keeps its level"), std::string::npos);
+}
+
 TEST(Plan, CountsValuesOfWhichThereAreTwo) {
   const Planned planned = plan_text("  - {claim: mean(dart) == 3.14159, secondaries: 300}\n");
   EXPECT_EQ(planned.plans[0].method.name, "binomial");
