@@ -47,15 +47,16 @@ bool has_spread(const stats::Moments& moments) { return moments.count > 3 && mom
 
 Estimate mean_of(const stats::Moments& moments, double confidence) {
   if (moments.count == 0) return {};
-  if (!has_spread(moments))
-    return {number(moments.mean), number(moments.mean), number(moments.mean)};
+  if (moments.m2 == 0) return {number(moments.mean), number(moments.mean), number(moments.mean)};
+  if (!has_spread(moments)) return {number(moments.mean), {}, {}};  // too few for an interval
   const stats::Interval interval = stats::student_t_interval(moments, {.value = 0}, confidence);
   return {number(moments.mean), number(interval.low), number(interval.high)};
 }
 
 Estimate variance_of(const stats::Moments& moments, double primaries, double confidence) {
   if (moments.count < 2) return {};
-  if (!has_spread(moments)) return {0.0, 0.0, 0.0};
+  if (moments.m2 == 0) return {0.0, 0.0, 0.0};
+  if (!has_spread(moments)) return {number(primaries * moments.variance()), {}, {}};
   const stats::Interval log = stats::log_variance_interval(moments, 1, confidence);
   return {number(primaries * moments.variance()), number(primaries * std::exp(log.low)),
           number(primaries * std::exp(log.high))};

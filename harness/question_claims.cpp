@@ -125,6 +125,17 @@ void require_counted(const TestEntry& test) {
   throw InputError(test.where, "a slope of seconds has no method; count `rays` or `samples`");
 }
 
+/// Variance and cost of an estimator that averages are those of one primary, whatever `primaries`.
+void require_slope_of_something(const TestEntry& test, const Subject& subject) {
+  const QuantityName name = test.claim.left.name;
+  const bool of_one = name == QuantityName::variance || name == QuantityName::cost;
+  if (!of_one || !subject.averages || test.over->parameter != "primaries") return;
+  throw InputError(test.claim.left.where,
+                   fmt::format("`{}` is that of one primary of `{}`, which averages: it does not "
+                               "change with `primaries`, and its slope is 0; sweep a parameter",
+                               to_string(name), test.claim.left.source.estimator));
+}
+
 }  // namespace
 
 Question about_bias(const TestEntry& test, const Estimators& estimators) {
@@ -241,6 +252,7 @@ Question about_slope(const TestEntry& test, const Estimators& estimators) {
     throw InputError(claim.left.where,
                      "a slope is tested against an exact number: `+-` has no method here");
   }
+  require_slope_of_something(test, question.subjects[0]);
   question.references.assign(question.channel_count(), number);
   add_reference(question, estimators);
   return question;

@@ -27,6 +27,12 @@ std::string refused(const std::string& test) {
 
 const Question question_of(const std::unique_ptr<Asked>& asked) { return asked->questions.at(0); }
 
+TEST(Question, RefusesASlopeThatIsZeroByDefinition) {
+  EXPECT_NE(refused("{claim: slope(variance(darts)) within 0.1 of -1, over: {primaries: [8, 16]}}")
+                .find("does not change with `primaries`"),
+            std::string::npos);
+}
+
 TEST(Question, TakesTheAnalyticMeanAndVarianceOfThePlugin) {
   const auto mean = ask_text(suite_of("claim: mean(darts) == analytic"));
   EXPECT_EQ(question_of(mean).kind, QuestionKind::mean_of_one);
