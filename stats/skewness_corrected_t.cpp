@@ -1,14 +1,12 @@
 #include "stats/skewness_corrected_t.h"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <string>
 
 #include "stats/check.h"
 #include "stats/errors.h"
+#include "stats/interval_end.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
@@ -93,21 +91,6 @@ struct Excess {
            student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, law.degrees);
   }
 };
-
-double ratio_end(const Excess& excess, double centre, double first_step) {
-  double inside = centre;
-  double step = first_step;
-  while (excess(centre + step) < 0) {
-    inside = centre + step;
-    step *= 2;
-    if (std::abs(step) > 1e300) return std::copysign(std::numeric_limits<double>::infinity(), step);
-  }
-  std::uintmax_t iterations = 200;
-  const auto [low, high] = std::minmax({inside, centre + step});  // values, not references
-  const auto ends = boost::math::tools::toms748_solve(
-      excess, low, high, boost::math::tools::eps_tolerance<double>(50), iterations);
-  return std::midpoint(ends.first, ends.second);
-}
 
 // ---- What the correction leaves
 
@@ -210,7 +193,8 @@ Interval skewness_corrected_ratio_interval(const Moments& x, const Moments& y, d
   const Excess excess{x, y, confidence};
   const double centre = x.mean / y.mean;
   const double step = law_of(x, y, centre).standard_error / std::abs(y.mean);
-  return {ratio_end(excess, centre, -step) - 1, ratio_end(excess, centre, step) - 1, confidence};
+  return {interval_end(excess, centre, -step) - 1, interval_end(excess, centre, step) - 1,
+          confidence};
 }
 
 double corrected_level_factor(const Moments& x, Reference null_mean, double critical_value) {

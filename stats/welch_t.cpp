@@ -1,12 +1,11 @@
 #include "stats/welch_t.h"
 
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "stats/check.h"
 #include "stats/errors.h"
+#include "stats/interval_end.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
@@ -54,22 +53,6 @@ struct Excess {
   }
 };
 
-// The end of the interval on one side of the estimate, by doubling and bracketing.
-double ratio_end(const Excess& excess, double centre, double first_step) {
-  double inside = centre;
-  double step = first_step;
-  while (excess(centre + step) < 0) {
-    inside = centre + step;
-    step *= 2;
-    if (std::abs(step) > 1e300) return std::copysign(std::numeric_limits<double>::infinity(), step);
-  }
-  std::uintmax_t iterations = 200;
-  const auto [low, high] = std::minmax({inside, centre + step});  // values, not references
-  const auto ends = boost::math::tools::toms748_solve(
-      excess, low, high, boost::math::tools::eps_tolerance<double>(50), iterations);
-  return std::midpoint(ends.first, ends.second);
-}
-
 }  // namespace
 
 TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value) {
@@ -107,7 +90,8 @@ Interval welch_ratio_interval(const Moments& x, const Moments& y, double confide
   const double step =
       scale_of("welch_ratio_interval", x, y, centre).standard_error / std::abs(y.mean);
   const Excess excess{x, y, confidence};
-  return {ratio_end(excess, centre, -step) - 1, ratio_end(excess, centre, step) - 1, confidence};
+  return {interval_end(excess, centre, -step) - 1, interval_end(excess, centre, step) - 1,
+          confidence};
 }
 
 }  // namespace assay::stats

@@ -6,14 +6,15 @@
 #include <iostream>
 #include <vector>
 
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::calibrate;
+using tests::expect_calibrated;
+using tests::expect_caught;
 using tests::Experiment;
 using tests::Philox;
 using tests::Row;
@@ -91,18 +92,6 @@ TEST(AndersonDarling, RefusesWhatItsLawDoesNotCover) {
   EXPECT_THROW(anderson_darling_k_statistic({good, {}}), std::domain_error);
   EXPECT_THROW(anderson_darling_k_statistic({{1, 1}, {1}}), std::domain_error);
   EXPECT_THROW(log_anderson_darling_upper(std::nan(""), 10), std::domain_error);
-}
-
-// False alarm 1e-5 each (tests/stats/calibration.h).
-void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_TRUE(calibration.ok) << calibration.text();
-  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
-}
-
-void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_FALSE(calibration.ok) << calibration.text();
 }
 
 TEST(AndersonDarling, OfOneSampleIsUniform) {

@@ -1,8 +1,6 @@
 // Every p-value under its own null hypothesis. False-alarm rate of each test: 1e-5
 // (tests/stats/calibration.h); seed 1, the stream of each test numbered in order of writing.
 
-#include "tests/stats/calibration.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,25 +16,19 @@
 #include "stats/log_variance.h"
 #include "stats/student_t.h"
 #include "stats/welch_t.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::calibrate;
-using tests::Calibration;
 using tests::draw_moments;
+using tests::expect_calibrated;
 using tests::Experiment;
 using tests::Philox;
 using tests::sample_of;
 using tests::Shape;
 using tests::sorted;
-
-void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const Calibration calibration = calibrate(experiment, draw);
-  EXPECT_TRUE(calibration.ok) << calibration.text();
-  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
-}
 
 Moments normals(Philox& random, std::size_t n, double sd = 1) {
   return draw_moments(n, [&] { return sd * random.normal(); });

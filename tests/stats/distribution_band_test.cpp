@@ -8,14 +8,15 @@
 #include <vector>
 
 #include "stats/tails.h"
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::calibrate;
+using tests::expect_calibrated;
+using tests::expect_caught;
 using tests::Experiment;
 using tests::Philox;
 using tests::Row;
@@ -101,18 +102,6 @@ TEST(DistributionBand, RefusesMalformedSamples) {
 TEST(DistributionBand, TwoConstantSamplesSayNothing) {
   const std::vector<double> same(10, 2.0);
   EXPECT_EQ(band_test(same, same, 10).test.log_p_upper, 0);
-}
-
-// False alarm 1e-5 each (tests/stats/calibration.h).
-void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_TRUE(calibration.ok) << calibration.text();
-  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
-}
-
-void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_FALSE(calibration.ok) << calibration.text();
 }
 
 TEST(DistributionBand, OfOneSampleIsAtMostUniform) {

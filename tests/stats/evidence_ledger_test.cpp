@@ -8,13 +8,14 @@
 #include <numeric>
 #include <vector>
 
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::calibrate;
+using tests::expect_calibrated;
+using tests::expect_caught;
 using tests::Experiment;
 using tests::Philox;
 using tests::Row;
@@ -119,18 +120,6 @@ std::vector<Evidence> draw(Philox& random, const Series& series) {
 
 const LedgerPrior habitual{.45, 0};
 const LedgerPrior with_reference{.45, .2};
-
-// False alarm 1e-5 each (tests/stats/calibration.h).
-void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_TRUE(calibration.ok) << calibration.text();
-  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
-}
-
-void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_FALSE(calibration.ok) << calibration.text();
-}
 
 TEST(EvidenceLedger, KeepsItsBudgetOverAHundredNights) {
   expect_calibrated({341, 10000, Shape::at_most_uniform}, [](Philox& random) {

@@ -12,16 +12,17 @@
 
 #include "stats/image_welch.h"
 #include "stats/tails.h"
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/image_samples.h"
 
 namespace assay::stats {
 namespace {
 
 using tests::add_defect;
-using tests::calibrate;
 using tests::Defect;
 using tests::draw_stack;
+using tests::expect_calibrated;
+using tests::expect_caught;
 using tests::Experiment;
 using tests::normals;
 using tests::OwnedStack;
@@ -29,15 +30,6 @@ using tests::Philox;
 using tests::Shape;
 
 constexpr ImageExtent small{12, 10, 1};
-
-void expect_level(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_TRUE(calibration.ok) << calibration.text();
-}
-void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_FALSE(calibration.ok) << calibration.text();
-}
 
 double two_sided(LogTails tails) {
   return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
@@ -68,27 +60,27 @@ OwnedStack correlated_stack(Philox& random, std::size_t replicates) {
 // Every calibration below raises a false alarm with probability 1e-5.
 
 TEST(ImagePyramid, AMapOfNormalValuesKeepsItsLevel) {
-  expect_level({820, 20000, Shape::at_most_uniform}, [](Philox& random) {
+  expect_calibrated({820, 20000, Shape::at_most_uniform}, [](Philox& random) {
     return image_pyramid({small, normals(random, small.elements())}).log_p;
   });
 }
 
 TEST(ImagePyramid, TwoStacksOfSixteenKeepTheirLevel) {
-  expect_level({821, 4000, Shape::at_most_uniform}, [](Philox& random) {
+  expect_calibrated({821, 4000, Shape::at_most_uniform}, [](Philox& random) {
     const OwnedStack a = normal_stack(random, 16, 3);
     return image_pyramid(a.view(), normal_stack(random, 16).view()).log_p;
   });
 }
 
 TEST(ImagePyramid, SkewedStacksOfUnequalVarianceKeepTheirLevel) {
-  expect_level({822, 2000, Shape::at_most_uniform}, [](Philox& random) {
+  expect_calibrated({822, 2000, Shape::at_most_uniform}, [](Philox& random) {
     const OwnedStack a = skewed_stack(random, 32, 4);
     return image_pyramid(a.view(), skewed_stack(random, 16, 12).view()).log_p;
   });
 }
 
 TEST(ImagePyramid, ACorrelatedStackKeepsItsLevelWithoutItsOwnEnergy) {
-  expect_level({823, 4000, Shape::at_most_uniform}, [](Philox& random) {
+  expect_calibrated({823, 4000, Shape::at_most_uniform}, [](Philox& random) {
     const OwnedStack a = correlated_stack(random, 16);
     return image_pyramid(a.view(), correlated_stack(random, 16).view(), {.energy_log_p = 0.0})
         .log_p;
@@ -96,7 +88,7 @@ TEST(ImagePyramid, ACorrelatedStackKeepsItsLevelWithoutItsOwnEnergy) {
 }
 
 TEST(ImagePyramid, AReferencesErrorIsInTheTest) {
-  expect_level({824, 4000, Shape::at_most_uniform}, [](Philox& random) {
+  expect_calibrated({824, 4000, Shape::at_most_uniform}, [](Philox& random) {
     const OwnedStack a = normal_stack(random, 16);
     const std::vector<double> error(small.elements(), 0.3);
     std::vector<double> value = normals(random, small.elements());
@@ -114,7 +106,7 @@ double whole_image_log_p(const ImageFamily& family) {
 }
 
 TEST(ImagePyramid, TheWholeImageIsAWelchTestWhateverTheSkewness) {
-  expect_level({825, 4000, Shape::uniform}, [](Philox& random) {
+  expect_calibrated({825, 4000, Shape::uniform}, [](Philox& random) {
     const OwnedStack a = skewed_stack(random, 32, 2);
     return whole_image_log_p(image_pyramid(a.view(), skewed_stack(random, 32, 6).view()));
   });

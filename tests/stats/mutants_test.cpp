@@ -17,24 +17,19 @@
 #include "stats/student_t.h"
 #include "stats/tails.h"
 #include "stats/welch_t.h"
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::calibrate;
 using tests::draw_moments;
+using tests::expect_caught;
 using tests::Experiment;
 using tests::Philox;
 using tests::sample_of;
 using tests::Shape;
 using tests::sorted;
-
-void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_FALSE(calibration.ok) << calibration.text();
-}
 
 Moments normals(Philox& random, std::size_t n, double sd = 1) {
   return draw_moments(n, [&] { return sd * random.normal(); });

@@ -8,14 +8,15 @@
 #include <vector>
 
 #include "stats/tails.h"
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::calibrate;
+using tests::expect_calibrated;
+using tests::expect_caught;
 using tests::Experiment;
 using tests::Philox;
 using tests::Row;
@@ -124,18 +125,6 @@ TEST(QuantileTest, RefusesMalformedCounts) {
   const std::vector<double> good{1, 2};
   EXPECT_THROW(quantile_compare(good, good, {.5, -1}), std::domain_error);
   EXPECT_THROW(quantile_sample_size({.5, .5}), std::domain_error);
-}
-
-// False alarm 1e-5 each (tests/stats/calibration.h).
-void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_TRUE(calibration.ok) << calibration.text();
-  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
-}
-
-void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_FALSE(calibration.ok) << calibration.text();
 }
 
 TEST(QuantileTest, BothSidesAreAtMostUniform) {

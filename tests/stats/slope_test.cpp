@@ -8,13 +8,14 @@
 
 #include "stats/errors.h"
 #include "stats/tails.h"
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::calibrate;
+using tests::expect_calibrated;
+using tests::expect_caught;
 using tests::Experiment;
 using tests::Philox;
 using tests::Row;
@@ -152,18 +153,6 @@ SlopeData inverse_bias(Philox& random) {
     data.points.push_back({size, 1 / size + error * random.normal() + common, error});
   }
   return data;
-}
-
-// False alarm 1e-5 each (tests/stats/calibration.h).
-void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_TRUE(calibration.ok) << calibration.text();
-  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
-}
-
-void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_FALSE(calibration.ok) << calibration.text();
 }
 
 TEST(Slope, OfAnInverseBiasIsCalibratedWhereTheLastBiasIsTwoStandardErrors) {

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "stats/tails.h"
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::calibrate;
+using tests::expect_calibrated;
+using tests::expect_caught;
 using tests::Experiment;
 using tests::Philox;
 using tests::sample_of;
@@ -77,18 +78,6 @@ TEST(QuantisationGate, JudgesTheStepAgainstTheThreshold) {
   EXPECT_TRUE(quantisation_gate(0, 1e6, 1e-3).sound());
   EXPECT_THROW(quantisation_gate(-1, 10, .1), std::domain_error);
   EXPECT_THROW(quantisation_gate(.1, 0, .1), std::domain_error);
-}
-
-// False alarm 1e-5 each (tests/stats/calibration.h).
-void expect_calibrated(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_TRUE(calibration.ok) << calibration.text();
-  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
-}
-
-void expect_caught(const Experiment& experiment, const std::function<double(Philox&)>& draw) {
-  const auto calibration = calibrate(experiment, draw);
-  EXPECT_FALSE(calibration.ok) << calibration.text();
 }
 
 TEST(TwoPartKs, IsAtMostUniform) {
