@@ -112,7 +112,8 @@ std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelD
   std::vector<Gate> gates;
   if (!has_rows(question)) return gates;
   if (question.kind == QuestionKind::fit_to_law || question.kind == QuestionKind::fit_to_density) {
-    if (method != "ks" || data[0].values.size() < 2) return gates;
+    const bool by_points = method == "ks" || method == "anderson-darling";
+    if (!by_points || data[0].values.size() < 2) return gates;
     std::vector<double> sorted(data[0].values.begin(), data[0].values.end());
     std::sort(sorted.begin(), sorted.end());
     gates.push_back(stats::quantisation_gate(sorted, outcome.share().alpha));
