@@ -51,7 +51,8 @@ std::string written(const reports::Record& record, const std::string& kind, bool
   return reports::console(record, {.colour = colour, .verbose = is_single(record)});
 }
 
-/// A report that cannot be written is better known before the hours of sampling than after.
+}  // namespace
+
 void require_writable(const Output& output) {
   for (const ReportRequest& request : output.reports) {
     if (request.path == "-") continue;
@@ -66,15 +67,14 @@ void require_writable(const Output& output) {
   }
 }
 
-/// Every report asked for. Files first: what standard output shows has then been written.
-void write_reports(const reports::Record& record, const Output& output) {
+void write_reports(const Output& output, const ReportWriter& written) {
   std::string to_stdout;
   bool console_placed = false;
   for (const ReportRequest& request : output.reports) {
     console_placed = console_placed || request.kind == "console";
     const bool standard = request.path == "-";
     const bool colour = standard && use_colour(output.colour, stdout);
-    const std::string text = written(record, request.kind, colour);
+    const std::string text = written(request.kind, colour);
     if (standard) {
       to_stdout += text;
     } else {
@@ -83,9 +83,16 @@ void write_reports(const reports::Record& record, const Output& output) {
   }
   if (!console_placed) {
     std::FILE* stream = to_stdout.empty() ? stdout : stderr;
-    fmt::print(stream, "{}", written(record, "console", use_colour(output.colour, stream)));
+    fmt::print(stream, "{}", written("console", use_colour(output.colour, stream)));
   }
   fmt::print("{}", to_stdout);
+}
+
+namespace {
+
+void write_reports(const reports::Record& record, const Output& output) {
+  write_reports(
+      output, [&](const std::string& kind, bool colour) { return written(record, kind, colour); });
 }
 
 /// Says so where the filter matches no test.

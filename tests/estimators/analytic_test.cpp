@@ -106,6 +106,13 @@ TEST(Analytic, SampledMeansAndVariancesAreTheDeclaredOnes) {
                            {"analytic/rare_spike", "{probability: 0.01, height: 3}"},
                            {"analytic/normal"},
                            {"analytic/normal", "{mean: -3, deviation: 0.5}", 5},
+                           {"analytic/law", "{law: 'bernoulli(0.01)'}"},
+                           {"analytic/law", "{law: exponential(2), shift: 3, scale: 0.5}", 2},
+                           {"analytic/law", "{law: 'lognormal(0.2, 0.5)'}"},
+                           {"analytic/law", "{law: 'normal(1, 2)', scale: 3}"},
+                           {"analytic/law", "{law: student_t(9)}"},
+                           {"analytic/law", "{law: 'uniform(-1, 3)', shift: 1}"},
+                           {"analytic/law", "{law: zero_inflated(0.1)}"},
                            {"analytic/two_level"},
                            {"analytic/two_level", "{splitting: 0.4}"},
                            {"analytic/two_level", "{splitting: 2.5}"}}) {
@@ -178,6 +185,81 @@ TEST(Analytic, ImportanceSamplerFollowsItsDensity) {
     pearson.add(counts[i], draws * (cumulative(low + 0.02) - cumulative(low)));
   }
   EXPECT_TRUE(pearson.passes()) << pearson.statistic;
+}
+
+// Cells of equal probability by these laws' own quantiles. False alarm 1e-6 each.
+TEST(AnalyticLaw, DrawsFollowTheLaw) {
+  struct Quantile {
+    const char* law;
+    double (*cdf)(double);
+  };
+  const auto normal_cdf = [](double z) { return std::erfc(-z / std::sqrt(2.0)) / 2; };
+  static const auto phi = normal_cdf;
+  for (const auto& [law, cdf] :
+       {Quantile{"exponential(2)", [](double x) { return -std::expm1(-2 * x); }},
+        Quantile{"'lognormal(1, 0.5)'", [](double x) { return phi((std::log(x) - 1) / 0.5); }},
+        Quantile{"'normal(1, 2)'", [](double x) { return phi((x - 1) / 2); }},
+        // Student's law with 2 and with 1 degrees of freedom has a plain distribution function.
+        Quantile{"student_t(2)", [](double x) { return (1 + x / std::sqrt(2 + x * x)) / 2; }},
+        Quantile{"student_t(1)", [](double x) { return 0.5 + std::atan(x) / 3.141592653589793; }},
+        Quantile{"'uniform(-1, 3)'", [](double x) { return (x + 1) / 4; }}}) {
+    const Sample sample =
+        observe(prepare("analytic/law", std::string("{law: ") + law + "}"), 50000)[0];
+    std::vector<double> counts(50);
+    for (const double x : sample.values) {
+      counts[static_cast<std::size_t>(std::min(49.0, 50 * cdf(x)))] += 1;
+    }
+    Pearson pearson;
+    for (const double count : counts) pearson.add(count, 1000);
+    EXPECT_TRUE(pearson.passes()) << law << ": " << pearson.statistic;
+  }
+}
+
+TEST(AnalyticLaw, DeclaresMomentsWhereTheyExistAlone) {
+  EXPECT_FALSE(channel("analytic/law", "{law: student_t(1)}").mean);
+  EXPECT_EQ(channel("analytic/law", "{law: student_t(1.5)}").mean, 0);
+  EXPECT_FALSE(channel("analytic/law", "{law: student_t(2)}").variance);
+  EXPECT_EQ(channel("analytic/law", "{law: student_t(4)}").variance, 2);
+  EXPECT_EQ(channel("analytic/law", "{law: exponential(1)}").low, 0);
+  EXPECT_EQ(channel("analytic/law", "{law: 'uniform(1, 2)', scale: 2, shift: -1}").high, 3);
+}
+
+// The draws of its sampler have the density it declares, mass outside included: Simpson's rule.
+TEST(AnalyticLaw, SamplersDeclareDensitiesThatIntegrateToTheirMass) {
+  for (const char* law : {"exponential(1)", "'lognormal(0, 0.5)'", "'normal(0, 1)'", "student_t(5)",
+                          "'uniform(0, 1)'"}) {
+    const auto plugin = prepare("analytic/law", std::string("{law: ") + law + ", scale: 2}");
+    const Sampler& sampler = *plugin.setup->samplers().at(0).sampler;
+    const auto [low, high] = sampler.bounds();
+    const double width = high - low;
+    const double mass =
+        width * simpson([&](double u) { return sampler.density({low + width * u}); });
+    int inside = 0;
+    constexpr int draws = 20000;
+    for (std::uint64_t i = 0; i < draws; ++i) {
+      Stream random(plugin.key, i);
+      inside += sampler.sample(random).valid ? 1 : 0;
+    }
+    EXPECT_LE(mass, 1 + 1e-9) << law;
+    // False alarm 1e-6 for masses of .99 and more.
+    EXPECT_NEAR(inside / double{draws}, mass, five * std::sqrt(0.01 / draws)) << law;
+  }
+  EXPECT_TRUE(prepare("analytic/law", "{law: bernoulli(0.5)}").setup->samplers().empty());
+}
+
+TEST(AnalyticLaw, WhatIsNoLawIsRefusedWithTheLawsThereAre) {
+  const auto refused = [](const std::string& law) -> std::string {
+    try {
+      prepare("analytic/law", "{law: '" + law + "'}");
+    } catch (const InputError& error) {
+      return error.message();
+    }
+    return "";
+  };
+  for (const char* law : {"cauchy(0, 1)", "normal", "normal(0)", "normal(0, 0)", "bernoulli(1)",
+                          "uniform(1, 1)", "exponential(a)", "exponential()", "normal(0,)", ""}) {
+    EXPECT_NE(refused(law).find("student_t(freedom)"), std::string::npos) << law << refused(law);
+  }
 }
 
 TEST(AnalyticMutants, ScaledIsItsOriginalTimesTheFactor) {
