@@ -109,7 +109,8 @@ void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std
       Plan plan = plan_test(questions[i], place[0], pilots,
                             choose_primaries({questions[i]}, place, pilots));
       works[i] = std::make_unique<TestWork>(TestWork{
-          .outcome = {.question = questions[i], .place = place[0], .plan = std::move(plan)}});
+          .outcome = {.question = questions[i], .place = place[0], .plan = std::move(plan)},
+          .verdict_only = true});
     } catch (const InputError&) {
       // Out of reach: a run would stop before it sampled.
       ++mine.invalid;

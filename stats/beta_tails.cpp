@@ -13,7 +13,8 @@ namespace {
 
 namespace policies = boost::math::policies;
 using Quiet = policies::policy<policies::overflow_error<policies::ignore_error>,
-                               policies::evaluation_error<policies::ignore_error>>;
+                               policies::evaluation_error<policies::ignore_error>,
+                               policies::promote_double<false>>;
 using special::BetaPoint;
 
 constexpr double boost_minimum = 1e-280;
