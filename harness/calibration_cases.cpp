@@ -158,6 +158,10 @@ void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
   if (f.has_density) {
     drafts.push_back({"ks", "law == law given", "distribution(x) == " + f.law,
                       "distribution(moved) == " + f.law, detect});
+    drafts.push_back({.method = "anderson-darling",
+                      .question = "law == law given",
+                      .true_claim = "distribution(x) == " + f.law,
+                      .is_default = false});
     drafts.push_back({"ks", "law == law", "distribution(x) == distribution(y)",
                       "distribution(moved) == distribution(y)", detect});
     drafts.push_back({"chi-square-fit", "draws == density", "distribution(x.x) == density", "",

@@ -77,10 +77,10 @@ std::string heading_row() {
 }
 
 constexpr const char* legend =
-    R"(mistaken  share of runs in which the whole procedure fails a true claim (of tost: passes a false one)
-at least  its exact lower limit        open  inconclusive        n  mean observations of a run
+    R"(mistaken  runs in which the whole procedure fails a true claim (of tost: passes a false one)
+at least  the exact lower limit of that        open  inconclusive        n  mean observations
 power     right verdicts where the effect is `detect`        by  the method most runs are judged by
-alone     the method forced in one look, gates without effect; red  share of those with a red gate
+alone     the method forced, in one look, gates without effect        red  with a red gate
 !!  mistaken too often for certain        !  alone mistaken too often for certain without a red gate
 )";
 

@@ -268,7 +268,7 @@ Law law_of(Parameters& parameters) {
   try {
     return Law::parse(parameters.string("law"));
   } catch (const std::invalid_argument& error) {
-    parameters.refuse("law", error.what());
+    parameters.refuse("law", std::string("is no law: ") + error.what());
   }
 }
 

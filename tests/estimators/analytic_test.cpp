@@ -104,6 +104,7 @@ TEST(Analytic, SampledMeansAndVariancesAreTheDeclaredOnes) {
                            {"analytic/antithetic"},
                            {"analytic/heavy_tail", "{index: 12}"},
                            {"analytic/rare_spike", "{probability: 0.01, height: 3}"},
+                           {"analytic/rare_spike", "{probability: 0.1, height: 3, noise: 0.5}"},
                            {"analytic/normal"},
                            {"analytic/normal", "{mean: -3, deviation: 0.5}", 5},
                            {"analytic/law", "{law: 'bernoulli(0.01)'}"},
@@ -158,6 +159,14 @@ TEST(Analytic, RatioBiasFallsLikeOneOverPrimaries) {
   EXPECT_NEAR(n * (sample.mean() - integral), limit, 0.05 + five * n * sample.mean_error());
   EXPECT_GE(*std::ranges::min_element(sample.values), plugin.setup->channels()[0].low);
   EXPECT_LE(*std::ranges::max_element(sample.values), plugin.setup->channels()[0].high);
+}
+
+TEST(Analytic, ARareSpikeDeclaresItsRangeOrNot) {
+  const Channel known = channel("analytic/rare_spike", "{height: 2, noise: 0.25}");
+  EXPECT_EQ(known.low, 0.25);
+  EXPECT_EQ(known.high, 2.75);
+  EXPECT_EQ(channel("analytic/rare_spike", "{declared: false}").high,
+            std::numeric_limits<double>::infinity());
 }
 
 TEST(Analytic, ARareSpikeStaysUnseenInAShortRun) {
