@@ -45,11 +45,11 @@ const std::vector<Column>& table_columns() {
       {"mistaken", 9, [](const CalibrationCell& c) { return rate_text(c.mistaken); }},
       {"at least", 9, [](const CalibrationCell& c) { return low_text(c.mistaken); }},
       {"invalid", 8, [](const CalibrationCell& c) { return share_text(c.invalid, c.mistaken); }},
-      {"open", 7, [](const CalibrationCell& c) { return share_text(c.inconclusive, c.mistaken); }},
-      {"power", 7, [](const CalibrationCell& c) { return rate_text(c.found); }},
+      {"open", 6, [](const CalibrationCell& c) { return share_text(c.inconclusive, c.mistaken); }},
+      {"power", 6, [](const CalibrationCell& c) { return rate_text(c.found); }},
       {"n", 7, [](const CalibrationCell& c) { return observations_text(c.observations); }},
       {"by", 21, chosen_text},
-      {"alone", 8, [](const CalibrationCell& c) { return rate_text(c.alone); }},
+      {"alone", 7, [](const CalibrationCell& c) { return rate_text(c.alone); }},
       {"red", 6, [](const CalibrationCell& c) { return share_text(c.red.count, c.red); }},
   };
   return all;

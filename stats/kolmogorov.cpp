@@ -154,7 +154,7 @@ double kolmogorov_upper_quantile(double log_probability, std::uint64_t n) {
   // The expansion finds the place and the slope in microseconds; the matrix, at milliseconds, is
   // asked twice or so.
   double near = solve_quantile(Body::expansion, log_probability, n, lowest, highest);
-  const double other = near * (1 + 1e-4);
+  const double other = near * (1 - 1e-4);
   const double slope =
       (tails_by(Body::expansion, other, n).upper - tails_by(Body::expansion, near, n).upper) /
       (other - near);

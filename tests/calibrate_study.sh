@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The long studies of levels and sample counts. Last results: harness/README.md.
 #   bash tests/calibrate_study.sh            calibration of all methods (20,000 runs a cell), spikes, biases
-#   bash tests/calibrate_study.sh RUNS       the calibration with RUNS a cell: 1000 take a fifteenth of a day
+#   bash tests/calibrate_study.sh RUNS       the calibration with RUNS a cell instead
 # The calibration's cells, drawn and in tables, go to calibration.html and calibration.json here.
 set -euo pipefail
 folder=$PWD

@@ -16,9 +16,9 @@ def spread(irrational):
 def report(name, function, *arguments):
     times = []
     for _ in range(REPETITIONS):
-        start = time.perf_counter()
+        start = time.process_time()
         tails = function(*arguments)
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
     times.sort()
     with numpy.errstate(divide="ignore"):
         total = numpy.sum(numpy.log(tails))

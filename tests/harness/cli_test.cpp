@@ -162,7 +162,7 @@ TEST(CommandLine, SuggestsWhatWasMeant) {
 }
 
 TEST(CommandLine, OffersNothingOfLaterVersions) {
-  for (const char* name : {"calibrate", "merge", "images"}) {
+  for (const char* name : {"merge", "images"}) {
     EXPECT_THAT(refused({name}), StartsWith("unknown command `"));
   }
   EXPECT_THAT(refused({"check", "mean(a) == 1", "--ledger", "f"}),

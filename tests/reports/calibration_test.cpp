@@ -63,12 +63,13 @@ TEST(Calibration, TablesFitAHundredColumns) {
   alone.chosen.clear();
   CalibrationCell strict = cell("F");
   strict.alpha = 0.001;
+  strict.mistaken.low = 1e-4;
   const std::string text = console(calibration({cell("chi-square"), alone, strict}));
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(columns(line), 100) << line;
   EXPECT_THAT(text, HasSubstr("alpha 0.01: 1000 runs a cell"));
   EXPECT_THAT(text, HasSubstr("alpha 0.001"));
-  EXPECT_THAT(text, HasSubstr("1.05 M"));
+  EXPECT_THAT(text, HasSubstr("1.05\u00a0M"));
   EXPECT_THAT(text, HasSubstr("skewness-corrected-t"));
   EXPECT_THAT(text, HasSubstr("no cell of 3 errs too often"));
 }
