@@ -11,6 +11,7 @@
 #include "harness/law_cdf.h"
 #include "harness/law_evidence.h"
 #include "harness/mean_evidence.h"
+#include "harness/rows.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_fit.h"
 #include "stats/chi_square_variance.h"
@@ -24,10 +25,6 @@ using stats::Interval;
 using stats::Moments;
 using stats::TestResult;
 
-double per_primary(const Question& question, std::size_t subject, const ChannelData& data) {
-  return question.subjects[subject].averages ? static_cast<double>(data.primaries) : 1;
-}
-
 Interval map_ends(const Interval& interval, const std::function<double(double)>& map) {
   const double one = map(interval.low);
   const double other = map(interval.high);
@@ -38,7 +35,8 @@ Interval map_ends(const Interval& interval, const std::function<double(double)>&
 Evidence variance_against_number(const Method& method, const Question& question,
                                  std::size_t channel, const ChannelData& data) {
   const Moments x = data.moments;
-  const double null = question.references[channel].value / per_primary(question, 0, data);
+  const double null =
+      question.references[channel].value / question.subjects[0].averaged(data.primaries);
   const bool chi_square = method.name == "chi-square";
   const auto at = [=](double theta) {
     const double variance = null * std::exp(theta);
@@ -61,8 +59,8 @@ Evidence variance_against_variance(const Method& method, const Question& questio
                                    std::span<const ChannelData> data) {
   const Moments x = data[0].moments;
   const Moments y = data[1].moments;
-  const double null =
-      question.factor * per_primary(question, 1, data[1]) / per_primary(question, 0, data[0]);
+  const double null = question.factor * question.subjects[1].averaged(data[1].primaries) /
+                      question.subjects[0].averaged(data[0].primaries);
   const bool f = method.name == "F";
   const auto at = [=](double theta) {
     const double ratio = null * std::exp(theta);
@@ -201,10 +199,17 @@ std::vector<Method> methods_for(const Question& question) {
   const bool within = question.test->claim.relation == Relation::within;
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return {{within ? "tost" : "t", Keeps::moments},
+      if (within) {
+        return {{"tost", Keeps::moments},
+                {"skewness-corrected-t", Keeps::moments},
+                {"binomial", Keeps::moments},
+                {"bounded", Keeps::moments}};
+      }
+      return {{"t", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
               {"binomial", Keeps::moments},
-              {"bounded", Keeps::moments}};
+              {"bounded", Keeps::moments},
+              {"batch-means", Keeps::values}};
     case QuestionKind::mean_of_two:
       return {{within ? "tost" : "welch", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
@@ -282,6 +287,12 @@ bool is_relative(const Question& question, std::size_t channel) {
          (question.kind == QuestionKind::mean_of_two || question.references[channel].value != 0);
 }
 
+double unit_of_theta(const Question& question, std::size_t channel, double other_mean) {
+  if (!is_relative(question, channel)) return 1;
+  return std::abs(question.of_two() ? question.factor * other_mean
+                                    : question.references[channel].value);
+}
+
 double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin) {
   if (!question.on_log_scale()) return margin.value;
   if (margin.relative) return std::log1p(margin.value);
@@ -292,7 +303,8 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
                      std::span<const ChannelData> data) {
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return mean_against_number(method, question, channel, data[0].moments);
+      return mean_against_number(method, question, channel,
+                                 method.name == "batch-means" ? batched(data[0]) : data[0].moments);
     case QuestionKind::mean_of_two:
       return mean_against_mean(method, question, channel, data);
     case QuestionKind::variance_of_one:
