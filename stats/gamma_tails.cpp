@@ -31,7 +31,7 @@ double log_far_lower(double shape, double x) {
 // recurrence, a division only where they are compared. All is divided by b_0, which may be huge.
 double log_far_upper(double shape, double x) {
   const double per_first = 1 / (x + 1 - shape);
-  double before = per_first;
+  double before = 1;
   double now = 1;
   double inverse_before = 0;
   double inverse_now = per_first;
