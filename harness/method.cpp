@@ -11,6 +11,7 @@
 #include "harness/law_cdf.h"
 #include "harness/law_evidence.h"
 #include "harness/mean_evidence.h"
+#include "harness/rows.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_fit.h"
 #include "stats/chi_square_variance.h"
@@ -24,10 +25,6 @@ using stats::Interval;
 using stats::Moments;
 using stats::TestResult;
 
-double per_primary(const Question& question, std::size_t subject, const ChannelData& data) {
-  return question.subjects[subject].averages ? static_cast<double>(data.primaries) : 1;
-}
-
 Interval map_ends(const Interval& interval, const std::function<double(double)>& map) {
   const double one = map(interval.low);
   const double other = map(interval.high);
@@ -38,7 +35,8 @@ Interval map_ends(const Interval& interval, const std::function<double(double)>&
 Evidence variance_against_number(const Method& method, const Question& question,
                                  std::size_t channel, const ChannelData& data) {
   const Moments x = data.moments;
-  const double null = question.references[channel].value / per_primary(question, 0, data);
+  const double null =
+      question.references[channel].value / question.subjects[0].averaged(data.primaries);
   const bool chi_square = method.name == "chi-square";
   const auto at = [=](double theta) {
     const double variance = null * std::exp(theta);
@@ -61,8 +59,8 @@ Evidence variance_against_variance(const Method& method, const Question& questio
                                    std::span<const ChannelData> data) {
   const Moments x = data[0].moments;
   const Moments y = data[1].moments;
-  const double null =
-      question.factor * per_primary(question, 1, data[1]) / per_primary(question, 0, data[0]);
+  const double null = question.factor * question.subjects[1].averaged(data[1].primaries) /
+                      question.subjects[0].averaged(data[0].primaries);
   const bool f = method.name == "F";
   const auto at = [=](double theta) {
     const double ratio = null * std::exp(theta);
@@ -106,10 +104,12 @@ DeclaredLaw reference_law(const Question& question, std::size_t channel) {
   return declared;
 }
 
-Evidence values_against_law(const Question& question, std::size_t channel,
+Evidence values_against_law(const Method& method, const Question& question, std::size_t channel,
                             const ChannelData& data) {
   return points_against_law(points_of(question, 0, channel, data.values),
-                            reference_law(question, channel));
+                            reference_law(question, channel),
+                            method.name == "anderson-darling" ? PointsTest::anderson_darling
+                                                              : PointsTest::kolmogorov_smirnov);
 }
 
 /// theta = w, Cohen's effect size over the cells.
@@ -184,16 +184,32 @@ std::string relation_text(const TestEntry& test) {
   return fmt::format("within {} of", to_string(test.claim.margin));
 }
 
+/// A margin that the method cannot test.
+void require_margins(const Method& method, const Question& question) {
+  const TestEntry& test = *question.test;
+  if (method.name != "anderson-darling" || !test.allow || test.allow->value == 0) return;
+  throw InputError(test.where,
+                   "`anderson-darling` tests that two laws are the same and knows no distance to "
+                   "`allow` between them; leave `allow` out, or test by `ks`");
+}
+
 }  // namespace
 
 std::vector<Method> methods_for(const Question& question) {
   const bool within = question.test->claim.relation == Relation::within;
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return {{within ? "tost" : "t", Keeps::moments},
+      if (within) {
+        return {{"tost", Keeps::moments},
+                {"skewness-corrected-t", Keeps::moments},
+                {"binomial", Keeps::moments},
+                {"bounded", Keeps::moments}};
+      }
+      return {{"t", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
               {"binomial", Keeps::moments},
-              {"bounded", Keeps::moments}};
+              {"bounded", Keeps::moments},
+              {"batch-means", Keeps::values}};
     case QuestionKind::mean_of_two:
       return {{within ? "tost" : "welch", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
@@ -206,9 +222,10 @@ std::vector<Method> methods_for(const Question& question) {
       const Subject& draws = question.subjects[0];
       const bool whole = draws.setup->channels()[draws.channels[0]].name == cell_channel;
       if (whole) return {{"chi-square-fit", Keeps::cells}};
-      return {{"ks", Keeps::values}};
+      return {{"ks", Keeps::values}, {"anderson-darling", Keeps::values}};
     }
     case QuestionKind::fit_to_law:
+      return {{"ks", Keeps::values}, {"anderson-darling", Keeps::values}};
     case QuestionKind::same_law:
       return {{"ks", Keeps::values}};
     case QuestionKind::cost:
@@ -230,7 +247,10 @@ std::vector<Method> methods_for(const Question& question) {
 Method find_method(const Question& question, const std::string& name) {
   std::string known;
   for (const Method& method : methods_for(question)) {
-    if (method.name == name) return method;
+    if (method.name == name) {
+      require_margins(method, question);
+      return method;
+    }
     known += (known.empty() ? "`" : ", `") + method.name + "`";
   }
   throw InputError(question.test->where,
@@ -267,6 +287,12 @@ bool is_relative(const Question& question, std::size_t channel) {
          (question.kind == QuestionKind::mean_of_two || question.references[channel].value != 0);
 }
 
+double unit_of_theta(const Question& question, std::size_t channel, double other_mean) {
+  if (!is_relative(question, channel)) return 1;
+  return std::abs(question.of_two() ? question.factor * other_mean
+                                    : question.references[channel].value);
+}
+
 double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin) {
   if (!question.on_log_scale()) return margin.value;
   if (margin.relative) return std::log1p(margin.value);
@@ -277,7 +303,8 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
                      std::span<const ChannelData> data) {
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return mean_against_number(method, question, channel, data[0].moments);
+      return mean_against_number(method, question, channel,
+                                 method.name == "batch-means" ? batched(data[0]) : data[0].moments);
     case QuestionKind::mean_of_two:
       return mean_against_mean(method, question, channel, data);
     case QuestionKind::variance_of_one:
@@ -286,9 +313,9 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
       return variance_against_variance(method, question, data);
     case QuestionKind::fit_to_density:
       if (method.name == "chi-square-fit") return cells_against_density(question, data[0]);
-      return values_against_law(question, channel, data[0]);
+      return values_against_law(method, question, channel, data[0]);
     case QuestionKind::fit_to_law:
-      return values_against_law(question, channel, data[0]);
+      return values_against_law(method, question, channel, data[0]);
     case QuestionKind::same_law:
       return law_against_law(question, channel, data);
     case QuestionKind::cost:
