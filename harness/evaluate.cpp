@@ -8,9 +8,12 @@
 #include "harness/activation.h"
 #include "harness/assumptions.h"
 #include "harness/constant.h"
+#include "harness/critical.h"
+#include "harness/image_plan.h"
 #include "harness/narrate.h"
 #include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
+#include "stats/image_pyramid.h"
 
 namespace assay::harness {
 namespace {
@@ -39,12 +42,15 @@ bool could_be_drawn(TestWork& work) {
     for (const std::size_t channel : side.channels) {
       const ChannelSummary& summary = summary_of(work, subject).channels[channel];
       if (summary.nonfinite == 0) continue;
-      settle(work.outcome, Verdict::error,
-             fmt::format("{} of {} observations of `{}` are not finite, the first is observation "
-                         "{}; `assay replay RUN.json '{}' {}` draws it again",
-                         summary.nonfinite, work.outcome.secondaries(), side.estimator->name,
-                         summary.first_nonfinite, work.outcome.question.test->id,
-                         summary.first_nonfinite));
+      settle(
+          work.outcome, Verdict::error,
+          fmt::format(
+              "{} of {} observations of `{}`{} are not finite, the first is observation "
+              "{}; `assay replay RUN.json '{}' {}` draws it again",
+              summary.nonfinite, work.outcome.secondaries(), side.estimator->name,
+              side.image ? fmt::format(" at pixel {}", element_name(*side.setup->image(), channel))
+                         : "",
+              summary.first_nonfinite, work.outcome.question.test->id, summary.first_nonfinite));
       return false;
     }
   }
@@ -82,11 +88,30 @@ reports::Effect effect_of(const Evidence& evidence, const Regions& regions,
           .relative = evidence.relative};
 }
 
-ChannelOutcome channel_outcome(const TestOutcome& outcome, std::size_t channel,
+ImageTest image_test(const TestWork& work) {
+  const TestOutcome& outcome = work.outcome;
+  const std::vector<Subject>& subjects = outcome.question.subjects;
+  return {.share = outcome.share(),
+          .single_elements = outcome.plan.single_elements,
+          .independent = std::all_of(subjects.begin(), subjects.end(),
+                                     [](const Subject& s) { return s.image->independent; }),
+          .flips = work.pools[0]->key()};
+}
+
+ChannelOutcome channel_outcome(const TestWork& work, std::size_t channel,
                                std::span<const ChannelData> data) {
+  const TestOutcome& outcome = work.outcome;
   const Question& question = outcome.question;
   const Regions& regions = outcome.plan.regions[channel];
-  Evidence evidence = evidence_of(outcome.plan.method, question, channel, data);
+  std::optional<ImageOutcome> image;
+  Evidence evidence;
+  if (question.kind == QuestionKind::image) {
+    ImageEvidence found = evidence_of_images(question, image_test(work), data);
+    evidence = std::move(found.evidence);
+    image = std::move(found.outcome);
+  } else {
+    evidence = evidence_of(outcome.plan.method, question, channel, data);
+  }
   const stats::TestResult at_null = evidence.at(0);
   ChannelOutcome result{.index = channel,
                         .name = question.channel_name(channel),
@@ -96,6 +121,7 @@ ChannelOutcome channel_outcome(const TestOutcome& outcome, std::size_t channel,
   result.decision = {.log_p_claimed = log_p_claimed(result.evidence, regions),
                      .log_p_forbidden = log_p_forbidden(result.evidence, regions)};
   result.effect = effect_of(result.evidence, regions, outcome.share());
+  result.image = std::move(image);
   if (question.kind == QuestionKind::mean_of_one) {
     result.reference = question.references[channel].value + question.offset;
   } else if (question.kind == QuestionKind::mean_of_two) {
@@ -142,7 +168,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
     for (reports::Gate& gate : data_gates(outcome, channel, data)) {
       outcome.gates.push_back(std::move(gate));
     }
-    outcome.channels.push_back(channel_outcome(outcome, channel, data));
+    outcome.channels.push_back(channel_outcome(work, channel, data));
   }
   return constants;
 }
@@ -158,11 +184,28 @@ TestSize full_size(const TestOutcome& outcome) {
           .secondaries = looks.sizes[look]};
 }
 
+/// The difference that would have been found, were it the same everywhere: by the sum over the
+/// whole image.
+void note_image_size(const TestOutcome& outcome, ChannelOutcome& channel) {
+  if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return;
+  const ErrorShare share = full_size(outcome).share;
+  const double part = stats::whole_image_share(extent_of(*outcome.question.subjects[0].image));
+  const double z = critical_value(share.alpha * part, true) + critical_value(share.beta, false);
+  const double shrunk = std::sqrt(static_cast<double>(outcome.secondaries()) /
+                                  static_cast<double>(full_size(outcome).secondaries));
+  const double found = z * channel.image->uniform_error * shrunk;
+  if (std::isfinite(found)) channel.detectable = found;
+}
+
 /// What a decided test could have found: the least detectable effect of every channel, and the
 /// least power over them, at `detect` or, of `within`, of showing a theta of 0.
 void note_sizes(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   for (ChannelOutcome& channel : outcome.channels) {
+    if (channel.image) {
+      note_image_size(outcome, channel);
+      continue;
+    }
     const std::vector<ChannelData> data = data_of(work, channel.index);
     const PlannedChannel observed =
         observed_channel(outcome.question, channel.regions, channel.index, data);
@@ -276,6 +319,18 @@ std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
   return replicates;
 }
 
+/// The observations of this look, the subject's elements of each.
+std::vector<std::vector<double>> images_of(const TestWork& work, std::size_t subject) {
+  const std::vector<std::size_t>& elements = work.outcome.question.subjects[subject].channels;
+  std::vector<std::vector<double>> images;
+  for (const auto& whole : work.pools[subject]->observations(work.outcome.secondaries())) {
+    std::vector<double>& image = images.emplace_back();
+    image.reserve(elements.size());
+    for (const std::size_t channel : elements) image.push_back(whole[channel]);
+  }
+  return images;
+}
+
 }  // namespace
 
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
@@ -289,6 +344,9 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
                     .cells = summary.cells,
                     .with_cost = summary.with_cost,
                     .group_variances = summary_of(work, subject).group_variances});
+    if (work.outcome.plan.method.keeps == Keeps::images) {
+      data.back().images = images_of(work, subject);
+    }
     if (work.outcome.plan.method.keeps == Keeps::blocks) {
       data.back().replicates = replicates_of(work, subject, index);
     }
