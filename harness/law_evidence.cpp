@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "harness/sampler_setup.h"
+#include "stats/anderson_darling.h"
 #include "stats/binomial.h"
 #include "stats/two_valued.h"
 
@@ -39,6 +40,14 @@ Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
           .interval = interval,
           .quantity = quantity,
           .distance = true};
+}
+
+/// The same, but for theta = 0.
+Evidence with_anderson_darling(Evidence distance, const TestResult& at_null) {
+  distance.at = [at_null, margin = std::move(distance.at)](double theta) {
+    return theta <= 0 ? at_null : margin(theta);
+  };
+  return distance;
 }
 
 Evidence from_distance(const stats::TwoSampleDistance& distance) {
@@ -159,10 +168,13 @@ Points points_of(const Question& question, std::size_t subject, std::size_t chan
   return points;
 }
 
-Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared, PointsTest test) {
   require_points(points);
-  const Evidence rest =
-      from_distance(stats::ks_distance(points.sorted, declared.law), declared.error);
+  Evidence rest = from_distance(stats::ks_distance(points.sorted, declared.law), declared.error);
+  if (test == PointsTest::anderson_darling) {
+    rest = with_anderson_darling(
+        std::move(rest), stats::anderson_darling(points.sorted, declared.law, declared.error));
+  }
   if (declared.missing == 0 && points.missing() == 0) return rest;
   return larger_of(
       rest, from_proportion({.successes = points.missing(), .trials = points.draws}, declared));

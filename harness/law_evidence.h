@@ -37,10 +37,16 @@ struct DeclaredLaw {
   double missing_error = 0;  ///< of it
 };
 
+/// Which test of "the law is the declared one" the points get. Anderson and Darling's has the
+/// tails' weight and knows no margin: of theta above 0, and of intervals, it leaves to Kolmogorov
+/// and Smirnov's distance, valid for every law.
+enum class PointsTest { kolmogorov_smirnov, anderson_darling };
+
 /// Where mass is declared missing the two parts share the level, each half (Bonferroni). Where none
 /// is and the sample misses none there is nothing to test and the points have it whole: under the
 /// null hypothesis the other case has probability 0 (up to the error).
-Evidence points_against_law(const Points& points, const DeclaredLaw& declared);
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared,
+                            PointsTest test = PointsTest::kolmogorov_smirnov);
 
 /// Two samplers share the level always: whether mass is missing is not known beforehand.
 Evidence points_against_points(const Points& x, const Points& y);

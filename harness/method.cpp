@@ -106,10 +106,12 @@ DeclaredLaw reference_law(const Question& question, std::size_t channel) {
   return declared;
 }
 
-Evidence values_against_law(const Question& question, std::size_t channel,
+Evidence values_against_law(const Method& method, const Question& question, std::size_t channel,
                             const ChannelData& data) {
   return points_against_law(points_of(question, 0, channel, data.values),
-                            reference_law(question, channel));
+                            reference_law(question, channel),
+                            method.name == "anderson-darling" ? PointsTest::anderson_darling
+                                                              : PointsTest::kolmogorov_smirnov);
 }
 
 /// theta = w, Cohen's effect size over the cells.
@@ -188,6 +190,15 @@ std::string relation_text(const TestEntry& test) {
   return fmt::format("within {} of", to_string(test.claim.margin));
 }
 
+/// A margin that the method cannot test.
+void require_margins(const Method& method, const Question& question) {
+  const TestEntry& test = *question.test;
+  if (method.name != "anderson-darling" || !test.allow || test.allow->value == 0) return;
+  throw InputError(test.where,
+                   "`anderson-darling` tests that two laws are the same and knows no distance to "
+                   "`allow` between them; leave `allow` out, or test by `ks`");
+}
+
 }  // namespace
 
 std::vector<Method> methods_for(const Question& question) {
@@ -212,9 +223,10 @@ std::vector<Method> methods_for(const Question& question) {
       const Subject& draws = question.subjects[0];
       const bool whole = draws.setup->channels()[draws.channels[0]].name == cell_channel;
       if (whole) return {{"chi-square-fit", Keeps::cells}};
-      return {{"ks", Keeps::values}};
+      return {{"ks", Keeps::values}, {"anderson-darling", Keeps::values}};
     }
     case QuestionKind::fit_to_law:
+      return {{"ks", Keeps::values}, {"anderson-darling", Keeps::values}};
     case QuestionKind::same_law:
       return {{"ks", Keeps::values}};
     case QuestionKind::cost:
@@ -236,7 +248,10 @@ std::vector<Method> methods_for(const Question& question) {
 Method find_method(const Question& question, const std::string& name) {
   std::string known;
   for (const Method& method : methods_for(question)) {
-    if (method.name == name) return method;
+    if (method.name == name) {
+      require_margins(method, question);
+      return method;
+    }
     known += (known.empty() ? "`" : ", `") + method.name + "`";
   }
   throw InputError(question.test->where,
@@ -299,9 +314,9 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
       return variance_against_variance(method, question, data);
     case QuestionKind::fit_to_density:
       if (method.name == "chi-square-fit") return cells_against_density(question, data[0]);
-      return values_against_law(question, channel, data[0]);
+      return values_against_law(method, question, channel, data[0]);
     case QuestionKind::fit_to_law:
-      return values_against_law(question, channel, data[0]);
+      return values_against_law(method, question, channel, data[0]);
     case QuestionKind::same_law:
       return law_against_law(question, channel, data);
     case QuestionKind::cost:

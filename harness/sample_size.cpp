@@ -251,9 +251,9 @@ bool has_power(const Question& question, const PlannedChannel& channel) {
   return !has_log_spread(question) || channel.kurtosis + channel.other_kurtosis > 2;
 }
 
-/// Methods of which the normal law says nothing: their power is not quoted.
-bool is_exact(const Method& method) {
-  return method.name == "binomial" || method.name == "bounded";
+/// Methods of which no formula says what they find: their power is not quoted.
+bool has_no_power(const Method& method) {
+  return method.name == "binomial" || method.name == "bounded" || method.name == "anderson-darling";
 }
 
 bool all_piloted(const Question& question, const Pilots& pilots) {
@@ -293,7 +293,7 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
   const ErrorShare& share = size.share;
   const Regions& regions = channel.regions;
   if (regions.relation == Relation::within) return std::nullopt;  // it finds nothing, it shows
-  if (is_exact(plan.method)) return std::nullopt;
+  if (has_no_power(plan.method)) return std::nullopt;
   if (!has_power(question, channel)) return std::nullopt;
   const stats::ErrorRates rates = rates_of(share, regions);
   double found = 0;
@@ -320,7 +320,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
   const Regions& regions = channel.regions;
   const stats::ErrorRates rates = rates_of(share, regions);
   if (!has_power(question, channel)) return std::nullopt;
-  if (is_exact(plan.method)) return std::nullopt;
+  if (has_no_power(plan.method)) return std::nullopt;
   if (regions.relation == Relation::within) return equivalence_power(question, size, channel);
   switch (question.kind) {
     case QuestionKind::mean_of_one:

@@ -153,6 +153,7 @@ const std::vector<std::string>& method_names() {
                                               "chi-square",
                                               "log-variance",
                                               "ks",
+                                              "anderson-darling",
                                               "chi-square-fit",
                                               "log-cost",
                                               "log-efficiency",

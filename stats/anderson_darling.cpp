@@ -54,6 +54,31 @@ void check_sorted(const char* function, std::span<const double> sorted) {
   }
 }
 
+// A2 with u_i moved towards (2i - 1) / 2n by `error` at most.
+double least_statistic(std::span<const double> sorted, const ContinuousLaw& law, double error) {
+  check::at_least({"anderson_darling", "values"}, sorted.size(), 5);
+  check_sorted("anderson_darling", sorted);
+  if (law.left_limit) {
+    throw std::domain_error("anderson_darling: the law has atoms, must be continuous");
+  }
+  const std::size_t n = sorted.size();
+  const double size = static_cast<double>(n);
+  std::vector<double> u;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double given = law.cdf(sorted[i]);
+    check::unit({"anderson_darling", "cdf"}, given);
+    const double bottom = (2 * static_cast<double>(i) + 1) / (2 * size);
+    u.push_back(std::clamp(bottom, given - error, given + error));
+  }
+  const auto [lowest, highest] = std::minmax_element(u.begin(), u.end());
+  if (*lowest <= 0 || *highest >= 1) return largest_double;
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    sum += static_cast<double>(2 * i + 1) * (std::log(u[i]) + std::log1p(-u[n - 1 - i]));
+  }
+  return -size - sum / size;
+}
+
 // The pooled values in order, each with the sample that it came from.
 struct Labelled {
   double value;
@@ -124,28 +149,17 @@ double log_anderson_darling_upper(double x, std::uint64_t n) {
 }
 
 double anderson_darling_statistic(std::span<const double> sorted, const ContinuousLaw& law) {
-  check::at_least({"anderson_darling", "values"}, sorted.size(), 5);
-  check_sorted("anderson_darling", sorted);
-  if (law.left_limit) {
-    throw std::domain_error("anderson_darling: the law has atoms, must be continuous");
-  }
-  const std::size_t n = sorted.size();
-  std::vector<double> u;
-  for (const double value : sorted) {
-    u.push_back(law.cdf(value));
-    check::unit({"anderson_darling", "cdf"}, u.back());
-  }
-  if (u.front() <= 0 || u.back() >= 1) return largest_double;
-  double sum = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    sum += static_cast<double>(2 * i + 1) * (std::log(u[i]) + std::log1p(-u[n - 1 - i]));
-  }
-  const double size = static_cast<double>(n);
-  return -size - sum / size;
+  return least_statistic(sorted, law, 0);
 }
 
 TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law) {
-  const double statistic = anderson_darling_statistic(sorted, law);
+  return anderson_darling(sorted, law, 0);
+}
+
+TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law,
+                            double error) {
+  check::non_negative({"anderson_darling", "error"}, error);
+  const double statistic = least_statistic(sorted, law, error);
   return {statistic,
           {"bound", {}},
           0,

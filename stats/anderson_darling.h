@@ -31,6 +31,11 @@ double anderson_darling_statistic(std::span<const double> sorted, const Continuo
 // Null hypothesis: the sample follows the law. log_p_upper is the p-value, log_p_lower 0.
 TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law);
 
+// The same of a law that is known up to `error`, sup |law - given|: the least A2 over all u_i
+// within error of F(x_i), so p is an upper bound of that of every such law. A2 falls as u_i nears
+// (2i - 1) / 2n, where its term has its only bottom. Throws besides: error negative or not finite.
+TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law, double error);
+
 // k samples against each other by permutation. `random_below(b)` must return a uniform whole number
 // in [0, b); permutations >= 1.
 struct PermutationPlan {

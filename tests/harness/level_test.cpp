@@ -100,6 +100,10 @@ TEST(Level, OfLawsIsWhatTheirPValuesSay) {
       1000, {{"claim: 'distribution(normal) == normal(2, 1)', secondaries: 100"},
              {"claim: 'distribution(normal) == normal(2.5066942, 1)', allow: 0.2, secondaries: 100",
               Shape::at_most_uniform},
+             {"claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
+              "secondaries: 100"},
+             {"claim: distribution(importance.x.x) == density, test: anderson-darling, "
+              "secondaries: 1280"},
              {"claim: distribution(normal) == distribution(again), secondaries: 100",
               Shape::at_most_uniform},
              {"claim: distribution(importance.x) == density, secondaries: 1280"}});

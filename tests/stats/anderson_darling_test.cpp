@@ -104,6 +104,41 @@ TEST(AndersonDarling, OfOneSampleIsUniform) {
   }
 }
 
+// The law is given .01 off, at n = 100 a fifth of its own spread.
+TEST(AndersonDarling, OfALawKnownUpToAnErrorIsAtMostUniform) {
+  const ContinuousLaw off{[](double x) { return std::clamp(x + .01, 0.0, 1.0); }};
+  expect_calibrated({369, 20000, Shape::at_most_uniform}, [&](Philox& random) {
+    const auto u = sorted(sample_of(100, [&] { return random.uniform(); }));
+    return anderson_darling(u, off, .01).log_p_upper;
+  });
+}
+
+// A value below the given law's range, within its error of it, excludes nothing; without the error
+// it excludes the law.
+TEST(AndersonDarling, TakesTheLeastStatisticOfAllLawsWithinTheError) {
+  Philox random(370);
+  const auto u = sorted(sample_of(200, [&] { return random.uniform(); }));
+  EXPECT_EQ(anderson_darling(u, uniform_law, 0).statistic,
+            anderson_darling(u, uniform_law).statistic);
+  double before = anderson_darling(u, uniform_law).statistic;
+  for (const double error : {1e-4, 1e-3, 1e-2, .1}) {
+    const double now = anderson_darling(u, uniform_law, error).statistic;
+    EXPECT_LT(now, before) << error;
+    before = now;
+  }
+  // With every u_i at its bottom: the entropy of the bottoms, n terms.
+  double least = -200;
+  for (int i = 0; i < 200; ++i) {
+    const double bottom = (i + .5) / 200;
+    least -= ((2 * i + 1) * std::log(bottom) + (399 - 2 * i) * std::log1p(-bottom)) / 200;
+  }
+  EXPECT_NEAR(anderson_darling(u, uniform_law, .5).statistic, least, 1e-9);
+  const ContinuousLaw shifted{[](double x) { return std::clamp(2 * x - .5, 0.0, 1.0); }};
+  EXPECT_LT(anderson_darling(u, shifted).log_p_upper, -1e300);
+  EXPECT_GT(anderson_darling(u, shifted, .6).log_p_upper, -1e3);
+  EXPECT_THROW(anderson_darling(u, uniform_law, -1e-9), std::domain_error);
+}
+
 std::vector<std::vector<double>> three_samples(Philox& random, double shift) {
   std::vector<std::vector<double>> samples;
   for (const std::size_t n : {std::size_t{8}, std::size_t{12}, std::size_t{10}}) {
