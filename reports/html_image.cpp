@@ -123,6 +123,7 @@ std::string image_section(const Test& test) {
   const ImageFinding& winner = test.image->winner;
   std::string out = "<div class=\"figures\">\n";
   for (const Map& map : test.maps) {
+    if (map.texels.values.empty()) continue;
     const std::size_t worst = index_of(map, winner.component);
     for (std::size_t c = 0; c < map.components.size(); ++c) {
       // Of several components all z, but of the rest the one that matters most.
