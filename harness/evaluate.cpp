@@ -8,12 +8,12 @@
 #include "harness/activation.h"
 #include "harness/assumptions.h"
 #include "harness/constant.h"
-#include "harness/critical.h"
-#include "harness/image_plan.h"
+#include "harness/gate_text.h"
+#include "harness/image_judge.h"
 #include "harness/narrate.h"
+#include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
-#include "stats/image_pyramid.h"
 
 namespace assay::harness {
 namespace {
@@ -88,16 +88,6 @@ reports::Effect effect_of(const Evidence& evidence, const Regions& regions,
           .relative = evidence.relative};
 }
 
-ImageTest image_test(const TestWork& work) {
-  const TestOutcome& outcome = work.outcome;
-  const std::vector<Subject>& subjects = outcome.question.subjects;
-  return {.share = outcome.share(),
-          .single_elements = outcome.plan.single_elements,
-          .independent = std::all_of(subjects.begin(), subjects.end(),
-                                     [](const Subject& s) { return s.image->independent; }),
-          .flips = work.pools[0]->key()};
-}
-
 ChannelOutcome channel_outcome(const TestWork& work, std::size_t channel,
                                std::span<const ChannelData> data) {
   const TestOutcome& outcome = work.outcome;
@@ -147,6 +137,18 @@ int badness(Verdict verdict) {
   return 0;
 }
 
+/// Why a channel's data cannot be tested; "" where they can.
+std::string lack_of_numbers(const TestOutcome& outcome, std::size_t channel,
+                            std::span<const ChannelData> data) {
+  const Question& question = outcome.question;
+  for (std::size_t i = 0; i < data.size() && !question.of_laws(); ++i) {
+    if (is_constant(question, i, channel, data[i].moments)) continue;
+    std::string reason = beyond_doubles(data[i].moments, question.subjects[i].estimator->name);
+    if (!reason.empty()) return reason;
+  }
+  return lack_of_spread(outcome, channel, data);
+}
+
 /// Numbers and gates of every channel at the current look. Constant channels are judged by
 /// themselves: their verdicts are returned.
 std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
@@ -160,7 +162,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
           judge_constant(question, channel, data, outcome.plan.regions[channel], outcome.share()));
       continue;
     }
-    const std::string reason = lack_of_spread(outcome, channel, data);
+    const std::string reason = lack_of_numbers(outcome, channel, data);
     if (!reason.empty()) {
       constants.push_back({Verdict::invalid, reason});
       continue;
@@ -184,31 +186,23 @@ TestSize full_size(const TestOutcome& outcome) {
           .secondaries = looks.sizes[look]};
 }
 
-/// The difference that would have been found, were it the same everywhere: by the sum over the
-/// whole image.
-void note_image_size(const TestOutcome& outcome, ChannelOutcome& channel) {
-  if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return;
-  const ErrorShare share = full_size(outcome).share;
-  const double part = stats::whole_image_share(extent_of(*outcome.question.subjects[0].image));
-  const double z = critical_value(share.alpha * part, true) + critical_value(share.beta, false);
-  const double shrunk = std::sqrt(static_cast<double>(outcome.secondaries()) /
-                                  static_cast<double>(full_size(outcome).secondaries));
-  const double found = z * channel.image->uniform_error * shrunk;
-  if (std::isfinite(found)) channel.detectable = found;
-}
-
 /// What a decided test could have found: the least detectable effect of every channel, and the
 /// least power over them, at `detect` or, of `within`, of showing a theta of 0.
 void note_sizes(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   for (ChannelOutcome& channel : outcome.channels) {
     if (channel.image) {
-      note_image_size(outcome, channel);
+      channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
       continue;
     }
     const std::vector<ChannelData> data = data_of(work, channel.index);
-    const PlannedChannel observed =
+    PlannedChannel observed =
         observed_channel(outcome.question, channel.regions, channel.index, data);
+    if (outcome.plan.method.name == "batch-means") {
+      // The deviation of independent values whose mean is as uncertain.
+      observed.standard_deviation =
+          batched(data[0]).standard_error() * std::sqrt(static_cast<double>(data[0].moments.count));
+    }
     channel.detectable =
         detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
     const bool equivalence = channel.regions.relation == Relation::within;
@@ -317,18 +311,6 @@ std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
   }
   replicates.resize(replicate_count);
   return replicates;
-}
-
-/// The observations of this look, the subject's elements of each.
-std::vector<std::vector<double>> images_of(const TestWork& work, std::size_t subject) {
-  const std::vector<std::size_t>& elements = work.outcome.question.subjects[subject].channels;
-  std::vector<std::vector<double>> images;
-  for (const auto& whole : work.pools[subject]->observations(work.outcome.secondaries())) {
-    std::vector<double>& image = images.emplace_back();
-    image.reserve(elements.size());
-    for (const std::size_t channel : elements) image.push_back(whole[channel]);
-  }
-  return images;
 }
 
 }  // namespace
