@@ -19,8 +19,11 @@ namespace {
 
 // Against a reference, this share of the level goes to elements that never varied.
 constexpr double unseen_share = 0.02;
-// Sign vectors that are looked at where they are not all enumerated, at most: a second's work.
-constexpr double most_flips = 0x1p21;
+// Sign vectors are enumerated for so few replicates, some milliseconds' work; for more of them a
+// random choice is looked at, and never of more vectors or longer ones: some seconds' work.
+constexpr std::size_t most_enumerated = 18;
+constexpr double most_flips = 0x1p19;
+constexpr std::size_t most_flipped = 64;
 
 constexpr double certain = std::numeric_limits<double>::lowest();
 
@@ -32,18 +35,49 @@ bool never_varied(const stats::ImageStack<double>& stack, std::size_t element) {
 
 // ---- theta = 0
 
+using Images = std::vector<std::vector<double>>;
+
+/// Means of the images r, r + count, r + 2 count, …: as good as the images themselves for flipping
+/// signs, and there are at most `count` of them.
+Images grouped(const stats::ImageStack<double>& stack, std::size_t count) {
+  const std::size_t groups = std::min(count, stack.images.size());
+  Images means(groups, std::vector<double>(stack.extent.elements()));
+  for (std::size_t g = 0; g < groups; ++g) {
+    const std::size_t members = (stack.images.size() - g + groups - 1) / groups;
+    for (std::size_t r = g; r < stack.images.size(); r += groups) {
+      for (std::size_t i = 0; i < means[g].size(); ++i) {
+        means[g][i] += stack.images[r][i] / static_cast<double>(members);
+      }
+    }
+  }
+  return means;
+}
+
+stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Images& images) {
+  stats::ImageStack<double> stack{extent, {}};
+  for (const std::vector<double>& image : images) stack.images.emplace_back(image);
+  return stack;
+}
+
+stats::FlipMatrix flip_matrix_of(const ImagePair& pair) {
+  const Images first = grouped(pair.first(), most_flipped);
+  const auto a = stack_of(pair.extent(), first);
+  if (!pair.of_two()) return stats::flip_matrix(a, pair.reference());
+  const Images second = grouped(pair.second(), most_flipped);
+  return stats::flip_matrix(a, stack_of(pair.extent(), second));
+}
+
 /// The sum of squares of correlated elements: the share of sign vectors that reach it. nullopt
 /// where so few replicates, or so small a level, leave nothing to reject.
 std::optional<double> flipped_energy(const ImagePair& pair, const ImageTest& test) {
   const double share = test.share.alpha * stats::energy_share;
-  const stats::FlipMatrix matrix = pair.with(
-      [](const auto& first, const auto& second) { return stats::flip_matrix(first, second); });
+  const stats::FlipMatrix matrix = flip_matrix_of(pair);
   const double replicates = static_cast<double>(matrix.replicates());
   if (replicates < 2 + std::log2(1 / share)) return std::nullopt;
-  if (matrix.replicates() <= 25) return stats::sign_flip(matrix, share).log_p;
-  const double flips = std::ceil(2 / share);
+  if (matrix.replicates() <= most_enumerated) return stats::sign_flip(matrix, share).log_p;
+  const double flips = std::ceil(4 / share);
   if (flips > most_flips) return std::nullopt;
-  Stream random(stream_key(test.flips.bits, "sign flips", "", 0), matrix.replicates());
+  Stream random(stream_key(test.flips.bits, "sign flips", "", 0), pair.replicates());
   return stats::sign_flip(matrix, {share, static_cast<std::uint64_t>(flips)}, random).log_p;
 }
 
@@ -140,10 +174,20 @@ double wanted_replicates(const stats::ImageDistance& distance, double margin, co
   return replicates * std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
 }
 
+/// Tests of a squared margin. An estimate below zero excludes no more than one of zero would: a
+/// bias smaller than none is excluded by no one.
+stats::TestResult at_squared_margin(const stats::ImageDistance& distance, double margin) {
+  stats::ImageDistance at_least_zero = distance;
+  at_least_zero.squared_bias = std::max(0.0, distance.squared_bias);
+  stats::TestResult result = stats::squared_margin_test(distance, margin);
+  result.log_p_lower = stats::squared_margin_test(at_least_zero, margin).log_p_lower;
+  return result;
+}
+
 stats::Interval interval_of(const stats::ImageDistance& distance, double confidence) {
   const double step = std::sqrt(distance.bias_variance) / distance.squared_norm;
   const stats::Interval squared = interval_by_inversion(
-      [&](double margin) { return stats::squared_margin_test(distance, margin); },
+      [&](double margin) { return at_squared_margin(distance, margin); },
       {.estimate = distance.squared_bias / distance.squared_norm, .step = step}, confidence);
   return {std::sqrt(std::max(0.0, squared.low)), std::sqrt(std::max(0.0, squared.high)),
           confidence};
@@ -250,7 +294,7 @@ ImageEvidence evidence_of_images(const Question& question, const ImageTest& test
       .estimate = std::sqrt(std::max(0.0, distance.squared_bias / distance.squared_norm)),
       .at =
           [distance, equal](double theta) {
-            return theta > 0 ? stats::squared_margin_test(distance, theta * theta) : equal;
+            return theta > 0 ? at_squared_margin(distance, theta * theta) : equal;
           },
       .interval = [distance](double confidence) { return interval_of(distance, confidence); },
       .quantity = relative ? "relative root mean square difference of the images"
