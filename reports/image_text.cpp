@@ -19,10 +19,10 @@ std::string left_out(const Image& image) {
   std::string text;
   if (!image.single_pixels) text += "; single pixels are left out: their skewness is too large";
   if (image.sign_flips) text += "; its pixels depend on each other: signs of whole images flipped";
-  if (image.constant > 0) text += fmt::format("; {} elements are constant", image.constant);
+  if (image.constant > 0) text += fmt::format("; constant elements: {}", image.constant);
   if (image.unseen > 0) {
     text += fmt::format(
-        "; {} elements are constant, not at their reference: rarer values may be unseen",
+        "; constant elements that are not at their reference: {}, rarer values may be unseen",
         image.unseen);
   }
   return text;
