@@ -153,7 +153,8 @@ int calibrate(const CalibrateArguments& arguments, const Output& output) {
   require_writable(output);
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Calibration measured = calibration(arguments, *progress);
-  write_reports(output, [&](const std::string& kind, bool) { return written(measured, kind); });
+  write_reports(
+      output, [&](const ReportRequest& request, bool) { return written(measured, request.kind); });
   return reports::defects(measured) == 0 ? 0 : 1;
 }
 

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "harness/image_record.h"
 #include "harness/plan_table.h"
 #include "harness/progress_terminal.h"
 #include "harness/replay.h"
@@ -74,7 +75,7 @@ void write_reports(const Output& output, const ReportWriter& written) {
     console_placed = console_placed || request.kind == "console";
     const bool standard = request.path == "-";
     const bool colour = standard && use_colour(output.colour, stdout);
-    const std::string text = written(request.kind, colour);
+    const std::string text = written(request, colour);
     if (standard) {
       to_stdout += text;
     } else {
@@ -83,16 +84,20 @@ void write_reports(const Output& output, const ReportWriter& written) {
   }
   if (!console_placed) {
     std::FILE* stream = to_stdout.empty() ? stdout : stderr;
-    fmt::print(stream, "{}", written("console", use_colour(output.colour, stream)));
+    fmt::print(stream, "{}",
+               written({.kind = "console", .path = "-"}, use_colour(output.colour, stream)));
   }
   fmt::print("{}", to_stdout);
 }
 
 namespace {
 
-void write_reports(const reports::Record& record, const Output& output) {
-  write_reports(
-      output, [&](const std::string& kind, bool colour) { return written(record, kind, colour); });
+/// Maps are written beside the JSON report, which names them.
+void write_reports(reports::Record record, const Output& output) {
+  write_reports(output, [&](const ReportRequest& request, bool colour) {
+    if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
+    return written(record, request.kind, colour);
+  });
 }
 
 /// Says so where the filter matches no test.

@@ -25,8 +25,8 @@ struct Output {
   bool quiet = false;  ///< no progress
 };
 
-/// A report of this kind, in colour or not.
-using ReportWriter = std::function<std::string(const std::string& kind, bool colour)>;
+/// The text of a report, in colour or not.
+using ReportWriter = std::function<std::string(const ReportRequest& request, bool colour)>;
 
 /// InputError where a report's file cannot be written: better known before the hours of sampling
 /// than after.
