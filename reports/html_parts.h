@@ -15,6 +15,9 @@ namespace assay::reports {
 extern const char* const page_style;
 extern const char* const page_script;
 
+/// Everything up to the body.
+std::string page_head(const std::string& title);
+
 /// Where a test stands in the record: its link target.
 struct TestPlace {
   std::size_t suite = 0;
@@ -49,6 +52,10 @@ std::string estimator_pictures(const Suite&);
 
 /// What the nights of the ledger say, alarms first; empty where none is kept.
 std::string ledger_section(const Ledger&);
+
+/// The maps of an image in colours, the cell outlined where it differs most; empty where there is
+/// no image.
+std::string image_section(const Test&);
 
 std::string suite_section(const Record&, std::size_t suite);
 std::string test_section(const Test&, TestPlace);

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "reports/base64.h"
+#include "reports/calibration.h"
+#include "reports/calibration_fields.h"
 #include "reports/fields.h"
 #include "reports/number.h"
 #include "reports/text.h"
@@ -25,7 +28,6 @@ class Writer {
   void repeated(const char* key, const T& value) {
     object_[key] = tree(value);
   }
-  void no_elements(const char* key) { object_[key] = Json::array(); }
   Json take() { return std::move(object_); }
 
  private:
@@ -38,6 +40,8 @@ Json leaf(double value) {
 }
 Json leaf(const Number& value) { return value ? leaf(*value) : Json(nullptr); }
 Json leaf(const std::string& value) { return clean(value); }
+Json leaf(const Texels& value) { return base64(bytes_of(value.values)); }
+Json leaf(const std::optional<Image>& value) { return value ? tree(*value) : Json(nullptr); }
 Json leaf(Verdict value) { return to_string(value); }
 Json leaf(bool value) { return value; }
 Json leaf(int value) { return value; }
@@ -93,12 +97,16 @@ void print(const Json& node, const std::string& indent, std::string& out) {
   out += "\n" + indent + (node.is_array() ? ']' : '}');
 }
 
-}  // namespace
-
-std::string json(const Record& record) {
+std::string printed(const Json& root) {
   std::string out;
-  print(tree(record), "", out);
+  print(root, "", out);
   return out + "\n";
 }
+
+}  // namespace
+
+std::string json(const Record& record) { return printed(tree(record)); }
+
+std::string json(const Calibration& calibration) { return printed(tree(calibration)); }
 
 }  // namespace assay::reports
