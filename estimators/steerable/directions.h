@@ -71,7 +71,8 @@ class SteeredDirections : public sky::Directions {
   }
 
   Panels panels() const override {
-    const std::size_t rows = std::size_t{4} << std::min<std::size_t>(tree_->sphere().level(), 5);
+    // A part is about as wide as a triangle, up to level 4; the marginals need no more.
+    const std::size_t rows = std::size_t{4} << std::min<std::size_t>(tree_->sphere().level(), 3);
     return {.first = rows, .second = 2 * rows};
   }
 
