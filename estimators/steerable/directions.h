@@ -77,6 +77,22 @@ class SteeredDirections : public sky::Directions {
   }
 
   double total() const { return total_; }
+  /// A bound of cos+ / density: over each triangle the cosine is no more than the greatest height
+  /// of a vertex over the distance d of the plane, the weight no less than a vertex's, |q| no less
+  /// than d.
+  double gain() const {
+    double most = 0;
+    for (std::size_t t = 0; t < tree_->count(); ++t) {
+      const auto [a, b, c] = tree_->sphere().corners(t);
+      const double distance = dot(normalised(cross(b - a, c - a)), a);
+      const Vector3& n = frame_.normal;
+      const double height = std::max({0.0, dot(n, a), dot(n, b), dot(n, c)});
+      const VertexWeights w = tree_->weights(t, a_);
+      const double least = std::min({w.a, w.b, w.c}) / total_ * distance * distance;
+      most = std::max(most, std::min(1.0, height / distance) / least);
+    }
+    return most;
+  }
   const SkyTree& tree() const { return *tree_; }
   const sky::Harmonics& steering() const { return a_; }
   const render::Frame& frame() const { return frame_; }
