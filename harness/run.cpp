@@ -1,7 +1,6 @@
 #include "harness/run.h"
 
 #include <chrono>
-#include <ctime>
 
 #include "harness/holm_verdict.h"
 #include "harness/interrupt.h"
@@ -20,15 +19,6 @@ void judge_family(SuiteRun& run, const RunOptions& options) {
     apply_holm(tests, run.suite.alpha);
     run.holm = true;
   }
-}
-
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[sizeof "2000-01-01T00:00:00Z"];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
 }
 
 }  // namespace
