@@ -16,7 +16,7 @@ struct Given {
   std::string claim, source, what, plugin, record, test, observation;
   Texts suites, estimators, sets, reports;
   std::string filter, seed, threads, alpha, coarsen, shard, ledger, inconclusive, colour;
-  std::string detect, allow, method, primaries, secondaries;
+  std::string detect, allow, method, primaries, secondaries, over, reference, cost, budget;
   bool quiet = false;
 };
 

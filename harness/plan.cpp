@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "harness/critical.h"
+#include "harness/gate_text.h"
 #include "harness/method_choice.h"
 #include "harness/pool.h"
 #include "harness/sample_size.h"
@@ -146,7 +147,7 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     plan.looks = plan_looks(question, place, pilots, plan, least);
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2);
-    plan.invalid = error.what();
+    plan.invalid = in_words(error);
   }
   return plan;
 }

@@ -62,6 +62,11 @@ int sample(const SampleArguments& arguments) {
       estimators_of({source}, arguments.estimators, arguments.primaries);
   const PreparedEstimator estimator = prepare(entries.front(), ".");
   const Sampled sampled = sampled_by(estimator, source);
+  const std::uint64_t available = sampled.setup->observations().value_or(arguments.secondaries);
+  if (arguments.secondaries > available) {
+    throw InputError({}, fmt::format("--secondaries {}: `{}` has {} rows", arguments.secondaries,
+                                     source.estimator, available));
+  }
   const StreamKey key = key_of(estimator, arguments.seed, 0, sampled.purpose);
 
   std::vector<std::string> names;
@@ -70,12 +75,10 @@ int sample(const SampleArguments& arguments) {
   fmt::print("# {} {} of {} primaries, seed {}\n", estimator.entry->information.name,
              estimator.parameters, arguments.primaries, arguments.seed);
   fmt::print("# stream: {:016x}\n# columns: {}\n", key.bits, fmt::join(names, " "));
-  const std::uint64_t rows = std::min(
-      arguments.secondaries, sampled.setup->observations().value_or(arguments.secondaries));
   const std::unique_ptr<Estimator> worker = sampled.setup->make();
   const FlushDenormals flush;
   std::vector<double> out(channels.size());
-  for (std::uint64_t row = 0; row < rows && !interrupted(); ++row) {
+  for (std::uint64_t row = 0; row < arguments.secondaries && !interrupted(); ++row) {
     Stream random(key, row);
     Cost unused;
     worker->secondary(random, arguments.primaries, out, unused);
