@@ -195,7 +195,7 @@ Command check_command(const Given& given, const CLI::App& sub) {
 Command sample_command(const Given& given, const CLI::App& sub) {
   require(given.source, "an estimator", sub);
   SampleArguments arguments{.source = given.source, .estimators = given.estimators};
-  arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 1).value_or(10);
+  arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 1);
   arguments.primaries = count_if_given(given.primaries, "--primaries", 1).value_or(1);
   if (!given.seed.empty()) arguments.seed = parse_seed(given.seed);
   return arguments;

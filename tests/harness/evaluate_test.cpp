@@ -115,9 +115,7 @@ TEST(Evaluate, HeavyTailIsInvalidAndSaysWhatWouldHelp) {
   const reports::Test test = judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
                                          "claim: mean(it) == analytic, secondaries: 100");
   EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_NE(test.message.find("a larger `primaries`"),
-            std::string::npos)
-      << test.message;
+  EXPECT_NE(test.message.find("a larger `primaries`"), std::string::npos) << test.message;
 }
 
 // A Pareto law of index 1.5 has no variance, but a lower bound: too much can be shown, too little
