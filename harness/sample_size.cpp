@@ -9,6 +9,7 @@
 #include "harness/critical.h"
 #include "harness/evidence_ratio.h"
 #include "harness/exact_size.h"
+#include "harness/image_plan.h"
 #include "harness/mean_evidence.h"
 #include "harness/method.h"
 #include "harness/sampler_setup.h"
@@ -248,9 +249,10 @@ double equivalence_power(const Question& question, const TestSize& size,
                                   n, 0);
 }
 
-/// Quantiles and slopes have none here; nor has a comparison of numbers without a spread.
+/// Quantiles, slopes and images have none here; nor has a comparison of numbers without a spread.
 bool has_power(const Question& question, const PlannedChannel& channel) {
-  if (question.kind == QuestionKind::quantile || question.kind == QuestionKind::slope) return false;
+  using enum QuestionKind;
+  if (question.kind == quantile || question.kind == slope || question.kind == image) return false;
   return !has_log_spread(question) || channel.kurtosis + channel.other_kurtosis > 2;
 }
 
@@ -273,6 +275,7 @@ std::optional<std::uint64_t> planned_secondaries(const Question& question, const
   if (question.kind == QuestionKind::quantile) {
     return quantile_secondaries(question, share, pilots, plan);
   }
+  if (question.kind == QuestionKind::image) return image_secondaries(question, share, pilots, plan);
   if (question.kind == QuestionKind::slope) {
     return slope_secondaries(question, share, pilots, plan);
   }
@@ -348,6 +351,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
     case QuestionKind::fit_to_law:
     case QuestionKind::same_law:
       return stats::ks_power_bound(distance_plan(question, share, regions.allow), n, effect);
+    case QuestionKind::image:
     case QuestionKind::quantile:
     case QuestionKind::slope:
       break;

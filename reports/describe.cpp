@@ -7,6 +7,7 @@
 
 #include "reports/effect.h"
 #include "reports/evidence.h"
+#include "reports/image_text.h"
 #include "reports/number.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
@@ -184,6 +185,7 @@ std::vector<Fact> facts(const Test& test) {
     add(is_proof(test) ? "beside it" : "passing", exclusion_text(test));
     add("margins", margins_fact(test));
     add("channels", channels_fact(test));
+    add("image", image_fact(test));
   }
   add("assumptions", gates_fact(test));
   add("observations", observations_fact(test));
