@@ -192,6 +192,25 @@ Command check_command(const Given& given, const CLI::App& sub) {
   return command;
 }
 
+Command calibrate_command(const Given& given) {
+  CalibrateCommand command;
+  command.output = output(given);
+  for (const ReportRequest& report : command.output.reports) {
+    if (report.kind == "junit") usage_error("a calibration has no junit report");
+  }
+  CalibrateArguments& arguments = command.arguments;
+  arguments.threads = options(given).threads;
+  arguments.method = if_given(given.method);
+  arguments.laws = given.laws;
+  for (const std::string& alpha : given.alphas) {
+    arguments.alphas.push_back(parse_rate(alpha, "--alpha"));
+  }
+  arguments.runs = count_if_given(given.runs, "--runs", 1).value_or(arguments.runs);
+  arguments.samples = count_if_given(given.samples, "--samples", 2);
+  if (!given.seed.empty()) arguments.seed = parse_seed(given.seed);
+  return command;
+}
+
 Command sample_command(const Given& given, const CLI::App& sub) {
   require(given.source, "an estimator", sub);
   SampleArguments arguments{.source = given.source, .estimators = given.estimators};
@@ -231,6 +250,7 @@ Command command_of(const Given& given, const CLI::App& sub) {
   if (name == "run") return run_command(given, sub);
   if (name == "plan") return plan_command(given, sub);
   if (name == "check") return check_command(given, sub);
+  if (name == "calibrate") return calibrate_command(given);
   if (name == "sample") return sample_command(given, sub);
   if (name == "list") return list_command(given, sub);
   if (name == "describe") return describe_command(given, sub);
@@ -247,7 +267,8 @@ std::string help(CLI::App& app) {
   sub.set_help_flag("-h,--help", "this text");
   for (CLI::Option* option : sub.get_options()) {
     const std::string name = option->get_name(true);
-    const bool optional = name == "OBSERVATION" || (name == "SUITE" && sub.get_name() == "list");
+    const bool optional =
+        name == "OBSERVATION" || name == "METHOD" || (name == "SUITE" && sub.get_name() == "list");
     if (option->get_positional() && !optional) option->required();
   }
   return wrapped_options(sub.help("assay"));

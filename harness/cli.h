@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "harness/calibrate.h"
 #include "harness/commands.h"
 #include "harness/shell.h"
 
@@ -31,6 +32,11 @@ struct CheckCommand {
   Output output;
 };
 
+struct CalibrateCommand {
+  CalibrateArguments arguments;
+  Output output;
+};
+
 struct ListCommand {
   bool tests = false;  ///< else plugins
   std::vector<std::string> suites;
@@ -50,8 +56,9 @@ struct TextCommand {
   std::string text;
 };
 
-using Command = std::variant<RunCommand, PlanCommand, CheckCommand, SampleArguments, ListCommand,
-                             DescribeCommand, ReplayArguments, ReportCommand, TextCommand>;
+using Command =
+    std::variant<RunCommand, PlanCommand, CheckCommand, SampleArguments, ListCommand,
+                 DescribeCommand, ReplayArguments, ReportCommand, CalibrateCommand, TextCommand>;
 
 /// Parses the arguments after the program's name. InputError, with what was meant where that can be
 /// guessed, for anything that is not exactly as `--help` says.

@@ -18,6 +18,7 @@ Commands (each has its own --help, with examples and defaults):
   run       test the claims of suite files
   plan      what a run would do and cost; only the pilots are drawn
   check     test one claim
+  calibrate how often the methods err, and how much they find, on known laws
   sample    print observations of an estimator
   list      list plugins, or the tests of suites
   describe  print the manual of a plugin
@@ -66,6 +67,16 @@ Examples:
   assay check 'mean(luminaire/area) == 0.481046907316 +- 1e-12'
   assay check 'variance(a) < variance(h)' --estimator a=luminaire/area \
       --estimator 'h=luminaire/hemisphere,scene=rectangle'
+)"},
+      {"calibrate",
+       R"(Measures how often each method errs on laws whose truth is known, and how often it finds an effect:
+the whole procedure with its pilot, gates and looks, and beside it the method alone. Exit code 1
+where a cell errs too often.
+
+Examples:
+  assay calibrate
+  assay calibrate F --law exponential --alpha 0.01 --runs 20000 --report html=F.html
+  assay calibrate t --law 'lognormal(0, 2)' --samples 200
 )"},
       {"sample", R"(Prints observations of an estimator or a sampler as text that `recorded` reads.
 

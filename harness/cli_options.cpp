@@ -125,6 +125,24 @@ void define_others(CLI::App& app, Given& given) {
                   .secondaries = "number of observations; default 10"});
   one(sample, "--seed", given.seed, "N|random", "seed of the stream, or a fresh one; default 1");
 
+  CLI::App* calibrate = subcommand(app, "calibrate");
+  calibrate->add_option("METHOD", given.method, "a method; default all")->type_name("");
+  many(calibrate, "--law", given.laws, "LAW",
+       "what is drawn, as exponential or 'student_t(3)'; repeatable; default eight laws");
+  many(calibrate, "--alpha", given.alphas, "A",
+       "nominal level, in (0, 0.5]; repeatable; default 0.05, 0.01 and 0.001");
+  one(calibrate, "--runs", given.runs, "N", "runs a cell; default 1000");
+  one(calibrate, "--samples", given.samples, "N",
+      "observations of every test, in one look, 2 or more; default planned, in looks, and 1000 of "
+      "a method alone");
+  one(calibrate, "--seed", given.seed, "N|random",
+      "seed of the first run, the next ones follow; default 1");
+  one(calibrate, "--threads", given.threads, "N", "worker threads; default one for each core");
+  calibrate->add_flag("--quiet", given.quiet, "no progress on standard error; default shown");
+  many(calibrate, "--report", given.reports, "KIND=PATH",
+       "console, json, markdown or html to a file, - is standard output; repeatable; default "
+       "console=-");
+
   CLI::App* list = subcommand(app, "list");
   list->add_option("WHAT", given.what, "plugins or tests")->type_name("");
   list->add_option("SUITE", given.suites, "suite files, of which the tests are listed")

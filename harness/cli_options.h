@@ -13,8 +13,8 @@ using Texts = std::vector<std::string>;
 /// Every option's text as it was typed; empty where it was not. CLI11 sorts the words, our own
 /// functions read the values, so that messages are alike everywhere.
 struct Given {
-  std::string claim, source, what, plugin, record, test, observation;
-  Texts suites, estimators, sets, reports;
+  std::string claim, source, what, plugin, record, test, observation, runs, samples;
+  Texts suites, estimators, sets, reports, laws, alphas;
   std::string filter, seed, threads, alpha, coarsen, shard, ledger, inconclusive, colour;
   std::string detect, allow, method, primaries, secondaries, over, reference, cost, budget;
   bool quiet = false;

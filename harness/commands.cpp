@@ -52,7 +52,8 @@ std::string written(const reports::Record& record, const std::string& kind, bool
   return reports::console(record, {.colour = colour, .verbose = is_single(record)});
 }
 
-/// A report that cannot be written is better known before the hours of sampling than after.
+}  // namespace
+
 void require_writable(const Output& output) {
   for (const ReportRequest& request : output.reports) {
     if (request.path == "-") continue;
@@ -67,16 +68,14 @@ void require_writable(const Output& output) {
   }
 }
 
-/// Every report asked for. Files first: what standard output shows has then been written.
-void write_reports(reports::Record record, const Output& output) {
+void write_reports(const Output& output, const ReportWriter& written) {
   std::string to_stdout;
   bool console_placed = false;
   for (const ReportRequest& request : output.reports) {
     console_placed = console_placed || request.kind == "console";
     const bool standard = request.path == "-";
     const bool colour = standard && use_colour(output.colour, stdout);
-    if (request.kind == "json" && !standard) write_maps(record, request.path);
-    const std::string text = written(record, request.kind, colour);
+    const std::string text = written(request, colour);
     if (standard) {
       to_stdout += text;
     } else {
@@ -85,9 +84,20 @@ void write_reports(reports::Record record, const Output& output) {
   }
   if (!console_placed) {
     std::FILE* stream = to_stdout.empty() ? stdout : stderr;
-    fmt::print(stream, "{}", written(record, "console", use_colour(output.colour, stream)));
+    fmt::print(stream, "{}",
+               written({.kind = "console", .path = "-"}, use_colour(output.colour, stream)));
   }
   fmt::print("{}", to_stdout);
+}
+
+namespace {
+
+/// Maps are written beside the JSON report, which names them.
+void write_reports(reports::Record record, const Output& output) {
+  write_reports(output, [&](const ReportRequest& request, bool colour) {
+    if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
+    return written(record, request.kind, colour);
+  });
 }
 
 /// Says so where the filter matches no test.

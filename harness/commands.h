@@ -2,6 +2,7 @@
 
 // What the subcommands do, apart from parsing their arguments. Each returns an exit code.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,16 @@ struct Output {
   InconclusivePolicy inconclusive = InconclusivePolicy::report;
   bool quiet = false;  ///< no progress
 };
+
+/// The text of a report, in colour or not.
+using ReportWriter = std::function<std::string(const ReportRequest& request, bool colour)>;
+
+/// InputError where a report's file cannot be written: better known before the hours of sampling
+/// than after.
+void require_writable(const Output& output);
+/// Every report asked for, the console's in any case. Files first: what standard output shows has
+/// then been written.
+void write_reports(const Output& output, const ReportWriter& written);
 
 /// What is said of a filter that no test's id matches: what an id looks like and the nearest ones;
 /// "" when one does.

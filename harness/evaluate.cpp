@@ -110,7 +110,6 @@ ChannelOutcome channel_outcome(const TestWork& work, std::size_t channel,
                         .evidence = std::move(evidence)};
   result.decision = {.log_p_claimed = log_p_claimed(result.evidence, regions),
                      .log_p_forbidden = log_p_forbidden(result.evidence, regions)};
-  result.effect = effect_of(result.evidence, regions, outcome.share());
   result.image = std::move(image);
   if (question.kind == QuestionKind::mean_of_one) {
     result.reference = question.references[channel].value + question.offset;
@@ -186,11 +185,12 @@ TestSize full_size(const TestOutcome& outcome) {
           .secondaries = looks.sizes[look]};
 }
 
-/// What a decided test could have found: the least detectable effect of every channel, and the
-/// least power over them, at `detect` or, of `within`, of showing a theta of 0.
+/// What a decided test found and could have found: the effect and the least detectable one of every
+/// channel, and the least power over them, at `detect` or, of `within`, of showing a theta of 0.
 void note_sizes(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   for (ChannelOutcome& channel : outcome.channels) {
+    channel.effect = effect_of(channel.evidence, channel.regions, outcome.share());
     if (channel.image) {
       channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
       continue;
@@ -347,8 +347,10 @@ void take_look(TestWork& work, bool may_go_on) {
     outcome.decided = false;
     return;
   }
-  note_sizes(work);
-  if (outcome.message.empty()) outcome.message = narrate(outcome);
+  if (!work.verdict_only) {
+    note_sizes(work);
+    if (outcome.message.empty()) outcome.message = narrate(outcome);
+  }
   require_activation(work);
 }
 

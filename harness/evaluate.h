@@ -15,6 +15,8 @@ struct TestWork {
   const Budget* suite_budget = nullptr;  ///< the same for all tests of the suite; null: none
   TestOutcome outcome;
   std::vector<std::shared_ptr<Pool>> pools = {};
+  /// Whether the verdict is all that is wanted: no interval of the effect, no power, no sentence.
+  bool verdict_only = false;
 };
 
 /// Numbers, gates and the verdict on the test's fixed share at the current look, once its

@@ -25,8 +25,10 @@ Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
   stats::OneSampleDistance most = measured;
   least.distance = std::max(0.0, measured.distance - error);
   most.distance = std::min(1.0, measured.distance + error);
-  const auto at = [least, most](double theta) {
-    if (theta <= 0) return stats::kolmogorov_smirnov(least);
+  // Asked for again and again, at up to 10 ms each.
+  const TestResult at_none = stats::kolmogorov_smirnov(least);
+  const auto at = [least, most, at_none](double theta) {
+    if (theta <= 0) return at_none;
     TestResult result = stats::ks_margin(least, theta);
     result.log_p_lower = stats::ks_margin(most, theta).log_p_lower;
     return result;
@@ -51,16 +53,15 @@ Evidence with_anderson_darling(Evidence distance, const TestResult& at_null) {
 }
 
 Evidence from_distance(const stats::TwoSampleDistance& distance) {
-  return {.estimate = distance.distance(),
-          .at =
-              [distance](double theta) {
-                return theta <= 0 ? stats::kolmogorov_smirnov(distance)
-                                  : stats::ks_margin(distance, theta);
-              },
-          .interval =
-              [distance](double confidence) { return stats::ks_interval(distance, confidence); },
-          .quantity = quantity,
-          .distance = true};
+  const TestResult at_none = stats::kolmogorov_smirnov(distance);
+  return {
+      .estimate = distance.distance(),
+      .at = [distance, at_none](
+                double theta) { return theta <= 0 ? at_none : stats::ks_margin(distance, theta); },
+      .interval =
+          [distance](double confidence) { return stats::ks_interval(distance, confidence); },
+      .quantity = quantity,
+      .distance = true};
 }
 
 double clamp_unit(double p) { return std::clamp(p, 0.0, 1.0); }

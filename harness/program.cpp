@@ -61,6 +61,8 @@ int act(const ReplayArguments& arguments) { return replay(arguments); }
 
 int act(const ReportCommand& command) { return report_saved_run(command.file, command.output); }
 
+int act(const CalibrateCommand& command) { return calibrate(command.arguments, command.output); }
+
 int act(const TextCommand& command) {
   fmt::print("{}", command.text);
   return 0;

@@ -9,7 +9,8 @@ namespace assay::harness {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A phase begins ("pilot", "sampling") with so many units of work.
+  /// A phase begins ("pilot", "sampling") with so many primaries to draw, or
+  /// ("calibration") runs to make.
   virtual void begin(const std::string& phase, std::uint64_t total) = 0;
   virtual void advance(std::uint64_t done) = 0;  ///< units done so far in this phase
   virtual void end() = 0;

@@ -42,7 +42,8 @@ bool environment_has(const char* name) {
 }  // namespace
 
 std::string progress_text(const std::string& phase, std::uint64_t done, std::uint64_t total) {
-  if (total == 0) return fmt::format("{}  {} primaries", phase, done);
+  const char* unit = phase == "calibration" ? "runs" : "primaries";
+  if (total == 0) return fmt::format("{}  {} {}", phase, done, unit);
   // Rounded down: 100 % is said when all is done.
   const int percent = static_cast<int>(100 * fraction(done, total));
   constexpr std::uint64_t million = 1'000'000;
@@ -50,9 +51,9 @@ std::string progress_text(const std::string& phase, std::uint64_t done, std::uin
     return static_cast<double>(count) / static_cast<double>(million);
   };
   if (total < million)
-    return fmt::format("{}  {} %  {} of {} primaries", phase, percent, done, total);
-  return fmt::format("{}  {} %  {:.1f} of {:.1f} million primaries", phase, percent, millions(done),
-                     millions(total));
+    return fmt::format("{}  {} %  {} of {} {}", phase, percent, done, total, unit);
+  return fmt::format("{}  {} %  {:.1f} of {:.1f} million {}", phase, percent, millions(done),
+                     millions(total), unit);
 }
 
 ProgressBar::ProgressBar(std::ostream& out, Clock now) : out_(out), now_(std::move(now)) {}

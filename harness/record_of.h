@@ -39,5 +39,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
 
 reports::Tool this_tool();
 reports::Environment this_environment(unsigned threads);
+/// The time now as "2000-01-01T00:00:00Z".
+std::string utc_now();
 
 }  // namespace assay::harness

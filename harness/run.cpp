@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <ctime>
 
 #include "harness/holm_verdict.h"
 #include "harness/interrupt.h"
@@ -45,15 +44,6 @@ void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<Suit
              "no seed was given: a night with the suite's own seed is the same every time and "
              "counts once; run nights with --seed random");
   }
-}
-
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[sizeof "2000-01-01T00:00:00Z"];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
 }
 
 }  // namespace

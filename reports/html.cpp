@@ -58,7 +58,9 @@ constexpr const char* reading_help =
 </dl></details>
 )html";
 
-std::string head(const std::string& title) {
+}  // namespace
+
+std::string page_head(const std::string& title) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<title>{}</title>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
@@ -66,8 +68,6 @@ std::string head(const std::string& title) {
       "style-src 'unsafe-inline'; script-src 'unsafe-inline'\"/>\n<style>{}</style>\n</head>\n",
       escape_xml(title), page_style);
 }
-
-}  // namespace
 
 std::string anchor(TestPlace place) { return fmt::format("t{}-{}", place.suite, place.test); }
 
@@ -100,7 +100,7 @@ std::string html(const Record& record) {
   const Tally counts = tally(record);
   const std::string alarm = alarm_count(record);
   const std::string sentence = tally_sentence(counts) + (alarm.empty() ? "" : "; " + alarm);
-  std::string out = head(fmt::format("Assay: {}", sentence));
+  std::string out = page_head(fmt::format("Assay: {}", sentence));
   out += fmt::format("<body>\n<h1 class=\"{}\">{}</h1>\n<p>{}</p>\n<p>{}</p>\n",
                      overall_style(record, counts), escape_xml(sentence),
                      escape_xml(verdict_counts(record)), escape_xml(error_rates(record)));

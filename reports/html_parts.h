@@ -15,6 +15,9 @@ namespace assay::reports {
 extern const char* const page_style;
 extern const char* const page_script;
 
+/// Everything up to the body.
+std::string page_head(const std::string& title);
+
 /// Where a test stands in the record: its link target.
 struct TestPlace {
   std::size_t suite = 0;

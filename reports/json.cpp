@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/base64.h"
+#include "reports/calibration.h"
+#include "reports/calibration_fields.h"
 #include "reports/fields.h"
 #include "reports/number.h"
 #include "reports/text.h"
@@ -95,12 +97,16 @@ void print(const Json& node, const std::string& indent, std::string& out) {
   out += "\n" + indent + (node.is_array() ? ']' : '}');
 }
 
-}  // namespace
-
-std::string json(const Record& record) {
+std::string printed(const Json& root) {
   std::string out;
-  print(tree(record), "", out);
+  print(root, "", out);
   return out + "\n";
 }
+
+}  // namespace
+
+std::string json(const Record& record) { return printed(tree(record)); }
+
+std::string json(const Calibration& calibration) { return printed(tree(calibration)); }
 
 }  // namespace assay::reports

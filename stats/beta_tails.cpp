@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "stats/check.h"
@@ -13,40 +12,65 @@ namespace {
 
 namespace policies = boost::math::policies;
 using Quiet = policies::policy<policies::overflow_error<policies::ignore_error>,
-                               policies::evaluation_error<policies::ignore_error>>;
+                               policies::evaluation_error<policies::ignore_error>,
+                               policies::promote_double<false>>;
 using special::BetaPoint;
 
 constexpr double boost_minimum = 1e-280;
+// The fraction takes about sqrt(min(alpha, beta)) terms near the mean, 70 at this bound.
+constexpr double most_for_fraction = 1e4;
 
-// Coefficient k of the continued fraction of I_x(a, b), DLMF 8.17.22.
-double coefficient(double k, BetaShape shape, double x) {
+// 1 / (b0 + a1 / (b1 + a2 / (b2 + …))) of Didonato & Morris (1992), equation 9: two steps of the
+// fraction in DLMF 8.17.22 in one. In this form convergents are A_n / B_n with
+// A_n = b_n A_(n-1) + a_n A_(n-2), and B likewise; a division each only where they are compared.
+double beta_fraction(BetaPoint point, BetaShape shape) {
   const auto [a, b] = shape;
-  const double m = std::floor(k / 2);
-  if (2 * m == k) return m * (b - m) * x / ((a + k - 1) * (a + k));
-  return -(a + m) * (a + b + m) * x / ((a + k - 1) * (a + k));
+  const auto [x, y] = point;
+  const double lambda = a * y - b * x;
+  double reciprocal = 1 / (a + 1);
+  double before = 1;
+  double now = a * (lambda + 1) * reciprocal;
+  double inverse_before = 0;
+  double inverse_now = 1;
+  double last = 0;
+  for (double n = 1; n < 1e5;) {
+    for (const double end = n + 4; n < end; ++n) {
+      const double next = 1 / (a + 2 * n + 1);
+      const double r = x * reciprocal;
+      const double left = n * (b - n) * r;
+      const double numerator = (a + n - 1) * (a + b + n - 1) * left * r;
+      const double denominator = n + left + (a + n) * (lambda + 1 + n * (1 + y)) * next;
+      const double later = denominator * now + numerator * before;
+      const double inverse_later = denominator * inverse_now + numerator * inverse_before;
+      before = now;
+      inverse_before = inverse_now;
+      now = later;
+      inverse_now = inverse_later;
+      reciprocal = next;
+    }
+    const double scale = 1 / now;
+    const double value = inverse_now * scale;
+    if (std::abs(value - last) <= 1e-12 * value) return value;
+    last = value;
+    before *= scale;
+    inverse_before *= scale;
+    inverse_now = value;
+    now = 1;
+  }
+  return last;
 }
 
-// ln I_x(a, b) far below the mean, where the continued fraction converges fast (Lentz's method).
-double log_far_lower(BetaPoint point, BetaShape shape) {
-  double c = std::numeric_limits<double>::max();
-  double d = 1;
-  double fraction = 1;
-  for (double k = 1; k < 1e7; ++k) {
-    const double e = coefficient(k, shape, point.x);
-    d = 1 / (1 + e * d);
-    c = 1 + e / c;
-    fraction *= c * d;
-    if (std::abs(c * d - 1) < 1e-16) break;
-  }
-  return special::log_beta_prefix(shape, point) - std::log(shape.alpha) + std::log(fraction);
+double log_by_fraction(BetaPoint point, BetaShape shape) {
+  return special::log_beta_prefix(shape, point) + std::log(beta_fraction(point, shape));
 }
 
 // ln I_x(a, b) for x at or below the mean.
 double log_lower(BetaPoint point, BetaShape shape) {
   if (point.x == 0) return special::lowest_log();
+  if (std::min(shape.alpha, shape.beta) <= most_for_fraction) return log_by_fraction(point, shape);
   const double p = point.x <= 0.5 ? boost::math::ibeta(shape.alpha, shape.beta, point.x, Quiet())
                                   : boost::math::ibetac(shape.beta, shape.alpha, point.y, Quiet());
-  return p > boost_minimum ? std::log(p) : log_far_lower(point, shape);
+  return p > boost_minimum ? std::log(p) : log_by_fraction(point, shape);
 }
 
 LogTails halved(LogTails tails) {
@@ -79,6 +103,27 @@ LogTails f_tails(double f, FDegrees degrees) {
   return special::beta_tails_at(point, {degrees.numerator / 2, degrees.denominator / 2});
 }
 
+namespace {
+
+// P(|T| < t) = x^a y^b / (a B(a, b)) (1 + sum of (a+b)_n / (a+1)_n x^n) at x = t^2 / (nu + t^2), a
+// = 1/2, b = nu/2; DLMF 8.17.8. Positive terms, about t^2 / 2 times the one before over n.
+double central_student_t(BetaPoint point, double degrees) {
+  const BetaShape shape{0.5, degrees / 2};
+  double term = 1;
+  double sum = 1;
+  for (double n = 0; term > 1e-16 * sum; ++n) {
+    term *= point.x * ((0.5 + shape.beta + n) / (1.5 + n));
+    sum += term;
+  }
+  return 2 * std::exp(special::log_beta_prefix(shape, point)) * sum;
+}
+
+// Up to here, and to nu, either tail is above .02 and one minus the middle costs it no digit that
+// is promised; beyond, the fraction takes fewer terms than the series.
+constexpr double most_central_square = 4;
+
+}  // namespace
+
 LogTails student_t_tails(double t, double degrees) {
   check::positive({"student_t_tails", "degrees"}, degrees);
   check::finite({"student_t_tails", "t"}, t);
@@ -87,6 +132,13 @@ LogTails student_t_tails(double t, double degrees) {
   const double magnitude = std::min(std::abs(t), 1e150);  // t^2 must not overflow
   const double square = magnitude * magnitude;
   const double sum = degrees + square;
+  if (square == 0) return {-std::numbers::ln2, -std::numbers::ln2};
+  if (square <= std::min(most_central_square, degrees)) {
+    const double middle = central_student_t({square / sum, degrees / sum}, degrees);
+    const double outer = std::log1p(-middle) - std::numbers::ln2;
+    const double inner = std::log1p(middle) - std::numbers::ln2;
+    return t >= 0 ? LogTails{inner, outer} : LogTails{outer, inner};
+  }
   // P(|T| >= |t|) = I_x(nu / 2, 1 / 2) at x = nu / (nu + t^2)
   const LogTails both = special::beta_tails_at({degrees / sum, square / sum}, {degrees / 2, 0.5});
   const double outer = halved(both).lower;

@@ -1,7 +1,6 @@
 #include "stats/durbin.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -18,31 +17,58 @@ struct ScaledMatrix {
   double at(std::size_t row, std::size_t column) const { return entries[row * size + column]; }
 };
 
-void rescale(ScaledMatrix& matrix) {
-  const double largest = *std::max_element(matrix.entries.begin(), matrix.entries.end());
-  const int shift = std::ilogb(largest);
-  for (double& entry : matrix.entries) entry = std::ldexp(entry, -shift);
-  matrix.exponent += shift;
+/// Divides by the power of two next to the largest entry; returns its exponent. All entries of a
+/// high power are alike in size. Those of the first powers that are 2^-500 of the largest reach no
+/// bit of it, but their products are denormal and made it fifty times as slow.
+int rescale(std::vector<double>& entries) {
+  const int shift = std::ilogb(*std::max_element(entries.begin(), entries.end()));
+  const double scale = std::ldexp(1.0, -shift);
+  for (double& entry : entries) entry = entry * scale < 0x1p-500 ? 0 : entry * scale;
+  return shift;
 }
 
-ScaledMatrix product(const ScaledMatrix& a, const ScaledMatrix& b) {
-  ScaledMatrix c{a.size, std::vector<double>(a.entries.size(), 0.0), a.exponent + b.exponent};
+// Durbin's matrix is symmetric about its other diagonal, and so are its powers: half of the entries
+// are worked out.
+ScaledMatrix squared(const ScaledMatrix& a) {
+  ScaledMatrix c{a.size, std::vector<double>(a.entries.size(), 0.0), 2 * a.exponent};
+  const std::size_t last = a.size - 1;
   for (std::size_t i = 0; i < a.size; ++i) {
+    double* const row = &c.entries[i * a.size];
     for (std::size_t k = 0; k < a.size; ++k) {
       const double factor = a.at(i, k);
       if (factor == 0) continue;
-      for (std::size_t j = 0; j < a.size; ++j) c.at(i, j) += factor * b.at(k, j);
+      const double* const other = &a.entries[k * a.size];
+      for (std::size_t j = 0; j <= last - i; ++j) row[j] += factor * other[j];
     }
+    for (std::size_t j = 0; j < last - i; ++j) c.at(last - j, last - i) = row[j];
   }
-  rescale(c);
+  c.exponent += rescale(c.entries);
   return c;
 }
 
-ScaledMatrix power(const ScaledMatrix& base, std::uint64_t exponent) {
-  ScaledMatrix result = base;
-  for (int bit = static_cast<int>(std::bit_width(exponent)) - 2; bit >= 0; --bit) {
-    result = product(result, result);
-    if ((exponent >> bit) & 1U) result = product(result, base);
+struct ScaledVector {
+  std::vector<double> entries;
+  long exponent = 0;
+};
+
+void multiply(const ScaledMatrix& matrix, ScaledVector& vector) {
+  std::vector<double> product(matrix.size, 0.0);
+  for (std::size_t i = 0; i < matrix.size; ++i) {
+    for (std::size_t j = 0; j < matrix.size; ++j) {
+      product[i] += matrix.at(i, j) * vector.entries[j];
+    }
+  }
+  vector.entries = std::move(product);
+  vector.exponent += matrix.exponent + rescale(vector.entries);
+}
+
+/// The column of matrix^exponent of this index.
+ScaledVector power_column(ScaledMatrix matrix, std::uint64_t exponent, std::size_t column) {
+  ScaledVector result{std::vector<double>(matrix.size, 0.0)};
+  result.entries[column] = 1;
+  for (; exponent > 0; exponent >>= 1) {
+    if ((exponent & 1U) != 0) multiply(matrix, result);
+    if (exponent > 1) matrix = squared(matrix);
   }
   return result;
 }
@@ -69,6 +95,7 @@ ScaledMatrix durbin_matrix(std::size_t size, double h) {
       if (i + 1 >= g) matrix.at(i, i + 1 - g) *= inverse_factorial;
     }
   }
+  matrix.exponent = rescale(matrix.entries);
   return matrix;
 }
 
@@ -79,8 +106,8 @@ double log_durbin_lower(double distance, std::uint64_t n) {
   const double t = size * distance;
   const auto k = static_cast<std::size_t>(t) + 1;
   const double h = static_cast<double>(k) - t;
-  const ScaledMatrix result = power(durbin_matrix(2 * k - 1, h), n);
-  const double entry = result.at(k - 1, k - 1);
+  const ScaledVector result = power_column(durbin_matrix(2 * k - 1, h), n, k - 1);
+  const double entry = result.entries[k - 1];
   return std::log(entry) + static_cast<double>(result.exponent) * std::log(2.0) +
          std::lgamma(size + 1) - size * std::log(size);
 }

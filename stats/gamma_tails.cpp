@@ -1,6 +1,5 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
-#include <limits>
 
 #include "stats/check.h"
 #include "stats/special.h"
@@ -11,7 +10,8 @@ namespace {
 
 namespace policies = boost::math::policies;
 using Quiet = policies::policy<policies::overflow_error<policies::ignore_error>,
-                               policies::evaluation_error<policies::ignore_error>>;
+                               policies::evaluation_error<policies::ignore_error>,
+                               policies::promote_double<false>>;
 
 // Below this Boost's result may be denormal; the log forms take over long before.
 constexpr double boost_minimum = 1e-280;
@@ -20,37 +20,58 @@ constexpr double boost_minimum = 1e-280;
 double log_far_lower(double shape, double x) {
   double term = 1;
   double sum = 1;
-  for (double k = 1; term > sum * 1e-17; ++k) {
+  for (double k = 1; term > sum * 1e-15; ++k) {
     term *= x / (shape + k);
     sum += term;
   }
   return special::log_gamma_prefix(shape, x) - std::log(shape) + std::log(sum);
 }
 
-// ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2, evaluated by Lentz's method.
+// ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2; convergents A_n / B_n by their
+// recurrence, a division only where they are compared. All is divided by b_0, which may be huge.
 double log_far_upper(double shape, double x) {
-  double b = x + 1 - shape;
-  double c = std::numeric_limits<double>::max();
-  double d = 1 / b;
-  double fraction = d;
-  for (double k = 1; k < 1e7; ++k) {
-    const double a = -k * (k - shape);
-    b += 2;
-    d = 1 / (a * d + b);
-    c = b + a / c;
-    fraction *= c * d;
-    if (std::abs(c * d - 1) < 1e-16) break;
+  const double per_first = 1 / (x + 1 - shape);
+  double before = 1;
+  double now = 1;
+  double inverse_before = 0;
+  double inverse_now = per_first;
+  double last = 0;
+  for (double k = 1; k < 1e7;) {
+    for (const double end = k + 4; k < end; ++k) {
+      const double numerator = k * per_first * ((shape - k) * per_first);
+      const double denominator = 1 + 2 * k * per_first;
+      const double later = denominator * now + numerator * before;
+      const double inverse_later = denominator * inverse_now + numerator * inverse_before;
+      before = now;
+      inverse_before = inverse_now;
+      now = later;
+      inverse_now = inverse_later;
+    }
+    const double scale = 1 / now;
+    const double value = inverse_now * scale;
+    if (std::abs(value - last) <= 1e-12 * value)
+      return special::log_gamma_prefix(shape, x) + std::log(value);
+    last = value;
+    before *= scale;
+    inverse_before *= scale;
+    inverse_now = value;
+    now = 1;
   }
-  return special::log_gamma_prefix(shape, x) + std::log(fraction);
+  return special::log_gamma_prefix(shape, x) + std::log(last);
 }
 
+// Up to here the sum and the fraction take 200 terms at most, cheaper than Boost's expansion.
+constexpr double most_for_sum = 2000;
+
 double log_upper(double shape, double x) {
+  if (shape <= most_for_sum) return log_far_upper(shape, x);
   const double q = boost::math::gamma_q(shape, x, Quiet());
   return q > boost_minimum ? std::log(q) : log_far_upper(shape, x);
 }
 
 double log_lower(double shape, double x) {
   if (x == 0) return special::lowest_log();
+  if (shape <= most_for_sum) return log_far_lower(shape, x);
   const double p = boost::math::gamma_p(shape, x, Quiet());
   return p > boost_minimum ? std::log(p) : log_far_lower(shape, x);
 }

@@ -7,7 +7,7 @@
 namespace assay::stats {
 
 // Natural logarithms of the two tails at x: ln P(X <= x) and ln P(X >= x). The smaller one is
-// always computed as a tail, never as one minus the other. Where the probability is above 1e-300 it
+// computed as a tail; as one minus the other only where it is above .02. Where the probability is above 1e-300 it
 // is accurate to 1e-10 relative; below, ln p is (and goes on beyond -1e6). Always finite.
 struct LogTails {
   double lower = 0;

@@ -68,7 +68,7 @@ class ClampedDirections final : public Directions {
     const Vector3 normal = cross(b - a, c - a);
     return density_at(triangle, dot(normal, a) / dot(normal, w) * w);
   }
-  Panels panels() const override { return {.first = 64, .second = 128}; }
+  Panels panels() const override { return {.first = 32, .second = 64}; }
 
  private:
   static VertexWeights weights(const SkyTree& tree, const sky::Harmonics& a, std::size_t triangle) {

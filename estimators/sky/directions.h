@@ -33,6 +33,7 @@ using SharedDirections = std::shared_ptr<const Directions>;
 /// Density 1 / (2 pi).
 class UniformDirections final : public Directions {
  public:
+  double gain() const { return 2 * std::numbers::pi; }  ///< the most that cos+ / density is
   Direction draw(double u, double v) const override {
     const Vector3 w = render::uniform_hemisphere(u, v);
     return {w, density(w)};
@@ -43,6 +44,7 @@ class UniformDirections final : public Directions {
 /// Density cos / pi.
 class CosineDirections final : public Directions {
  public:
+  double gain() const { return std::numbers::pi; }  ///< of cos+ / density
   Direction draw(double u, double v) const override {
     const Vector3 w = render::cosine_hemisphere(u, v);
     return {w, density(w)};

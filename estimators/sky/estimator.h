@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -113,11 +114,13 @@ class SkySetup final : public Setup {
   std::vector<NamedSampler> samplers_;
 };
 
-/// A set-up with the sampler `direction`; `diagnostic` adds the channels `below` and `nodes`.
+/// A set-up with the sampler `direction`; `diagnostic` adds the channels `below` and `nodes`;
+/// `gain` is that of irradiance_channels().
 template <class Primary>
 std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirections directions,
-                                       Primary primary, bool diagnostic) {
-  std::vector<Channel> channels = irradiance_channels(*setting);
+                                       Primary primary, bool diagnostic,
+                                       std::optional<double> gain = {}) {
+  std::vector<Channel> channels = irradiance_channels(*setting, gain);
   if (diagnostic) {
     channels.push_back({.name = "below", .low = 0, .high = 1, .diagnostic = true});
     channels.push_back({.name = "nodes", .low = 0, .diagnostic = true});

@@ -27,6 +27,7 @@ class Gradient final : public Radiance {
 
   Rgb operator()(const Vector3& w) const override { return {base_ + dot(slope_, w)}; }
   Rgb mean() const override { return {base_}; }
+  double most(std::size_t) const override { return base_ + length(slope_); }
   Known irradiance(const Vector3& normal, std::size_t) const override {
     const double value = pi * base_ + 2 * pi / 3 * dot(slope_, normal);
     return {value, 0x1p-48 * value};
@@ -45,6 +46,14 @@ class HarmonicSky final : public Radiance {
     return {sum(w, [](std::size_t) { return 1.0; })};
   }
   Rgb mean() const override { return {coefficients_[0] / std::sqrt(4 * pi)}; }
+  // By the addition theorem no Y_lm is above sqrt((2 l + 1) / (4 pi)).
+  double most(std::size_t) const override {
+    double sum = 0;
+    for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+      sum += std::abs(coefficients_[i]) * std::sqrt((i == 0 ? 1 : i < 4 ? 3 : 5) / (4 * pi));
+    }
+    return sum;
+  }
   Known irradiance(const Vector3& normal, std::size_t) const override {
     const double value = sum(normal, cosine_factor);
     double most = 0;
@@ -92,6 +101,7 @@ class Peak final : public Radiance {
   Rgb mean() const override {
     return {lobe_.base - lobe_.height * std::expm1(-2 * lobe_.sharpness) / (2 * lobe_.sharpness)};
   }
+  double most(std::size_t) const override { return lobe_.base + std::max(0.0, lobe_.height); }
   // About the peak's axis: over rings at the angle gamma, on which the cosine to the normal is
   // a + b cos phi. Kinks where the horizon begins and ends to cut the rings.
   Known irradiance(const Vector3& normal, std::size_t) const override {
@@ -130,6 +140,11 @@ class Picture final : public Radiance {
   std::size_t colours() const override { return 3; }
   Rgb operator()(const Vector3& w) const override { return map_.radiance(w); }
   Rgb mean() const override { return mean_; }
+  double most(std::size_t colour) const override {
+    double most = 0;
+    for (std::size_t t = 0; t < map_.size(); ++t) most = std::max(most, map_.radiance(t)[colour]);
+    return most;
+  }
   Known irradiance(const Vector3& normal, std::size_t colour) const override {
     Known sum;
     for (std::size_t t = 0; t < map_.size(); ++t) {

@@ -30,6 +30,8 @@ class Radiance {
   virtual Rgb operator()(const Vector3& w) const = 0;
   /// The mean over the sphere.
   virtual Rgb mean() const = 0;
+  /// No radiance is above.
+  virtual double most(std::size_t colour) const = 0;
   /// The integral of L(w) max(0, n . w) over the sphere, n a unit vector.
   virtual Known irradiance(const Vector3& normal, std::size_t colour) const = 0;
 };

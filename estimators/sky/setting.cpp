@@ -45,7 +45,7 @@ SharedSetting read_setting(Parameters& given) {
                                          luminaire::occluder_shapes(occluders, receiver));
 }
 
-std::vector<Channel> irradiance_channels(const Setting& setting) {
+std::vector<Channel> irradiance_channels(const Setting& setting, std::optional<double> gain) {
   constexpr std::array<const char*, 3> names = {"r", "g", "b"};
   std::vector<Channel> channels;
   for (std::size_t c = 0; c < setting.colours(); ++c) {
@@ -54,6 +54,12 @@ std::vector<Channel> irradiance_channels(const Setting& setting) {
       const Known known = setting.radiance().irradiance(setting.frame().normal, c);
       channel.mean = known.value;
       channel.mean_error = known.error;
+    }
+    if (gain) {
+      // A product of a few factors, each rounded.
+      channel.low = 0;
+      channel.high = *gain * setting.radiance().most(c) * (1 + 0x1p-40);
+      channel.rounding = channel.high * 0x1p-40;
     }
     channels.push_back(std::move(channel));
   }

@@ -55,6 +55,7 @@ std::vector<ParameterInformation> parameters();
 SharedSetting read_setting(Parameters&);
 
 /// `irradiance` of a grey sky; r, g and b of a coloured one. Under the open sky with the mean.
-std::vector<Channel> irradiance_channels(const Setting&);
+/// Where no primary is above `gain` times the greatest radiance, with that range.
+std::vector<Channel> irradiance_channels(const Setting&, std::optional<double> gain = {});
 
 }  // namespace assay::sky

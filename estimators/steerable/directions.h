@@ -71,11 +71,28 @@ class SteeredDirections : public sky::Directions {
   }
 
   Panels panels() const override {
-    const std::size_t rows = std::size_t{4} << std::min<std::size_t>(tree_->sphere().level(), 5);
+    // A part is about as wide as a triangle, up to level 4; the marginals need no more.
+    const std::size_t rows = std::size_t{4} << std::min<std::size_t>(tree_->sphere().level(), 3);
     return {.first = rows, .second = 2 * rows};
   }
 
   double total() const { return total_; }
+  /// A bound of cos+ / density: over each triangle the cosine is no more than the greatest height
+  /// of a vertex over the distance d of the plane, the weight no less than a vertex's, |q| no less
+  /// than d.
+  double gain() const {
+    double most = 0;
+    for (std::size_t t = 0; t < tree_->count(); ++t) {
+      const auto [a, b, c] = tree_->sphere().corners(t);
+      const double distance = dot(normalised(cross(b - a, c - a)), a);
+      const Vector3& n = frame_.normal;
+      const double height = std::max({0.0, dot(n, a), dot(n, b), dot(n, c)});
+      const VertexWeights w = tree_->weights(t, a_);
+      const double least = std::min({w.a, w.b, w.c}) / total_ * distance * distance;
+      most = std::max(most, std::min(1.0, height / distance) / least);
+    }
+    return most;
+  }
   const SkyTree& tree() const { return *tree_; }
   const sky::Harmonics& steering() const { return a_; }
   const render::Frame& frame() const { return frame_; }

@@ -15,7 +15,8 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const auto directions = std::make_shared<const steerable::SteeredDirections<>>(
       steerable::read_tree(given, *setting), lobe, setting->frame());
   return sky::sky_setup(setting, directions,
-                        sky::StratifiedPrimary<>(setting, directions, given.count("strata")), true);
+                        sky::StratifiedPrimary<>(setting, directions, given.count("strata")), true,
+                        directions->gain());
 }
 
 std::vector<ParameterInformation> parameters() {

@@ -331,6 +331,28 @@ test_build_speaks_when_it_works_or_fails() {
   contains err 'the build failed; all of it is in built/build.log'
 }
 
+test_calibration_tells_what_errs_and_writes_its_reports() {
+  expect 0 calibrate --help
+  contains out 'assay calibrate ['
+  expect 0 calibrate t --law normal --alpha 0.05 --runs 20 --quiet --report html=c.html \
+    --report json=c.json --report markdown=c.md
+  contains out 'mean == number'
+  contains out 'errs too often'
+  xmllint --noout --nonet c.html || fail 'the page is not well-formed'
+  contains c.html '<svg'
+  /usr/bin/python3 -c 'import json; assert json.load(open("c.json"))["report"] == "calibration"' ||
+    fail 'no JSON'
+  expect 2 calibrate welsh
+  contains err 'did you mean `welch`'
+  contains err 'log-variance'
+  expect 2 calibrate --law cauchy
+  contains err 'student_t(5)'
+  expect 2 calibrate --report junit=c.xml
+  contains err 'no junit report'
+  expect 2 calibrate --runs 0
+  contains err '--runs'
+}
+
 test_lists_are_one_id_a_line() {
   write_suite good.yaml "$good" "$wrong"
   expect 0 list tests good.yaml

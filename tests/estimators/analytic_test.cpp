@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "tests/estimators/draws.h"
 
@@ -104,6 +105,7 @@ TEST(Analytic, SampledMeansAndVariancesAreTheDeclaredOnes) {
                            {"analytic/antithetic"},
                            {"analytic/heavy_tail", "{index: 12}"},
                            {"analytic/rare_spike", "{probability: 0.01, height: 3}"},
+                           {"analytic/rare_spike", "{probability: 0.1, height: 3, noise: 0.5}"},
                            {"analytic/normal"},
                            {"analytic/normal", "{mean: -3, deviation: 0.5}", 5},
                            {"analytic/two_level"},
@@ -153,6 +155,14 @@ TEST(Analytic, RatioBiasFallsLikeOneOverPrimaries) {
   EXPECT_LE(*std::ranges::max_element(sample.values), plugin.setup->channels()[0].high);
 }
 
+TEST(Analytic, ARareSpikeDeclaresItsRangeOrNot) {
+  const Channel known = channel("analytic/rare_spike", "{height: 2, noise: 0.25}");
+  EXPECT_EQ(known.low, 0.25);
+  EXPECT_EQ(known.high, 2.75);
+  EXPECT_EQ(channel("analytic/rare_spike", "{declared: false}").high,
+            std::numeric_limits<double>::infinity());
+}
+
 TEST(Analytic, ARareSpikeStaysUnseenInAShortRun) {
   const Sample sample = observe(prepare("analytic/rare_spike", "{probability: 0}"), 1000)[0];
   EXPECT_EQ(sample.values, std::vector<double>(1000, 0.5));
@@ -178,6 +188,114 @@ TEST(Analytic, ImportanceSamplerFollowsItsDensity) {
     pearson.add(counts[i], draws * (cumulative(low + 0.02) - cumulative(low)));
   }
   EXPECT_TRUE(pearson.passes()) << pearson.statistic;
+}
+
+/// analytic/law as a suite gives it; a flow map's text has no commas in it.
+Prepared prepare_law(const std::string& law, double shift = 0, double scale = 1) {
+  const Entry& entry = find_plugin("analytic/law", {});
+  Parameters given("analytic/law", entry.information.parameters,
+                   Value::map({{"law", Value::scalar(law)},
+                               {"shift", Value::scalar(std::to_string(shift))},
+                               {"scale", Value::scalar(std::to_string(scale))}}),
+                   "");
+  auto setup = entry.prepare(given);
+  given.require_all_read();
+  return {std::move(setup), stream_key(1, "analytic/law", given.canonical(), 0), entry.information};
+}
+
+Channel law_channel(const std::string& law, double shift = 0, double scale = 1) {
+  return prepare_law(law, shift, scale).setup->channels()[0];
+}
+
+// False alarm 1e-6 each.
+TEST(AnalyticLaw, MeanVarianceAndRangeAreWhatIsDeclared) {
+  for (const auto& [law, shift, scale] :
+       {std::tuple{"bernoulli(0.01)", 0.0, 1.0}, std::tuple{"exponential(2)", 3.0, 0.5},
+        std::tuple{"lognormal(0.2, 0.5)", 0.0, 1.0}, std::tuple{"normal(1, 2)", 0.0, 3.0},
+        std::tuple{"student_t(9)", 0.0, 1.0}, std::tuple{"uniform(-1, 3)", 1.0, 1.0},
+        std::tuple{"zero_inflated(0.1)", -1.0, 2.0}}) {
+    const auto plugin = prepare_law(law, shift, scale);
+    const Channel declared = plugin.setup->channels()[0];
+    const Sample sample = observe(plugin, 200000)[0];
+    EXPECT_NEAR(sample.mean(), *declared.mean, five * sample.mean_error()) << law;
+    EXPECT_NEAR(sample.variance(), *declared.variance, five * sample.variance_error()) << law;
+    EXPECT_GE(*std::ranges::min_element(sample.values), declared.low) << law;
+    EXPECT_LE(*std::ranges::max_element(sample.values), declared.high) << law;
+  }
+}
+
+// Cells of equal probability by these laws' own quantiles. False alarm 1e-6 each.
+TEST(AnalyticLaw, DrawsFollowTheLaw) {
+  struct Quantile {
+    const char* law;
+    double (*cdf)(double);
+  };
+  const auto normal_cdf = [](double z) { return std::erfc(-z / std::sqrt(2.0)) / 2; };
+  static const auto phi = normal_cdf;
+  for (const auto& [law, cdf] :
+       {Quantile{"exponential(2)", [](double x) { return -std::expm1(-2 * x); }},
+        Quantile{"lognormal(1, 0.5)", [](double x) { return phi((std::log(x) - 1) / 0.5); }},
+        Quantile{"normal(1, 2)", [](double x) { return phi((x - 1) / 2); }},
+        // Student's law with 2 and with 1 degrees of freedom has a plain distribution function.
+        Quantile{"student_t(2)", [](double x) { return (1 + x / std::sqrt(2 + x * x)) / 2; }},
+        Quantile{"student_t(1)", [](double x) { return 0.5 + std::atan(x) / 3.141592653589793; }},
+        Quantile{"uniform(-1, 3)", [](double x) { return (x + 1) / 4; }}}) {
+    const Sample sample = observe(prepare_law(law), 50000)[0];
+    std::vector<double> counts(50);
+    for (const double x : sample.values) {
+      counts[static_cast<std::size_t>(std::min(49.0, 50 * cdf(x)))] += 1;
+    }
+    Pearson pearson;
+    for (const double count : counts) pearson.add(count, 1000);
+    EXPECT_TRUE(pearson.passes()) << law << ": " << pearson.statistic;
+  }
+}
+
+TEST(AnalyticLaw, DeclaresMomentsWhereTheyExistAlone) {
+  EXPECT_FALSE(law_channel("student_t(1)").mean);
+  EXPECT_EQ(law_channel("student_t(1.5)").mean, 0);
+  EXPECT_FALSE(law_channel("student_t(2)").variance);
+  EXPECT_EQ(law_channel("student_t(4)").variance, 2);
+  EXPECT_EQ(law_channel("exponential(1)").low, 0);
+  EXPECT_EQ(law_channel("uniform(1, 2)", -1, 2).high, 3);
+}
+
+// The draws of its sampler have the density it declares, mass outside included: Simpson's rule.
+TEST(AnalyticLaw, SamplersDeclareDensitiesThatIntegrateToTheirMass) {
+  for (const char* law :
+       {"exponential(1)", "lognormal(0, 0.5)", "normal(0, 1)", "student_t(5)", "uniform(0, 1)"}) {
+    const auto plugin = prepare_law(law, 0, 2);
+    const Sampler& sampler = *plugin.setup->samplers().at(0).sampler;
+    const auto [low, high] = sampler.bounds();
+    const double width = high - low;
+    const double mass =
+        width * simpson([&](double u) { return sampler.density({low + width * u}); });
+    int inside = 0;
+    constexpr int draws = 20000;
+    for (std::uint64_t i = 0; i < draws; ++i) {
+      Stream random(plugin.key, i);
+      inside += sampler.sample(random).valid ? 1 : 0;
+    }
+    EXPECT_LE(mass, 1 + 1e-9) << law;
+    // False alarm 1e-6 for masses of .99 and more.
+    EXPECT_NEAR(inside / double{draws}, mass, five * std::sqrt(0.01 / draws)) << law;
+  }
+  EXPECT_TRUE(prepare_law("bernoulli(0.5)").setup->samplers().empty());
+}
+
+TEST(AnalyticLaw, WhatIsNoLawIsRefusedWithTheLawsThereAre) {
+  const auto refused = [](const std::string& law) -> std::string {
+    try {
+      prepare_law(law);
+    } catch (const InputError& error) {
+      return error.message();
+    }
+    return "";
+  };
+  for (const char* law : {"cauchy(0, 1)", "normal", "normal(0)", "normal(0, 0)", "bernoulli(1)",
+                          "uniform(1, 1)", "exponential(a)", "exponential()", "normal(0,)", ""}) {
+    EXPECT_NE(refused(law).find("student_t(freedom)"), std::string::npos) << law << refused(law);
+  }
 }
 
 TEST(AnalyticMutants, ScaledIsItsOriginalTimesTheFactor) {

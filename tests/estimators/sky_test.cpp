@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -120,6 +121,7 @@ TEST(Skies, AreSampledToTheirIrradiance) {
         EXPECT_NEAR(samples[c].mean(), *channels[c].mean,
                     five * samples[c].mean_error() + 1e-10 * *channels[c].mean)
             << plugin << sky;
+        EXPECT_LE(*std::ranges::max_element(samples[c].values), channels[c].high) << plugin << sky;
       }
     }
   }

@@ -185,6 +185,8 @@ TEST(SteerableSky, IsUnbiasedWhateverTheSky) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
       if (channels[c].diagnostic) continue;
       EXPECT_NEAR(samples[c].mean(), *channels[c].mean, five * samples[c].mean_error()) << sky;
+      EXPECT_LE(*std::ranges::max_element(samples[c].values), channels[c].high) << sky;
+      EXPECT_GE(*std::ranges::min_element(samples[c].values), channels[c].low) << sky;
     }
   }
 }

@@ -129,7 +129,7 @@ TEST(CommandLine, ARandomSeedIsFresh) {
 
 TEST(CommandLine, HelpLeadsWithExamples) {
   for (const char* name :
-       {"run", "plan", "check", "sample", "list", "describe", "replay", "report"}) {
+       {"run", "plan", "check", "calibrate", "sample", "list", "describe", "replay", "report"}) {
     const std::string help = parsed<TextCommand>({name, "--help"}).text;
     const std::size_t examples = help.find("Examples:\n  assay " + std::string(name));
     ASSERT_NE(examples, std::string::npos) << help;
@@ -162,7 +162,7 @@ TEST(CommandLine, SuggestsWhatWasMeant) {
 }
 
 TEST(CommandLine, OffersNothingOfLaterVersions) {
-  for (const char* name : {"calibrate", "merge", "images"}) {
+  for (const char* name : {"merge", "images"}) {
     EXPECT_THAT(refused({name}), StartsWith("unknown command `"));
   }
   EXPECT_THAT(refused({"check", "mean(a) == 1", "--ledger", "f"}),

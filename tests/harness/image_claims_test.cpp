@@ -155,6 +155,17 @@ TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
   EXPECT_NE(test.message.find("take 16 `secondaries` or more"), std::string::npos);
 }
 
+// One exponential value a pixel has skewness 2.
+TEST(ImageClaims, PixelsThatAreTooSkewedAreInvalidAndSayWhatHelps) {
+  const std::string text =
+      "suite: s\nestimators:\n  a: {plugin: analytic/ramp, law: exponential, primaries: "
+      "1}\ntests:\n"
+      "  - {claim: mean(a) == analytic, secondaries: 32, expect: invalid}\n";
+  const reports::Test test = run_text(text).suites[0].tests[0];
+  EXPECT_TRUE(test.ok) << test.message;
+  EXPECT_NE(test.message.find("`primaries`"), std::string::npos) << test.message;
+}
+
 std::vector<float> read_layer(const std::string& file, const std::string& channel) {
   Imf::InputFile input(file.c_str());
   const Imath::Box2i window = input.header().dataWindow();

@@ -1,0 +1,319 @@
+// A variable of a named law, X = shift + scale Y. Y has
+//   bernoulli(p)        1 with probability p, else 0         mean p              variance p (1 - p)
+//   exponential(rate)   -ln U / rate                         1 / rate            1 / rate^2
+//   lognormal(m, s)     exp(m + s Z)                         exp(m + s^2 / 2)    (exp(s^2) - 1)
+//   mean^2 normal(m, s)        m + s Z                              m                   s^2
+//   student_t(nu)       by Bailey's polar method             0, nu > 1           nu / (nu - 2), nu
+//   > 2 uniform(a, b)       a + (b - a) U                        (a + b) / 2         (b - a)^2 / 12
+//   zero_inflated(p)    with probability p -ln U, else 0     p                   2 p - p^2
+// What statistical methods are calibrated on: the shapes that Monte Carlo data have.
+
+#include "analytic/law.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "analytic/normal.h"
+#include "estimators/estimator.h"
+
+namespace assay::analytic {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// What a family's numbers must satisfy; `signature` is what messages show.
+struct FamilyInformation {
+  const char* name;
+  const char* signature;
+  std::size_t numbers;
+  bool (*allows)(double a, double b);
+  const char* rule;
+};
+
+bool is_probability(double p, double) { return p > 0 && p < 1; }
+bool is_positive(double a, double) { return a > 0; }
+bool has_scale(double, double s) { return s > 0; }
+bool is_interval(double a, double b) { return a < b; }
+
+// In the order of Law::Family.
+constexpr std::array<FamilyInformation, 7> families{{
+    {"bernoulli", "bernoulli(p)", 1, is_probability, "p must lie between 0 and 1"},
+    {"exponential", "exponential(rate)", 1, is_positive, "rate must be above 0"},
+    {"lognormal", "lognormal(location, scale)", 2, has_scale, "scale must be above 0"},
+    {"normal", "normal(mean, sd)", 2, has_scale, "sd must be above 0"},
+    {"student_t", "student_t(freedom)", 1, is_positive, "freedom must be above 0"},
+    {"uniform", "uniform(low, high)", 2, is_interval, "low must be below high"},
+    {"zero_inflated", "zero_inflated(p)", 1, is_probability, "p must lie between 0 and 1"},
+}};
+
+std::string quoted(std::string_view text) { return "`" + std::string(text) + "`"; }
+
+[[noreturn]] void refuse(const std::string& why) {
+  std::string known;
+  for (const FamilyInformation& family : families) {
+    known += (known.empty() ? "" : ", ") + std::string(family.signature);
+  }
+  throw std::invalid_argument(why + "; there is " + known);
+}
+
+/// The numbers between the brackets.
+std::vector<double> numbers_of(std::string_view text) {
+  std::vector<double> numbers;
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const std::string_view part = text.substr(0, comma);
+    const std::size_t first = part.find_first_not_of(' ');
+    const std::size_t last = part.find_last_not_of(' ');
+    if (first == std::string_view::npos) refuse("a number of the law is missing");
+    const std::string number(part.substr(first, last - first + 1));
+    try {
+      numbers.push_back(Value::scalar(number).number("a number of the law"));
+    } catch (const InputError& error) {
+      refuse(error.message());
+    }
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return numbers;
+}
+
+}  // namespace
+
+Law Law::parse(std::string_view text) {
+  const std::size_t open = text.find('(');
+  if (open == std::string_view::npos || text.back() != ')') {
+    refuse(quoted(text) + " is no law with its numbers in brackets");
+  }
+  const std::string_view name = text.substr(0, open);
+  const std::vector<double> numbers = numbers_of(text.substr(open + 1, text.size() - open - 2));
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    const FamilyInformation& family = families[i];
+    if (name != family.name) continue;
+    if (numbers.size() != family.numbers) {
+      refuse(quoted(text) + " has not the numbers of " + family.signature);
+    }
+    if (!family.allows(numbers.front(), numbers.back())) {
+      refuse("in " + quoted(text) + " " + family.rule);
+    }
+    return {static_cast<Family>(i), numbers};
+  }
+  refuse("no law is named " + quoted(name));
+}
+
+double Law::draw(Stream& random) const {
+  switch (family_) {
+    case Family::bernoulli:
+      return random.uniform() < a_ ? 1 : 0;
+    case Family::exponential:
+      return -std::log(random.uniform_open()) / a_;
+    case Family::lognormal:
+      return std::exp(NormalLaw{a_, b_}(random));
+    case Family::normal:
+      return NormalLaw{a_, b_}(random);
+    case Family::student_t: {
+      // Bailey (1994): sqrt(nu (u^(-2 / nu) - 1)) cos(2 pi v) has the law, for every nu.
+      const double radius = std::sqrt(a_ * std::expm1(-2 / a_ * std::log(random.uniform_open())));
+      return radius * std::cos(2 * std::numbers::pi * random.uniform());
+    }
+    case Family::uniform:
+      return a_ + (b_ - a_) * random.uniform();
+    case Family::zero_inflated:
+      return random.uniform() < a_ ? -std::log(random.uniform_open()) : 0;
+  }
+  throw std::logic_error("a law of no family");
+}
+
+double Law::density(double x) const {
+  constexpr double root_two_pi = 2.5066282746310002;
+  switch (family_) {
+    case Family::exponential:
+      return x < 0 ? 0 : a_ * std::exp(-a_ * x);
+    case Family::lognormal: {
+      const double z = (std::log(x) - a_) / b_;
+      return x > 0 ? std::exp(-z * z / 2) / (b_ * root_two_pi * x) : 0;
+    }
+    case Family::normal: {
+      const double z = (x - a_) / b_;
+      return std::exp(-z * z / 2) / (b_ * root_two_pi);
+    }
+    case Family::student_t: {
+      const double half = (a_ + 1) / 2;
+      const double log_constant =
+          std::lgamma(half) - std::lgamma(a_ / 2) - std::log(std::numbers::pi * a_) / 2;
+      return std::exp(log_constant - half * std::log1p(x * x / a_));
+    }
+    case Family::uniform:
+      return x < a_ || x > b_ ? 0 : 1 / (b_ - a_);
+    case Family::bernoulli:
+    case Family::zero_inflated:
+      break;
+  }
+  throw std::logic_error("a law without a density");
+}
+
+bool Law::has_density() const {
+  return family_ != Family::bernoulli && family_ != Family::zero_inflated;
+}
+
+std::optional<double> Law::mean() const {
+  switch (family_) {
+    case Family::bernoulli:
+    case Family::zero_inflated:
+    case Family::normal:
+      return a_;
+    case Family::exponential:
+      return 1 / a_;
+    case Family::lognormal:
+      return std::exp(a_ + b_ * b_ / 2);
+    case Family::student_t:
+      return a_ > 1 ? std::optional(0.0) : std::nullopt;
+    case Family::uniform:
+      return (a_ + b_) / 2;
+  }
+  return {};
+}
+
+std::optional<double> Law::variance() const {
+  switch (family_) {
+    case Family::bernoulli:
+      return a_ * (1 - a_);
+    case Family::exponential:
+      return 1 / (a_ * a_);
+    case Family::lognormal:
+      return std::expm1(b_ * b_) * std::exp(2 * a_ + b_ * b_);
+    case Family::normal:
+      return b_ * b_;
+    case Family::student_t:
+      return a_ > 2 ? std::optional(a_ / (a_ - 2)) : std::nullopt;
+    case Family::uniform:
+      return (b_ - a_) * (b_ - a_) / 12;
+    case Family::zero_inflated:
+      return 2 * a_ - a_ * a_;
+  }
+  return {};
+}
+
+double Law::low() const {
+  if (family_ == Family::normal || family_ == Family::student_t) return -infinity;
+  return family_ == Family::uniform ? a_ : 0;
+}
+
+double Law::high() const {
+  if (family_ == Family::bernoulli) return 1;
+  return family_ == Family::uniform ? b_ : infinity;
+}
+
+const std::vector<std::string>& law_signatures() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> names;
+    for (const FamilyInformation& family : families) names.emplace_back(family.signature);
+    return names;
+  }();
+  return all;
+}
+
+}  // namespace assay::analytic
+
+namespace assay::plugins {
+
+namespace {
+
+using analytic::Law;
+
+/// X = shift + scale Y.
+struct Variable {
+  Law law;
+  double shift;
+  double scale;
+
+  double operator()(Stream& random) const { return shift + scale * law.draw(random); }
+};
+
+/// Draws of X with its density, on an interval of 12 standard deviations about the mean or what the
+/// range leaves of it; what falls outside is missing mass.
+class VariableSampler final : public Sampler {
+ public:
+  explicit VariableSampler(const Variable& variable)
+      : variable_(variable), bounds_(interval(variable)) {}
+
+  Domain domain() const override { return Domain::interval; }
+  std::array<double, 2> bounds() const override { return bounds_; }
+  SamplerDraw sample(Stream& random) const override {
+    const double x = variable_(random);
+    if (x < bounds_[0] || x > bounds_[1]) return {.valid = false};
+    return {.point = {x}, .density = density({x}), .weight = 1};
+  }
+  double density(const Point& p) const override {
+    return variable_.law.density((p[0] - variable_.shift) / variable_.scale) / variable_.scale;
+  }
+  double evaluate(const Point& p) const override { return density(p); }
+  Panels panels() const override { return {.first = 64}; }
+
+ private:
+  static std::array<double, 2> interval(const Variable& v) {
+    const double reach = 6 * std::sqrt(*v.law.variance());
+    const double low = std::max(v.law.low(), *v.law.mean() - reach);
+    const double high = std::min(v.law.high(), *v.law.mean() + reach);
+    return {v.shift + v.scale * low, v.shift + v.scale * high};
+  }
+
+  Variable variable_;
+  std::array<double, 2> bounds_;
+};
+
+Law law_of(Parameters& parameters) {
+  try {
+    return Law::parse(parameters.string("law"));
+  } catch (const std::invalid_argument& error) {
+    parameters.refuse("law", std::string("is no law: ") + error.what());
+  }
+}
+
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  const Law law = law_of(parameters);
+  const Variable variable{law, parameters.number("shift"), parameters.number("scale")};
+  Channel channel{.low = variable.shift + variable.scale * law.low(),
+                  .high = variable.shift + variable.scale * law.high()};
+  if (law.mean()) channel.mean = variable.shift + variable.scale * *law.mean();
+  if (law.variance()) channel.variance = variable.scale * variable.scale * *law.variance();
+  std::vector<NamedSampler> samplers;
+  if (law.has_density() && law.variance()) {
+    samplers.push_back({"x", std::make_shared<VariableSampler>(variable)});
+  }
+  return averaging(channel, variable, samplers);
+}
+
+}  // namespace
+
+std::vector<Entry> analytic_law() {
+  return {{{.name = "analytic/law",
+            .summary = "A variable of a named law.",
+            .description =
+                "Estimates the mean of shift + scale Y, Y of the law: bernoulli(p), "
+                "exponential(rate), lognormal(location, scale), normal(mean, sd), "
+                "student_t(freedom), uniform(low, high), zero_inflated(p), which is exponential(1) "
+                "with probability p and else 0. Mean, variance and range are declared where they "
+                "exist. What has a density can be sampled as `x`, within 6 standard deviations of "
+                "the mean. `assay calibrate` measures the methods on it.",
+            .parameters = {{.name = "law",
+                            .type = ParameterType::string,
+                            .summary = "the law with its numbers, as lognormal(0, 0.5)",
+                            .fallback = "normal(0, 1)"},
+                           {.name = "shift",
+                            .summary = "what is added",
+                            .fallback = "0",
+                            .low = -1e150,
+                            .high = 1e150},
+                           {.name = "scale",
+                            .summary = "what Y is multiplied by",
+                            .fallback = "1",
+                            .low = 0,
+                            .high = 1e150,
+                            .low_excluded = true}}},
+           prepare}};
+}
+
+}  // namespace assay::plugins

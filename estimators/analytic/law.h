@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimators/stream.h"
+
+namespace assay::analytic {
+
+/// A law by name and numbers, as "lognormal(0, 0.5)" says it.
+class Law {
+ public:
+  enum class Family {
+    bernoulli,
+    exponential,
+    lognormal,
+    normal,
+    student_t,
+    uniform,
+    zero_inflated
+  };
+
+  /// Throws std::invalid_argument, in words for the user, for what is no law.
+  static Law parse(std::string_view text);
+
+  double draw(Stream& random) const;
+  /// dP/dx where the law has a density.
+  double density(double x) const;
+  bool has_density() const;
+
+  std::optional<double> mean() const;
+  std::optional<double> variance() const;
+  double low() const;   ///< no value is below
+  double high() const;  ///< no value is above
+
+ private:
+  Law(Family family, const std::vector<double>& numbers)
+      : family_(family), a_(numbers[0]), b_(numbers.size() > 1 ? numbers[1] : 0) {}
+
+  Family family_;
+  double a_;
+  double b_;
+};
+
+/// "bernoulli(p)", …: what there is.
+const std::vector<std::string>& law_signatures();
+
+}  // namespace assay::analytic

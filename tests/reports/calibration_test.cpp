@@ -1,0 +1,108 @@
+#include "reports/calibration.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "reports/columns.h"
+
+namespace assay::reports {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Rate rate(std::uint64_t count, double low, double high) {
+  return {.count = count, .runs = 1000, .low = low, .high = high};
+}
+
+CalibrationCell cell(const std::string& method) {
+  return {.method = method,
+          .question = "variance == <number>",
+          .law = "zero_inflated(0.1)",
+          .alpha = 0.01,
+          .mistaken = rate(9, 0.002, 0.02),
+          .inconclusive = 3,
+          .invalid = 20,
+          .observations = 1048576,
+          .chosen = {{"skewness-corrected-t", 900}, {"t", 100}},
+          .found = rate(990, 0.97, 1),
+          .missed = rate(1, 0, 0.01),
+          .alone = rate(300, 0.2, 0.4),
+          .red = rate(1000, 0.99, 1),
+          .alone_green = rate(0, 0, 0.01),
+          .alone_observations = 1000};
+}
+
+Calibration calibration(const std::vector<CalibrationCell>& cells) {
+  return {.seed = 7, .runs = 1000, .started = "2026-01-01T00:00:00Z", .cells = cells};
+}
+
+TEST(Calibration, ACellErrsWhereItsLowerLimitExceedsTheTolerance) {
+  CalibrationCell good = cell("F");
+  CalibrationCell bad = cell("t");
+  bad.mistaken.low = 0.0126;
+  CalibrationCell silent = cell("welch");
+  silent.alone_green = rate(300, 0.2, 0.4);
+  const Calibration all = calibration({good, bad, silent});
+  EXPECT_FALSE(above(all, good));
+  EXPECT_FALSE(unflagged(all, good)) << "off, and its gate is red";
+  EXPECT_TRUE(above(all, bad));
+  EXPECT_TRUE(unflagged(all, silent));
+  EXPECT_EQ(defects(all), 2U);
+  EXPECT_EQ(verdict_sentence(all), "2 of 3 cells err too often");
+  EXPECT_THAT(console(all), HasSubstr("\n!! zero_inflated(0.1)"));
+  EXPECT_THAT(console(all), HasSubstr("\n!  zero_inflated(0.1)"));
+}
+
+TEST(Calibration, TablesFitAHundredColumns) {
+  CalibrationCell alone = cell("log-variance");
+  alone.mistaken = alone.found = alone.missed = {};
+  alone.chosen.clear();
+  CalibrationCell strict = cell("F");
+  strict.alpha = 0.001;
+  strict.mistaken.low = 1e-4;
+  const std::string text = console(calibration({cell("chi-square"), alone, strict}));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(columns(line), 100) << line;
+  EXPECT_THAT(text, HasSubstr("alpha 0.01: 1000 runs a cell"));
+  EXPECT_THAT(text, HasSubstr("alpha 0.001"));
+  EXPECT_THAT(text, HasSubstr("1.05\u00a0M"));
+  EXPECT_THAT(text, HasSubstr("skewness-corrected-t"));
+  EXPECT_THAT(text, HasSubstr("no cell of 3 errs too often"));
+}
+
+TEST(Calibration, PagesDrawEveryAlphaAndEscapeText) {
+  CalibrationCell strict = cell("F");
+  strict.alpha = 0.001;
+  const std::string page = html(calibration({cell("chi-square"), strict}));
+  EXPECT_THAT(page, HasSubstr("<h2>alpha 0.01</h2>"));
+  EXPECT_THAT(page, HasSubstr("<h2>alpha 0.001</h2>"));
+  EXPECT_THAT(page, HasSubstr("variance == &lt;number&gt;"));
+  EXPECT_THAT(page, Not(HasSubstr("<number>")));
+  EXPECT_THAT(calibration_chart(calibration({cell("F")}), 0.01), HasSubstr("circle"));
+  EXPECT_EQ(calibration_chart(calibration({cell("F")}), 0.05), "");
+}
+
+TEST(Calibration, JsonHoldsEveryCount) {
+  const auto root = nlohmann::json::parse(json(calibration({cell("F")})));
+  EXPECT_EQ(root["report"], "calibration");
+  EXPECT_EQ(root["seed"], 7);
+  const auto& first = root["cells"][0];
+  EXPECT_EQ(first["mistaken"]["count"], 9);
+  EXPECT_EQ(first["chosen"][0]["method"], "skewness-corrected-t");
+  EXPECT_EQ(first["alone_red"]["runs"], 1000);
+  EXPECT_EQ(first["observations"], 1048576);
+}
+
+TEST(Calibration, MarkdownHasARowACell) {
+  const std::string text = markdown(calibration({cell("F"), cell("t")}));
+  EXPECT_THAT(text, HasSubstr("|    F | "));
+  EXPECT_THAT(text, HasSubstr("|    t | "));
+  EXPECT_THAT(text, Not(HasSubstr("<number>")));
+}
+
+}  // namespace
+}  // namespace assay::reports
