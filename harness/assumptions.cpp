@@ -8,6 +8,7 @@
 #include "harness/constant.h"
 #include "harness/critical.h"
 #include "harness/evidence_slope.h"
+#include "harness/exact_size.h"
 #include "harness/rows.h"
 #include "stats/skewness_corrected_t.h"
 
@@ -108,7 +109,7 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
   const bool several = question.channel_count() > 1;
   const std::string name = several ? ", " + question.channel_name(channel) : "";
   const double x = critical_value(outcome.share().alpha, two_sided(question));
-  const bool exact = method == "binomial" || method == "bounded";
+  const bool exact = is_exact(outcome.plan.method);
   for (const stats::Gate& gate : row_gates(outcome, data, x)) gates.push_back(gate_of(gate, name));
   if (question.of_means() && !exact && method != "batch-means") {
     gates.push_back(gate_of(method == "skewness-corrected-t"
@@ -119,10 +120,12 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
     if (!(data[subject].moments.m2 > 0)) continue;
     const std::string whose = name + " of " + question.subjects[subject].estimator->name;
-    if (question.of_means() && !exact && method != "batch-means") {
+    // Of two values none can stand out, of three no kurtosis is known.
+    const std::uint64_t count = data[subject].moments.count;
+    if (question.of_means() && !exact && method != "batch-means" && count > 2) {
       gates.push_back(gate_of(stats::dominance_gate(data[subject].moments), whose));
     }
-    if (method == "F" || method == "chi-square") {
+    if ((method == "F" || method == "chi-square") && count > 3) {
       gates.push_back(gate_of(stats::kurtosis_gate(data[subject].moments), whose));
     }
   }

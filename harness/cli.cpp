@@ -146,6 +146,10 @@ std::string replayable_check(const Given& given) {
   line.add("--detect", given.detect);
   line.add("--allow", given.allow);
   line.add("--test", given.method);
+  line.add("--over", given.over);
+  line.add("--reference", given.reference);
+  line.add("--cost", given.cost);
+  line.add("--budget", given.budget);
   line.add("--primaries", given.primaries);
   line.add("--secondaries", given.secondaries);
   line.add("--alpha", given.alpha);
@@ -177,6 +181,10 @@ Command check_command(const Given& given, const CLI::App& sub) {
   command.arguments.detect = if_given(given.detect);
   command.arguments.allow = if_given(given.allow);
   command.arguments.method = if_given(given.method);
+  command.arguments.over = if_given(given.over);
+  command.arguments.reference = if_given(given.reference);
+  command.arguments.cost = if_given(given.cost);
+  command.arguments.budget = if_given(given.budget);
   command.arguments.primaries = count_if_given(given.primaries, "--primaries", 1);
   command.arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 2);
   if (command.options.alpha) command.arguments.alpha = *command.options.alpha;
@@ -206,7 +214,7 @@ Command calibrate_command(const Given& given) {
 Command sample_command(const Given& given, const CLI::App& sub) {
   require(given.source, "an estimator", sub);
   SampleArguments arguments{.source = given.source, .estimators = given.estimators};
-  arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 1).value_or(10);
+  arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 1);
   arguments.primaries = count_if_given(given.primaries, "--primaries", 1).value_or(1);
   if (!given.seed.empty()) arguments.seed = parse_seed(given.seed);
   return arguments;

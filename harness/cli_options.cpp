@@ -101,6 +101,14 @@ void define_check(CLI::App& app, Given& given) {
       "the effect that may be there, as 0.5% or 0.002; default 0");
   one(sub, "--test", given.method, "METHOD",
       "force a method, such as welch; default chosen from the pilot");
+  one(sub, "--over", given.over, "SWEEP",
+      "of a slope: a parameter and its values, as '{primaries: [8, 16, 32]}'; default none");
+  one(sub, "--reference", given.reference, "R",
+      "of a bias or an efficiency: the truth, as 6.36, '6.36 +- 0.01' or an estimator; default "
+      "what the plugin knows");
+  one(sub, "--cost", given.cost, "KIND", "rays, samples or seconds; default rays");
+  one(sub, "--budget", given.budget, "B",
+      "the most it may cost, as 1e7 primaries or 30s of CPU time; default none");
   add_estimators(sub, given,
                  {.primaries = "primary estimates of an observation; default chosen from the pilot",
                   .secondaries = "number of observations, 2 or more; default what --detect needs"});

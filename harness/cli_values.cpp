@@ -71,9 +71,10 @@ std::pair<unsigned, unsigned> parse_shard(const std::string& text) {
 
 ReportRequest parse_report(const std::string& text) {
   const std::size_t equals = text.find('=');
+  if (text == "console") return {text, "-"};  // the kind that is for reading at once
   if (equals == std::string::npos || equals + 1 == text.size()) {
-    throw InputError({}, fmt::format("--report must be KIND=PATH, as in html=run.html, but it is "
-                                     "`{}`",
+    throw InputError({}, fmt::format("--report must be KIND=PATH, as in html=run.html, where the "
+                                     "path - is standard output, but it is `{}`",
                                      text));
   }
   const std::string kind = text.substr(0, equals);

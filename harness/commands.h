@@ -56,7 +56,7 @@ int replay(const ReplayArguments&);
 struct SampleArguments {
   std::string source;  ///< as in a claim: estimator or plugin, with part
   std::vector<std::string> estimators = {};
-  std::uint64_t secondaries = 10;
+  std::optional<std::uint64_t> secondaries = {};  ///< default 10, or the rows there are
   std::uint64_t primaries = 1;
   std::uint64_t seed = 1;
 };

@@ -293,7 +293,7 @@ void judge(TestWork& work) {
     outcome.channels.clear();
     remember(outcome, false);
     settle(outcome, Verdict::invalid,
-           outcome.plan.invalid.empty() ? error.what() : outcome.plan.invalid);
+           outcome.plan.invalid.empty() ? in_words(error) : outcome.plan.invalid);
   }
 }
 

@@ -12,6 +12,7 @@ namespace assay::harness {
 
 /// A test with the pools its subjects read, one each.
 struct TestWork {
+  const Budget* suite_budget = nullptr;  ///< the same for all tests of the suite; null: none
   TestOutcome outcome;
   std::vector<std::shared_ptr<Pool>> pools = {};
   /// Whether the verdict is all that is wanted: no interval of the effect, no power, no sentence.

@@ -87,6 +87,18 @@ std::string red_gates(const std::vector<reports::Gate>& gates) {
   return text;
 }
 
+std::string in_words(const std::exception& error) {
+  const std::string text = error.what();
+  const std::size_t colon = text.find(": ");
+  const std::string_view name = std::string_view(text).substr(0, colon);
+  const bool is_name =
+      colon != std::string::npos && name.find_first_not_of(
+                                        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                        "0123456789_:") == std::string_view::npos;
+  if (!is_name) return text;
+  return "there is no test of these numbers: " + text.substr(colon + 2);
+}
+
 std::string what_would_help(const TestOutcome& outcome) {
   bool says_it_all = true;
   double factor = 1;

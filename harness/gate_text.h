@@ -2,6 +2,7 @@
 
 // Red gates in words.
 
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace assay::harness {
 
 /// What is wrong with the data, a sentence a red gate; "" where none is.
 std::string red_gates(const std::vector<reports::Gate>& gates);
+
+/// What stats refuses to compute, as a sentence: "function: " before it is no news to a reader.
+std::string in_words(const std::exception& error);
 
 /// What would turn the outcome's red gates green: rows of a file, or primaries and secondaries of
 /// an estimator. "" where the gates say it themselves.

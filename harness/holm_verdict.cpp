@@ -35,12 +35,13 @@ void apply_holm(const std::vector<TestWork*>& suite, double alpha) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (owners[i] == nullptr) continue;
     owners[i]->log_p_adjusted = adjusted[i];
-    const bool open =
-        tests[i]->verdict == Verdict::pass || tests[i]->verdict == Verdict::inconclusive;
-    if (!open || adjusted[i] > std::log(alpha)) continue;
+    const Verdict verdict = tests[i]->verdict;
+    const bool judged = verdict != Verdict::invalid && verdict != Verdict::error;
+    if (!judged || adjusted[i] > std::log(alpha)) continue;
     owners[i]->decision.rejected = true;
+    if (verdict == Verdict::fail) continue;
     tests[i]->verdict = Verdict::fail;
-    tests[i]->message = narrate(*tests[i]);
+    tests[i]->message = narrate_holm(*tests[i], *owners[i]);
   }
 }
 

@@ -76,7 +76,9 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
   const TestOutcome& test = entry.work.outcome;
   const std::vector<double> path =
       log_e_path(series, nights, claimed_range(test.plan.regions[entry.channel]));
-  const double alpha = book.budget() * test.place.weight * generation_share(book.generation(index));
+  // A limit that moved with the suite would raise and lower alarms of nights long past.
+  const double weight = series.weight > 0 ? series.weight : test.place.weight;
+  const double alpha = book.budget() * weight * generation_share(book.generation(index));
   result.nights = nights.size();
   result.first = nights.front().date;
   result.last = nights.back().date;
@@ -103,6 +105,7 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
   LedgerSeries series{.hash = series_hash(entry.work, entry.channel),
                       .kind = kind,
                       .prior = night.prior,
+                      .weight = test.place.weight,
                       .test = test.question.test->id,
                       .channel = test.question.channel_name(entry.channel)};
   // The pilot chose the method, not the night's data: leaving the night out favours nobody.

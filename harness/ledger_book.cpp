@@ -34,7 +34,9 @@ std::string line_of(const LedgerSeries& series) {
     prior = fmt::format(" effect {} reference {}", reports::round_trip(series.prior.effect),
                         reports::round_trip(series.prior.reference_error));
   }
-  return fmt::format("series {} {}{} {} {}", series.hash, kind_text(series.kind), prior,
+  const std::string weight =
+      series.weight > 0 ? " weight " + reports::round_trip(series.weight) : "";
+  return fmt::format("series {} {}{}{} {} {}", series.hash, kind_text(series.kind), prior, weight,
                      in_quotes(series.test), in_quotes(series.channel));
 }
 
@@ -237,6 +239,10 @@ class LedgerReader {
       series.prior.effect = named(fields, "effect");
       series.prior.reference_error = named(fields, "reference");
       if (!(series.prior.effect > 0) || !(series.prior.reference_error >= 0)) changed();
+    }
+    if (fields.word("weight")) {
+      series.weight = required(fields.number());
+      if (!(series.weight > 0 && series.weight <= 1)) changed();
     }
     series.test = required(fields.text());
     series.channel = required(fields.text());

@@ -3,7 +3,7 @@
 // The ledger as data and as text: what nights with fresh seeds said of each claim.
 //
 //   assay-ledger 1 budget 0.003
-//   series 5f2a… score effect 0.0012 reference 0 "suite/test" "channel" | 1a2b3c4d
+//   series 5f2a… score effect 0.0012 reference 0 weight 0.25 "suite/test" "channel" | 1a2b3c4d
 //   night 2026-11-21T02:00:01Z seed 17 commit 14467a0 series 5f2a… score 12.2 information 3e4
 //         "suite/test" "channel" | 5d6e7f80                                    (one line)
 //   night … series 77aa… log-e -0.69 "suite/other" "channel" | …
@@ -38,7 +38,9 @@ struct LedgerSeries {
   std::string hash;  ///< of claim, margins and parameters
   EvidenceKind kind = EvidenceKind::score;
   stats::LedgerPrior prior = {};  ///< of a score
-  std::string test;               ///< id
+  /// The test's share of the budget when the series began; of files written before it was kept: 0.
+  double weight = 0;
+  std::string test;  ///< id
   std::string channel;
   bool operator==(const LedgerSeries& other) const;
 };

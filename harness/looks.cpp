@@ -1,6 +1,8 @@
 #include "harness/looks.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "harness/interrupt.h"
 #include "harness/scheduler.h"
@@ -37,8 +39,31 @@ std::uint64_t most_work(const std::vector<std::shared_ptr<Pool>>& pools) {
   return total;
 }
 
+double seconds_of(const Pool& pool) {
+  const std::uint64_t drawn = pool.largest_prefix();
+  return drawn == 0 ? 0 : pool.prefix(drawn).seconds;
+}
+
+/// CPU seconds of the suites that have a budget in seconds, each pool counted once.
+using Clocks = std::map<const Budget*, double>;
+
+Clocks read_clocks(const std::vector<TestWork*>& tests) {
+  std::map<const Budget*, std::set<const Pool*>> pools;
+  for (const TestWork* work : tests) {
+    if (work->suite_budget == nullptr || !work->suite_budget->seconds) continue;
+    for (const auto& pool : work->pools) pools[work->suite_budget].insert(pool.get());
+  }
+  Clocks clocks;
+  for (const auto& [budget, drawn] : pools) {
+    for (const Pool* pool : drawn) clocks[budget] += seconds_of(*pool);
+  }
+  return clocks;
+}
+
 /// Whether a budget in seconds is spent, or would be by a look of twice the size.
-bool is_spent(const TestWork& work) {
+bool is_spent(const TestWork& work, const Clocks& clocks) {
+  const auto clock = clocks.find(work.suite_budget);
+  if (clock != clocks.end() && 2 * clock->second > *work.suite_budget->seconds) return true;
   const std::optional<Budget>& budget = work.outcome.question.test->budget;
   if (!budget || !budget->seconds) return false;
   double seconds = 0;
@@ -49,9 +74,9 @@ bool is_spent(const TestWork& work) {
   return 2 * seconds > *budget->seconds;
 }
 
-bool take_next(TestWork& work) {
+bool take_next(TestWork& work, const Clocks& clocks) {
   TestOutcome& outcome = work.outcome;
-  const bool spent = is_spent(work);
+  const bool spent = is_spent(work, clocks);
   take_look(work, !spent);
   const bool ended_early = outcome.look + 1 < outcome.plan.looks.sizes.size() &&
                            outcome.verdict == reports::Verdict::inconclusive;
@@ -73,7 +98,8 @@ void sample_in_looks(const std::vector<TestWork*>& tests,
     }
     draw_all(pools, {.threads = threads}, rounds);
     if (interrupted()) return;
-    std::erase_if(open, [](TestWork* work) { return !take_next(*work); });
+    const Clocks clocks = read_clocks(tests);
+    std::erase_if(open, [&](TestWork* work) { return !take_next(*work, clocks); });
   } while (!open.empty());
 }
 

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "harness/inversion.h"
+#include "stats/nonnegative_mean.h"
 #include "stats/skewness_corrected_t.h"
 #include "stats/student_t.h"
 #include "stats/two_valued.h"
@@ -61,9 +64,9 @@ Interval map_ends(const Interval& interval, const std::function<double(double)>&
 }
 
 /// Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
-double log_p_of_no_sign(const Moments& y) {
+double log_p_of_no_sign(const Moments& y, const OneMeanTest& test) {
   if (y.m2 == 0) return y.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();
-  return stats::log_p_two_sided(stats::student_t(y, {.value = 0}));
+  return stats::log_p_two_sided(test({.value = 0}));
 }
 
 /// Closed forms for Student's and Welch's t; every other method is inverted.
@@ -96,7 +99,7 @@ Evidence difference_of_means(const Method& method, const Question& question, con
 }
 
 Evidence ratio_of_means(const Method& method, const Question& question, const Moments& x,
-                        const Moments& y, const ContrastTest& test) {
+                        const Moments& y, const ContrastTest& test, const OneMeanTest& test_of_y) {
   const double factor = question.factor;
   const double offset = question.offset;
   const double other = factor * y.mean;
@@ -109,7 +112,7 @@ Evidence ratio_of_means(const Method& method, const Question& question, const Mo
     TestResult result = contrast(theta);
     if (theta == 0) return result;
     // Which contrast a relative margin is depends on the sign of E y, which y must show as well.
-    const double log_p_sign = log_p_of_no_sign(y);
+    const double log_p_sign = log_p_of_no_sign(y, test_of_y);
     result.log_p_lower = std::max(result.log_p_lower, log_p_sign);
     result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
     return result;
@@ -129,6 +132,32 @@ Evidence ratio_of_means(const Method& method, const Question& question, const Mo
           .relative = true};
 }
 
+/// "E x <= value" by bets on what lies above the declared lower bound; nothing refutes the
+/// contrary.
+Evidence bets_against_number(const Question& question, std::size_t channel, const Moments& x,
+                             std::span<const double> values) {
+  const Constant& reference = question.references[channel];
+  const bool relative = is_relative(question, channel);
+  const double unit = relative ? std::abs(reference.value) : 1;
+  const double null = reference.value + question.offset;
+  const double bound = range_of(question, 0, channel, x).low;
+  auto above = std::make_shared<std::vector<double>>();
+  for (const double value : values) above->push_back(value - bound);
+  const auto at = [=](double theta) {
+    return stats::nonnegative_mean(*above, null + theta * unit - bound);
+  };
+  const auto interval = [=](double confidence) {
+    const double low = stats::nonnegative_mean_lower_limit(*above, (1 + confidence) / 2) + bound;
+    return Interval{(low - null) / unit, std::numeric_limits<double>::infinity(), confidence};
+  };
+  return {.estimate = (x.mean - null) / unit,
+          .at = at,
+          .interval = interval,
+          .quantity =
+              relative ? "relative difference from the reference" : "difference from the reference",
+          .relative = relative};
+}
+
 }  // namespace
 
 stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
@@ -140,7 +169,8 @@ stats::Range range_of(const Question& question, std::size_t subject, std::size_t
 }
 
 Evidence mean_against_number(const Method& method, const Question& question, std::size_t channel,
-                             const stats::Moments& x) {
+                             const stats::Moments& x, std::span<const double> values) {
+  if (method.name == "betting") return bets_against_number(question, channel, x, values);
   const Constant& reference = question.references[channel];
   const bool relative = is_relative(question, channel);
   const double unit = relative ? std::abs(reference.value) : 1;
@@ -175,8 +205,9 @@ Evidence mean_against_mean(const Method& method, const Question& question, std::
   const Moments& y = data[1].moments;
   const ContrastTest test = contrast_test(method, x, y, range_of(question, 0, channel, x),
                                           range_of(question, 1, channel, y));
-  return is_relative(question, channel) ? ratio_of_means(method, question, x, y, test)
-                                        : difference_of_means(method, question, x, y, test);
+  if (!is_relative(question, channel)) return difference_of_means(method, question, x, y, test);
+  return ratio_of_means(method, question, x, y, test,
+                        one_mean_test(method, y, range_of(question, 1, channel, y)));
 }
 
 }  // namespace assay::harness

@@ -11,9 +11,10 @@ namespace assay::harness {
 
 // Of a claimed bias b (question.offset), E x - b takes the place of E x.
 
-/// theta = (E x - r) / |r| where margins are relative, else E x - r.
+/// theta = (E x - r) / |r| where margins are relative, else E x - r. `values` are read by `betting`
+/// alone, which takes the channel's declared lower bound and sees one direction.
 Evidence mean_against_number(const Method& method, const Question& question, std::size_t channel,
-                             const stats::Moments& x);
+                             const stats::Moments& x, std::span<const double> values = {});
 
 /// theta = (E x - c E y) / |c E y| where margins are relative, tested as a contrast, else E x - c E
 /// y.

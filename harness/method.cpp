@@ -209,11 +209,9 @@ std::vector<Method> methods_for(const Question& question) {
                 {"binomial", Keeps::moments},
                 {"bounded", Keeps::moments}};
       }
-      return {{"t", Keeps::moments},
-              {"skewness-corrected-t", Keeps::moments},
-              {"binomial", Keeps::moments},
-              {"bounded", Keeps::moments},
-              {"batch-means", Keeps::values}};
+      return {{"t", Keeps::moments},          {"skewness-corrected-t", Keeps::moments},
+              {"binomial", Keeps::moments},   {"bounded", Keeps::moments},
+              {"batch-means", Keeps::values}, {"betting", Keeps::values}};
     case QuestionKind::mean_of_two:
       return {{within ? "tost" : "welch", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
@@ -317,7 +315,8 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
   switch (question.kind) {
     case QuestionKind::mean_of_one:
       return mean_against_number(method, question, channel,
-                                 method.name == "batch-means" ? batched(data[0]) : data[0].moments);
+                                 method.name == "batch-means" ? batched(data[0]) : data[0].moments,
+                                 data[0].values);
     case QuestionKind::mean_of_two:
       return mean_against_mean(method, question, channel, data);
     case QuestionKind::variance_of_one:

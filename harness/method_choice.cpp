@@ -82,6 +82,13 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
   return all;
 }
 
+/// The method chosen asks nothing of the shape that the pilot's gates complain of.
+void answer_red_gates(Plan& plan) {
+  for (reports::Gate& gate : plan.gates) {
+    if (gate.state == "red") gate.state = "amber";
+  }
+}
+
 /// Notes a gate of the pilot; rows of a file are judged with the test's own data.
 void note(Plan& plan, const Known& known, const stats::Gate& gate) {
   if (!known.rows) plan.gates.push_back(gate_of(gate, known.label));
@@ -216,6 +223,17 @@ bool are_bounded(const Question& question, const std::vector<Known>& channels) {
   });
 }
 
+/// Whether "too much" can be tested exactly, whatever the law above a declared lower bound.
+bool can_be_bet_on(const Question& question, const std::vector<Known>& channels) {
+  if (question.of_two() || question.test->claim.relation != Relation::at_most) return false;
+  return !channels.empty() &&
+         std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
+           const stats::Range range = range_of(question, 0, known.channel, known.pilot.moments);
+           return !known.rows && std::isfinite(range.low) &&
+                  question.references[known.channel].standard_error == 0;
+         });
+}
+
 /// How many secondaries the test has or is worth, before any look at shapes.
 std::uint64_t intended(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, const Plan& plan) {
@@ -253,6 +271,11 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
     least = for_corrected;
   } else if (for_t > affordable && !channels.empty() && are_bounded(question, channels)) {
     plan.method = find_method(question, "bounded");
+    answer_red_gates(plan);
+    return least_secondaries;
+  } else if ((for_t > affordable || !heavy.empty()) && can_be_bet_on(question, channels)) {
+    plan.method = find_method(question, "betting");
+    answer_red_gates(plan);
     return least_secondaries;
   }
   for (const Known& known : channels) {

@@ -26,9 +26,11 @@ std::string size_text(double theta, const Evidence& evidence) {
 
 std::string interval_text(const ChannelOutcome& channel, double confidence) {
   const stats::Interval interval = channel.evidence.interval(confidence);
-  return fmt::format("[{}, {}] at {}", show_theta(interval.low, channel.evidence),
-                     show_theta(interval.high, channel.evidence),
-                     reports::confidence_text(confidence));
+  const std::string low = show_theta(interval.low, channel.evidence);
+  const std::string ends = std::isfinite(interval.high)
+                               ? low + ", " + show_theta(interval.high, channel.evidence)
+                               : "from " + low;
+  return fmt::format("[{}] at {}", ends, reports::confidence_text(confidence));
 }
 
 std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -162,6 +164,10 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
+  if (outcome.plan.method.name == "betting") {
+    return "no number of samples would decide: without an upper bound on the values a larger mean "
+           "cannot be excluded; declare the range";
+  }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
     return "the estimate lies where the claim must not pass, yet not clearly so";
   }
@@ -194,6 +200,15 @@ std::string show_theta(double theta, const Evidence& evidence) {
   if (evidence.relative) return fmt::format("{:+.3g} %", 100 * theta);
   if (evidence.ratio) return fmt::format("x {:.4g}", std::exp(theta));
   return fmt::format("{:.4g}", theta);
+}
+
+std::string narrate_holm(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return fmt::format(
+      "{} is {}{}, {} and after Holm {}: refuted by the share of alpha that the suite's other "
+      "refuted claims leave to it, not by its own, which the interval is for",
+      channel.evidence.quantity, show_theta(channel.evidence.estimate, channel.evidence),
+      in_channel(outcome, channel), p_text(channel.decision.log_p_claimed),
+      p_text(channel.log_p_adjusted));
 }
 
 std::string narrate(const TestOutcome& outcome) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "harness/critical.h"
+#include "harness/gate_text.h"
 #include "harness/image_plan.h"
 #include "harness/method_choice.h"
 #include "harness/pool.h"
@@ -156,7 +157,7 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     if (plan.invalid.empty()) plan.invalid = too_few_replicates(question, plan);
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2);
-    plan.invalid = error.what();
+    plan.invalid = in_words(error);
   }
   return plan;
 }

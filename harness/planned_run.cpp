@@ -21,9 +21,25 @@ bool selected(const TestEntry& test, std::size_t index, const RunOptions& option
   return options.filter.empty() || matches(options.filter, test.id);
 }
 
+/// The suite's primaries are split over its tests by weight, whichever of them run: what a test may
+/// draw is then a function of the suite alone. Claims in seconds are timed on whole replicates.
+void share_budget(Suite& suite) {
+  if (!suite.budget || !suite.budget->primaries) return;
+  double weights = 0;
+  for (const TestEntry& test : suite.tests) weights += test.weight;
+  for (TestEntry& test : suite.tests) {
+    if (test.cost == CostKind::seconds) continue;
+    const auto share = static_cast<std::uint64_t>(static_cast<double>(*suite.budget->primaries) *
+                                                  test.weight / weights);
+    if (!test.budget) test.budget.emplace();
+    test.budget->primaries = std::min(test.budget->primaries.value_or(share), share);
+  }
+}
+
 /// The suite as this run wants it.
 Suite adjusted(Suite suite, const RunOptions& options) {
   if (options.alpha) suite.alpha = *options.alpha;
+  share_budget(suite);
   for (TestEntry& test : suite.tests) {
     if (!test.detect) continue;
     test.detect->value *= options.coarsen;
@@ -117,6 +133,7 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
     if (!chosen[i]) continue;
     Plan plan = plan_test(questions[i], place[i], pilots, primaries);
     TestWork work{
+        .suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
         .outcome = {.question = questions[i], .place = place[i], .plan = std::move(plan)}};
     for (std::size_t subject = 0; subject < work.outcome.question.subjects.size(); ++subject) {
       work.pools.push_back(

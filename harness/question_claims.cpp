@@ -47,6 +47,13 @@ std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
   std::vector<Constant> truths;
   const std::vector<Channel> channels = subject.setup->channels();
   for (const std::size_t i : subject.channels) {
+    if (!test.reference_number && !channels[i].mean) {
+      throw InputError(
+          source.where,
+          fmt::format("the true mean of `{}` is not known to its plugin; give the test "
+                      "a `reference:`, a number or an estimator",
+                      to_string(source)));
+    }
     truths.push_back(test.reference_number ? *test.reference_number
                                            : analytic_mean(channels[i], source));
   }

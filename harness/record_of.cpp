@@ -181,7 +181,8 @@ Number margin(const Regions& regions) {
 /// Whether the clock had a say in the numbers.
 bool is_timed(const TestWork& work) {
   const std::optional<Budget>& budget = work.outcome.question.test->budget;
-  return work.outcome.plan.method.keeps == Keeps::blocks || (budget && budget->seconds);
+  const bool of_suite = work.suite_budget != nullptr && work.suite_budget->seconds;
+  return work.outcome.plan.method.keeps == Keeps::blocks || (budget && budget->seconds) || of_suite;
 }
 
 std::string id_filter(const std::string& id) { return " --filter " + shell_quoted(id); }

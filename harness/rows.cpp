@@ -8,6 +8,7 @@
 
 #include "harness/assumptions.h"
 #include "harness/constant.h"
+#include "harness/exact_size.h"
 #include "stats/dependence.h"
 #include "stats/independence_gates.h"
 #include "stats/quantisation_gate.h"
@@ -118,7 +119,7 @@ std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelD
     std::sort(sorted.begin(), sorted.end());
     gates.push_back(stats::quantisation_gate(sorted, outcome.share().alpha));
   }
-  if (!question.of_means() || method == "binomial" || method == "bounded") return gates;
+  if (!question.of_means() || is_exact(outcome.plan.method)) return gates;
   const stats::Moments first = method == "batch-means" ? batched(data[0]) : data[0].moments;
   if (data.size() == 1) {
     if (method != "batch-means") {

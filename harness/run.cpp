@@ -1,5 +1,7 @@
 #include "harness/run.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "harness/holm_verdict.h"
@@ -18,6 +20,29 @@ void judge_family(SuiteRun& run, const RunOptions& options) {
   if (run.tests.size() == run.suite.tests.size() && !options.shard) {
     apply_holm(tests, run.suite.alpha);
     run.holm = true;
+  }
+}
+
+void add_note(reports::Record& record, const std::string& note) {
+  record.note += (record.note.empty() ? "" : "; ") + note;
+}
+
+/// What a reader of the ledger would not guess.
+void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<SuiteRun>>& runs,
+                 const RunOptions& options) {
+  std::size_t outside = 0;
+  for (const auto& run : runs) {
+    for (const TestWork& work : run->tests) outside += work.outcome.place.inside ? 0 : 1;
+  }
+  if (outside > 0) {
+    add_note(record, fmt::format("{} of the tests {} outside the ledger: mutants and expected "
+                                 "failures",
+                                 outside, outside == 1 ? "stands" : "stand"));
+  }
+  if (!options.seed) {
+    add_note(record,
+             "no seed was given: a night with the suite's own seed is the same every time and "
+             "counts once; run nights with --seed random");
   }
 }
 
@@ -42,6 +67,7 @@ reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
   record.seconds = elapsed.count();
   if (!options.ledger.empty()) {
     record.ledger = add_to_ledger({options.ledger, started, record.tool.commit}, planned.suites);
+    note_ledger(record, planned.suites, options);
   }
   return record;
 }

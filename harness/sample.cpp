@@ -12,6 +12,8 @@
 namespace assay::harness {
 namespace {
 
+constexpr std::uint64_t usual = 10;
+
 /// What a source names: an estimator's channels, or the marginals of one of its samplers.
 struct Sampled {
   std::shared_ptr<const Setup> setup;
@@ -62,6 +64,12 @@ int sample(const SampleArguments& arguments) {
       estimators_of({source}, arguments.estimators, arguments.primaries);
   const PreparedEstimator estimator = prepare(entries.front(), ".");
   const Sampled sampled = sampled_by(estimator, source);
+  const auto rows = sampled.setup->observations();
+  if (rows && arguments.secondaries.value_or(0) > *rows) {
+    throw InputError({}, fmt::format("--secondaries {}: `{}` has {} rows", *arguments.secondaries,
+                                     source.estimator, *rows));
+  }
+  const std::uint64_t count = arguments.secondaries.value_or(std::min(usual, rows.value_or(usual)));
   const StreamKey key = key_of(estimator, arguments.seed, 0, sampled.purpose);
 
   std::vector<std::string> names;
@@ -70,12 +78,10 @@ int sample(const SampleArguments& arguments) {
   fmt::print("# {} {} of {} primaries, seed {}\n", estimator.entry->information.name,
              estimator.parameters, arguments.primaries, arguments.seed);
   fmt::print("# stream: {:016x}\n# columns: {}\n", key.bits, fmt::join(names, " "));
-  const std::uint64_t rows = std::min(
-      arguments.secondaries, sampled.setup->observations().value_or(arguments.secondaries));
   const std::unique_ptr<Estimator> worker = sampled.setup->make();
   const FlushDenormals flush;
   std::vector<double> out(channels.size());
-  for (std::uint64_t row = 0; row < rows && !interrupted(); ++row) {
+  for (std::uint64_t row = 0; row < count && !interrupted(); ++row) {
     Stream random(key, row);
     Cost unused;
     worker->secondary(random, arguments.primaries, out, unused);

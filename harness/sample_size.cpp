@@ -8,7 +8,9 @@
 #include "harness/constant.h"
 #include "harness/critical.h"
 #include "harness/evidence_ratio.h"
+#include "harness/exact_size.h"
 #include "harness/image_plan.h"
+#include "harness/mean_evidence.h"
 #include "harness/method.h"
 #include "harness/sampler_setup.h"
 #include "stats/power.h"
@@ -58,6 +60,13 @@ std::optional<PlannedChannel> log_spread_channel(const Regions& regions,
   return PlannedChannel{.regions = regions, .kurtosis = 1 + *first, .other_kurtosis = 1 + *second};
 }
 
+void note_range(const Question& question, std::size_t channel, const stats::Moments& moments,
+                PlannedChannel& planned) {
+  if (question.kind != QuestionKind::mean_of_one) return;
+  planned.range = range_of(question, 0, channel, moments);
+  planned.null_value = question.references[channel].value + question.offset;
+}
+
 /// From the pilot; nullopt where it has no spread.
 std::optional<PlannedChannel> planned_channel(const Question& question, std::size_t channel,
                                               const Pilots& pilots, const Plan& plan) {
@@ -92,6 +101,7 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   } else if (!question.references.empty()) {
     planned.reference_error = question.references[channel].standard_error;
   }
+  note_range(question, channel, first, planned);
   planned.unit = unit_of_theta(question, channel, other_mean);
   if (planned.unit == 0) {
     throw std::domain_error(
@@ -187,6 +197,8 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
     count = for_variances(share, *channel);
   } else if (equivalence) {
     count = for_equivalence(share, *channel);
+  } else if (plan.method.name == "binomial" || plan.method.name == "bounded") {
+    count = exact_secondaries(question, plan, *channel, rates_of(share, regions));
   } else {
     count = for_means(question, rates_of(share, regions), regions, *channel);
   }
@@ -245,9 +257,7 @@ bool has_power(const Question& question, const PlannedChannel& channel) {
 }
 
 /// Methods of which no formula says what they find: their power is not quoted.
-bool has_no_power(const Method& method) {
-  return method.name == "binomial" || method.name == "bounded" || method.name == "anderson-darling";
-}
+bool has_no_power(const Method& method) { return method.name == "anderson-darling"; }
 
 bool all_piloted(const Question& question, const Pilots& pilots) {
   return std::all_of(question.subjects.begin(), question.subjects.end(),
@@ -289,6 +299,7 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
   if (has_no_power(plan.method)) return std::nullopt;
   if (!has_power(question, channel)) return std::nullopt;
   const stats::ErrorRates rates = rates_of(share, regions);
+  if (is_exact(plan.method)) return exact_detectable_effect(question, size, plan, channel, rates);
   double found = 0;
   if (both_spread(question, channel) && question.of_means()) {
     found = stats::welch_detectable(means_plan(rates, regions.allow, channel), n) / channel.unit;
@@ -314,6 +325,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
   const stats::ErrorRates rates = rates_of(share, regions);
   if (!has_power(question, channel)) return std::nullopt;
   if (has_no_power(plan.method)) return std::nullopt;
+  if (is_exact(plan.method)) return exact_power_at(question, size, plan, channel, rates, effect);
   if (regions.relation == Relation::within) return equivalence_power(question, size, channel);
   switch (question.kind) {
     case QuestionKind::mean_of_one:
@@ -368,6 +380,7 @@ PlannedChannel observed_channel(const Question& question, const Regions& regions
   } else {
     observed.reference_error = question.references[channel].standard_error;
   }
+  note_range(question, channel, data[0].moments, observed);
   observed.unit = unit_of_theta(question, channel, other_mean);
   return observed;
 }

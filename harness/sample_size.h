@@ -5,6 +5,7 @@
 
 #include "harness/outcome.h"
 #include "harness/pilot.h"
+#include "stats/bounded_mean.h"
 
 namespace assay::harness {
 
@@ -18,6 +19,8 @@ struct PlannedChannel {
   double other_kurtosis = 1;  ///< 1: there is no second subject
   double unit = 1;            ///< theta times this is in the estimator's unit
   double reference_error = 0;
+  stats::Range range = {};  ///< of one mean: what its values are declared to lie in
+  double null_value = 0;    ///< of one mean: where theta is 0
 };
 
 /// A test of n secondaries of each subject, at its levels.

@@ -20,12 +20,13 @@ std::string folder_of(const std::string& file) {
   return folder.empty() ? "." : folder.string();
 }
 
-void read_head(const Keys& keys, Suite& suite) {
+void read_head(const Document& document, const Keys& keys, Suite& suite) {
   suite.name = one_line(keys.require("suite"), "`suite`");
   if (const Value* v = keys.find("about")) suite.about = v->string("`about`");
   if (const Value* v = keys.find("alpha")) suite.alpha = error_rate(*v, "`alpha`");
   if (const Value* v = keys.find("beta")) suite.beta = error_rate(*v, "`beta`");
   if (const Value* v = keys.find("seed")) suite.seed = v->count("`seed`");
+  if (const Value* v = keys.find("budget")) suite.budget = read_budget(document, *v);
 }
 
 Value read_scenes(const Keys& keys) {
@@ -119,13 +120,14 @@ std::vector<Source> sources_of(const Claim& claim) {
 
 Suite load_suite(const std::string& file) {
   const Document document = read_yaml_file(file);
-  const Keys keys(document, document.root(), "a suite",
-                  {"suite", "about", "alpha", "beta", "seed", "scenes", "estimators", "tests"});
+  const Keys keys(
+      document, document.root(), "a suite",
+      {"suite", "about", "alpha", "beta", "seed", "budget", "scenes", "estimators", "tests"});
   Suite suite;
   suite.file = file;
   suite.stem = std::filesystem::path(file).stem().string();
   suite.folder = folder_of(file);
-  read_head(keys, suite);
+  read_head(document, keys, suite);
   suite.scenes = read_scenes(keys);
   read_estimators(document, keys.require("estimators"), suite);
   read_tests(document, keys.require("tests"), suite);

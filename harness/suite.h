@@ -66,6 +66,8 @@ struct Suite {
   double alpha = 0.01;
   double beta = 0.01;
   std::optional<std::uint64_t> seed = {};
+  /// Of all tests together; see README.md of the suites.
+  std::optional<Budget> budget = {};
   Value scenes =
       {};  ///< map of `scenes:`, for --set; their names are already replaced in `estimators`
   std::vector<EstimatorEntry> estimators = {};
@@ -90,6 +92,10 @@ struct CheckArguments {
   std::optional<std::uint64_t> primaries = {};
   std::optional<std::uint64_t> secondaries = {};
   double alpha = 0.01;
+  std::optional<std::string> over = {};       ///< YAML flow, as in a suite
+  std::optional<std::string> reference = {};  ///< an estimator or a number
+  std::optional<std::string> cost = {};
+  std::optional<std::string> budget = {};
 };
 Suite suite_of_claim(const CheckArguments&);
 

@@ -40,36 +40,6 @@ double read_seconds(std::string_view text, const Value& value) {
                          "the seconds of `budget`");
 }
 
-/// `1e7` primaries, `30s`.
-Budget read_short_budget(const Value& value) {
-  const std::string_view text = value.text();
-  try {
-    if (text.ends_with('s')) return {{}, read_seconds(text.substr(0, text.size() - 1), value)};
-    return {count_from(value, "`budget`", 1), {}};
-  } catch (const InputError&) {
-    throw InputError(value.where(),
-                     fmt::format("`budget` must be a number of primaries (1e7), of seconds (30s), "
-                                 "or a map of both, but it is `{}`",
-                                 text));
-  }
-}
-
-Budget read_budget(const Document& document, const Value& value) {
-  if (value.kind() == Value::Kind::scalar) return read_short_budget(value);
-  const Keys keys(document, value, "a budget", {"primaries", "seconds"});
-  Budget budget;
-  if (const Value* v = keys.find("primaries")) {
-    budget.primaries = count_from(*v, "the primaries of `budget`", 1);
-  }
-  if (const Value* v = keys.find("seconds")) {
-    budget.seconds = positive_number(*v, "the seconds of `budget`");
-  }
-  if (!budget.primaries && !budget.seconds) {
-    throw InputError(value.where(), "a budget needs `primaries` or `seconds`");
-  }
-  return budget;
-}
-
 void require_increasing(const Sweep& sweep) {
   double last = 0;
   for (const Value& value : sweep.values) {
@@ -142,6 +112,35 @@ void refuse_levels(const Document& document, const Value& test) {
 
 }  // namespace
 
+Budget read_short_budget(const Value& value) {
+  const std::string_view text = value.text();
+  try {
+    if (text.ends_with('s')) return {{}, read_seconds(text.substr(0, text.size() - 1), value)};
+    return {count_from(value, "`budget`", 1), {}};
+  } catch (const InputError&) {
+    throw InputError(value.where(),
+                     fmt::format("`budget` must be a number of primaries (1e7), of seconds (30s), "
+                                 "or a map of both, but it is `{}`",
+                                 text));
+  }
+}
+
+Budget read_budget(const Document& document, const Value& value) {
+  if (value.kind() == Value::Kind::scalar) return read_short_budget(value);
+  const Keys keys(document, value, "a budget", {"primaries", "seconds"});
+  Budget budget;
+  if (const Value* v = keys.find("primaries")) {
+    budget.primaries = count_from(*v, "the primaries of `budget`", 1);
+  }
+  if (const Value* v = keys.find("seconds")) {
+    budget.seconds = positive_number(*v, "the seconds of `budget`");
+  }
+  if (!budget.primaries && !budget.seconds) {
+    throw InputError(value.where(), "a budget needs `primaries` or `seconds`");
+  }
+  return budget;
+}
+
 const std::vector<std::string>& method_names() {
   static const std::vector<std::string> names{"t",
                                               "welch",
@@ -149,6 +148,7 @@ const std::vector<std::string>& method_names() {
                                               "binomial",
                                               "bounded",
                                               "batch-means",
+                                              "betting",
                                               "tost",
                                               "F",
                                               "chi-square",

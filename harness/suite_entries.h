@@ -34,6 +34,11 @@ std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view
 /// Where a key of a test stands.
 using PlaceOf = std::function<Location(std::string_view key)>;
 
+/// `1e7` primaries or `30s`.
+Budget read_short_budget(const Value& value);
+/// `budget: 1e7`, `budget: 30s` or a map of both.
+Budget read_budget(const Document& document, const Value& value);
+
 /// What a test must satisfy beyond the type of each key: `allow` below `detect`, and only keys that
 /// its claim gives a meaning to. InputError at the offending key.
 void check_test(const TestEntry& test, const PlaceOf& place);

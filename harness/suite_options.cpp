@@ -143,6 +143,20 @@ std::optional<Margin> margin_option(const std::optional<std::string>& text, cons
   return parse_margin(*text, {}, option);
 }
 
+/// The keys of a test that stand beside its claim, from options of the same names.
+void read_keys(const CheckArguments& arguments, TestEntry& test) {
+  const auto flow = [](const std::string& text, const char* option) {
+    return read_flow(text, Location{std::string(option) + " " + text, 0, 0});
+  };
+  if (arguments.over) test.over = read_sweep(flow(*arguments.over, "--over"));
+  if (arguments.reference) {
+    read_reference(
+        Value::scalar(*arguments.reference, {"--reference " + *arguments.reference, 0, 0}), test);
+  }
+  if (arguments.cost) test.cost = read_cost(Value::scalar(*arguments.cost));
+  if (arguments.budget) test.budget = read_short_budget(Value::scalar(*arguments.budget));
+}
+
 }  // namespace
 
 void set_parameter(std::vector<Suite>& suites, const std::string& assignment) {
@@ -209,14 +223,16 @@ Suite suite_of_claim(const CheckArguments& arguments) {
     test.method =
         method_names()[choice(Value::scalar(*arguments.method), "--test", method_names())];
   }
+  read_keys(arguments, test);
   check_test(test, [&](std::string_view key) { return key == "claim" ? where : Location{}; });
   Suite suite;
   suite.name = "check";
   suite.stem = "check";
   suite.folder = ".";
   suite.alpha = arguments.alpha;
-  suite.estimators =
-      estimators_of(sources_of(test.claim), arguments.estimators, arguments.primaries);
+  std::vector<Source> sources = sources_of(test.claim);
+  if (test.reference) sources.push_back(*test.reference);
+  suite.estimators = estimators_of(sources, arguments.estimators, arguments.primaries);
   suite.tests.push_back(std::move(test));
   return suite;
 }

@@ -70,7 +70,7 @@ std::string common_confidence(const Suite& suite) {
   std::map<std::string, int> counts;
   for (const Test& test : suite.tests) {
     const Effect effect = worst_channel(test).effect;
-    if (effect.estimate && !interval_text(effect).empty())
+    if (is_evidence(test) && effect.estimate && !interval_text(effect).empty())
       ++counts[confidence_text(effect.confidence)];
   }
   const auto most =
@@ -81,8 +81,10 @@ std::string common_confidence(const Suite& suite) {
 
 TestRow row_of(const Test& test, const std::string& common) {
   const Effect effect = worst_channel(test).effect;
-  std::string number = effect_text(effect);
-  if (number.empty()) {
+  std::string number = is_evidence(test) ? effect_text(effect) : std::string();
+  if (!is_evidence(test)) {
+    // What was computed rests on an assumption that does not hold: the record has it.
+  } else if (number.empty()) {
     number = headline_p(test).text();
   } else if (!interval_text(effect).empty() && confidence_text(effect.confidence) != common) {
     number += fmt::format(" at {}", confidence_text(effect.confidence));

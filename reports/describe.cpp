@@ -110,7 +110,12 @@ std::vector<const Sample*> worst_samples(const Test& test) {
   return of_channel.empty() ? all : of_channel;
 }
 
+bool is_evidence(const Test& test) {
+  return test.verdict != Verdict::invalid && test.verdict != Verdict::error;
+}
+
 std::string key_number(const Test& test) {
+  if (!is_evidence(test)) return {};
   const std::string text = named_effect_text(worst_channel(test).effect);
   return text.empty() ? headline_p(test).text() : text;
 }
@@ -174,12 +179,14 @@ std::vector<Fact> facts(const Test& test) {
     add("contrary", contrary(test.claim));
   else
     add("null hypothesis", test.null_hypothesis);
-  if (channel.effect.estimate) add("estimate", estimate_fact(channel.effect));
-  add("evidence", evidence_text(test));
-  add(is_proof(test) ? "beside it" : "passing", exclusion_text(test));
-  add("margins", margins_fact(test));
-  add("channels", channels_fact(test));
-  add("image", image_fact(test));
+  if (is_evidence(test)) {
+    if (channel.effect.estimate) add("estimate", estimate_fact(channel.effect));
+    add("evidence", evidence_text(test));
+    add(is_proof(test) ? "beside it" : "passing", exclusion_text(test));
+    add("margins", margins_fact(test));
+    add("channels", channels_fact(test));
+    add("image", image_fact(test));
+  }
   add("assumptions", gates_fact(test));
   add("observations", observations_fact(test));
   return result;

@@ -16,6 +16,9 @@ Channel worst_channel(const Test&);
 /// The samples of the worst channel; all of them where none has its name.
 std::vector<const Sample*> worst_samples(const Test&);
 
+/// Whether the test's numbers mean what they say: not where an assumption of theirs does not hold.
+bool is_evidence(const Test&);
+
 /// The number of a test that a reader looks for first: the worst channel's effect with its named
 /// interval, else the p-value that the verdict rests on; empty where nothing was tested.
 std::string key_number(const Test&);

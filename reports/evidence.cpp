@@ -59,11 +59,20 @@ bool rests_on_contrary(const Test& test) {
   return is_proof(test) && test.verdict != Verdict::fail && least_excluded(test) != nullptr;
 }
 
+// " over 3 looks (0.79 at the last)": p is the smallest over the looks, each over its share.
+std::string over_looks(const Test& test, Number Look::*log10_p) {
+  if (test.looks.size() < 2 || test.channels.size() > 1) return {};
+  const Number at_last = test.looks.back().*log10_p;
+  if (!at_last) return {};
+  return fmt::format(" over {} looks ({} at the last)", test.looks.size(), p_text({}, at_last));
+}
+
 // "(welch, two-sided), 1 after Holm; its share of alpha is 0.00125".
 std::string about_the_claim(const Test& test) {
   const Channel channel = worst_channel(test);
   std::string how = test.method, text;
   if (!test.tail.empty()) how += how.empty() ? test.tail : ", " + test.tail;
+  text += over_looks(test, &Look::log10_p);
   if (!how.empty()) text += fmt::format(" ({})", how);
   if (channel.p_adjusted || channel.log10_p_adjusted)
     text += fmt::format(", {} after Holm", p_text(channel.p_adjusted, channel.log10_p_adjusted));
@@ -115,7 +124,8 @@ std::string evidence_text(const Test& test) {
   const NamedP p = headline_p(test);
   if (!p.exists()) return {};
   if (!rests_on_contrary(test)) return p.text() + about_the_claim(test);
-  return p.text() + fmt::format(" ({})", test.method) + about_the_contrary(test);
+  return p.text() + over_looks(test, &Look::log10_p_pass) + fmt::format(" ({})", test.method) +
+         about_the_contrary(test);
 }
 
 std::string exclusion_text(const Test& test) {

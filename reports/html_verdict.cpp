@@ -162,11 +162,19 @@ std::string replay(const Test& test) {
 std::string test_section(const Test& test, TestPlace place) {
   const Outcome result = outcome(test);
   const bool open = result == Outcome::failed || result == Outcome::inconclusive;
+  // Folded, a row that is not ok still says why.
+  const std::string reason = result == Outcome::failed || result == Outcome::inconclusive
+                                 ? one_line(headline(test))
+                                 : std::string();
+  const std::string number = key_number(test);
+  const std::string key = reason.empty() || reason == number ? number
+                          : number.empty()                   ? reason
+                                                             : number + ": " + reason;
   std::string out = fmt::format(
       "<details class=\"test {}\" id=\"{}\"{}>\n<summary>{} <b>{}</b> <span "
       "class=\"key\">{}</span></summary>\n<div>\n",
       outcome_style(result), anchor(place), open ? " open=\"open\"" : "", badge(test),
-      escape_xml(one_line(test.name)), escape_xml(key_number(test)));
+      escape_xml(one_line(test.name)), escape_xml(key));
   out += definitions(test) + image_section(test) + pictures(test) + gates(test) + looks(test) +
          sample_table(test);
   return out + replay(test) + "</div>\n</details>\n";

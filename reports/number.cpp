@@ -61,6 +61,9 @@ std::string magnitude(double value, bool relative) {
 
 std::string scientific(double log10_value) {
   if (!std::isfinite(log10_value)) return log10_value < 0 ? "0" : non_finite(log10_value);
+  // Nobody reads the digits of such an exponent.
+  if (log10_value < -1e6) return "below 1e-1000000";
+  if (log10_value > 1e6) return "above 1e1000000";
   double exponent = std::floor(log10_value);
   double mantissa = std::pow(10.0, log10_value - exponent);
   // 9.96e-5 must not be printed as 10.0e-5.

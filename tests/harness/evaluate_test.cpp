@@ -52,6 +52,22 @@ TEST(Evaluate, HolmTurnsAPassIntoAFail) {
             (std::vector{Verdict::fail, Verdict::fail}));
 }
 
+TEST(Evaluate, HolmSaysThatItAloneRefutesAndMarksEveryChannel) {
+  const TestEntry test;
+  TestWork second = judged(0.03, 0.25, Verdict::pass, test);
+  second.outcome.question.subjects = {Subject{.channels = {0, 1}}};
+  second.outcome.channels.push_back(second.outcome.channels.front());
+  second.outcome.channels[1].decision.log_p_claimed = std::log(0.01);
+  second.outcome.channels[0].decision.log_p_claimed = std::log(0.01);
+  TestWork first = judged(1e-9, 0.5, Verdict::fail, test);
+  apply_holm({&first, &second}, alpha);
+  EXPECT_EQ(second.outcome.verdict, Verdict::fail);
+  EXPECT_NE(second.outcome.message.find("after Holm"), std::string::npos) << second.outcome.message;
+  for (const ChannelOutcome& channel : second.outcome.channels) {
+    EXPECT_TRUE(channel.decision.rejected);
+  }
+}
+
 TEST(Evaluate, HolmLeavesWhatNothingBeforeItFreed) {
   const TestEntry test;
   EXPECT_EQ(
@@ -99,9 +115,38 @@ TEST(Evaluate, HeavyTailIsInvalidAndSaysWhatWouldHelp) {
   const reports::Test test = judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
                                          "claim: mean(it) == analytic, secondaries: 100");
   EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_NE(test.message.find("a larger `primaries`"),
-            std::string::npos)
-      << test.message;
+  EXPECT_NE(test.message.find("a larger `primaries`"), std::string::npos) << test.message;
+}
+
+// A Pareto law of index 1.5 has no variance, but a lower bound: too much can be shown, too little
+// cannot.
+TEST(Evaluate, TooMuchAboveALowerBoundIsBetOn) {
+  const std::string heavy = "{plugin: analytic/heavy_tail, index: 1.5}";
+  const reports::Test wrong = judged_text(heavy, "claim: mean(it) <= 2");
+  EXPECT_EQ(wrong.method, "betting");
+  EXPECT_EQ(wrong.verdict, Verdict::fail);
+  EXPECT_EQ(judged_text(heavy, "claim: mean(it) <= 4").verdict, Verdict::pass);
+  EXPECT_EQ(judged_text(heavy, "claim: mean(it) >= 2").verdict, Verdict::invalid);
+  const reports::Test open = judged_text(heavy, "claim: mean(it) <= 4, detect: 50%, budget: 1e5");
+  EXPECT_EQ(open.verdict, Verdict::inconclusive);
+  EXPECT_NE(open.message.find("declare the range"), std::string::npos) << open.message;
+}
+
+TEST(Evaluate, BinomialTestsQuoteTheirOwnPower) {
+  const reports::Test test = judged_text("{plugin: analytic/dart_throwing, primaries: 1}",
+                                         "claim: mean(it) == analytic, detect: 2%");
+  EXPECT_EQ(test.method, "binomial");
+  EXPECT_EQ(test.verdict, Verdict::pass);
+  ASSERT_TRUE(test.power && test.detectable);
+  EXPECT_GE(*test.power, 0.99);
+  EXPECT_LE(*test.detectable, 0.02);
+}
+
+TEST(Evaluate, TwoObservationsAreJudgedInWords) {
+  const reports::Test test = judged_text("{plugin: analytic/normal, primaries: 1}",
+                                         "claim: mean(it) == 0, secondaries: 2");
+  EXPECT_EQ(test.message.find("_gate"), std::string::npos) << test.message;
+  EXPECT_NE(test.verdict, Verdict::error);
 }
 
 TEST(Evaluate, ForcedMethodIsNotInvalidatedByItsGates) {

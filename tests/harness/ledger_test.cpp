@@ -66,6 +66,16 @@ TEST_F(Ledger, AddsANightOfEachTestInsideTheFamily) {
   EXPECT_EQ(book().nights()[0].commit, record.tool.commit);
 }
 
+// The limit is what it was on the first night, whatever else the suite claims later.
+TEST_F(Ledger, LimitsDoNotMoveWithTheSuite) {
+  night(two_tests, 11);
+  const std::string more = std::string(two_tests) + "  - {name: late, claim: mean(normal) <= 3}\n";
+  const reports::Record record = night(more, 12);
+  EXPECT_NEAR(series_of(record, "nights/one").limit.value(),
+              -std::log(default_ledger_budget / 2 / 1.2020569), 1e-6);
+  EXPECT_NE(record.note.find("outside the ledger"), std::string::npos) << record.note;
+}
+
 TEST_F(Ledger, ScoresAddUpOverNights) {
   night(two_tests, 11);
   night(two_tests, 12);

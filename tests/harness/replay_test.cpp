@@ -78,6 +78,20 @@ TEST(Replay, GivesTheSameNumbersForEveryKindOfClaim) {
   }
 }
 
+TEST(Replay, OfSecondsComparesWhatRepeats) {
+  const Workplace place;
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: timed
+estimators:
+  one: {plugin: analytic/exponential_uniform}
+tests:
+  - {name: cost, claim: cost(one) <= 1, cost: seconds}
+)")});
+  const std::string file = place.write("run.json", reports::json(record));
+  const Said now = said({.record = file, .test = "cost"});
+  EXPECT_EQ(now.code, 0) << now.text;
+  EXPECT_NE(now.text.find("seconds do not repeat"), std::string::npos) << now.text;
+}
+
 TEST(Replay, FindsATestByItsName) {
   const Workplace place;
   EXPECT_EQ(said({.record = recorded(place), .test = "mean"}).code, 0);

@@ -182,6 +182,31 @@ TEST(Run, RefusesADetectThatWouldTakeDaysAndSaysHowMuch) {
             "(nothing was refused)");
 }
 
+// A quarter and three quarters of 40000 primaries, whichever tests run.
+TEST(Run, SplitsTheSuitesBudgetByWeight) {
+  const std::string text =
+      "suite: budget\nbudget: 40000\nestimators:\n"
+      "  normal: {plugin: analytic/normal, primaries: 1}\ntests:\n"
+      "  - {name: one, claim: mean(normal) == 0, detect: 0.001}\n"
+      "  - {name: two, claim: mean(normal) <= 0, detect: 0.001, weight: 3}\n";
+  const reports::Record both = run_text(text);
+  EXPECT_EQ(test_named(both, "one").samples[0].secondaries, 10000);
+  EXPECT_EQ(test_named(both, "two").samples[0].secondaries, 30000);
+  const reports::Record alone = run_text(text, {.filter = "*/one"});
+  EXPECT_EQ(raw(alone.suites[0].tests[0]), raw(both.suites[0].tests[0]));
+  EXPECT_FALSE(both.suites[0].timed);
+}
+
+TEST(Run, StopsWhereTheSuitesSecondsAreSpent) {
+  const reports::Record record = run_text(
+      "suite: budget\nbudget: 0.001s\nestimators:\n  normal: {plugin: analytic/normal, primaries: "
+      "1}\ntests:\n  - {name: one, claim: mean(normal) == 0, detect: 0.001}\n");
+  const reports::Test& test = test_named(record, "one");
+  EXPECT_EQ(test.verdict, reports::Verdict::inconclusive);
+  EXPECT_NE(test.message.find("its budget in seconds ended here"), std::string::npos);
+  EXPECT_TRUE(record.suites[0].timed);
+}
+
 TEST(Run, SeedsChangeTheNumbers) {
   const reports::Record one = run_text(good(), {.seed = 1});
   const reports::Record two = run_text(good(), {.seed = 2});

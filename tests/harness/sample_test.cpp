@@ -64,6 +64,14 @@ TEST(Sample, RefusesAPartThatIsNotThere) {
   EXPECT_NE(text.find("no part `directions`"), std::string::npos) << text;
 }
 
+TEST(Sample, RefusesMoreRowsThanThereAre) {
+  const Workplace place;
+  const std::string option = "data=recorded,file=" + place.write("data.txt", "1\n2\n3\n");
+  const std::string text =
+      refusal([&] { sample({.source = "data", .estimators = {option}, .secondaries = 4}); });
+  EXPECT_NE(text.find("has 3 rows"), std::string::npos) << text;
+}
+
 // The file says which stream it was drawn from, and the estimator steps aside.
 TEST(Sample, IsComparedWithItsOwnEstimatorOnAnotherCopyOfTheStream) {
   const Workplace place;

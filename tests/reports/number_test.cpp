@@ -37,6 +37,11 @@ TEST(Numbers, SmallPValuesComeFromTheirLogarithm) {
   EXPECT_EQ(p_text(std::nullopt, std::nullopt), "n/a");
 }
 
+TEST(Numbers, AnExponentThatNobodyReadsIsLeftOut) {
+  EXPECT_EQ(p_text(0.0, -1e300), "below 1e-1000000");
+  EXPECT_EQ(p_text(0.0, -999999.5), "3.2e-1000000");
+}
+
 TEST(Numbers, APValueNearOneIsNotRoundedToOne) {
   EXPECT_EQ(p_text(0.99996, std::nullopt), "1 - 4e-05");
   EXPECT_EQ(p_text(1.0, std::nullopt), "1");

@@ -1,0 +1,33 @@
+#pragma once
+
+// How many secondaries the exact tests of a mean in a declared range take (`binomial`, `bounded`):
+// a helper of sample_size.
+
+#include <cstdint>
+#include <optional>
+
+#include "harness/sample_size.h"
+
+namespace assay::harness {
+
+/// Whether the method is exact: the normal law says nothing of it.
+bool is_exact(const Method& method);
+
+/// Secondaries at which every outcome fails the claim or excludes `detect`; nullopt where no number
+/// would do. Of two samples 1.4 times Welch's (stats/two_valued.h).
+std::optional<std::uint64_t> exact_secondaries(const Question& question, const Plan& plan,
+                                               const PlannedChannel& channel,
+                                               const stats::ErrorRates& rates);
+
+/// The least theta found with probability 1 - beta, the larger of both sides; nullopt where there
+/// is none to quote: within a margin, of two samples, without a range.
+std::optional<double> exact_detectable_effect(const Question& question, const TestSize& size,
+                                              const Plan& plan, const PlannedChannel& channel,
+                                              const stats::ErrorRates& rates);
+
+/// The probability of finding `effect`, the smaller of both sides; nullopt likewise.
+std::optional<double> exact_power_at(const Question& question, const TestSize& size,
+                                     const Plan& plan, const PlannedChannel& channel,
+                                     const stats::ErrorRates& rates, double effect);
+
+}  // namespace assay::harness
