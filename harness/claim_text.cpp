@@ -12,7 +12,8 @@ const std::vector<QuantityName>& quantity_names() {
   using enum QuantityName;
   static const std::vector<QuantityName> names{mean,           bias,           variance,
                                                total_variance, worst_variance, quantile,
-                                               efficiency,     cost,           distribution};
+                                               efficiency,     cost,           distribution,
+                                               integral,       inconsistency};
   return names;
 }
 
@@ -38,6 +39,10 @@ const char* to_string(QuantityName name) {
       return "cost";
     case QuantityName::distribution:
       return "distribution";
+    case QuantityName::integral:
+      return "integral";
+    case QuantityName::inconsistency:
+      return "inconsistency";
   }
   return "";
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/evidence_draws.h"
 #include "harness/evidence_quantile.h"
 #include "harness/evidence_ratio.h"
 #include "harness/evidence_slope.h"
@@ -232,6 +233,9 @@ std::vector<Method> methods_for(const Question& question) {
       return {{question.of_two() ? "quantile" : "binomial", Keeps::values}};
     case QuestionKind::total_variance:
       return {{"log-total-variance", Keeps::group_variances}};
+    case QuestionKind::integral:
+    case QuestionKind::inconsistency:
+      return {{"binomial", Keeps::cells}};
     case QuestionKind::slope:
       return {{"slope", question.test->claim.left.name == QuantityName::cost ? Keeps::costs
                                                                              : Keeps::moments}};
@@ -313,6 +317,10 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
       return evidence_of_ratio(question, channel, data);
     case QuestionKind::quantile:
       return evidence_of_quantile(question, channel, data);
+    case QuestionKind::integral:
+      return evidence_of_integral(question, data[0]);
+    case QuestionKind::inconsistency:
+      return evidence_of_inconsistency(question, data[0]);
     case QuestionKind::slope:
       return evidence_of_slope(question, channel, data);
   }

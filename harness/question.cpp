@@ -141,6 +141,7 @@ void check_margins(const Question& question) {
     throw InputError(test.where, "`detect` and `allow` must both be in per cent or both absolute");
   }
   for (const auto& margin : {test.detect, test.allow, within}) {
+    if (question.of_draws()) require_absolute(margin, test, "this is a probability");
     if (test.claim.left.name == QuantityName::distribution) {
       require_absolute(margin, test, "a distance between laws is a probability");
     }
@@ -195,6 +196,9 @@ Question asked(const TestEntry& test, const Estimators& estimators) {
       return about_quantile(test, estimators);
     case total_variance:
       return about_total_variance(test, estimators);
+    case integral:
+    case inconsistency:
+      return about_draws(test, estimators);
   }
   throw std::logic_error("a claim about no quantity");
 }

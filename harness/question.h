@@ -39,6 +39,8 @@ enum class QuestionKind {
   efficiency,      ///< of one estimator against a number or of two, as the subjects say
   quantile,
   total_variance,  ///< summed over the channels
+  integral,        ///< of a sampler's density, against a number
+  inconsistency,   ///< probability of a draw that contradicts its sampler, against a number
   slope            ///< a power law over the subjects, one a point of the sweep
 };
 
@@ -80,7 +82,11 @@ struct Question {
   /// The law of single values is the subject, not a mean over them.
   bool of_laws() const {
     return kind == QuestionKind::fit_to_density || kind == QuestionKind::fit_to_law ||
-           kind == QuestionKind::same_law || kind == QuestionKind::quantile;
+           kind == QuestionKind::same_law || kind == QuestionKind::quantile || of_draws();
+  }
+  /// A sampler's own bookkeeping is the subject.
+  bool of_draws() const {
+    return kind == QuestionKind::integral || kind == QuestionKind::inconsistency;
   }
 };
 

@@ -228,6 +228,16 @@ Question about_total_variance(const TestEntry& test, const Estimators& estimator
   return one_or_two(test, QuestionKind::total_variance, estimators);
 }
 
+Question about_draws(const TestEntry& test, const Estimators& estimators) {
+  const Claim& claim = test.claim;
+  const bool integral = claim.left.name == QuantityName::integral;
+  return {.test = &test,
+          .kind = integral ? QuestionKind::integral : QuestionKind::inconsistency,
+          .subjects = {draws(claim.left.source, estimators,
+                             integral ? Draws::cells : Draws::consistency)},
+          .references = {std::get<Constant>(claim.right)}};
+}
+
 Question about_slope(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   check_slope(claim);

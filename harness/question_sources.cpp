@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/sampler_setup.h"
+#include "harness/consistency_setup.h"
 
 namespace assay::harness {
 namespace {
@@ -95,8 +95,14 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
                   .purpose = named->name,
                   .channels = {},
                   .averages = false};
+  if (what == Draws::consistency) {
+    subject.setup = consistency_setup(*named, source.where);
+    subject.purpose = consistency_purpose(named->name);
+  }
   const std::vector<Channel> channels = subject.setup->channels();
-  if (!rest.empty()) {
+  if (what == Draws::consistency && rest.empty()) {
+    subject.channels = channels_named(channels, inconsistent_channel);
+  } else if (!rest.empty() && what != Draws::consistency) {
     subject.channels = channels_named(channels, rest);
     if (rest == cell_channel) subject.channels.clear();
   } else if (what == Draws::cells) {

@@ -215,6 +215,7 @@ stats::FitPlan fit_plan(const Question& question, const ErrorShare& share, doubl
 std::optional<std::uint64_t> for_laws(const Question& question, const ErrorShare& share,
                                       const Plan& plan) {
   const Regions& regions = plan.regions[0];
+  if (question.of_draws()) return draws_secondaries(question, share, regions);
   if (!regions.detect) return std::nullopt;
   if (plan.method.keeps == Keeps::cells) {
     return stats::chi_square_fit_sample_size(fit_plan(question, share, regions.allow),
@@ -243,9 +244,12 @@ double equivalence_power(const Question& question, const TestSize& size,
                                   n, 0);
 }
 
-/// Quantiles and slopes have none here; nor has a comparison of numbers without a spread.
+/// Quantiles, slopes and counts of draws have none here; nor has a comparison of numbers without a spread.
 bool has_power(const Question& question, const PlannedChannel& channel) {
-  if (question.kind == QuestionKind::quantile || question.kind == QuestionKind::slope) return false;
+  if (question.kind == QuestionKind::quantile || question.kind == QuestionKind::slope ||
+      question.of_draws()) {
+    return false;
+  }
   return !has_log_spread(question) || channel.kurtosis + channel.other_kurtosis > 2;
 }
 
@@ -344,6 +348,8 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
     case QuestionKind::same_law:
       return stats::ks_power_bound(distance_plan(question, share, regions.allow), n, effect);
     case QuestionKind::quantile:
+    case QuestionKind::integral:
+    case QuestionKind::inconsistency:
     case QuestionKind::slope:
       break;
   }

@@ -120,7 +120,8 @@ TEST(Claim, SaysWhatWasExpectedAndWhere) {
             "`distribution(x) == normal(0, 1)`");
   EXPECT_EQ(refused("skewness(a) == 1"),
             "1:1: there is no quantity `skewness`; expected one of mean, bias, variance, "
-            "total_variance, worst_variance, quantile, efficiency, cost, distribution");
+            "total_variance, worst_variance, quantile, efficiency, cost, distribution, "
+            "integral, inconsistency");
   EXPECT_EQ(refused("mean(a) == 1 2"), "1:14: the claim is over before the number `2`");
   EXPECT_EQ(refused("1 == mean(a)"),
             "1:1: a claim begins with a quantity, as in `mean(area) == 0.5`");
