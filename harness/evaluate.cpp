@@ -302,6 +302,12 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
                     .cells = summary.cells,
                     .with_cost = summary.with_cost,
                     .group_variances = summary_of(work, subject).group_variances});
+    if (work.outcome.plan.method.keeps == Keeps::points) {
+      for (const std::size_t each : work.outcome.question.subjects[subject].channels) {
+        data.back().all_values.push_back(
+            work.pools[subject]->values(each, work.outcome.secondaries()));
+      }
+    }
     if (work.outcome.plan.method.keeps == Keeps::blocks) {
       data.back().replicates = replicates_of(work, subject, index);
     }

@@ -1,5 +1,7 @@
 #include "harness/law_evidence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -7,6 +9,7 @@
 #include "harness/sampler_setup.h"
 #include "stats/anderson_darling.h"
 #include "stats/binomial.h"
+#include "stats/two_part_ks.h"
 #include "stats/two_valued.h"
 
 namespace assay::harness {
@@ -147,6 +150,21 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
           .distance = true};
 }
 
+/// A distance of which nothing is known.
+Evidence unknown_distance() {
+  return {.estimate = 0,
+          .at = [](double) { return TestResult{.distribution = {.family = "bound"}}; },
+          .interval = [](double confidence) { return Interval{0, 1, confidence}; },
+          .quantity = quantity,
+          .distance = true};
+}
+
+/// Without the values at the atom.
+Points away_from(double atom, Points points) {
+  std::erase(points.sorted, atom);
+  return points;
+}
+
 /// A sample without a point says nothing of the points' law.
 void require_points(const Points& points) {
   if (points.sorted.empty()) {
@@ -155,6 +173,11 @@ void require_points(const Points& points) {
 }
 
 }  // namespace
+
+bool is_point(const Subject& side, double first) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
+  return draws == nullptr || first != no_point(draws->marginals()[side.channels[0]]);
+}
 
 Points points_of(const Question& question, std::size_t subject, std::size_t channel,
                  std::span<const double> values) {
@@ -186,6 +209,30 @@ Evidence points_against_points(const Points& x, const Points& y) {
   const Evidence rest = from_distance(stats::ks_distance(x.sorted, y.sorted));
   if (!x.of_a_sampler && !y.of_a_sampler) return rest;
   return larger_of(rest, from_proportions(x, y));
+}
+
+Evidence points_split_at(double atom, const Points& x, const Points& y) {
+  const stats::TwoPartTest parts = stats::two_part_ks(x.sorted, y.sorted, atom);
+  const Points x_rest = away_from(atom, x);
+  const Points y_rest = away_from(atom, y);
+  const bool both = !x_rest.sorted.empty() && !y_rest.sorted.empty();
+  Evidence evidence =
+      larger_of(both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted))
+                     : unknown_distance(),
+                from_proportions(x_rest, y_rest));
+  TestResult at_null = evidence.at(0);
+  const bool atom_decides = log_p_two_sided(parts.atom) < parts.rest.log_p_upper;
+  at_null.statistic = atom_decides ? parts.atom.statistic : parts.rest.statistic;
+  at_null.distribution = atom_decides ? parts.atom.distribution : parts.rest.distribution;
+  at_null.log_p_upper = parts.log_p;
+  evidence.at = [at_null, margin = std::move(evidence.at)](double theta) {
+    return theta <= 0 ? at_null : margin(theta);
+  };
+  evidence.quantity = fmt::format(
+      "largest distance of distribution functions away from {0:.6g}, or of the probabilities of "
+      "{0:.6g},",
+      atom);
+  return evidence;
 }
 
 }  // namespace assay::harness

@@ -24,6 +24,10 @@ struct Points {
   std::uint64_t missing() const { return draws - sorted.size(); }
 };
 
+/// Whether the value of a subject's first channel is one: that of a sampler's draw may stand for no
+/// point.
+bool is_point(const Subject& side, double first);
+
 Points points_of(const Question& question, std::size_t subject, std::size_t channel,
                  std::span<const double> values);
 
@@ -50,5 +54,10 @@ Evidence points_against_law(const Points& points, const DeclaredLaw& declared,
 
 /// Two samplers share the level always: whether mass is missing is not known beforehand.
 Evidence points_against_points(const Points& x, const Points& y);
+
+/// Values of one law that may have an atom: whether it is as probable in both (Fisher's exact test,
+/// 1935), and whether the other values follow one law; the parts share the level. theta is the
+/// larger of the two differences. A sample that is all atom says nothing of the rest.
+Evidence points_split_at(double atom, const Points& x, const Points& y);
 
 }  // namespace assay::harness

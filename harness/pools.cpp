@@ -121,7 +121,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
                                                    .copy = side.copy,
                                                    .primaries = plan.primaries[subject]},
                                                   seed, pilots);
-  if (plan.method.keeps == Keeps::values) {
+  if (plan.method.keeps == Keeps::values || plan.method.keeps == Keeps::points) {
     for (const std::size_t channel : side.channels) {
       std::uint64_t& keep = pool->plan()[channel].keep;
       keep = std::max(keep, plan.most_secondaries());

@@ -35,6 +35,7 @@ enum class QuestionKind {
   fit_to_density,  ///< a sampler's draws against its declared density, in cells
   fit_to_law,      ///< values against a law's distribution function
   same_law,        ///< values of two against each other
+  same_cells,      ///< values of two, one or two channels together, counted in cells
   cost,            ///< of one primary where the estimator averages; the kinds from here on are
   efficiency,      ///< of one estimator against a number or of two, as the subjects say
   quantile,
@@ -43,6 +44,9 @@ enum class QuestionKind {
   inconsistency,   ///< probability of a draw that contradicts its sampler, against a number
   slope            ///< a power law over the subjects, one a point of the sweep
 };
+
+/// The method that makes a claim about two laws one about cells of all their channels together.
+inline constexpr const char* two_sample_cells = "chi-square-two-sample";
 
 /// What a claim asks of the suite's estimators.
 struct Question {
@@ -60,7 +64,10 @@ struct Question {
   std::vector<double> sizes = {};  ///< of a slope: the values of the swept parameter
 
   /// One number from all channels together.
-  bool pooled() const { return kind == QuestionKind::cost || kind == QuestionKind::total_variance; }
+  bool pooled() const {
+    return kind == QuestionKind::cost || kind == QuestionKind::total_variance ||
+           kind == QuestionKind::same_cells;
+  }
   std::size_t channel_count() const { return pooled() ? 1 : subjects[0].channels.size(); }
   std::string channel_name(std::size_t channel) const;
   /// Subjects without a reference.
@@ -82,7 +89,8 @@ struct Question {
   /// The law of single values is the subject, not a mean over them.
   bool of_laws() const {
     return kind == QuestionKind::fit_to_density || kind == QuestionKind::fit_to_law ||
-           kind == QuestionKind::same_law || kind == QuestionKind::quantile || of_draws();
+           kind == QuestionKind::same_law || kind == QuestionKind::same_cells ||
+           kind == QuestionKind::quantile || of_draws();
   }
   /// A sampler's own bookkeeping is the subject.
   bool of_draws() const {

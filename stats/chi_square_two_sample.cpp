@@ -10,8 +10,8 @@
 namespace assay::stats {
 namespace {
 
-double total(const std::vector<std::uint64_t>& counts) {
-  return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
+std::uint64_t total(const std::vector<std::uint64_t>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
 void check_counts(const TwoSampleCounts& counts, double minimum_expected) {
@@ -56,8 +56,8 @@ std::vector<PooledPair> pooled(const TwoSampleCounts& counts, double enough) {
 
 ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts, double minimum_expected) {
   check_counts(counts, minimum_expected);
-  const double m = total(counts.x);
-  const double n = total(counts.y);
+  const double m = static_cast<double>(total(counts.x));
+  const double n = static_cast<double>(total(counts.y));
   ChiSquareTwoSample result;
   result.cells = pooled(counts, minimum_expected * (m + n) / std::min(m, n));
   check::at_least({"chi_square_two_sample", "pooled cells"}, result.cells.size(), 2);
