@@ -41,9 +41,9 @@ struct DeclaredLaw {
   double missing_error = 0;  ///< of it
 };
 
-/// Which test of "the law is the declared one" the points get. Anderson and Darling's has the tails'
-/// weight and knows no margin: of theta above 0, and of intervals, it leaves to Kolmogorov and
-/// Smirnov's distance, valid for every law.
+/// Which test of "the law is the declared one" the points get. Anderson and Darling's has the
+/// tails' weight and knows no margin: of theta above 0, and of intervals, it leaves to Kolmogorov
+/// and Smirnov's distance, valid for every law.
 enum class PointsTest { kolmogorov_smirnov, anderson_darling };
 
 /// Where mass is declared missing the two parts share the level, each half (Bonferroni). Where none

@@ -52,7 +52,7 @@ TEST(AndersonDarlingClaim, HoldsForTheLawAndForADeclaredDensity) {
   EXPECT_FALSE(law.detectable.has_value());
   ASSERT_TRUE(law.channels[0].effect.high.has_value());
   EXPECT_LT(*law.channels[0].effect.high, 0.05) << "the interval is of the largest distance";
-  EXPECT_EQ(verdict_of("{claim: distribution(importance.x) == density, test: anderson-darling, "
+  EXPECT_EQ(verdict_of("{claim: distribution(importance.x.x) == density, test: anderson-darling, "
                        "secondaries: 20000}"),
             Verdict::pass);
   EXPECT_EQ(verdict_of("{claim: distribution(ward.direction.theta) == density, test: "

@@ -102,7 +102,7 @@ TEST(Level, OfLawsIsWhatTheirPValuesSay) {
               Shape::at_most_uniform},
              {"claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
               "secondaries: 100"},
-             {"claim: distribution(importance.x) == density, test: anderson-darling, "
+             {"claim: distribution(importance.x.x) == density, test: anderson-darling, "
               "secondaries: 1280"},
              {"claim: distribution(normal) == distribution(again), secondaries: 100",
               Shape::at_most_uniform},

@@ -118,7 +118,8 @@ TEST(AndersonDarling, OfALawKnownUpToAnErrorIsAtMostUniform) {
 TEST(AndersonDarling, TakesTheLeastStatisticOfAllLawsWithinTheError) {
   Philox random(370);
   const auto u = sorted(sample_of(200, [&] { return random.uniform(); }));
-  EXPECT_EQ(anderson_darling(u, uniform_law, 0).statistic, anderson_darling(u, uniform_law).statistic);
+  EXPECT_EQ(anderson_darling(u, uniform_law, 0).statistic,
+            anderson_darling(u, uniform_law).statistic);
   double before = anderson_darling(u, uniform_law).statistic;
   for (const double error : {1e-4, 1e-3, 1e-2, .1}) {
     const double now = anderson_darling(u, uniform_law, error).statistic;
