@@ -165,8 +165,7 @@ std::optional<std::uint64_t> draws_secondaries(const Question& question, const E
   const auto quantile = [](double level) {
     return stats::normal_quantile({stats::Tail::upper, std::log(level)});
   };
-  const double z =
-      quantile(rates.two_sided ? rates.alpha / 2 : rates.alpha) + quantile(rates.beta);
+  const double z = quantile(rates.two_sided ? rates.alpha / 2 : rates.alpha) + quantile(rates.beta);
   const double p = std::clamp(counted.value, 0.0, 0.5) + distance + regions.allow;
   const double variance = std::min(0.25, p * std::max(0.0, 1 - p));
   const double count = z * z * (variance / (room * room) + 1 / room);

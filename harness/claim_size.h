@@ -1,6 +1,7 @@
 #pragma once
 
-// How many secondaries claims about quantiles, slopes and a sampler's bookkeeping take: a helper of sample_size.
+// How many secondaries claims about quantiles, slopes and a sampler's bookkeeping take: a helper of
+// sample_size.
 
 #include <cstdint>
 #include <optional>

@@ -10,10 +10,9 @@ namespace assay::harness {
 
 const std::vector<QuantityName>& quantity_names() {
   using enum QuantityName;
-  static const std::vector<QuantityName> names{mean,           bias,           variance,
-                                               total_variance, worst_variance, quantile,
-                                               efficiency,     cost,           distribution,
-                                               integral,       inconsistency};
+  static const std::vector<QuantityName> names{
+      mean,       bias, variance,     total_variance, worst_variance, quantile,
+      efficiency, cost, distribution, integral,       inconsistency};
   return names;
 }
 

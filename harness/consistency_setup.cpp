@@ -13,9 +13,7 @@ double relative_difference(double a, double b) {
 }
 
 /// The larger, and NaN where one is.
-double farther(double one, double other) {
-  return std::isnan(one) || one > other ? one : other;
-}
+double farther(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
 class ConsistencyEstimator final : public Estimator {
  public:

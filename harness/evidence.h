@@ -19,9 +19,9 @@ struct Evidence {
   std::function<stats::Interval(double)> interval;
   std::string where = "";  ///< which part of the data speaks most against the claim, in words
   std::string quantity;    ///< what theta is, in words
-  bool relative = false;  ///< shown in per cent
-  bool ratio = false;     ///< theta is the logarithm of a ratio
-  bool distance = false;  ///< theta cannot be negative: `==` has one direction
+  bool relative = false;   ///< shown in per cent
+  bool ratio = false;      ///< theta is the logarithm of a ratio
+  bool distance = false;   ///< theta cannot be negative: `==` has one direction
 };
 
 }  // namespace assay::harness

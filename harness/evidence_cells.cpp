@@ -20,12 +20,10 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Sub
   std::vector<std::uint64_t> counts(cells.size() + 1);
   const std::span<const double> first = data.all_values[0];
   const bool plane = data.all_values.size() > 1;
+  const std::optional<double> none = no_point_of(side);
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const std::size_t cell =
-        is_point(side, first[i])
-            ? cells.index({first[i], plane ? data.all_values[1][i] : 0})
-            : cells.size();
-    ++counts[cell];
+    const bool point = first[i] != none;
+    ++counts[point ? cells.index({first[i], plane ? data.all_values[1][i] : 0}) : cells.size()];
   }
   return counts;
 }
@@ -43,8 +41,7 @@ std::string describe(const stats::SampledCells& cells, const Subject& side, std:
   const std::vector<Channel> channels = side.setup->channels();
   const auto after = std::upper_bound(cells.before.begin(), cells.before.end(), cell);
   const auto band = static_cast<std::size_t>(after - cells.before.begin()) - 1;
-  const std::string first =
-      range_text(channels[side.channels[0]].name, cells.band_borders, band);
+  const std::string first = range_text(channels[side.channels[0]].name, cells.band_borders, band);
   if (side.channels.size() == 1) return first;
   return first + ", " +
          range_text(channels[side.channels[1]].name, cells.cut_borders[band],
@@ -61,12 +58,11 @@ std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) 
     const double difference = static_cast<double>(cell.observed) - cell.expected;
     return difference * difference / cell.expected;
   };
-  const auto worst = std::max_element(
-      fit.cells.begin(), fit.cells.end(),
-      [&](const auto& a, const auto& b) { return part(a) < part(b); });
+  const auto worst =
+      std::max_element(fit.cells.begin(), fit.cells.end(),
+                       [&](const auto& a, const auto& b) { return part(a) < part(b); });
   return fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
-                     draws.describe_cell(worst->members.front()), worst->observed,
-                     worst->expected);
+                     draws.describe_cell(worst->members.front()), worst->observed, worst->expected);
 }
 
 }  // namespace

@@ -37,13 +37,12 @@ double log_p_at_least(const stats::Successes& seen, double least) {
 Evidence from_probability(const Shifted& known) {
   const auto at = [known](double theta) {
     const double q = theta - known.offset;
-    return TestResult{
-        .statistic = static_cast<double>(known.seen.successes),
-        .distribution = {.family = "binomial",
-                         .parameters = {static_cast<double>(known.seen.trials),
-                                        std::clamp(q, 0.0, 1.0)}},
-        .log_p_lower = log_p_at_least(known.seen, q - known.error),
-        .log_p_upper = log_p_at_most(known.seen, q + known.error)};
+    return TestResult{.statistic = static_cast<double>(known.seen.successes),
+                      .distribution = {.family = "binomial",
+                                       .parameters = {static_cast<double>(known.seen.trials),
+                                                      std::clamp(q, 0.0, 1.0)}},
+                      .log_p_lower = log_p_at_least(known.seen, q - known.error),
+                      .log_p_upper = log_p_at_most(known.seen, q + known.error)};
   };
   const auto interval = [known](double confidence) -> Interval {
     const Interval q = stats::clopper_pearson(known.seen, confidence);
@@ -65,12 +64,13 @@ std::string per_cent(double part) { return fmt::format("{:.3g} %", 100 * part); 
 Evidence evidence_of_integral(const Question& question, const ChannelData& data) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
   const DensityCells& cells = draws.cells();
-  Evidence evidence = from_probability(
-      {.seen = {.successes = data.cells.back(), .trials = sum(data.cells)},
-       .offset = cells.grid.total - question.references[0].value,
-       .error = cells.tolerance()});
+  Evidence evidence =
+      from_probability({.seen = {.successes = data.cells.back(), .trials = sum(data.cells)},
+                        .offset = cells.grid.total - question.references[0].value,
+                        .error = cells.tolerance()});
   evidence.quantity = fmt::format(
-      "integral of the density ({:.10g}, quadrature error {:.1g}) and the mass without a point, less "
+      "integral of the density ({:.10g}, quadrature error {:.1g}) and the mass without a point, "
+      "less "
       "{:g},",
       cells.grid.total, cells.tolerance(), question.references[0].value);
   return evidence;
@@ -86,10 +86,10 @@ Evidence evidence_of_inconsistency(const Question& question, const ChannelData& 
   if (inconsistent > 0) {
     const auto most = std::max_element(data.cells.begin() + 1, data.cells.end());
     const auto cell = static_cast<std::size_t>(most - data.cells.begin()) - 1;
-    evidence.where = fmt::format("; most of them, {}, in {}",
-                                 per_cent(static_cast<double>(*most) /
-                                          static_cast<double>(inconsistent)),
-                                 draws.describe_cell(cell));
+    evidence.where =
+        fmt::format("; most of them, {}, in {}",
+                    per_cent(static_cast<double>(*most) / static_cast<double>(inconsistent)),
+                    draws.describe_cell(cell));
   }
   return evidence;
 }

@@ -49,8 +49,7 @@ std::optional<Atom> most_frequent(std::vector<double> values) {
   std::optional<Atom> atom;
   for (auto begin = values.begin(); begin != values.end();) {
     const auto end = std::upper_bound(begin, values.end(), *begin);
-    const double share =
-        static_cast<double>(end - begin) / static_cast<double>(values.size());
+    const double share = static_cast<double>(end - begin) / static_cast<double>(values.size());
     const bool again = end - begin > 1 && share >= least_share;
     if (again && (!atom || share > atom->share)) atom = Atom{.value = *begin, .share = share};
     begin = end;
@@ -73,8 +72,9 @@ std::vector<stats::PlanePoint> pilot_points(const Question& question, const Pilo
     const std::vector<double> second = side.channels.size() > 1
                                            ? pilot_values(question, subject, 1, pilots, plan)
                                            : std::vector<double>(first.size(), 0);
+    const std::optional<double> none = no_point_of(side);
     for (std::size_t i = 0; i < first.size(); ++i) {
-      if (is_point(side, first[i]) && std::isfinite(first[i]) && std::isfinite(second[i])) {
+      if (first[i] != none && std::isfinite(first[i]) && std::isfinite(second[i])) {
         points.push_back({first[i], second[i]});
       }
     }
@@ -147,7 +147,8 @@ void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
     plan.method.frozen.atoms = atoms_of(question, pilots, plan);
     if (has_any(plan.method.frozen.atoms)) return;
     plan.invalid =
-        "`two-part-ks` splits off a value that comes again and again, and the pilots show none that "
+        "`two-part-ks` splits off a value that comes again and again, and the pilots show none "
+        "that "
         "is one in a hundred; leave `test` out";
   }
 }

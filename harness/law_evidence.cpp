@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/law_cdf.h"
 #include "harness/sampler_setup.h"
 #include "stats/anderson_darling.h"
 #include "stats/binomial.h"
@@ -154,7 +155,10 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
 Evidence unknown_distance() {
   return {.estimate = 0,
           .at = [](double) { return TestResult{.distribution = {.family = "bound"}}; },
-          .interval = [](double confidence) { return Interval{0, 1, confidence}; },
+          .interval =
+              [](double confidence) {
+                return Interval{0, 1, confidence};
+              },
           .quantity = quantity,
           .distance = true};
 }
@@ -174,9 +178,10 @@ void require_points(const Points& points) {
 
 }  // namespace
 
-bool is_point(const Subject& side, double first) {
+std::optional<double> no_point_of(const Subject& side) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
-  return draws == nullptr || first != no_point(draws->marginals()[side.channels[0]]);
+  if (draws == nullptr) return std::nullopt;
+  return no_point(draws->marginals()[side.channels[0]]);
 }
 
 Points points_of(const Question& question, std::size_t subject, std::size_t channel,
@@ -189,6 +194,23 @@ Points points_of(const Question& question, std::size_t subject, std::size_t chan
   }
   std::sort(points.sorted.begin(), points.sorted.end());
   return points;
+}
+
+DeclaredLaw declared_law(const Question& question, std::size_t channel) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
+  DeclaredLaw declared;
+  if (question.kind == QuestionKind::fit_to_law) {
+    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}};
+  } else {
+    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
+    declared.law = {.cdf = std::cref(table), .left_limit = {}};
+    declared.error = table.error;
+  }
+  if (draws != nullptr) {
+    declared.missing = draws->cells().without_density();
+    declared.missing_error = draws->cells().tolerance();
+  }
+  return declared;
 }
 
 Evidence points_against_law(const Points& points, const DeclaredLaw& declared, PointsTest test) {
@@ -216,10 +238,9 @@ Evidence points_split_at(double atom, const Points& x, const Points& y) {
   const Points x_rest = away_from(atom, x);
   const Points y_rest = away_from(atom, y);
   const bool both = !x_rest.sorted.empty() && !y_rest.sorted.empty();
-  Evidence evidence =
-      larger_of(both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted))
-                     : unknown_distance(),
-                from_proportions(x_rest, y_rest));
+  Evidence evidence = larger_of(
+      both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted)) : unknown_distance(),
+      from_proportions(x_rest, y_rest));
   TestResult at_null = evidence.at(0);
   const bool atom_decides = log_p_two_sided(parts.atom) < parts.rest.log_p_upper;
   at_null.statistic = atom_decides ? parts.atom.statistic : parts.rest.statistic;

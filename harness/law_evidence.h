@@ -24,9 +24,9 @@ struct Points {
   std::uint64_t missing() const { return draws - sorted.size(); }
 };
 
-/// Whether the value of a subject's first channel is one: that of a sampler's draw may stand for no
-/// point.
-bool is_point(const Subject& side, double first);
+/// The value of a subject's first channel that stands for a draw without a point; only samplers
+/// have one.
+std::optional<double> no_point_of(const Subject& side);
 
 Points points_of(const Question& question, std::size_t subject, std::size_t channel,
                  std::span<const double> values);
@@ -40,6 +40,9 @@ struct DeclaredLaw {
   double missing = 0;        ///< probability of no point
   double missing_error = 0;  ///< of it
 };
+
+/// What a claim about one sample holds it against: the law it names, or the sampler's density.
+DeclaredLaw declared_law(const Question& question, std::size_t channel);
 
 /// Which test of "the law is the declared one" the points get. Anderson and Darling's has the
 /// tails' weight and knows no margin: of theta above 0, and of intervals, it leaves to Kolmogorov

@@ -10,7 +10,6 @@
 #include "harness/evidence_quantile.h"
 #include "harness/evidence_ratio.h"
 #include "harness/evidence_slope.h"
-#include "harness/law_cdf.h"
 #include "harness/law_evidence.h"
 #include "harness/mean_evidence.h"
 #include "harness/sampler_setup.h"
@@ -93,27 +92,10 @@ Evidence law_against_law(const Method& method, const Question& question, std::si
   return points_against_points(x, y);
 }
 
-DeclaredLaw reference_law(const Question& question, std::size_t channel) {
-  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
-  DeclaredLaw declared;
-  if (question.kind == QuestionKind::fit_to_law) {
-    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}};
-  } else {
-    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
-    declared.law = {.cdf = std::cref(table), .left_limit = {}};
-    declared.error = table.error;
-  }
-  if (draws != nullptr) {
-    declared.missing = draws->cells().without_density();
-    declared.missing_error = draws->cells().tolerance();
-  }
-  return declared;
-}
-
 Evidence values_against_law(const Method& method, const Question& question, std::size_t channel,
                             const ChannelData& data) {
   return points_against_law(points_of(question, 0, channel, data.values),
-                            reference_law(question, channel),
+                            declared_law(question, channel),
                             method.name == "anderson-darling" ? PointsTest::anderson_darling
                                                               : PointsTest::kolmogorov_smirnov);
 }

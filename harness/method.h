@@ -27,7 +27,7 @@ struct Replicate {
 struct ChannelData {
   std::uint64_t primaries = 1;
   stats::Moments moments = {};
-  std::span<const double> values = {};  ///< where the method needs them
+  std::span<const double> values = {};                   ///< where the method needs them
   std::vector<std::span<const double>> all_values = {};  ///< of every channel, for Keeps::points
   std::span<const std::uint64_t> cells = {};
   std::span<const stats::JointMoments> with_cost = {};  ///< by CountedCost

@@ -33,7 +33,7 @@ using Pilots = std::map<std::string, Pilot>;
 struct PilotRun {
   std::uint64_t seed;
   unsigned threads;
-  std::set<std::string> with_cost = {};  ///< names of those whose costs are wanted
+  std::set<std::string> with_cost = {};    ///< names of those whose costs are wanted
   std::vector<const Subject*> draws = {};  ///< samplers whose draws are wanted besides
 };
 

@@ -116,13 +116,12 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
   const std::vector<FamilyPlace> place = places(run.suite, questions);
   const auto used = used_by(questions, chosen, run);
-  run.pilots = run_pilots(
-      with_sweeps(used, questions, chosen),
-      {.seed = run.seed,
-       .threads = options.threads,
-       .with_cost = costly(questions),
-       .draws = piloted_draws(questions, chosen)},
-      progress);
+  run.pilots = run_pilots(with_sweeps(used, questions, chosen),
+                          {.seed = run.seed,
+                           .threads = options.threads,
+                           .with_cost = costly(questions),
+                           .draws = piloted_draws(questions, chosen)},
+                          progress);
   const Pilots& pilots = run.pilots;
   stop_if_interrupted();
   const Primaries primaries = choose_primaries(questions, place, pilots);

@@ -114,10 +114,10 @@ Question about_distribution(const TestEntry& test, const Estimators& estimators)
   const Source& source = claim.left.source;
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
     const bool cells = test.method == two_sample_cells;
-    Question question{.test = &test,
-                      .kind = cells ? QuestionKind::same_cells : QuestionKind::same_law,
-                      .subjects = {values(source, estimators),
-                                   values(other->quantity.source, estimators)}};
+    Question question{
+        .test = &test,
+        .kind = cells ? QuestionKind::same_cells : QuestionKind::same_law,
+        .subjects = {values(source, estimators), values(other->quantity.source, estimators)}};
     if (cells) require_plane(question);
     return question;
   }

@@ -219,7 +219,8 @@ double equivalence_power(const Question& question, const TestSize& size,
                                   n, 0);
 }
 
-/// Quantiles, slopes and counts of draws have none here; nor has a comparison of numbers without a spread.
+/// Quantiles, slopes and counts of draws have none here; nor has a comparison of numbers without a
+/// spread.
 bool has_power(const Question& question, const PlannedChannel& channel) {
   if (question.kind == QuestionKind::quantile || question.kind == QuestionKind::slope ||
       question.of_draws()) {

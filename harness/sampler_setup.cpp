@@ -245,10 +245,9 @@ std::string SamplerSetup::describe_cell(std::size_t cell) const {
     };
     // Of a triangle the second coordinate of a cell is a share of what the first leaves.
     const bool triangle = sampler().domain() == Domain::triangle;
-    const std::string second = triangle
-                                   ? range_text("v / (1 - u)", grid_.y_borders[place % row],
-                                                grid_.y_borders[place % row + 1])
-                                   : range(1, grid_.y_borders, place % row);
+    const std::string second = triangle ? range_text("v / (1 - u)", grid_.y_borders[place % row],
+                                                     grid_.y_borders[place % row + 1])
+                                        : range(1, grid_.y_borders, place % row);
     return range(0, grid_.x_borders, place / row) + ", " + second + lobe;
   }
   std::size_t next = lobes * each;

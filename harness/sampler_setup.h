@@ -69,8 +69,8 @@ class SamplerSetup : public Setup {
   mutable std::map<std::string, stats::TabulatedLaw> laws_;
 };
 
-/// InputError at `where` for a sampler without lobes and for an interval whose bounds are not finite
-/// and ascending.
+/// InputError at `where` for a sampler without lobes and for an interval whose bounds are not
+/// finite and ascending.
 void require_sound(const NamedSampler& named, const Location& where);
 
 /// The same set-up for the same sampler, so that its tables are made once. Throws as

@@ -246,10 +246,10 @@ std::vector<Entry> mutants_brdf() {
       ward_redrawn({"ward_redrawn", redrawn_what}),
       misreported_ward<WeightWithoutCosine>(
           {"ward_weight_without_cosine", "the weight is f / p, without the cosine."}),
-      misreported_ward<DensityOffInASector>(
-          {"ward_density_sector",
-           "the density at a point is declared .1 % too large in a hundredth of the azimuth, phi in "
-           "[0.5, 0.5628)."}),
+      misreported_ward<DensityOffInASector>({"ward_density_sector",
+                                             "the density at a point is declared .1 % too large in "
+                                             "a hundredth of the azimuth, phi in "
+                                             "[0.5, 0.5628)."}),
       misreported_ward<MirroredWeight>(
           {"ward_weight_mirrored",
            "the weight takes the BRDF of the direction with its x and y exchanged."}),
