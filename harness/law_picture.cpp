@@ -30,7 +30,8 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
   reports::EmpiricalLaw drawn{.confidence = confidence};
   const std::vector<double>& sorted = points.sorted;
   const std::uint64_t n = sorted.size();
-  if (n < 2) return drawn;
+  // An error below a double's resolution of 1 has no band.
+  if (n < 2 || !(confidence < 1)) return drawn;
   const double gamma = pointwise_error(n, confidence);
   std::uint64_t before = 0;
   for (std::size_t i = 1; i < parts; ++i) {
