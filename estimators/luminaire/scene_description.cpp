@@ -23,31 +23,12 @@ const std::string& quoted_list(const std::vector<std::string>& names, std::strin
   return out;
 }
 
-std::string alternatives(std::string_view name, const std::vector<std::string>& known) {
-  std::string out;
-  const std::string near = nearest(name, known);
-  return near.empty() ? "known are " + quoted_list(known, out) : "did you mean `" + near + "`?";
-}
-
 void require_map(const Value& value, const std::string& what) {
   if (value.kind() != Value::Kind::map) throw InputError(value.where(), what + " must be a map");
 }
 
-// A map with no key but these.
-void require_keys(const Value& value, const std::string& what,
-                  const std::vector<std::string>& known) {
-  require_map(value, what);
-  for (const auto& [key, member] : value.members()) {
-    if (std::ranges::find(known, key) == known.end()) {
-      throw InputError(member.where(),
-                       what + " has no key `" + key + "`; " + alternatives(key, known));
-    }
-  }
-}
-
 const Value& required(const Value& value, const std::string& what, const char* key) {
-  if (const Value* found = value.find(key)) return *found;
-  throw InputError(value.where(), what + " needs the key `" + key + "`");
+  return required_key(value, what, key);
 }
 
 double finite_number(const Value& value, const std::string& what) {
@@ -210,6 +191,28 @@ SceneDescription named(const Value& value) {
 
 }  // namespace
 
+std::string alternatives(std::string_view name, const std::vector<std::string>& known) {
+  std::string out;
+  const std::string near = nearest(name, known);
+  return near.empty() ? "known are " + quoted_list(known, out) : "did you mean `" + near + "`?";
+}
+
+void require_keys(const Value& value, const std::string& what,
+                  const std::vector<std::string>& known) {
+  require_map(value, what);
+  for (const auto& [key, member] : value.members()) {
+    if (std::ranges::find(known, key) == known.end()) {
+      throw InputError(member.where(),
+                       what + " has no key `" + key + "`; " + alternatives(key, known));
+    }
+  }
+}
+
+const Value& required_key(const Value& value, const std::string& what, const char* key) {
+  if (const Value* found = value.find(key)) return *found;
+  throw InputError(value.where(), what + " needs the key `" + key + "`");
+}
+
 std::vector<Occluder> read_occluders(const Value& value, const std::string& folder) {
   return occluders(&value, folder);
 }
@@ -218,6 +221,12 @@ Vector3 read_vector(const Value& value, const std::string& what) { return vector
 
 Vector3 read_unit_vector(const Value& value, const std::string& what) {
   return unit_vector(value, what);
+}
+
+Polygon read_polygon(const Value& value, const std::string& what) { return polygon(value, what); }
+
+TriangleMesh read_mesh(const Value& value, const std::string& what, const std::string& folder) {
+  return mesh(value, what, folder);
 }
 
 std::vector<std::string> built_in_scenes() {

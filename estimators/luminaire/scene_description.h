@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -49,6 +50,20 @@ std::vector<Occluder> read_occluders(const Value& value, const std::string& fold
 /// thing in the message.
 render::Vector3 read_vector(const Value& value, const std::string& what);
 render::Vector3 read_unit_vector(const Value& value, const std::string& what);
+
+/// A planar convex polygon, and the triangles of an OBJ file that is named relative to `folder`.
+/// The same errors as in a scene.
+render::Polygon read_polygon(const Value& value, const std::string& what);
+render::TriangleMesh read_mesh(const Value& value, const std::string& what,
+                               const std::string& folder);
+
+/// Refuses what is not a map, or a map with a key that is not among `known`.
+void require_keys(const Value& value, const std::string& what,
+                  const std::vector<std::string>& known);
+/// The member of a map; InputError where it is missing.
+const Value& required_key(const Value& value, const std::string& what, const char* key);
+/// What to say of an unknown name: the nearest known one, or all.
+std::string alternatives(std::string_view name, const std::vector<std::string>& known);
 
 /// The built-in scenes' names: triangle, cornell_triangle, rectangle.
 std::vector<std::string> built_in_scenes();

@@ -1,66 +1,15 @@
 #include "render/scene.h"
 
-#include <embree3/rtcore.h>
-#include <oneapi/tbb/global_control.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstddef>
-#include <stdexcept>
 #include <utility>
+
+#include "render/device.h"
 
 namespace assay::render {
 
 namespace {
-
-[[noreturn]] void embree_failed(const char* message) {
-  throw std::runtime_error(std::string("Embree: ") + message);
-}
-
-// One device for the process: it pins the instruction set. Its own `threads` setting must stay
-// away: Embree would limit oneTBB to that number in the whole process for as long as the device
-// lives.
-class Device {
- public:
-  Device() : isa_(__builtin_cpu_supports("avx2") ? "avx2" : "sse4.2") {
-    const std::string settings = "isa=" + isa_ + ",set_affinity=0";
-    handle_ = rtcNewDevice(settings.c_str());
-    if (!handle_) embree_failed("no device could be made");
-  }
-  ~Device() { rtcReleaseDevice(handle_); }
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
-
-  static const std::shared_ptr<const Device>& shared() {
-    static const std::shared_ptr<const Device> device = std::make_shared<const Device>();
-    return device;
-  }
-
-  RTCDevice handle() const { return handle_; }
-  const std::string& isa() const { return isa_; }
-
-  // Embree keeps the first error of each thread until it is asked.
-  void check() const {
-    switch (rtcGetDeviceError(handle_)) {
-      case RTC_ERROR_NONE:
-        return;
-      case RTC_ERROR_INVALID_ARGUMENT:
-        embree_failed("invalid argument");
-      case RTC_ERROR_INVALID_OPERATION:
-        embree_failed("invalid operation");
-      case RTC_ERROR_OUT_OF_MEMORY:
-        embree_failed("out of memory");
-      case RTC_ERROR_UNSUPPORTED_CPU:
-        embree_failed("this processor is not supported");
-      default:
-        embree_failed("unknown error");
-    }
-  }
-
- private:
-  std::string isa_;
-  RTCDevice handle_ = nullptr;
-};
 
 void put(float* target, const Vector3& v) {
   target[0] = static_cast<float>(v.x);
@@ -118,18 +67,9 @@ void attach(RTCScene scene, const Shape& shape, RTCDevice device) {
 }  // namespace
 
 Scene::Scene(const std::vector<Shape>& shapes) {
-  const std::shared_ptr<const Device> device = Device::shared();
-  // The deleter holds the device, which must outlive its scenes.
-  scene_ = {rtcNewScene(device->handle()), [device](RTCScene scene) { rtcReleaseScene(scene); }};
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
-  for (const Shape& shape : shapes) attach(scene_.get(), shape, device->handle());
-  {
-    // Built on the calling thread, so that the tree does not depend on the number of processors.
-    const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
-    rtcCommitScene(scene_.get());
-  }
-  device->check();
+  scene_ = Device::new_scene();
+  for (const Shape& shape : shapes) attach(scene_.get(), shape, Device::shared()->handle());
+  Device::commit(scene_.get());
 }
 
 static_assert(offsetof(RTCRay, tnear) == 12 && offsetof(RTCRay, dir_x) == 16 &&

@@ -1,0 +1,234 @@
+#include "correlated/estimators.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace assay::correlated {
+
+namespace {
+
+using ColourSums = std::array<Sums, 3>;
+
+double variance(const Colour& colour, double lambda) {
+  const Moments& m = *colour.moments;
+  const double j = colour.control_integral;
+  const double i = *colour.integral;
+  return m.full - i * i + lambda * lambda * (m.control - j * j) - 2 * lambda * (m.product - i * j);
+}
+
+std::optional<double> best_lambda(const Colour& colour) {
+  if (!colour.moments || !colour.integral) return {};
+  const double j = colour.control_integral;
+  const double spread = colour.moments->control - j * j;
+  if (spread < 1e-6 * j * j) return {};
+  return (colour.moments->product - *colour.integral * j) / spread;
+}
+
+// Values that differ by rounding alone: what the control lacks is a difference of numbers near J.
+double rounding(const Colour& colour, double lambda) {
+  return (1 + std::abs(lambda)) * colour.control_integral * 0x1p-40;
+}
+
+Channel irradiance(const Colour& colour) {
+  return {.name = colour.name, .mean = colour.integral, .mean_error = colour.integral_error};
+}
+
+Channel channel_of(const Colour& colour, double lambda) {
+  Channel channel = irradiance(colour);
+  channel.rounding = rounding(colour, lambda);
+  if (!colour.moments || !colour.integral) return channel;
+  const Moments& m = *colour.moments;
+  const double v = variance(colour, lambda);
+  // Fewer than some eight digits left by the differences count as unknown, nothing left as zero.
+  if (v > 1e-6 * (m.full + lambda * lambda * m.control)) channel.variance = v;
+  return channel;
+}
+
+ColourSums draw_sums(const PairSource& source, std::uint64_t count, Stream& random, Cost& cost) {
+  const auto& colours = source.colours();
+  ColourSums sums;
+  for_each_pair(source, count, random, cost, [&](const Pair& pair) {
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      sums[c].add(pair.full[c], colours[c].control_integral - pair.control[c]);
+    }
+  });
+  return sums;
+}
+
+class FixedEstimator final : public Estimator {
+ public:
+  FixedEstimator(SharedPairs source, double lambda) : source_(std::move(source)), lambda_(lambda) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const auto& colours = source_->colours();
+    Rgb sum{};
+    for_each_pair(*source_, primaries, random, cost, [&](const Pair& pair) {
+      for (std::size_t c = 0; c < colours.size(); ++c) {
+        sum[c] += pair.full[c] + lambda_ * (colours[c].control_integral - pair.control[c]);
+      }
+    });
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      out[c] = sum[c] / static_cast<double>(primaries);
+    }
+  }
+
+ private:
+  SharedPairs source_;
+  double lambda_;
+};
+
+class SameSamplesEstimator final : public Estimator {
+ public:
+  SameSamplesEstimator(SharedPairs source, LambdaRule rule)
+      : source_(std::move(source)), rule_(std::move(rule)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const auto& colours = source_->colours();
+    const ColourSums sums = draw_sums(*source_, primaries, random, cost);
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      const double lambda = rule_(sums[c], colours[c].control_integral);
+      out[c] = sums[c].estimate(lambda);
+      out[colours.size() + c] = lambda;
+    }
+  }
+
+ private:
+  SharedPairs source_;
+  LambdaRule rule_;
+};
+
+class CrossFittedEstimator final : public Estimator {
+ public:
+  CrossFittedEstimator(SharedPairs source, LambdaRule rule)
+      : source_(std::move(source)), rule_(std::move(rule)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const auto& colours = source_->colours();
+    const std::uint64_t half = primaries / 2;
+    const ColourSums first = draw_sums(*source_, half, random, cost);
+    const ColourSums second = draw_sums(*source_, primaries - half, random, cost);
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      const double of_first = lambda(first[c], colours[c].control_integral);
+      const double of_second = lambda(second[c], colours[c].control_integral);
+      out[c] =
+          (first[c].full + of_second * first[c].lack + second[c].full + of_first * second[c].lack) /
+          static_cast<double>(primaries);
+      out[colours.size() + c] = (of_first + of_second) / 2;
+    }
+  }
+
+ private:
+  double lambda(const Sums& sums, double integral) const {
+    return sums.count < 2 ? 0 : rule_(sums, integral);
+  }
+
+  SharedPairs source_;
+  LambdaRule rule_;
+};
+
+class RatioEstimator final : public Estimator {
+ public:
+  explicit RatioEstimator(SharedPairs source) : source_(std::move(source)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const auto& colours = source_->colours();
+    Rgb full{}, control{};
+    for_each_pair(*source_, primaries, random, cost, [&](const Pair& pair) {
+      for (std::size_t c = 0; c < colours.size(); ++c) {
+        full[c] += pair.full[c];
+        control[c] += pair.control[c];
+      }
+    });
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      out[c] = control[c] == 0 ? 0 : colours[c].control_integral * full[c] / control[c];
+    }
+  }
+
+ private:
+  SharedPairs source_;
+};
+
+using Make = std::function<std::unique_ptr<Estimator>()>;
+
+class PairSetup final : public Setup {
+ public:
+  PairSetup(std::vector<Channel> channels, SharedPairs source, Make make)
+      : channels_(std::move(channels)), source_(std::move(source)), make_(std::move(make)) {}
+
+  std::vector<Channel> channels() const override { return channels_; }
+  std::unique_ptr<Estimator> make() const override { return make_(); }
+  std::vector<NamedSampler> samplers() const override { return source_->samplers(); }
+
+ private:
+  std::vector<Channel> channels_;
+  SharedPairs source_;
+  Make make_;
+};
+
+}  // namespace
+
+LambdaRule estimated_lambda(Centre centre) {
+  return [centre](const Sums& sums, double integral) {
+    const double mean_lack = sums.lack / sums.count;
+    const double about_mean = sums.lack_squared - mean_lack * sums.lack;
+    const double spread = centre == Centre::integral ? sums.lack_squared : about_mean;
+    const double least = integral * 0x1p-40;
+    return spread <= sums.count * least * least ? 0 : sums.covariation() / spread;
+  };
+}
+
+LambdaRule clamped_lambda(Centre centre) {
+  return [rule = estimated_lambda(centre)](const Sums& sums, double integral) {
+    return std::clamp(rule(sums, integral), 0.0, 1.0);
+  };
+}
+
+std::vector<Channel> channels_with_lambda(const PairSource& source) {
+  const auto& colours = source.colours();
+  std::vector<Channel> channels;
+  for (const Colour& colour : colours) {
+    channels.push_back(irradiance(colour));
+    channels.back().rounding = rounding(colour, 1);
+  }
+  for (const Colour& colour : colours) {
+    channels.push_back({.name = colours.size() == 1 ? "lambda" : "lambda_" + colour.name,
+                        .mean = best_lambda(colour),
+                        .diagnostic = true});
+  }
+  return channels;
+}
+
+std::shared_ptr<const Setup> fixed(SharedPairs source, double lambda) {
+  std::vector<Channel> channels;
+  for (const Colour& colour : source->colours()) channels.push_back(channel_of(colour, lambda));
+  return std::make_shared<PairSetup>(std::move(channels), source, [source, lambda] {
+    return std::make_unique<FixedEstimator>(source, lambda);
+  });
+}
+
+std::shared_ptr<const Setup> same_samples(SharedPairs source, LambdaRule rule) {
+  return std::make_shared<PairSetup>(channels_with_lambda(*source), source, [source, rule] {
+    return std::make_unique<SameSamplesEstimator>(source, rule);
+  });
+}
+
+std::shared_ptr<const Setup> cross_fitted(SharedPairs source, LambdaRule rule) {
+  return std::make_shared<PairSetup>(channels_with_lambda(*source), source, [source, rule] {
+    return std::make_unique<CrossFittedEstimator>(source, rule);
+  });
+}
+
+std::shared_ptr<const Setup> ratio(SharedPairs source) {
+  std::vector<Channel> channels;
+  for (const Colour& colour : source->colours()) channels.push_back(irradiance(colour));
+  return std::make_shared<PairSetup>(std::move(channels), source,
+                                     [source] { return std::make_unique<RatioEstimator>(source); });
+}
+
+}  // namespace assay::correlated

@@ -1,0 +1,257 @@
+#include "paths/family.h"
+
+#include <numbers>
+#include <utility>
+
+namespace assay::paths {
+
+namespace {
+
+using Pick = double Spectrum::*;
+constexpr std::array<Pick, 3> colours = {&Spectrum::red, &Spectrum::green, &Spectrum::blue};
+constexpr std::array<const char*, 3> colour_names = {"red", "green", "blue"};
+
+Scene scene_of(const SphereScene& form, const Camera& camera) {
+  auto world = std::make_shared<const SphereWorld>(form, camera);
+  const ZonedScene& law = world->zones().law();
+  return {world, true, law, global_incoming(law.mean_emission(), law.mean_albedo())};
+}
+
+Scene scene_of(const MeshScene& form, const Camera& camera) {
+  auto world = std::make_shared<const MeshWorld>(form, camera);
+  std::optional<ZonedScene> law;
+  if (form.furnace) law = world->furnace();
+  return {world, true, law, global_incoming(mean_emission(*world), mean_albedo(*world))};
+}
+
+// What a vertex of a zone scores, for one colour; the emission that arrives along the camera's ray
+// is added to the mean elsewhere and has no variance.
+void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, Pick colour,
+               Direct direct) {
+  const ZonedScene& law = *scene.law;
+  if (direct == Direct::hit) {
+    zone.score = surface.emission.*colour;
+    return;
+  }
+  const double light = law.mean_emission().*colour;
+  zone.score = zone.albedo * light;
+  if (direct == Direct::exact) return;
+  double square = 0;
+  for (const ZonedScene::Zone& z : law.zones) {
+    square += z.fraction * (z.surface.emission.*colour) * (z.surface.emission.*colour);
+  }
+  zone.score_variance = zone.albedo * zone.albedo * (square - light * light);
+}
+
+std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, Pick colour) {
+  std::vector<ZoneSteps> all;
+  for (const ZonedScene::Zone& z : scene.law->zones) {
+    ZoneSteps zone{.fraction = z.fraction,
+                   .albedo = z.surface.albedo().*colour,
+                   .survival = steps.survival(z.surface),
+                   .terminal = steps.terminal(z.surface).*colour};
+    add_score(zone, scene, z.surface, colour, steps.direct);
+    all.push_back(zone);
+  }
+  return all;
+}
+
+// Whether the variance's recursion describes the path: mirrors keep it only in grey furnaces whose
+// light is found by hits, and a furnace's shadow rays have no closed form.
+bool has_variance(const Scene& scene, const Steps& steps) {
+  bool mirrors = false;
+  for (const ZonedScene::Zone& z : scene.law->zones) {
+    mirrors = mirrors || !(z.surface.mirror == Spectrum{});
+  }
+  if (mirrors && !(scene.grey && steps.direct == Direct::hit && steps.splitting == 1)) return false;
+  return steps.direct != Direct::sampled || std::holds_alternative<SharedSphere>(scene.world);
+}
+
+void add_steps(Knowledge& known, const Scene& scene, const Steps& steps) {
+  if (!has_variance(scene, steps)) return;
+  const ZonedScene& law = *scene.law;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto zones = zone_steps(scene, steps, colours[c]);
+    const std::optional<double> variance = path_variance(zones, law.seen, steps.splitting);
+    const double mean = *known.colours[c].mean;
+    // A difference that is nothing but rounding is not stated.
+    if (variance && *variance > 1e-12 * mean * mean) known.colours[c].variance = variance;
+  }
+  double survival = 0;
+  for (const ZonedScene::Zone& z : law.zones) survival += z.fraction * steps.survival(z.surface);
+  std::array<double, Tally::bounces> vertices{};
+  vertices[0] = 1;
+  vertices[1] = steps.splitting * steps.survival(law.zones[law.seen].surface);
+  for (std::size_t k = 2; k < vertices.size(); ++k) vertices[k] = survival * vertices[k - 1];
+  known.vertices = vertices;
+  known.all_vertices = 1 + vertices[1] / (1 - survival);
+}
+
+class Walks final : public Estimator {
+ public:
+  Walks(Trace trace, bool grey) : trace_(std::move(trace)), grey_(grey) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    Tally tally;
+    for (std::uint64_t i = 0; i < primaries; ++i) trace_(random, tally, cost);
+    cost.samples += primaries;
+    const double n = static_cast<double>(primaries);
+    std::size_t at = 0;
+    for (const Pick colour : colours) {
+      if (at == 0 || !grey_) out[at++] = tally.value.*colour / n;
+    }
+    out[at++] = static_cast<double>(tally.vertices) / n;
+    for (std::size_t k = 1; k < Tally::bounces; ++k) {
+      out[at++] = static_cast<double>(tally.at_bounce[k]) / n;
+    }
+  }
+
+ private:
+  Trace trace_;
+  bool grey_;
+};
+
+class WalkSetup final : public Setup {
+ public:
+  WalkSetup(std::vector<Channel> channels, std::unique_ptr<const Walks> walks,
+            std::vector<NamedSampler> samplers, const Cost& cost)
+      : channels_(std::move(channels)),
+        walks_(std::move(walks)),
+        samplers_(std::move(samplers)),
+        cost_(cost) {}
+
+  std::vector<Channel> channels() const override { return channels_; }
+  std::unique_ptr<Estimator> make() const override { return std::make_unique<Walks>(*walks_); }
+  std::vector<NamedSampler> samplers() const override { return samplers_; }
+  Cost cost() const override { return cost_; }
+
+ private:
+  std::vector<Channel> channels_;
+  std::unique_ptr<const Walks> walks_;
+  std::vector<NamedSampler> samplers_;
+  Cost cost_;
+};
+
+std::vector<Channel> channels(const Scene& scene, const Knowledge& known) {
+  std::vector<Channel> all;
+  for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
+    const Known& colour = known.colours[c];
+    all.push_back({.name = scene.grey ? "radiance" : colour_names[c],
+                   .mean = colour.mean,
+                   .variance = colour.variance,
+                   .low = known.low,
+                   // Sums of some ten terms of about the mean's size.
+                   .rounding = 1e-13 * colour.mean.value_or(0)});
+  }
+  all.push_back({.name = "vertices", .mean = known.all_vertices, .low = 0, .diagnostic = true});
+  for (std::size_t k = 1; k < Tally::bounces; ++k) {
+    Channel bounce{.name = "bounce_" + std::to_string(k), .low = 0, .diagnostic = true};
+    if (known.vertices) bounce.mean = (*known.vertices)[k];
+    all.push_back(bounce);
+  }
+  return all;
+}
+
+class Directions final : public Sampler {
+ public:
+  Domain domain() const override { return Domain::hemisphere; }
+  SamplerDraw sample(Stream& random) const override {
+    const double u = random.uniform();
+    const double v = random.uniform();
+    const render::Vector3 w = render::cosine_hemisphere(u, v);
+    const Point point = {w.x, w.y, w.z};
+    return {.point = point, .density = density(point), .weight = 1};
+  }
+  double density(const Point& point) const override { return point[2] / std::numbers::pi; }
+  double evaluate(const Point& point) const override { return point[2] / std::numbers::pi; }
+};
+
+}  // namespace
+
+Scene read_scene(Parameters& parameters) {
+  const SceneDescription description =
+      read_scene(parameters.structure("scene"), parameters.folder());
+  Scene scene = std::visit([&](const auto& form) { return scene_of(form, description.camera); },
+                           description.form);
+  scene.grey = description.grey;
+  return scene;
+}
+
+Knowledge knowledge(const Scene& scene, const std::optional<Steps>& steps) {
+  Knowledge known;
+  if (!scene.law) return known;
+  const Spectrum radiance = scene.law->seen_radiance();
+  for (std::size_t c = 0; c < 3; ++c) known.colours[c].mean = radiance.*colours[c];
+  if (steps) add_steps(known, scene, *steps);
+  return known;
+}
+
+std::shared_ptr<const Setup> setup(const Scene& scene, const Knowledge& known, Trace trace,
+                                   std::vector<NamedSampler> samplers, const Cost& cost) {
+  return std::make_shared<WalkSetup>(channels(scene, known),
+                                     std::make_unique<const Walks>(std::move(trace), scene.grey),
+                                     std::move(samplers), cost);
+}
+
+std::shared_ptr<const Setup> mutant_setup(const Scene& scene, Trace trace) {
+  return setup(scene, knowledge(scene, {}), std::move(trace));
+}
+
+ParameterInformation scene_parameter(std::string fallback) {
+  return {.name = "scene",
+          .type = ParameterType::structure,
+          .summary =
+              "furnace, sphere, coloured_sphere or box, or a camera and one of zones, "
+              "furnace and surfaces",
+          .fallback = std::move(fallback)};
+}
+
+ParameterInformation direct_parameter() {
+  return {.name = "direct",
+          .type = ParameterType::string,
+          .summary =
+              "how emitted light is learnt of: by arriving at what emits (hit), in closed "
+              "form at every vertex (exact: spheres and furnaces), by a shadow ray "
+              "at every vertex (sampled)",
+          .fallback = "hit",
+          .choices = {"hit", "exact", "sampled"}};
+}
+
+ParameterInformation rule_parameter() {
+  return {.name = "rule",
+          .type = ParameterType::string,
+          .summary =
+              "the probability to go on: the largest albedo, its mean over the colours, "
+              "its luminance, its mean weighted with the throughput, or with throughput x "
+              "mean radiance",
+          .fallback = "max_albedo",
+          .choices = {"max_albedo", "mean_albedo", "luminance", "throughput", "radiance"}};
+}
+
+Direct read_direct(Parameters& parameters, const Scene& scene) {
+  const std::string name = parameters.string("direct");
+  if (name == "hit") return Direct::hit;
+  if (name == "exact") {
+    if (!scene.law) {
+      parameters.refuse("direct", "exact direct light is known in spheres and furnaces only");
+    }
+    return Direct::exact;
+  }
+  if (largest(scene.global.all) == 0) {
+    parameters.refuse("direct", "there is no light to sample: no surface emits");
+  }
+  return Direct::sampled;
+}
+
+Rule read_rule(Parameters& parameters) {
+  const std::string name = parameters.string("rule");
+  if (name == "max_albedo") return Rule::max_albedo;
+  if (name == "mean_albedo") return Rule::mean_albedo;
+  if (name == "luminance") return Rule::luminance;
+  return name == "throughput" ? Rule::throughput : Rule::radiance;
+}
+
+NamedSampler direction_sampler() { return {"direction", std::make_shared<Directions>()}; }
+
+}  // namespace assay::paths

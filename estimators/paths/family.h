@@ -1,0 +1,83 @@
+#pragma once
+
+// What the estimators of this folder share: parameters, worlds, channels, set-up.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "estimators/estimator.h"
+#include "paths/mesh_world.h"
+#include "paths/path.h"
+#include "paths/sphere_world.h"
+#include "paths/terminal.h"
+#include "paths/zone_law.h"
+
+namespace assay::paths {
+
+using SharedSphere = std::shared_ptr<const SphereWorld>;
+using SharedMesh = std::shared_ptr<const MeshWorld>;
+
+/// A scene ready for paths.
+struct Scene {
+  std::variant<SharedSphere, SharedMesh> world;
+  bool grey = true;
+  /// Where vertices are independent: in spheres and furnaces.
+  std::optional<ZonedScene> law;
+  Incoming global;
+};
+
+Scene read_scene(Parameters& parameters);
+
+/// What a colour's channel may state.
+struct Known {
+  std::optional<double> mean = {};
+  std::optional<double> variance = {};
+};
+
+/// What is known of an estimator: by colour, and the expected numbers of vertices at each bounce.
+struct Knowledge {
+  std::array<Known, 3> colours = {};
+  std::optional<std::array<double, Tally::bounces>> vertices = {};
+  std::optional<double> all_vertices = {};
+  double low = -std::numeric_limits<double>::infinity();
+};
+
+/// What the zones of a sphere or of a furnace do at a vertex.
+struct Steps {
+  std::function<double(const Surface&)> survival;
+  std::function<Spectrum(const Surface&)> terminal;
+  Direct direct = Direct::hit;
+  double splitting = 1;
+};
+
+/// The exact means, and with `steps`, where survival depends on the zone alone, the variances and
+/// numbers of vertices.
+Knowledge knowledge(const Scene& scene, const std::optional<Steps>& steps);
+
+/// One path, or one tree of them.
+using Trace = std::function<void(Stream&, Tally&, Cost&)>;
+
+std::shared_ptr<const Setup> setup(const Scene& scene, const Knowledge& known, Trace trace,
+                                   std::vector<NamedSampler> samplers = {}, const Cost& cost = {});
+
+/// The channels of a scene for a mutant: means alone.
+std::shared_ptr<const Setup> mutant_setup(const Scene& scene, Trace trace);
+
+ParameterInformation scene_parameter(std::string fallback);
+ParameterInformation direct_parameter();
+ParameterInformation rule_parameter();
+Direct read_direct(Parameters& parameters, const Scene& scene);
+Rule read_rule(Parameters& parameters);
+
+/// Calls `make` with the world that a scene has.
+template <class Make>
+auto with_world(const Scene& scene, const Make& make) {
+  return std::visit([&](const auto& world) { return make(world); }, scene.world);
+}
+
+/// The sampler of diffuse directions in the frame of the normal, of density cos / pi.
+NamedSampler direction_sampler();
+
+}  // namespace assay::paths

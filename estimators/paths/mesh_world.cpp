@@ -1,0 +1,117 @@
+#include "paths/mesh_world.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace assay::paths {
+
+using render::TriangleMesh;
+using render::Vector3;
+
+namespace {
+
+// Moves a scene to the origin and scales its longest side to 1, where single precision is finest.
+// Radiance does not change.
+class Fit {
+ public:
+  explicit Fit(const TriangleMesh& mesh) {
+    Vector3 low = mesh.vertices.front();
+    Vector3 high = low;
+    for (const Vector3& v : mesh.vertices) {
+      low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+      high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    }
+    centre_ = 0.5 * (low + high);
+    const Vector3 size = high - low;
+    scale_ = 1 / std::max({size.x, size.y, size.z});
+  }
+  Vector3 operator()(const Vector3& v) const { return scale_ * (v - centre_); }
+  TriangleMesh operator()(TriangleMesh mesh) const {
+    for (Vector3& v : mesh.vertices) v = (*this)(v);
+    return mesh;
+  }
+
+ private:
+  Vector3 centre_;
+  double scale_ = 1;
+};
+
+std::vector<std::array<Vector3, 3>> fitted_corners(const TriangleMesh& mesh) {
+  const TriangleMesh fitted = Fit(mesh)(mesh);
+  std::vector<std::array<Vector3, 3>> all;
+  for (std::size_t i = 0; i < fitted.triangles.size(); ++i) all.push_back(fitted.corners(i));
+  return all;
+}
+
+}  // namespace
+
+MeshWorld::Triangle MeshWorld::triangle(const std::array<Vector3, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  const Vector3 across = cross(b - a, c - a);
+  const double at_a = length(c - b);
+  const double at_b = length(a - c);
+  const double at_c = length(b - a);
+  const double around = at_a + at_b + at_c;
+  const Vector3 centre = (at_a * a + at_b * b + at_c * c) / around;
+  const double area = length(across) / 2;
+  return {a,
+          b - a,
+          c - a,
+          normalised(across),
+          mesh_resolution * centre,
+          mesh_resolution / 4 * (2 * area / around),
+          area};
+}
+
+luminaire::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& triangles,
+                                              const MeshScene& scene) {
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    shares.push_back(triangles[i].area * mean(scene.surfaces[scene.surface_of[i]].emission));
+  }
+  return luminaire::ShareTable(shares);
+}
+
+MeshWorld::MeshWorld(const MeshScene& scene, const Camera& camera)
+    : surfaces_(scene.surfaces),
+      surface_of_(scene.surface_of),
+      triangles_([&] {
+        std::vector<Triangle> all;
+        for (const auto& corners : fitted_corners(scene.mesh)) all.push_back(triangle(corners));
+        return all;
+      }()),
+      light_(light_shares(triangles_, scene)),
+      camera_{Fit(scene.mesh)(camera.position), camera.direction},
+      scene_({Fit(scene.mesh)(scene.mesh)}) {
+  if (scene.furnace) furnace_ = {{{1, surfaces_[0]}}, 0};
+}
+
+Vertex MeshWorld::on_patch(std::size_t patch, double u, double v) const {
+  const Triangle& t = triangles_[patch / 2];
+  const double root = std::sqrt(u);
+  const Vector3 point = t.corner + root * (1 - v) * t.first_edge + root * v * t.second_edge;
+  const Vector3 arriving = patch % 2 == 0 ? -t.normal : t.normal;
+  return vertex(static_cast<std::uint32_t>(patch / 2), point, arriving);
+}
+
+Spectrum MeshWorld::sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
+  double x = random.uniform();
+  const std::uint32_t triangle = light_.pick(x);
+  const double y = random.uniform();
+  const Vertex light = on_patch(2 * std::size_t{triangle}, x, y);
+  const Vector3 way = light.position - v.position;
+  const double square = squared_length(way);
+  const double leaving = dot(way, v.normal);
+  const double cosines =
+      leaving * std::abs(dot(way, triangles_[triangle].normal)) / (square * square);
+  if (!(leaving > 0) || cosines == 0) return {};
+  ++cost.shadow_rays;
+  // What lies nearer to the light than this is the light itself.
+  constexpr double far = 1 - 0x1p-12;
+  if (scene_.occluded(render::Ray{v.position, way, 0, far})) return {};
+  const Spectrum& emission = light.surface->emission;
+  const double area_over_share = light_.total() / mean(emission);
+  return cosines * area_over_share / std::numbers::pi * (v.surface->diffuse * emission);
+}
+
+}  // namespace assay::paths

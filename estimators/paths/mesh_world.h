@@ -1,0 +1,114 @@
+#pragma once
+
+// Paths among triangles.
+
+#include <vector>
+
+#include "estimators/cost.h"
+#include "estimators/stream.h"
+#include "luminaire/setting.h"
+#include "paths/scene_description.h"
+#include "paths/zone_law.h"
+#include "render/frame.h"
+#include "render/hemisphere.h"
+#include "render/scene.h"
+
+namespace assay::paths {
+
+/// Surfaces are told apart down to this fraction of the radius of a triangle's inscribed circle.
+///
+/// A path goes on from a point moved by this fraction of the way to the centre of that circle, and
+/// by a quarter of this fraction of its radius off the triangle: so it starts inside of neighbours
+/// that meet at 15 degrees or more, whatever rounding did, and no ray slips out at an edge. With
+/// coordinates of the scene's box rounded to 2^-25 of its size, triangles may be as small as a
+/// 250th.
+inline constexpr double mesh_resolution = 0x1p-14;
+
+class MeshWorld {
+ public:
+  MeshWorld(const MeshScene& scene, const Camera& camera);
+
+  /// Of a furnace: its law as a scene of one zone.
+  const ZonedScene& furnace() const { return furnace_; }
+  /// Sides of triangles: 2 i is the side of triangle i that is seen counter-clockwise, 2 i + 1 the
+  /// other.
+  std::size_t patches() const { return 2 * triangles_.size(); }
+  const Surface& surface(std::size_t patch) const { return surfaces_[surface_of_[patch / 2]]; }
+  bool has_light() const { return light_.total() > 0; }
+  double patch_area(std::size_t patch) const { return triangles_[patch / 2].area; }
+
+  Vertex camera(Cost& cost) const {
+    ++cost.camera_rays;
+    return arrive(camera_.position, camera_.direction);
+  }
+  Vertex reflected(const Vertex& from, Stream& random, Cost& cost) const {
+    ++cost.closest_hit_rays;
+    const double u = random.uniform();
+    const double v = random.uniform();
+    return reflected(from, u, v);
+  }
+  /// The same for a pair of numbers in the unit square.
+  Vertex reflected(const Vertex& from, double u, double v) const {
+    return arrive(from.position,
+                  render::Frame::about(from.normal).to_world(render::cosine_hemisphere(u, v)));
+  }
+  Vertex mirrored(const Vertex& from, Cost& cost) const {
+    ++cost.closest_hit_rays;
+    return arrive(from.position, from.arriving - 2 * dot(from.arriving, from.normal) * from.normal);
+  }
+  /// The direct light that v reflects; in closed form in a furnace only.
+  Spectrum direct_light(const Vertex& v, Direct direct, Stream& random, Cost& cost) const {
+    if (direct == Direct::sampled) return sampled_light(v, random, cost);
+    return v.surface->diffuse * v.surface->emission;
+  }
+
+  /// A vertex at a point of a patch, uniform for (u, v) uniform in the unit square.
+  Vertex on_patch(std::size_t patch, double u, double v) const;
+
+ private:
+  struct Triangle {
+    render::Vector3 corner;
+    render::Vector3 first_edge;
+    render::Vector3 second_edge;
+    render::Vector3 normal;  ///< unit
+    render::Vector3 inside;  ///< mesh_resolution x centre of the inscribed circle
+    double height = 0;       ///< mesh_resolution / 4 x its radius
+    double area = 0;
+  };
+
+  /// Albedo / pi x emission x cosines / squared distance x area, of a point of what emits, drawn in
+  /// proportion to mean emission x area; 0 where something stands between. One shadow ray where a
+  /// cosine is positive.
+  Spectrum sampled_light(const Vertex& v, Stream& random, Cost& cost) const;
+
+  static Triangle triangle(const std::array<render::Vector3, 3>& corners);
+  static luminaire::ShareTable light_shares(const std::vector<Triangle>& triangles,
+                                            const MeshScene& scene);
+
+  // The point of a triangle that a path goes on from, on the side that `arriving` comes from.
+  Vertex vertex(std::uint32_t triangle, const render::Vector3& point,
+                const render::Vector3& arriving) const {
+    const Triangle& t = triangles_[triangle];
+    const bool back = dot(arriving, t.normal) >= 0;
+    const render::Vector3 normal = back ? -t.normal : t.normal;
+    // Off the plane by rounding only: the projection puts it there.
+    const render::Vector3 flat = point - dot(point - t.corner, t.normal) * t.normal;
+    return {(1 - mesh_resolution) * flat + t.inside + t.height * normal, normal, arriving,
+            &surfaces_[surface_of_[triangle]], 2 * triangle + back};
+  }
+  Vertex arrive(const render::Vector3& origin, const render::Vector3& direction) const {
+    const render::Hit hit = scene_.closest_hit(render::Ray{origin, direction});
+    if (hit.shape == render::Hit::none) return {};
+    return vertex(hit.primitive, origin + hit.t * direction, direction);
+  }
+
+  std::vector<Surface> surfaces_;
+  std::vector<std::uint32_t> surface_of_;
+  std::vector<Triangle> triangles_;
+  luminaire::ShareTable light_;
+  Camera camera_;
+  ZonedScene furnace_;
+  render::Scene scene_;
+};
+
+}  // namespace assay::paths

@@ -1,0 +1,115 @@
+// The trusted reference: a path tracer as simple as it can be.
+//
+// A path goes on with the same probability q wherever it is, and picks up what is emitted where it
+// arrives: X = sum of T_k Le_k, T_0 = 1, T_k+1 = T_k a_k / q. Each bounce's expectation is its part
+// of the Neumann series of the rendering equation (Kajiya 1986), so X is unbiased. It shares the
+// scene with the other estimators and nothing of their roulette, direct light or splitting.
+
+#include "paths/family.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace paths;
+
+template <class World>
+void walk(const World& world, double survival, Stream& random, Tally& tally, Cost& cost) {
+  Spectrum throughput = Spectrum::grey(1);
+  Vertex v = world.camera(cost);
+  for (std::size_t bounce = 0; v.surface; ++bounce) {
+    tally.count(bounce);
+    tally.value += throughput * v.surface->emission;
+    if (random.uniform() >= survival) return;
+    const bool mirrors = !(v.surface->mirror == Spectrum{});
+    if (mirrors && random.uniform() < 0.5) {
+      throughput = 2 / survival * (throughput * v.surface->mirror);
+      v = world.mirrored(v, cost);
+    } else {
+      throughput = (mirrors ? 2 : 1) / survival * (throughput * v.surface->diffuse);
+      v = world.reflected(v, random, cost);
+    }
+  }
+}
+
+ParameterInformation survival_parameter() {
+  return {.name = "survival",
+          .summary =
+              "q, the probability to go on at any vertex; the variance is finite where it "
+              "exceeds the square of every albedo",
+          .fallback = "0.8",
+          .low = 0,
+          .high = 1,
+          .low_excluded = true,
+          .high_excluded = true};
+}
+
+std::optional<Steps> steps(const Scene& scene, double survival) {
+  for (const ZonedScene::Zone& z : scene.law ? scene.law->zones : std::vector<ZonedScene::Zone>{}) {
+    if (!(z.surface.mirror == Spectrum{})) return {};
+  }
+  return Steps{.survival = [survival](const Surface&) { return survival; },
+               .terminal = [](const Surface&) { return Spectrum{}; }};
+}
+
+Knowledge known(const Scene& scene, double survival) {
+  Knowledge all = knowledge(scene, steps(scene, survival));
+  all.low = 0;
+  return all;
+}
+
+std::shared_ptr<const Setup> plain(Parameters& parameters) {
+  const Scene scene = paths::read_scene(parameters);
+  const double q = parameters.number("survival");
+  return with_world(scene, [&](const auto& world) {
+    return setup(scene, known(scene, q),
+                 [world, q](Stream& random, Tally& tally, Cost& cost) {
+                   walk(*world, q, random, tally, cost);
+                 },
+                 {direction_sampler()});
+  });
+}
+
+std::shared_ptr<const Setup> ray_free(Parameters& parameters) {
+  const SceneDescription description =
+      paths::read_scene(parameters.structure("scene"), parameters.folder());
+  const auto* const sphere = std::get_if<SphereScene>(&description.form);
+  if (!sphere) {
+    parameters.refuse("scene", "only a sphere can be walked without rays: give it zones");
+  }
+  const Scene scene = paths::read_scene(parameters);
+  const double q = parameters.number("survival");
+  const auto world = std::make_shared<const RayFreeWorld>(*sphere, description.camera);
+  return setup(scene, known(scene, q), [world, q](Stream& random, Tally& tally, Cost& cost) {
+    walk(*world, q, random, tally, cost);
+  });
+}
+
+}  // namespace
+
+std::vector<Entry> paths_plain() {
+  return {
+      {{.name = "paths/plain",
+        .summary = "Radiance by the plainest path tracer: the trusted reference.",
+        .description =
+            "A path goes on with probability q at every vertex and adds throughput x emission "
+            "where it arrives; the throughput is multiplied by albedo / q. A mirror's share is "
+            "chosen with probability 1/2. Unbiased (Kajiya 1986). In spheres the mean is Le + a "
+            "(mean Le) / (1 - mean a), in furnaces Le / (1 - a); there the variance is known, too: "
+            "a^2 L^2 (1 - q) / (q - a^2) in a furnace. Diagnostic channels: `vertices`, and "
+            "`bounce_1` to `bounce_6`, the vertices at each bounce. Cost: a camera ray and a "
+            "closest-hit ray a bounce. Sampler: direction (of diffuse reflection).",
+        .parameters = {scene_parameter("furnace"), survival_parameter()}},
+       plain},
+      {{.name = "paths/ray_free",
+        .summary = "The integrating sphere without rays: vertices uniform on the sphere.",
+        .description =
+            "paths/plain in a sphere with zones, the next vertex drawn uniformly on the sphere "
+            "instead of traced to: a diffuse reflection inside a sphere has density cos / pi, and "
+            "cos' / r^2 = 1 / (2 R) for any two points. The same law as paths/plain without any "
+            "geometry. Traces no rays.",
+        .parameters = {scene_parameter("sphere"), survival_parameter()}},
+       ray_free}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,254 @@
+#include "paths/scene_description.h"
+
+#include <cmath>
+
+#include "estimators/flow.h"
+#include "luminaire/scene_description.h"
+#include "paths/closed_mesh.h"
+
+namespace assay::paths {
+
+namespace {
+
+using luminaire::alternatives;
+using luminaire::require_keys;
+using luminaire::required_key;
+using render::TriangleMesh;
+using render::Vector3;
+
+double at_least_zero(const Value& value, const std::string& what) {
+  const double number = value.number(what);
+  if (!std::isfinite(number) || number < 0) {
+    throw InputError(value.where(), what + " must be finite and not negative");
+  }
+  return number;
+}
+
+class Reader {
+ public:
+  explicit Reader(std::string folder) : folder_(std::move(folder)) {}
+
+  SceneDescription scene(const Value& value) {
+    require_keys(value, "the scene", {"zones", "furnace", "surfaces", "camera"});
+    const Value* form = nullptr;
+    for (const char* key : {"zones", "furnace", "surfaces"}) {
+      const Value* const found = value.find(key);
+      if (found && form) {
+        throw InputError(found->where(), "a scene has one of `zones`, `furnace` and `surfaces`");
+      }
+      if (found) form = found;
+    }
+    if (!form) {
+      throw InputError(value.where(), "a scene needs one of `zones`, `furnace` and `surfaces`");
+    }
+    const Value& camera_value = required_key(value, "the scene", "camera");
+    const Camera camera = this->camera(camera_value);
+    if (value.find("zones")) return {sphere(*form, camera, camera_value), camera, grey_};
+    if (value.find("furnace")) return {furnace(*form, camera, camera_value), camera, grey_};
+    return {surfaces(*form), camera, grey_};
+  }
+
+ private:
+  static Camera camera(const Value& value) {
+    require_keys(value, "the camera", {"position", "direction"});
+    return {luminaire::read_vector(required_key(value, "the camera", "position"),
+                                   "the camera's position"),
+            luminaire::read_unit_vector(required_key(value, "the camera", "direction"),
+                                        "the camera's direction")};
+  }
+
+  // A number for all colours, or a list of three.
+  Spectrum spectrum(const Value& value, const std::string& what) {
+    if (value.kind() != Value::Kind::list) return Spectrum::grey(at_least_zero(value, what));
+    grey_ = false;
+    const std::vector<Value>& items = value.items();
+    if (items.size() != 3) {
+      throw InputError(value.where(), what + " must be a number or a list of three");
+    }
+    return {at_least_zero(items[0], what), at_least_zero(items[1], what),
+            at_least_zero(items[2], what)};
+  }
+
+  Surface surface(const Value& value, const std::string& what, bool may_mirror) {
+    Surface out;
+    out.emission = spectrum(required_key(value, what, "emission"), what + "'s emission");
+    const Value& albedo = required_key(value, what, "albedo");
+    out.diffuse = spectrum(albedo, what + "'s albedo");
+    const Value* const mirror = may_mirror ? value.find("mirror") : nullptr;
+    if (mirror) out.mirror = spectrum(*mirror, what + "'s mirror");
+    if (largest(out.albedo()) >= 1) {
+      throw InputError(albedo.where(),
+                       what + "'s albedo" + (mirror ? ", `mirror` included," : "") +
+                           " must be below 1 in every channel: a path that never loses light "
+                           "never ends");
+    }
+    return out;
+  }
+
+  SphereScene sphere(const Value& value, const Camera& camera, const Value& camera_value) {
+    if (value.kind() != Value::Kind::list || value.items().empty()) {
+      throw InputError(value.where(), "zones must be a list of one or more");
+    }
+    SphereScene out;
+    double below = -1;
+    for (const Value& item : value.items()) {
+      require_keys(item, "a zone", {"top", "emission", "albedo"});
+      const Value& top = required_key(item, "a zone", "top");
+      const double z = top.number("a zone's top");
+      if (!(z > below && z <= 1)) {
+        throw InputError(top.where(), "the zones' tops must ascend from -1 to 1");
+      }
+      below = z;
+      out.zones.push_back({z, surface(item, "a zone", false)});
+    }
+    if (below != 1) throw InputError(value.where(), "the last zone's top must be 1");
+    if (!(length(camera.position) < 1)) {
+      throw InputError(camera_value.where(),
+                       "the camera must be inside the unit sphere about the origin");
+    }
+    return out;
+  }
+
+  MeshScene furnace(const Value& value, const Camera& camera, const Value& camera_value) {
+    require_keys(value, "the furnace", {"obj", "emission", "albedo", "mirror"});
+    const Value& file = required_key(value, "the furnace", "obj");
+    MeshScene out;
+    out.furnace = true;
+    out.mesh = luminaire::read_mesh(file, "the furnace's file", folder_);
+    out.surfaces = {surface(value, "the furnace", true)};
+    out.surface_of.assign(out.mesh.triangles.size(), 0);
+    require_inside(out.mesh, {file, camera, camera_value});
+    return out;
+  }
+
+  struct Blame {
+    const Value& file;
+    const Camera& camera;
+    const Value& camera_value;
+  };
+
+  static void require_inside(const TriangleMesh& mesh, const Blame& blame) {
+    if (const std::string why = why_not_closed(mesh); !why.empty()) {
+      throw InputError(blame.file.where(), "the furnace's mesh is not closed: " + why +
+                                               ". Neighbours must share their vertices, and all "
+                                               "faces be counter-clockwise from one side");
+    }
+    if (winding_number(mesh, blame.camera.position) == 0) {
+      throw InputError(blame.camera_value.where(), "the camera must be inside the furnace");
+    }
+  }
+
+  MeshScene surfaces(const Value& value) {
+    if (value.kind() != Value::Kind::list || value.items().empty()) {
+      throw InputError(value.where(), "surfaces must be a list of one or more");
+    }
+    MeshScene out;
+    for (const Value& item : value.items()) {
+      require_keys(item, "a surface", {"polygon", "obj", "emission", "albedo", "mirror"});
+      append(out, shape(item));
+      out.surfaces.push_back(surface(item, "a surface", true));
+    }
+    return out;
+  }
+
+  TriangleMesh shape(const Value& value) const {
+    const Value* const polygon = value.find("polygon");
+    const Value* const file = value.find("obj");
+    if (!polygon == !file) {
+      throw InputError(value.where(), "a surface needs either `polygon` or `obj`");
+    }
+    return polygon ? render::fan(luminaire::read_polygon(*polygon, "a surface's polygon"))
+                   : luminaire::read_mesh(*file, "a surface's file", folder_);
+  }
+
+  static void append(MeshScene& scene, const TriangleMesh& mesh) {
+    const auto before = static_cast<std::uint32_t>(scene.mesh.vertices.size());
+    const auto surface = static_cast<std::uint32_t>(scene.surfaces.size());
+    scene.mesh.vertices.insert(scene.mesh.vertices.end(), mesh.vertices.begin(),
+                               mesh.vertices.end());
+    for (const auto& [a, b, c] : mesh.triangles) {
+      scene.mesh.triangles.push_back({before + a, before + b, before + c});
+      scene.surface_of.push_back(surface);
+    }
+  }
+
+  std::string folder_;
+  bool grey_ = true;
+};
+
+// The cube [0, 1]^3 with every face seen counter-clockwise from inside.
+TriangleMesh cube() {
+  TriangleMesh mesh;
+  for (unsigned i = 0; i < 8; ++i) {
+    mesh.vertices.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+  }
+  mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
+                    {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+  return mesh;
+}
+
+constexpr Surface grey_surface(double emission, double albedo) {
+  return {Spectrum::grey(emission), Spectrum::grey(albedo), {}};
+}
+
+constexpr Camera downwards = {{0, 0, 0}, {0, 0, -1}};
+
+SceneDescription furnace() {
+  MeshScene scene{cube(), std::vector<std::uint32_t>(12, 0), {grey_surface(1, 0.5)}, true};
+  return {scene, {{0.5, 0.5, 0.5}, render::normalised({0.3, 0.2, -1})}, true};
+}
+
+// A tenth of the area shines.
+SceneDescription sphere() {
+  return {SphereScene{{{0.8, grey_surface(0, 0.8)}, {1, grey_surface(1, 0.8)}}}, downwards, true};
+}
+
+// Red, green and blue zones under a cap that shines.
+SceneDescription coloured_sphere() {
+  return {SphereScene{{{-0.4, {{}, {0.8, 0.2, 0.1}, {}}},
+                       {0.2, {{}, {0.15, 0.75, 0.2}, {}}},
+                       {0.8, {{}, {0.1, 0.25, 0.85}, {}}},
+                       {1, {{1, 0.9, 0.6}, {0.6, 0.6, 0.6}, {}}}}},
+          downwards, false};
+}
+
+// The proportions of a box with a red and a green wall, a lamp below the ceiling and a block; not
+// Cornell's measured one.
+const char* const box =
+    "{surfaces: [ "
+    "{polygon: [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], emission: 0, albedo: [.7,.7,.7]}, "
+    "{polygon: [[0,0,1],[0,1,1],[1,1,1],[1,0,1]], emission: 0, albedo: [.7,.7,.7]}, "
+    "{polygon: [[0,1,0],[1,1,0],[1,1,1],[0,1,1]], emission: 0, albedo: [.7,.7,.7]}, "
+    "{polygon: [[0,0,0],[0,1,0],[0,1,1],[0,0,1]], emission: 0, albedo: [.6,.06,.05]}, "
+    "{polygon: [[1,0,0],[1,0,1],[1,1,1],[1,1,0]], emission: 0, albedo: [.1,.45,.1]}, "
+    "{polygon: [[0,0,0],[0,0,1],[1,0,1],[1,0,0]], emission: 0, albedo: [.7,.7,.7]}, "
+    "{polygon: [[.3,.3,.98],[.3,.7,.98],[.7,.7,.98],[.7,.3,.98]], emission: [12,10,7], albedo: 0}, "
+    "{polygon: [[.5,.5,.35],[.8,.4,.35],[.9,.7,.35],[.6,.8,.35]], emission: 0, albedo: "
+    "[.7,.7,.7]}, "
+    "{polygon: [[.5,.5,0],[.8,.4,0],[.8,.4,.35],[.5,.5,.35]], emission: 0, albedo: [.7,.7,.7]}, "
+    "{polygon: [[.8,.4,0],[.9,.7,0],[.9,.7,.35],[.8,.4,.35]], emission: 0, albedo: [.7,.7,.7]}, "
+    "{polygon: [[.9,.7,0],[.6,.8,0],[.6,.8,.35],[.9,.7,.35]], emission: 0, albedo: [.7,.7,.7]}, "
+    "{polygon: [[.6,.8,0],[.5,.5,0],[.5,.5,.35],[.6,.8,.35]], emission: 0, albedo: [.7,.7,.7]}], "
+    "camera: {position: [.5,.02,.5], direction: [-.28,.6,-.48]}}";
+
+SceneDescription named(const Value& value) {
+  const std::string& name = value.string("the scene");
+  if (name == "furnace") return furnace();
+  if (name == "sphere") return sphere();
+  if (name == "coloured_sphere") return coloured_sphere();
+  if (name == "box") return Reader("").scene(parse_flow(box));
+  throw InputError(value.where(),
+                   "there is no scene `" + name + "`; " + alternatives(name, built_in_scenes()));
+}
+
+}  // namespace
+
+std::vector<std::string> built_in_scenes() {
+  return {"furnace", "sphere", "coloured_sphere", "box"};
+}
+
+SceneDescription read_scene(const Value& value, const std::string& folder) {
+  return value.kind() == Value::Kind::scalar ? named(value) : Reader(folder).scene(value);
+}
+
+}  // namespace assay::paths

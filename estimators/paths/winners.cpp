@@ -1,0 +1,67 @@
+// Go with the winners: paths that split where a large error is anticipated and end elsewhere.
+//
+// At a vertex of weight W a number n of children is fixed before any is seen; floor(n + u) are
+// drawn, each of weight W a / n. n children are drawn on average, so the expectation is that of one
+// child of weight W a (Szirmay-Kalos, Antal and Sbert 2005).
+
+#include "paths/winners.h"
+
+#include "paths/family.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace paths;
+
+std::optional<Steps> exact_steps(const Scene& scene, Direct direct, double splitting) {
+  if (!scene.law || !scene.grey) return {};
+  return Steps{.survival = [](const Surface& surface) { return mean(surface.albedo()); },
+               .terminal = [](const Surface&) { return Spectrum{}; },
+               .direct = direct,
+               .splitting = splitting};
+}
+
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  const Scene scene = paths::read_scene(parameters);
+  const Direct direct = read_direct(parameters, scene);
+  const double splitting = parameters.number("splitting");
+  Knowledge known = knowledge(scene, exact_steps(scene, direct, splitting));
+  known.low = 0;
+  return with_world(scene, [&](const auto& world) {
+    return setup(
+        scene, known,
+        [world, rule = Winners(splitting), direct](Stream& random, Tally& tally, Cost& cost) {
+          Tree(*world, rule, direct).trace(random, tally, cost);
+        },
+        {direction_sampler()});
+  });
+}
+
+}  // namespace
+
+std::vector<Entry> paths_winners() {
+  return {
+      {{.name = "paths/winners",
+        .summary = "Radiance by trees of paths with fractional numbers of children.",
+        .description =
+            "At a vertex of weight W (its mean over the colours) a diffuse albedo d has n = W d N "
+            "children on average and a mirror of reflectance m n = W m: floor(n + u), each of "
+            "weight W a / n. N is `splitting`, the ratio of the anticipated errors (Szirmay-Kalos, "
+            "Antal and Sbert 2005). Unbiased; with N = 1 and one colour it is the classical "
+            "roulette. Diffuse children weigh 1/N, so below them there is one child or none and "
+            "trees are finite without a guard. Mean exact in spheres and furnaces, variance and "
+            "number of children there too in grey scenes without mirrors. Diagnostic channels: "
+            "vertices, bounce_1 to bounce_6. Cost: a camera ray, a closest-hit ray a child, a "
+            "shadow ray where one is traced. Sampler: direction.",
+        .parameters = {scene_parameter("sphere"),
+                       direct_parameter(),
+                       {.name = "splitting",
+                        .summary = "N, children of a diffuse vertex of weight and albedo 1",
+                        .fallback = "4",
+                        .low = 1,
+                        .high = 1000}}},
+       prepare}};
+}
+
+}  // namespace assay::plugins

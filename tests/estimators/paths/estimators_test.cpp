@@ -1,0 +1,221 @@
+// Path estimators against their closed forms and one another.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+
+#include "tests/estimators/draws.h"
+
+namespace assay {
+namespace {
+
+constexpr std::uint64_t observations = 1u << 17;
+
+struct Case {
+  const char* plugin;
+  std::string parameters;
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.plugin << ' ' << c.parameters; }
+
+class Paths : public testing::TestWithParam<Case> {};
+
+// Every mean and variance that is stated, diagnostics included; false-alarm rate 1e-6 each (the
+// variances' a little more, their estimates being skewed).
+TEST_P(Paths, AgreeWithTheirClosedForms) {
+  const draws::Prepared plugin = draws::prepare(GetParam().plugin, GetParam().parameters);
+  const std::vector<draws::Sample> samples = draws::observe(plugin, observations);
+  const std::vector<Channel> channels = plugin.setup->channels();
+  ASSERT_TRUE(channels[0].mean.has_value());
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const draws::Sample& sample = samples[c];
+    if (channels[c].mean) {
+      EXPECT_LE(std::abs(sample.mean() - *channels[c].mean),
+                draws::five * sample.mean_error() + channels[c].rounding)
+          << channels[c].name;
+    }
+    if (channels[c].variance) {
+      EXPECT_LT(std::abs(sample.variance() - *channels[c].variance),
+                draws::five * sample.variance_error())
+          << channels[c].name;
+    }
+  }
+}
+
+const std::string zones =
+    "zones: [{top: -.2, emission: 0, albedo: .2}, {top: .7, emission: .1, albedo: .9}, {top: 1, "
+    "emission: 2, albedo: .5}], camera: {position: [.1, 0, 0], direction: [0, 0, -1]}";
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, Paths,
+    testing::Values(
+        Case{"paths/plain", "{scene: furnace}"}, Case{"paths/plain", "{scene: sphere}"},
+        Case{"paths/plain", "{scene: coloured_sphere}"},
+        Case{"paths/plain", "{scene: {" + zones + "}, survival: .9}"},
+        Case{"paths/ray_free", "{scene: sphere}"},
+        Case{"paths/ray_free", "{scene: coloured_sphere}"},
+        Case{"paths/roulette", "{scene: furnace}"}, Case{"paths/roulette", "{scene: sphere}"},
+        Case{"paths/roulette", "{scene: sphere, direct: exact}"},
+        Case{"paths/roulette", "{scene: sphere, direct: sampled}"},
+        Case{"paths/roulette", "{scene: {" + zones + "}, rule: radiance}"},
+        Case{"paths/roulette", "{scene: coloured_sphere, rule: throughput}"},
+        Case{"paths/roulette", "{scene: coloured_sphere, rule: radiance}"},
+        Case{"paths/roulette", "{scene: coloured_sphere, rule: radiance, direct: exact}"},
+        Case{"paths/improved_roulette", "{scale: .5}"},
+        Case{"paths/improved_roulette", "{scale: 2}"},
+        Case{"paths/improved_roulette", "{terminal: local}"},
+        Case{"paths/improved_roulette", "{scene: sphere}"},
+        Case{"paths/improved_roulette", "{scene: {" + zones + "}}"},
+        Case{"paths/improved_roulette", "{scene: {" + zones + "}, direct: sampled}"},
+        Case{"paths/improved_roulette", "{scene: coloured_sphere, rule: radiance}"},
+        Case{"paths/winners", "{scene: furnace}"}, Case{"paths/winners", "{scene: sphere}"},
+        Case{"paths/winners", "{scene: {" + zones + "}, splitting: 2.5}"},
+        Case{"paths/winners", "{scene: sphere, direct: exact, splitting: 8}"},
+        Case{"paths/winners", "{scene: sphere, direct: sampled}"},
+        Case{"paths/winners", "{scene: coloured_sphere}"}));
+
+double stated_variance(const char* plugin, const std::string& parameters) {
+  return draws::prepare(plugin, parameters).setup->channels()[0].variance.value();
+}
+
+// a = 1/2, Le = 1: Le^2 a / (1 - a)^2 = 2.
+TEST(Roulette, FurnaceStatesTheTextbookVariance) {
+  EXPECT_DOUBLE_EQ(stated_variance("paths/roulette", "{}"), 2);
+  EXPECT_DOUBLE_EQ(stated_variance("paths/improved_roulette", "{scale: .5}"), 0.5);
+  EXPECT_DOUBLE_EQ(stated_variance("paths/improved_roulette", "{scale: 2}"), 2);
+  EXPECT_DOUBLE_EQ(stated_variance("paths/improved_roulette", "{scale: 0}"), 2);
+}
+
+TEST(Roulette, ExactTerminalValueLeavesNoVariance) {
+  for (const char* parameters : {"{}", "{scene: sphere, direct: exact}"}) {
+    const draws::Prepared plugin = draws::prepare("paths/improved_roulette", parameters);
+    const Channel channel = plugin.setup->channels()[0];
+    EXPECT_EQ(channel.variance, std::nullopt);
+    const std::vector<draws::Sample> samples = draws::observe(plugin, 10'000);
+    for (const double x : samples[0].values) {
+      ASSERT_NEAR(x, *channel.mean, channel.rounding) << parameters;
+    }
+  }
+}
+
+// With one child expected at most and one colour, winners and roulette are the same estimator.
+TEST(Winners, OneChildIsTheClassicalRoulette) {
+  EXPECT_DOUBLE_EQ(stated_variance("paths/winners", "{scene: furnace, splitting: 1}"), 2);
+}
+
+// In a furnace with mirrors: diffuse .3, mirror .4, N = 4. Vertices of weight 1 have .3 N diffuse
+// children of weight 1/N and .4 mirrored ones of weight 1; of weight 1/N, .3 and .4 / N.
+TEST(Winners, MirrorsAreNotSplit) {
+  const auto file = std::filesystem::temp_directory_path() / "assay_paths_winners.obj";
+  std::ofstream(file) << "v 1 1 1\nv 1 -1 -1\nv -1 1 -1\nv -1 -1 1\n"
+                         "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+  const draws::Prepared plugin = draws::prepare(
+      "paths/winners", "{scene: {furnace: {obj: " + file.string() +
+                           ", emission: 1, albedo: .3, mirror: .4}, camera: {position: [0, 0, 0], "
+                           "direction: [.3, .2, 1]}}}");
+  const auto samples = draws::observe(plugin, observations);
+  double one = 1;
+  double light = 0;
+  for (std::size_t k = 1; k < 5; ++k) {
+    const double next_one = 0.4 * (one + light / 4);
+    light = 0.3 * (4 * one + light);
+    one = next_one;
+    const draws::Sample& bounce = samples[1 + k];
+    EXPECT_LT(std::abs(bounce.mean() - one - light), draws::five * bounce.mean_error()) << k;
+  }
+  // False-alarm rate 1e-6: the radiance is 1 / (1 - .7).
+  EXPECT_LT(std::abs(samples[0].mean() - 1 / 0.3), draws::five * samples[0].mean_error());
+}
+
+// The box has no closed form: the others agree with the trusted one. Two-sided 1e-6 a channel.
+TEST(Box, EveryEstimatorAgreesWithThePlainOne) {
+  const auto plain = draws::observe(draws::prepare("paths/plain", "{scene: box}"), observations);
+  for (const auto& [plugin, parameters] :
+       {std::pair{"paths/roulette", "{scene: box, rule: throughput}"},
+        {"paths/roulette", "{scene: box, rule: radiance, direct: sampled}"},
+        {"paths/improved_roulette", "{scene: box, terminal: global}"},
+        {"paths/improved_roulette", "{scene: box, terminal: local, direct: sampled}"},
+        {"paths/winners", "{scene: box, direct: sampled}"}}) {
+    const auto other = draws::observe(draws::prepare(plugin, parameters), observations);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_LT(std::abs(plain[c].mean() - other[c].mean()),
+                draws::five * std::hypot(plain[c].mean_error(), other[c].mean_error()))
+          << plugin << parameters << c;
+    }
+  }
+}
+
+Cost cost_of(const char* plugin, const std::string& parameters, double& vertices) {
+  const draws::Prepared prepared = draws::prepare(plugin, parameters);
+  const auto channels = prepared.setup->channels();
+  std::vector<double> out(channels.size());
+  Stream random(prepared.key, 0);
+  Cost cost;
+  prepared.setup->make()->secondary(random, 1000, out, cost);
+  vertices = 0;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].name == "vertices") vertices = 1000 * out[c];
+  }
+  return cost;
+}
+
+// In closed scenes every ray makes a vertex.
+TEST(Cost, IsOneRayAVertex) {
+  for (const char* plugin :
+       {"paths/plain", "paths/roulette", "paths/improved_roulette", "paths/winners"}) {
+    double vertices = 0;
+    const Cost cost = cost_of(plugin, "{scene: sphere}", vertices);
+    EXPECT_EQ(cost.samples, 1000u) << plugin;
+    EXPECT_EQ(cost.camera_rays, 1000u) << plugin;
+    EXPECT_NEAR(double(cost.camera_rays + cost.closest_hit_rays), vertices, 1e-6) << plugin;
+    EXPECT_EQ(cost.shadow_rays, 0u) << plugin;
+  }
+}
+
+TEST(Cost, ShadowRaysGoToWhereThereIsLightAndNowhereElse) {
+  double vertices = 0;
+  const Cost cost = cost_of("paths/roulette", "{scene: sphere, direct: sampled}", vertices);
+  // A tenth of the sphere shines: binomial, 1e-6.
+  EXPECT_NEAR(double(cost.shadow_rays), 0.1 * vertices, 4.9 * std::sqrt(0.09 * vertices));
+  double unused = 0;
+  const Cost free = cost_of("paths/ray_free", "{}", unused);
+  EXPECT_EQ(free.rays(), 0u);
+}
+
+TEST(Cost, LocalEstimatesAreCostOfTheSetUp) {
+  const draws::Prepared local = draws::prepare("paths/improved_roulette", "{terminal: local}");
+  EXPECT_EQ(local.setup->cost().closest_hit_rays, 24u * 256u);
+  EXPECT_EQ(draws::prepare("paths/improved_roulette").setup->cost().rays(), 0u);
+}
+
+std::string refusal(const char* plugin, const std::string& parameters) {
+  try {
+    draws::prepare(plugin, parameters);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(PathParameters, ThatMakeNoSenseAreRefusedByName) {
+  EXPECT_THAT(refusal("paths/ray_free", "{scene: furnace}"),
+              testing::HasSubstr("only a sphere can be walked without rays"));
+  EXPECT_THAT(refusal("paths/roulette", "{scene: box, direct: exact}"),
+              testing::AllOf(testing::HasSubstr("direct"), testing::HasSubstr("furnaces only")));
+  EXPECT_THAT(refusal("paths/improved_roulette", "{scene: sphere, terminal: local}"),
+              testing::HasSubstr("use `global`"));
+  EXPECT_THAT(refusal("paths/winners", "{splitting: .5}"), testing::HasSubstr("splitting"));
+  EXPECT_THAT(refusal("paths/plain", "{survival: 1}"), testing::HasSubstr("survival"));
+  EXPECT_THAT(refusal("paths/roulette", "{rule: albedo}"), testing::HasSubstr("rule"));
+  EXPECT_THAT(
+      refusal("paths/roulette",
+              "{direct: sampled, scene: {zones: [{top: 1, emission: 0, albedo: .5}], camera: "
+              "{position: [0, 0, 0], direction: [0, 0, 1]}}}"),
+      testing::HasSubstr("no surface emits"));
+}
+
+}  // namespace
+}  // namespace assay

@@ -1,0 +1,131 @@
+// The geometry that paths walk in.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "estimators/flow.h"
+#include "paths/closed_mesh.h"
+#include "paths/mesh_world.h"
+#include "paths/sphere_world.h"
+
+namespace assay::paths {
+namespace {
+
+using render::Vector3;
+
+MeshWorld mesh_world(const char* name) {
+  const SceneDescription scene = read_scene(Value::scalar(name), "");
+  return {std::get<MeshScene>(scene.form), scene.camera};
+}
+
+TEST(ClosedMesh, TheFurnaceIsClosedAndWindsOnceAboutItsInside) {
+  const SceneDescription scene = read_scene(Value::scalar("furnace"), "");
+  const render::TriangleMesh& mesh = std::get<MeshScene>(scene.form).mesh;
+  EXPECT_EQ(why_not_closed(mesh), "");
+  EXPECT_EQ(std::abs(winding_number(mesh, {0.5, 0.5, 0.5})), 1);
+  EXPECT_EQ(std::abs(winding_number(mesh, {0.01, 0.99, 0.01})), 1);
+  EXPECT_EQ(winding_number(mesh, {1.01, 0.5, 0.5}), 0);
+}
+
+TEST(ClosedMesh, OpenAndTurnedTrianglesAreNamed) {
+  const SceneDescription scene = read_scene(Value::scalar("furnace"), "");
+  render::TriangleMesh mesh = std::get<MeshScene>(scene.form).mesh;
+  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+  EXPECT_NE(why_not_closed(mesh).find("same way"), std::string::npos);
+  mesh.triangles.erase(mesh.triangles.begin() + 3);
+  EXPECT_NE(why_not_closed(mesh).find("one triangle only"), std::string::npos);
+}
+
+// Two million rays from hits all over a cube: none slips out, none hits the triangle it starts on.
+TEST(MeshWorld, NoRayLeavesAClosedMeshNorHitsWhereItStands) {
+  const MeshWorld world = mesh_world("furnace");
+  Stream random({1}, 0);
+  Cost cost;
+  Vertex v = world.camera(cost);
+  for (int i = 0; i < 2'000'000; ++i) {
+    const Vertex next = world.reflected(v, random, cost);
+    ASSERT_NE(next.surface, nullptr) << i;
+    ASSERT_NE(next.patch, v.patch) << i;
+    v = next;
+  }
+  EXPECT_EQ(cost.camera_rays, 1u);
+  EXPECT_EQ(cost.closest_hit_rays, 2'000'000u);
+}
+
+// From an edge, a corner and next to them: the nearest that a hit can be.
+TEST(MeshWorld, NoRaySlipsThroughFromEdgesAndCorners) {
+  const MeshWorld world = mesh_world("furnace");
+  Stream random({1}, 0);
+  Cost cost;
+  for (std::size_t patch = 0; patch < world.patches(); ++patch) {
+    // The inner sides: those that see the furnace.
+    const Vertex middle = world.on_patch(patch, 0.5, 0.5);
+    if (!world.reflected(middle, 0.5, 0.5).surface) continue;
+    for (const double u : {0.0, 1e-9, 1.0}) {
+      for (const double v : {0.0, 1e-9, 0.5, 1.0}) {
+        const Vertex from = world.on_patch(patch, u, v);
+        for (int i = 0; i < 2000; ++i) {
+          ASSERT_NE(world.reflected(from, random, cost).surface, nullptr)
+              << patch << ' ' << u << ' ' << v;
+        }
+      }
+    }
+  }
+}
+
+TEST(MeshWorld, MirrorsKeepTheAngle) {
+  const MeshWorld world = mesh_world("furnace");
+  Cost cost;
+  const Vertex v = world.camera(cost);
+  const Vertex next = world.mirrored(v, cost);
+  ASSERT_NE(next.surface, nullptr);
+  EXPECT_NEAR(dot(next.arriving, v.normal), -dot(v.arriving, v.normal), 1e-15);
+  EXPECT_NEAR(length(cross(next.arriving, v.normal)), length(cross(v.arriving, v.normal)), 1e-15);
+}
+
+TEST(SphereScene, HitsAreOnTheSphereToDoublePrecisionAlongTheRay) {
+  const render::SphereScene sphere;
+  Stream random({1}, 0);
+  Vector3 from = {0.3, -0.2, 0.5};
+  bool on_surface = false;
+  for (int i = 0; i < 100'000; ++i) {
+    const Vector3 inward = on_surface ? -from : Vector3{0, 0, 1};
+    const double u = random.uniform();
+    const double v = random.uniform();
+    const Vector3 direction =
+        render::Frame::about(inward).to_world(render::cosine_hemisphere(u, v));
+    const Vector3 to = sphere.exit(from, direction, on_surface);
+    ASSERT_NEAR(length(to), 1, 4e-16);
+    ASSERT_LT(length(cross(to - from, direction)), 1e-15);
+    ASSERT_GE(dot(to - from, direction), 0);
+    from = to;
+    on_surface = true;
+  }
+}
+
+TEST(SphereScene, NothingStandsBetweenTwoOfItsPoints) {
+  const render::SphereScene sphere;
+  Stream random({1}, 0);
+  for (int i = 0; i < 10'000; ++i) {
+    const Vector3 a = uniform_on_sphere(random);
+    const Vector3 b = uniform_on_sphere(random);
+    ASSERT_FALSE(sphere.occluded(a, b));
+  }
+}
+
+TEST(SphereWorld, ZonesAreFoundByHeight) {
+  const SceneDescription scene = read_scene(Value::scalar("coloured_sphere"), "");
+  const Zones zones(std::get<SphereScene>(scene.form), scene.camera);
+  EXPECT_EQ(zones.at(-1), 0u);
+  EXPECT_EQ(zones.at(-0.41), 0u);
+  EXPECT_EQ(zones.at(-0.39), 1u);
+  EXPECT_EQ(zones.at(0.5), 2u);
+  EXPECT_EQ(zones.at(1 + 1e-15), 3u);
+  double area = 0;
+  for (const ZonedScene::Zone& zone : zones.law().zones) area += zone.fraction;
+  EXPECT_DOUBLE_EQ(area, 1);
+}
+
+}  // namespace
+}  // namespace assay::paths
