@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "harness/sampler_setup.h"
+
 namespace assay::harness {
 namespace {
 
@@ -136,6 +138,16 @@ void require_slope_of_something(const TestEntry& test, const Subject& subject) {
                                to_string(name), test.claim.left.source.estimator));
 }
 
+void require_whole_sampler(const Source& source, const Estimators& estimators) {
+  const Subject marginal = draws(source, estimators, Draws::cells);
+  const std::vector<Channel> channels = marginal.setup->channels();
+  if (channels[marginal.channels[0]].name == cell_channel) return;
+  throw InputError(source.where,
+                   fmt::format("`integral` and `inconsistency` are about a whole sampler: name "
+                               "`{}.{}`",
+                               source.estimator, marginal.purpose));
+}
+
 }  // namespace
 
 Question about_bias(const TestEntry& test, const Estimators& estimators) {
@@ -231,6 +243,7 @@ Question about_total_variance(const TestEntry& test, const Estimators& estimator
 Question about_draws(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   const bool integral = claim.left.name == QuantityName::integral;
+  require_whole_sampler(claim.left.source, estimators);
   return {.test = &test,
           .kind = integral ? QuestionKind::integral : QuestionKind::inconsistency,
           .subjects = {draws(claim.left.source, estimators,

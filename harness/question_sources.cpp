@@ -88,6 +88,11 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
   const PreparedEstimator& estimator = estimator_of(source, estimators);
   std::string rest;
   const std::vector<NamedSampler> samplers = estimator.setup->samplers();
+  if (samplers.empty() && source.part.empty()) {
+    throw InputError(source.where,
+                     fmt::format("`{}` has no sampler whose draws could be tested; it has {}",
+                                 source.estimator, parts_of(estimator)));
+  }
   const NamedSampler* named = sampler_named(samplers, source.part, rest);
   if (named == nullptr) no_such_part(source, estimator);
   Subject subject{.estimator = &estimator,

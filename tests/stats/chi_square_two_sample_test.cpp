@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "stats/sampled_cells.h"
-#include "support.h"
+#include "tests/stats/expect_calibrated.h"
 
 namespace assay::stats {
 namespace {
@@ -45,8 +45,8 @@ TEST(ChiSquareTwoSample, PoolsByTheTotalsAloneAndSkipsCellsThatNobodyHit) {
   EXPECT_EQ(fit.cells[2].x, 69U);
   EXPECT_EQ(fit.statistic.degrees_of_freedom, 2);
   // Of unequal sizes the smaller decides: 20 of 100 beside 1000 are 220 of both.
-  const ChiSquareTwoSample unequal = chi_square_two_sample({{50, 50}, {100, 900}}, 20);
-  EXPECT_THAT(unequal.cells, testing::SizeIs(1 + 0));
+  EXPECT_EQ(chi_square_two_sample({{50, 50}, {180, 820}}).cells.size(), 2U);
+  EXPECT_THROW(chi_square_two_sample({{50, 50}, {160, 840}}), std::domain_error);
 }
 
 TEST(ChiSquareTwoSample, RefusesWhatItCannotCompare) {
@@ -81,10 +81,12 @@ TEST(SampledCells, HoldEqualNumbersOfTheirPoints) {
 }
 
 TEST(SampledCells, OfOneCoordinateAndOfRepeatedValuesAreFewer) {
-  const SampledCells line = sampled_cells({{1, 0}, {2, 0}, {3, 0}, {4, 0}}, {.bands = 4, .cuts = 4});
+  const SampledCells line =
+      sampled_cells({{1, 0}, {2, 0}, {3, 0}, {4, 0}}, {.bands = 4, .cuts = 4});
   EXPECT_EQ(line.size(), 4U);
   EXPECT_EQ(line.index({2, 0}), 1U) << "a value on a border is in the upper cell";
-  const SampledCells atoms = sampled_cells({{0, 0}, {0, 0}, {0, 0}, {1, 0}}, {.bands = 4, .cuts = 1});
+  const SampledCells atoms =
+      sampled_cells({{0, 0}, {0, 0}, {0, 0}, {1, 0}}, {.bands = 4, .cuts = 1});
   EXPECT_EQ(atoms.size(), 2U);
 }
 
