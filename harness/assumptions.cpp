@@ -8,6 +8,7 @@
 #include "harness/constant.h"
 #include "harness/critical.h"
 #include "harness/evidence_slope.h"
+#include "harness/rows.h"
 #include "stats/skewness_corrected_t.h"
 
 namespace assay::harness {
@@ -78,6 +79,19 @@ reports::Gate gate_of(const stats::Gate& gate, const std::string& where) {
           .state = states[static_cast<int>(gate.state)]};
 }
 
+std::string beyond_doubles(const stats::Moments& moments, const std::string& name) {
+  if (moments.count < 2) return "";
+  const double spread = moments.maximum - moments.minimum;
+  const bool sound = moments.m2 > 0 && std::isfinite(moments.m2) && std::isfinite(moments.m4) &&
+                     moments.m4 > 0 && std::isfinite(moments.skewness()) &&
+                     std::isfinite(moments.kurtosis());
+  if (sound) return "";
+  return fmt::format(
+      "the observations of `{}` spread over {:.3g}, whose fourth power is beyond the numbers that "
+      "a computer holds; give them in another unit",
+      name, spread);
+}
+
 bool all_constant(const Question& question, std::size_t channel,
                   std::span<const ChannelData> data) {
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
@@ -95,7 +109,8 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
   const std::string name = several ? ", " + question.channel_name(channel) : "";
   const double x = critical_value(outcome.share().alpha, two_sided(question));
   const bool exact = method == "binomial" || method == "bounded";
-  if (question.of_means() && !exact) {
+  for (const stats::Gate& gate : row_gates(outcome, data, x)) gates.push_back(gate_of(gate, name));
+  if (question.of_means() && !exact && method != "batch-means") {
     gates.push_back(gate_of(method == "skewness-corrected-t"
                                 ? residual_gate(question, channel, data, x)
                                 : skewness_gate(question, data, x),
@@ -104,7 +119,7 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
     if (!(data[subject].moments.m2 > 0)) continue;
     const std::string whose = name + " of " + question.subjects[subject].estimator->name;
-    if (question.of_means() && !exact) {
+    if (question.of_means() && !exact && method != "batch-means") {
       gates.push_back(gate_of(stats::dominance_gate(data[subject].moments), whose));
     }
     if (method == "F" || method == "chi-square") {
@@ -115,34 +130,6 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
     gates.push_back(power_law_gate(question, channel, data));
   }
   return gates;
-}
-
-std::string red_gates(const std::vector<reports::Gate>& gates) {
-  std::string text;
-  for (const reports::Gate& gate : gates) {
-    if (gate.state != "red") continue;
-    text += fmt::format("{}{} is {:.3g}, limit {:.3g}", text.empty() ? "" : "; ", gate.name,
-                        gate.value.value_or(0), gate.limit.value_or(0));
-  }
-  return text;
-}
-
-std::string what_would_help(const TestOutcome& outcome) {
-  const std::vector<Subject>& subjects = outcome.question.subjects;
-  const bool rows = std::any_of(subjects.begin(), subjects.end(), [](const Subject& subject) {
-    return subject.setup->observations().has_value();
-  });
-  double excess = 1;
-  for (const reports::Gate& gate : outcome.gates) {
-    // The skewness gate's logarithm falls like 1 / sqrt(n); it is green at a quarter.
-    if (gate.state != "red" || !gate.name.starts_with("skewness") || !gate.value) continue;
-    excess = std::max(excess, std::pow(std::log(*gate.value) / std::log(1.25), 2));
-  }
-  const std::string enough =
-      excess > 1 ? fmt::format("about {:.2g}", excess * static_cast<double>(outcome.secondaries()))
-                 : "more";
-  if (rows) return fmt::format("; {} rows would help, or rows that each average several", enough);
-  return fmt::format("; {} `secondaries` would help, or a larger `primaries`", enough);
 }
 
 std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,

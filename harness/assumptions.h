@@ -16,12 +16,6 @@ namespace assay::harness {
 std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t channel,
                                       std::span<const ChannelData> data);
 
-/// The red gates in words, "" where none is.
-std::string red_gates(const std::vector<reports::Gate>& gates);
-
-/// What would turn red gates green: rows of a file, or primaries and secondaries of an estimator.
-std::string what_would_help(const TestOutcome& outcome);
-
 /// Whether every subject's observations of a channel are the same but for rounding.
 bool all_constant(const Question& question, std::size_t channel, std::span<const ChannelData> data);
 
@@ -29,6 +23,10 @@ bool all_constant(const Question& question, std::size_t channel, std::span<const
 /// known, of a mean what was never seen could decide. "" where it can.
 std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,
                            std::span<const ChannelData> data);
+
+/// Why moments cannot be computed with: the fourth power of the spread is beyond doubles, or what
+/// underflows leaves none. "" where they can. Of `name`'s observations, which are not all the same.
+std::string beyond_doubles(const stats::Moments& moments, const std::string& name);
 
 reports::Gate gate_of(const stats::Gate& gate, const std::string& where);
 

@@ -9,7 +9,9 @@
 #include "harness/assumptions.h"
 #include "harness/consistency_setup.h"
 #include "harness/constant.h"
+#include "harness/gate_text.h"
 #include "harness/narrate.h"
+#include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
 
@@ -122,6 +124,18 @@ int badness(Verdict verdict) {
   return 0;
 }
 
+/// Why a channel's data cannot be tested; "" where they can.
+std::string lack_of_numbers(const TestOutcome& outcome, std::size_t channel,
+                            std::span<const ChannelData> data) {
+  const Question& question = outcome.question;
+  for (std::size_t i = 0; i < data.size() && !question.of_laws(); ++i) {
+    if (is_constant(question, i, channel, data[i].moments)) continue;
+    std::string reason = beyond_doubles(data[i].moments, question.subjects[i].estimator->name);
+    if (!reason.empty()) return reason;
+  }
+  return lack_of_spread(outcome, channel, data);
+}
+
 /// Numbers and gates of every channel at the current look. Constant channels are judged by
 /// themselves: their verdicts are returned.
 std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
@@ -135,7 +149,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
           judge_constant(question, channel, data, outcome.plan.regions[channel], outcome.share()));
       continue;
     }
-    const std::string reason = lack_of_spread(outcome, channel, data);
+    const std::string reason = lack_of_numbers(outcome, channel, data);
     if (!reason.empty()) {
       constants.push_back({Verdict::invalid, reason});
       continue;
@@ -165,8 +179,13 @@ void note_sizes(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   for (ChannelOutcome& channel : outcome.channels) {
     const std::vector<ChannelData> data = data_of(work, channel.index);
-    const PlannedChannel observed =
+    PlannedChannel observed =
         observed_channel(outcome.question, channel.regions, channel.index, data);
+    if (outcome.plan.method.name == "batch-means") {
+      // The deviation of independent values whose mean is as uncertain.
+      observed.standard_deviation =
+          batched(data[0]).standard_error() * std::sqrt(static_cast<double>(data[0].moments.count));
+    }
     channel.detectable =
         detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
     const bool equivalence = channel.regions.relation == Relation::within;

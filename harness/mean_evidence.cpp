@@ -68,7 +68,8 @@ double log_p_of_no_sign(const Moments& y) {
 
 /// Closed forms for Student's and Welch's t; every other method is inverted.
 bool has_closed_interval(const Method& method) {
-  return method.name == "t" || method.name == "welch" || method.name == "tost";
+  return method.name == "t" || method.name == "welch" || method.name == "tost" ||
+         method.name == "batch-means";
 }
 
 double spread_of(const Moments& x, double factor) {

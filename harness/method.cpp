@@ -12,6 +12,7 @@
 #include "harness/evidence_slope.h"
 #include "harness/law_evidence.h"
 #include "harness/mean_evidence.h"
+#include "harness/rows.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_variance.h"
 #include "stats/f_ratio.h"
@@ -171,10 +172,17 @@ std::vector<Method> methods_for(const Question& question) {
   const bool within = question.test->claim.relation == Relation::within;
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return {{within ? "tost" : "t", Keeps::moments},
+      if (within) {
+        return {{"tost", Keeps::moments},
+                {"skewness-corrected-t", Keeps::moments},
+                {"binomial", Keeps::moments},
+                {"bounded", Keeps::moments}};
+      }
+      return {{"t", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
               {"binomial", Keeps::moments},
-              {"bounded", Keeps::moments}};
+              {"bounded", Keeps::moments},
+              {"batch-means", Keeps::values}};
     case QuestionKind::mean_of_two:
       return {{within ? "tost" : "welch", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
@@ -270,7 +278,8 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
                      std::span<const ChannelData> data) {
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return mean_against_number(method, question, channel, data[0].moments);
+      return mean_against_number(method, question, channel,
+                                 method.name == "batch-means" ? batched(data[0]) : data[0].moments);
     case QuestionKind::mean_of_two:
       return mean_against_mean(method, question, channel, data);
     case QuestionKind::variance_of_one:

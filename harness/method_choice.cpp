@@ -10,7 +10,9 @@
 #include "harness/critical.h"
 #include "harness/frozen.h"
 #include "harness/mean_evidence.h"
+#include "harness/rows.h"
 #include "harness/sample_size.h"
+#include "reports/number.h"
 #include "stats/assumption_gates.h"
 #include "stats/log_variance_level.h"
 #include "stats/pareto_tail.h"
@@ -32,6 +34,24 @@ constexpr std::uint64_t log_variance_secondaries = 1000;
 constexpr std::uint64_t most_for_a_mean = 64 * classical_secondaries;
 constexpr std::uint64_t most_for_a_variance = 1024 * classical_secondaries;
 constexpr double level_factor = 1.25;
+
+/// Why nothing can be chosen by the pilot: values whose powers are no numbers. "" where all is
+/// well.
+std::string unusable_pilot(const Question& question, const Pilots& pilots) {
+  if (question.of_laws()) return "";
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    if (pilot_of(side, pilots) == nullptr || !side.purpose.empty()) continue;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const stats::Moments& moments = pilot_channel(question, subject, channel, pilots).moments;
+      if (is_constant(question, subject, channel, moments)) continue;
+      if (std::string reason = beyond_doubles(moments, side.estimator->name); !reason.empty()) {
+        return reason;
+      }
+    }
+  }
+  return "";
+}
 
 /// What is known beforehand of one channel of one subject.
 struct Known {
@@ -152,7 +172,8 @@ std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) 
   for (const Known& known : channels) {
     const double skewness = stats::primary_shape(known.pilot.moments).skewness;
     const double root = std::abs(skewness) * std::pow(critical, 3) / (3 * std::log(level_factor));
-    needed = std::max(needed, root * root / known.averaged);
+    const double wanted = root * root / known.averaged;
+    needed = wanted <= needed ? needed : wanted;  // also where it is no number
   }
   return whole(needed);
 }
@@ -204,10 +225,7 @@ bool are_bounded(const Question& question, const std::vector<Known>& channels) {
 std::uint64_t intended(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, const Plan& plan) {
   if (question.test->secondaries) return std::min(*question.test->secondaries, most);
-  const bool rows =
-      std::any_of(question.subjects.begin(), question.subjects.end(),
-                  [](const Subject& subject) { return subject.setup->observations().has_value(); });
-  if (rows) return most;
+  if (has_rows(question)) return most;
   const auto planned = planned_secondaries(question, place.share, pilots, plan);
   return std::min(most, planned.value_or(classical_secondaries));
 }
@@ -230,6 +248,10 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   } else if (are_two_valued(question, channels, plan)) {
     plan.method = find_method(question, "binomial");
     return first_look;
+  } else if (has_rows(question)) {
+    // What more their own shape must be is the data's gates to say (rows.h).
+    if (for_t > size) plan.method = find_method(question, "skewness-corrected-t");
+    least = size;
   } else if (for_t > std::max(first_look, early) && for_corrected < for_t &&
              for_corrected <= affordable) {
     plan.method = find_method(question, "skewness-corrected-t");
@@ -250,17 +272,16 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   }
   if (question.test->method) return least;
   plan.invalid = heavy;
-  const bool rows =
-      std::any_of(channels.begin(), channels.end(), [](const Known& k) { return k.rows; });
   // Red: at this size the t test's worse tail is off by more than a factor of two.
   const double red = std::pow(std::log(level_factor) / std::log(2.0), 2);
   const bool t_is_red = red * static_cast<double>(for_t) > static_cast<double>(affordable);
-  if (fixed && !rows && plan.invalid.empty() && t_is_red && for_corrected > affordable) {
+  if (fixed && !has_rows(question) && plan.invalid.empty() && t_is_red &&
+      for_corrected > affordable) {
     plan.invalid = fmt::format(
-        "secondary estimates of this shape need about {:.2g} observations before any test of their "
-        "mean keeps its level; a larger `primaries` brings them nearer to normal, or declare the "
-        "range",
-        static_cast<double>(std::min(for_t, for_corrected)));
+        "secondary estimates of this shape need about {} observations before any test of their "
+        "mean "
+        "keeps its level; a larger `primaries` brings them nearer to normal, or declare the range",
+        reports::human(static_cast<double>(std::min(for_t, for_corrected)), 2));
   }
   return std::min(least, affordable);
 }
@@ -285,12 +306,24 @@ std::uint64_t enough_for_log_variance(const Question& question, const std::vecto
   return needed;
 }
 
-std::string too_few(std::uint64_t needed) {
+std::string too_few(const Question& question, std::uint64_t needed) {
+  const std::string need = reports::human(static_cast<double>(needed), 2);
+  if (has_rows(question)) {
+    const bool two = question.kind == QuestionKind::variance_of_two;
+    const bool alone = question.kind == QuestionKind::variance_of_one;
+    const std::string exact =
+        two || alone ? fmt::format("; where the rows are known to be normal, `test: {}` is exact",
+                                   two ? "F" : "chi-square")
+                     : "";
+    return fmt::format(
+        "a test of the variance of rows of this shape keeps its level from about {} rows on; rows "
+        "that each average several need fewer{}",
+        need, exact);
+  }
   return fmt::format(
-      "secondary estimates of this shape need about {:.2g} observations before any test of their "
-      "variance keeps its level; larger `primaries`, or rows that each average several, bring "
-      "them nearer to normal",
-      static_cast<double>(needed));
+      "secondary estimates of this shape need about {} observations before any test of their "
+      "variance keeps its level; a larger `primaries` brings them nearer to normal",
+      need);
 }
 
 /// F and chi-square where the pilot predicts near-normal secondaries; else the logarithm of the
@@ -318,7 +351,7 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
   if (plan.invalid.empty() && needed > (fixed ? size : std::max(size, most_for_a_variance))) {
-    plan.invalid = too_few(needed);
+    plan.invalid = too_few(question, needed);
   }
   return std::min(needed, fixed ? size : most_for_a_variance);
 }
@@ -346,7 +379,7 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const std::uint64_t affordable =
       question.test->secondaries || size == most ? size : most_for_a_variance;
-  if (plan.invalid.empty() && needed > affordable) plan.invalid = too_few(needed);
+  if (plan.invalid.empty() && needed > affordable) plan.invalid = too_few(question, needed);
   return std::min(needed, affordable);
 }
 
@@ -359,10 +392,8 @@ std::uint64_t choose_for_points(const Question& question, const FamilyPlace& pla
                     most_for_a_mean);
 }
 
-}  // namespace
-
-std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
-                            const Pilots& pilots, std::uint64_t most, Plan& plan) {
+std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place,
+                              const Pilots& pilots, std::uint64_t most, Plan& plan) {
   if (question.of_means()) return choose_for_mean(question, place, pilots, most, plan);
   if (question.of_variances()) return choose_for_variance(question, place, pilots, most, plan);
   if (question.of_laws()) {
@@ -371,6 +402,22 @@ std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
   }
   if (question.of_spread()) return choose_for_spread(question, place, pilots, most, plan);
   return choose_for_points(question, place, pilots, plan);
+}
+
+}  // namespace
+
+std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
+                            const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  if (std::string reason = unusable_pilot(question, pilots); !reason.empty()) {
+    plan.invalid = std::move(reason);
+    return first_look;
+  }
+  const std::uint64_t least = choose_by_shape(question, place, pilots, most, plan);
+  if (has_rows(question)) {
+    judge_independence(question, pilots, std::min(most, question.test->secondaries.value_or(most)),
+                       plan);
+  }
+  return least;
 }
 
 }  // namespace assay::harness

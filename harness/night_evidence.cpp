@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/forecast.h"
+#include "harness/rows.h"
 #include "harness/text_hash.h"
 #include "harness/theta_error.h"
 #include "stats/log_variance.h"
@@ -17,8 +18,6 @@ namespace {
 // (effect / a night's standard error)^2: near the best for one standard error a night found within
 // some twenty nights, and little is lost at a third or three times of it (README.md).
 constexpr double prior_variance = 0.2;
-
-bool is_recorded(const Subject& side) { return side.setup->observations().has_value(); }
 
 const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
   for (const ChannelOutcome& outcome : test.channels) {

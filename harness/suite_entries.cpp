@@ -148,6 +148,7 @@ const std::vector<std::string>& method_names() {
                                               "skewness-corrected-t",
                                               "binomial",
                                               "bounded",
+                                              "batch-means",
                                               "tost",
                                               "F",
                                               "chi-square",

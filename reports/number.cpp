@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 namespace assay::reports {
@@ -30,7 +31,10 @@ std::string round_trip(double value) {
 std::string human(double value, int digits) {
   if (!std::isfinite(value)) return non_finite(value);
   if (value == 0) return "0";
-  return fmt::format("{:.{}g}", value, digits);
+  std::string text = fmt::format("{:.{}g}", value, digits);
+  // 1000 in two digits is not 1e+03.
+  if (text.find("e+0") == std::string::npos || std::abs(value) >= 1e6) return text;
+  return fmt::format("{:.0f}", std::strtod(text.c_str(), nullptr));
 }
 
 std::string human(Number value) { return value ? human(*value) : no_number; }

@@ -27,19 +27,6 @@ double upper_z(double probability) { return normal_quantile({Tail::upper, std::l
 
 // ---- Normal-data quantiles of g1 and b2
 
-// The |g1| that normal samples of n exceed with probability 1e-4: D'Agostino (1970), n >= 8.
-// Smaller samples cannot tell, their g1 being capped at (n - 2) / sqrt(n - 1).
-double normal_skewness_quantile(double n) {
-  if (n < 8) return std::numeric_limits<double>::infinity();
-  const double beta2 =
-      3 * (n * n + 27 * n - 70) * (n + 1) * (n + 3) / ((n - 2) * (n + 5) * (n + 7) * (n + 9));
-  const double w2 = std::sqrt(2 * (beta2 - 1)) - 1;
-  const double delta = 1 / std::sqrt(0.5 * std::log(w2));
-  const double alpha = std::sqrt(2 / (w2 - 1));
-  const double y = alpha * std::sinh(upper_z(false_red / 2) / delta);
-  return y * std::sqrt(6 * (n - 2) / ((n + 1) * (n + 3)));
-}
-
 // The b2 - 3 that normal samples of n exceed with probability 1e-4: Anscombe & Glynn (1983), n
 // >= 20.
 double normal_kurtosis_quantile(double n) {
@@ -110,14 +97,14 @@ SkewnessPart skewness_part(const Moments& x, double variance_share, double cube)
   const double n = static_cast<double>(x.count);
   const double weight = variance_share * std::sqrt(variance_share) / (3 * std::sqrt(n));
   const double boundary = 3 * std::sqrt(n) * std::log(red_factor) / cube;
-  const double allowance = normal_skewness_quantile(n) * skewness_widening(boundary);
+  const double allowance = normal_skewness_quantile(n, false_red) * skewness_widening(boundary);
   return {weight * x.skewness(), weight * allowance};
 }
 
 Gate skewness_gate_of(SkewnessPart first, SkewnessPart second, double cube) {
   const double size = std::abs(first.value - second.value);
   const double low = std::max(0.0, size - std::hypot(first.allowance, second.allowance));
-  Gate gate{"skewness", std::exp(std::min(size * cube, 700.0)),
+  Gate gate{"level factor by skewness", std::exp(std::min(size * cube, 700.0)),
             std::exp(std::min(low * cube, 700.0)), red_factor, GateState::green};
   gate.state = state_of(gate, green_factor);
   return gate;
@@ -147,6 +134,17 @@ void check_shape(const char* function, PrimaryShape shape) {
 
 }  // namespace
 
+double normal_skewness_quantile(double n, double probability) {
+  if (n < 8) return std::numeric_limits<double>::infinity();
+  const double beta2 =
+      3 * (n * n + 27 * n - 70) * (n + 1) * (n + 3) / ((n - 2) * (n + 5) * (n + 7) * (n + 9));
+  const double w2 = std::sqrt(2 * (beta2 - 1)) - 1;
+  const double delta = 1 / std::sqrt(0.5 * std::log(w2));
+  const double alpha = std::sqrt(2 / (w2 - 1));
+  const double y = alpha * std::sinh(upper_z(probability / 2) / delta);
+  return y * std::sqrt(6 * (n - 2) / ((n + 1) * (n + 3)));
+}
+
 PrimaryShape primary_shape(const Moments& pilot) {
   return {pilot.skewness(), pilot.kurtosis() - 3};
 }
@@ -172,7 +170,7 @@ Gate predicted_kurtosis_gate(PrimaryShape shape, std::uint64_t primaries, ShapeL
   check_shape("predicted_kurtosis_gate", shape);
   check::at_least({"predicted_kurtosis_gate", "primaries"}, primaries, 1);
   const double value = shape.excess_kurtosis / static_cast<double>(primaries);
-  Gate gate{"kurtosis", value, value, limits.excess_kurtosis, GateState::green};
+  Gate gate{"excess kurtosis", value, value, limits.excess_kurtosis, GateState::green};
   gate.state = state_of(gate, limits.excess_kurtosis);
   return gate;
 }
@@ -186,7 +184,7 @@ Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, Planne
   const double exponent =
       std::abs(shape.skewness) * checked_cube(test.critical_value) / (3 * std::sqrt(total));
   const double value = std::exp(std::min(exponent, 700.0));
-  Gate gate{"skewness", value, value, limits.level_factor, GateState::green};
+  Gate gate{"level factor by skewness", value, value, limits.level_factor, GateState::green};
   gate.state = state_of(gate, limits.level_factor);
   return gate;
 }
@@ -216,7 +214,7 @@ Gate dominance_gate(const Moments& x) {
   const double largest = std::max(x.maximum - x.mean, x.mean - x.minimum);
   const double value = largest / (x.standard_deviation() * std::sqrt(n));
   const double limit = std::max(dominance_limit, grubbs(n, false_red) / std::sqrt(n));
-  Gate gate{"dominance", value, value, limit, GateState::green};
+  Gate gate{"largest deviation", value, value, limit, GateState::green};
   gate.state = state_of(gate, std::max(dominance_limit, grubbs(n, 0.05) / std::sqrt(n)));
   return gate;
 }
@@ -226,7 +224,8 @@ Gate kurtosis_gate(const Moments& x) {
   const double value = x.kurtosis() - 3;
   const double allowance =
       normal_kurtosis_quantile(static_cast<double>(x.count)) * kurtosis_widening(kurtosis_limit);
-  Gate gate{"kurtosis", value, std::max(value - allowance, -2.0), kurtosis_limit, GateState::green};
+  Gate gate{"excess kurtosis", value, std::max(value - allowance, -2.0), kurtosis_limit,
+            GateState::green};
   gate.state = state_of(gate, kurtosis_limit);
   return gate;
 }

@@ -62,6 +62,10 @@ Gate skewness_gate(const Moments& x, double critical_value);
 // The same of the contrast mean x - scale mean y: a = sum psi^3 / (6 (sum psi^2)^1.5).
 Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value);
 
+// The |g1| that normal samples of n exceed with this probability: D'Agostino (1970), n >= 8.
+// Smaller samples cannot tell, their g1 being capped at (n - 2) / sqrt(n - 1): infinite.
+double normal_skewness_quantile(double n, double probability);
+
 // Value: max |x_i - mean| / (s sqrt n), whose square is one observation's share of the sum of
 // squares: none may dominate. Limit .5, or where normal data exceed it by themselves, the 1e-4
 // critical value of Grubbs (1950), which is the exact allowance, so low = value; green up to .5 or

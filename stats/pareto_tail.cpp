@@ -132,7 +132,7 @@ double pareto_limit(TailClaim claim, std::uint64_t count) {
 }
 
 Gate pareto_gate(std::span<const double> largest, std::uint64_t count, TailClaim claim) {
-  Gate gate{"tail", 0, 0, pareto_limit(claim, count), GateState::green};
+  Gate gate{"tail index", 0, 0, pareto_limit(claim, count), GateState::green};
   const std::vector<double> exceedances = tail_exceedances(largest, count);
   if (exceedances.size() < fewest_exceedances) return gate;
   const ParetoTail tail = tail_of(exceedances, gate_confidence);

@@ -156,7 +156,7 @@ double checked_factor(const Residue& residue, double critical_value) {
 }
 
 Gate gate_of(double value, double low) {
-  Gate gate{"residual skewness", value, low, 2, GateState::amber};
+  Gate gate{"level factor after correction", value, low, 2, GateState::amber};
   if (value <= 1.25)
     gate.state = GateState::green;
   else if (low > gate.limit)

@@ -7,6 +7,7 @@
 #include "harness/looks.h"
 #include "harness/planned_run.h"
 #include "running.h"
+#include "tests/philox.h"
 
 namespace assay::harness {
 namespace {
@@ -44,7 +45,8 @@ tests:
 
 void write_data(const Workplace& place) {
   std::string rows;
-  for (int i = 0; i < 400; ++i) rows += std::to_string(2 + 0.01 * (i % 20 - 9.5)) + "\n";
+  tests::Philox random(1);
+  for (int i = 0; i < 400; ++i) rows += std::to_string(2 + 0.2 * (random.uniform() - 0.5)) + "\n";
   place.write("mine.txt", rows);
 }
 

@@ -193,7 +193,7 @@ TEST(Plan, ForcedMethodStandsWithItsGatesShown) {
   EXPECT_TRUE(planned.plans[0].invalid.empty());
   const std::vector<reports::Gate>& gates = planned.plans[0].gates;
   EXPECT_TRUE(std::any_of(gates.begin(), gates.end(), [](const reports::Gate& gate) {
-    return gate.name.starts_with("kurtosis") && gate.state == "red";
+    return gate.name.starts_with("excess kurtosis") && gate.state == "red";
   }));
 }
 

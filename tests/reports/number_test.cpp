@@ -12,7 +12,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 TEST(Numbers, HumanFormHasFourDigits) {
   EXPECT_EQ(human(0.481046907316), "0.481");
-  EXPECT_EQ(human(12345.6), "1.235e+04");
+  EXPECT_EQ(human(12345.6), "12350");
+  EXPECT_EQ(human(1000, 2), "1000");
   EXPECT_EQ(human(-3.14159), "-3.142");
   EXPECT_EQ(human(0), "0");
   EXPECT_EQ(human(-0.0), "0");

@@ -1,0 +1,109 @@
+#include "harness/gate_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/rows.h"
+#include "reports/number.h"
+
+namespace assay::harness {
+namespace {
+
+/// What a red gate says; {0} is its value, {1} its limit.
+struct Meaning {
+  const char* gate;
+  const char* text;
+};
+
+constexpr Meaning meanings[] = {
+    {"count",
+     "{0} rows are too few to show their own shape: this test at its level takes {1}; with "
+     "`test: t` the rows are taken to be near normal"},
+    {"skewness of the mean",
+     "the rows are too skewed for how few they are: the skewness of their mean is {0}, limit {1}"},
+    {"level factor by skewness",
+     "the observations are so skewed that one tail of the test is off by a factor of {0}, limit "
+     "{1}"},
+    {"level factor after correction",
+     "the observations are so skewed that one tail of the test is off by a factor of {0} even "
+     "after correction, limit {1}"},
+    {"largest deviation",
+     "one observation outweighs the others: its deviation over standard deviation and sqrt(n) is "
+     "{0}, limit {1}"},
+    {"excess kurtosis",
+     "the observations are not normal enough for this test of their variance: their excess "
+     "kurtosis is {0}, limit {1}"},
+    {"rounding",
+     "the values are rounded too coarsely to be held against a continuous law: a step is {0} of "
+     "the distance that is rejected, limit {1}; write more digits"},
+};
+
+std::string short_number(reports::Number value) {
+  if (!value) return "not a number";
+  return std::abs(*value) >= 1000 ? reports::human(*value, 3) : fmt::format("{:.3g}", *value);
+}
+
+std::string sentence(const reports::Gate& gate) {
+  const std::string value = short_number(gate.value);
+  const std::string limit = short_number(gate.limit);
+  for (const Meaning& meaning : meanings) {
+    const std::string_view name = meaning.gate;
+    if (!gate.name.starts_with(name)) continue;
+    // Of which channel or estimator.
+    return fmt::format(fmt::runtime(meaning.text), value, limit) +
+           (gate.name.size() > name.size() ? " (" + gate.name + ")" : "");
+  }
+  return fmt::format("{} is {}, limit {}", gate.name, value, limit);
+}
+
+bool is_red(const reports::Gate& gate, std::string_view name) {
+  return gate.state == "red" && gate.name.starts_with(name);
+}
+
+/// By how much more observations the gate would be green.
+double wanted(const reports::Gate& gate) {
+  if (!gate.value || !gate.limit) return 1;
+  // The factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
+  if (is_red(gate, "level factor by skewness")) {
+    return std::pow(std::log(*gate.value) / std::log(1.25), 2);
+  }
+  if (is_red(gate, "skewness of the mean")) return std::pow(*gate.value / *gate.limit, 2);
+  return 1;
+}
+
+}  // namespace
+
+std::string red_gates(const std::vector<reports::Gate>& gates) {
+  std::string text;
+  // Too few rows say nothing more of themselves.
+  const bool few = std::any_of(gates.begin(), gates.end(),
+                               [](const reports::Gate& gate) { return is_red(gate, "count"); });
+  for (const reports::Gate& gate : gates) {
+    if (few && !is_red(gate, "count")) continue;
+    if (gate.state == "red") text += (text.empty() ? "" : "; ") + sentence(gate);
+  }
+  return text;
+}
+
+std::string what_would_help(const TestOutcome& outcome) {
+  bool says_it_all = true;
+  double factor = 1;
+  for (const reports::Gate& gate : outcome.gates) {
+    if (is_red(gate, "count")) return "";
+    if (gate.state != "red") continue;
+    says_it_all = says_it_all && is_red(gate, "rounding");
+    factor = std::max(factor, wanted(gate));
+  }
+  if (says_it_all) return "";
+  const bool rows = has_rows(outcome.question);
+  const std::string more =
+      factor > 1 && std::isfinite(factor)
+          ? "about " + reports::human(factor * static_cast<double>(outcome.secondaries()), 2)
+          : "more";
+  if (rows) return fmt::format("; {} rows would help, or rows that each average several", more);
+  return fmt::format("; {} `secondaries` would help, or a larger `primaries`", more);
+}
+
+}  // namespace assay::harness

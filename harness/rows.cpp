@@ -1,0 +1,143 @@
+#include "harness/rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "harness/assumptions.h"
+#include "harness/constant.h"
+#include "stats/dependence.h"
+#include "stats/independence_gates.h"
+#include "stats/quantisation_gate.h"
+#include "stats/unpiloted_gates.h"
+
+namespace assay::harness {
+namespace {
+
+using stats::Gate;
+using stats::GateState;
+
+// Below it batches of sqrt n are too few and too short to say anything.
+constexpr std::size_t fewest_in_order = 9;
+// Glynn and Iglehart 1990: Student's t on fewer batch means is off.
+constexpr std::size_t fewest_batches = 20;
+
+/// One channel of a recorded subject, as far as the test reads it.
+struct Rows {
+  std::string label;
+  std::span<const double> values;
+};
+
+std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::uint64_t count) {
+  std::vector<Rows> all;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    if (!is_recorded(side) || pilot_of(side, pilots) == nullptr) continue;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const PilotChannel data = pilot_channel(question, subject, channel, pilots);
+      const std::size_t used = std::min<std::uint64_t>(data.values.size(), count);
+      const bool finite = std::all_of(data.values.begin(), data.values.end(),
+                                      [](double value) { return std::isfinite(value); });
+      if (!finite || used < fewest_in_order ||
+          is_constant(question, subject, channel, data.moments))
+        continue;
+      const std::string part =
+          side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";
+      all.push_back({"rows of " + side.estimator->name + part, data.values.first(used)});
+    }
+  }
+  return all;
+}
+
+bool enough_batches(std::span<const double> values) {
+  return values.size() / stats::sufficient_batch(values) >= fewest_batches;
+}
+
+std::string dependent(const Rows& rows) {
+  const double time = std::max(1.0, stats::autocorrelation_time(rows.values));
+  const double worth = static_cast<double>(rows.values.size()) / time;
+  return fmt::format(
+      "the {} are not independent: {} of them are worth about {:.0f} independent ones; give one "
+      "row "
+      "a chain, or means of {:.0f} successive rows each, {} of them at least",
+      rows.label, rows.values.size(), worth, std::ceil(10 * time), fewest_batches);
+}
+
+}  // namespace
+
+bool is_recorded(const Subject& subject) { return subject.setup->observations().has_value(); }
+
+bool has_rows(const Question& question) {
+  return std::any_of(question.subjects.begin(), question.subjects.end(), is_recorded);
+}
+
+void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
+                        Plan& plan) {
+  const bool forced = question.test->method.has_value();
+  const bool batches = question.kind == QuestionKind::mean_of_one &&
+                       question.test->claim.relation != Relation::within;
+  std::string reason;
+  bool answered = false;
+  for (const Rows& rows : rows_of(question, pilots, count)) {
+    std::vector<Gate> gates{stats::lag_one_gate(rows.values), stats::batch_gate(rows.values)};
+    const bool red = std::any_of(gates.begin(), gates.end(),
+                                 [](const Gate& gate) { return gate.state == GateState::red; });
+    const bool averaged = red && batches && !forced && enough_batches(rows.values);
+    answered = answered || averaged;
+    if (red && !averaged && reason.empty()) reason = dependent(rows);
+    for (Gate& gate : gates) {
+      if (averaged && gate.state == GateState::red) gate.state = GateState::amber;
+      plan.gates.push_back(gate_of(gate, ", " + rows.label));
+    }
+  }
+  if (forced) return;
+  if (!reason.empty()) {
+    plan.invalid = reason;
+  } else if (answered) {
+    plan.method = find_method(question, "batch-means");
+    plan.invalid.clear();
+  }
+}
+
+stats::Moments batched(const ChannelData& data) {
+  return stats::batch_means(data.values, stats::sufficient_batch(data.values));
+}
+
+std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
+                            double critical_value) {
+  const Question& question = outcome.question;
+  const std::string& method = outcome.plan.method.name;
+  std::vector<Gate> gates;
+  if (!has_rows(question)) return gates;
+  if (question.kind == QuestionKind::fit_to_law || question.kind == QuestionKind::fit_to_density) {
+    const bool by_points = method == "ks" || method == "anderson-darling";
+    if (!by_points || data[0].values.size() < 2) return gates;
+    std::vector<double> sorted(data[0].values.begin(), data[0].values.end());
+    std::sort(sorted.begin(), sorted.end());
+    gates.push_back(stats::quantisation_gate(sorted, outcome.share().alpha));
+  }
+  if (!question.of_means() || method == "binomial" || method == "bounded") return gates;
+  const stats::Moments first = method == "batch-means" ? batched(data[0]) : data[0].moments;
+  if (data.size() == 1) {
+    if (method != "batch-means") {
+      gates.push_back(stats::unpiloted_count_gate(first, critical_value));
+    }
+    gates.push_back(stats::unpiloted_skewness_gate(first, critical_value));
+    return gates;
+  }
+  const double factor = question.factor;
+  const double x = first.variance() / static_cast<double>(first.count);
+  const double y =
+      factor * factor * data[1].moments.variance() / static_cast<double>(data[1].moments.count);
+  const double shares[] = {x / (x + y), y / (x + y)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!is_recorded(question.subjects[i])) continue;
+    gates.push_back(stats::unpiloted_count_gate(data[i].moments, critical_value, shares[i]));
+  }
+  gates.push_back(stats::unpiloted_skewness_gate(first, data[1].moments, factor, critical_value));
+  return gates;
+}
+
+}  // namespace assay::harness

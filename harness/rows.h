@@ -1,0 +1,38 @@
+#pragma once
+
+// Rows of a file: a sample that is its own pilot, and of which only its order tells whether it is
+// independent.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/method.h"
+#include "harness/outcome.h"
+#include "harness/pilot.h"
+#include "stats/assumption_gates.h"
+
+namespace assay::harness {
+
+/// Whether a subject's observations are ready-made.
+bool is_recorded(const Subject& subject);
+/// Whether any of the question's are.
+bool has_rows(const Question& question);
+
+/// Notes in the plan what the first `count` rows of every recorded subject say of independence
+/// (stats/independence_gates.h). Dependent rows make a single mean a test of batch means, if the
+/// rows are enough for them, and everything else invalid; a forced method is kept.
+void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
+                        Plan& plan);
+
+/// The moments of batch means of dependent values, for the method `batch-means`.
+stats::Moments batched(const ChannelData& data);
+
+/// Gates on the shape of rows, of which no pilot spoke: on how many there are, how skewed their
+/// mean is at critical value x, and for Kolmogorov and Smirnov how coarsely they were rounded.
+std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
+                                   double critical_value);
+
+}  // namespace assay::harness

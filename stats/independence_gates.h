@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "stats/assumption_gates.h"
+
+namespace assay::stats {
+
+// Gates of independence for values in the order in which they were made. On independent normal
+// values each is red with probability 5e-5.
+
+// Value: r_1 (dependence.h), the correlation of neighbours; limit: the r_1 at which lag_one_test
+// has the two-sided p-value 5e-5; green up to that of .01. Sees what changes from value to value: a
+// Markov chain, sorted values, antithetic pairs. Throws as lag_one_test.
+Gate lag_one_gate(std::span<const double> values);
+
+// Value: n_b Var(batch means) / Var within batches, batches of floor(sqrt n), the rest at the end
+// left out: about the integrated autocorrelation time once that is long, 1 for independent values.
+// Under independence and normality exactly F with (batches - 1, batches (length - 1)) degrees of
+// freedom (one-way analysis of variance); limit: its upper quantile at 5e-5, green up to that at
+// .01. Sees drifts and slow chains that lag one does not. Throws std::domain_error for n < 9;
+// ZeroVariance.
+Gate batch_gate(std::span<const double> values);
+
+// n Var(mean) / Var x, the integrated autocorrelation time, by effective_sample_size; of more than
+// 8192 values from the means of neighbours, which have the same n Var(mean).
+double autocorrelation_time(std::span<const double> values);
+// The length of a batch that is long enough for batch_means_t: the larger of default_batch and ten
+// autocorrelation times, rounded up, and so much longer that less than a batch is left over.
+std::size_t sufficient_batch(std::span<const double> values);
+
+}  // namespace assay::stats

@@ -1,0 +1,160 @@
+// Rows of a file: how many there must be, how skewed they may be, and whether they are independent.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "many_seeds.h"
+#include "tests/philox.h"
+#include "tests/stats/laws.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+using testing::HasSubstr;
+using tests::Philox;
+namespace laws = tests::laws;
+
+using Draw = std::function<double(Philox&)>;
+
+std::string file_of(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += fmt::format("{}\n", value);
+  return text;
+}
+
+std::vector<double> rows_of(std::size_t count, std::uint32_t stream, const Draw& draw) {
+  Philox random(stream);
+  std::vector<double> values(count);
+  for (double& value : values) value = draw(random);
+  return values;
+}
+
+reports::Test judged(const std::vector<double>& values, const std::string& test,
+                     double alpha = 0.01) {
+  const Workplace place;
+  place.write("rows.txt", file_of(values));
+  const std::string text = fmt::format(
+      "suite: rows\nalpha: {}\nestimators:\n  rows: {{plugin: recorded, file: rows.txt}}\n"
+      "tests:\n  - {{{}}}\n",
+      alpha, test);
+  return run_files({place.write("suite.yaml", text)}).suites[0].tests[0];
+}
+
+double normal(Philox& random) { return random.normal(); }
+
+TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
+  const std::vector<double> rows = rows_of(5, 1, normal);
+  const reports::Test test = judged(rows, "claim: mean(rows) == 0");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("5 rows are too few"));
+  EXPECT_THAT(test.message, testing::Not(HasSubstr("primaries")));
+  EXPECT_EQ(judged(rows, "claim: mean(rows) == 0, test: t").verdict, Verdict::pass);
+}
+
+TEST(Rows, OfANormalLawAreTestedByStudentsT) {
+  const reports::Test test = judged(rows_of(150, 2, normal), "claim: mean(rows) == 0");
+  EXPECT_EQ(test.verdict, Verdict::pass);
+  EXPECT_EQ(test.method, "t");
+}
+
+TEST(Rows, OfASkewedLawAreCorrectedOrTurnedAway) {
+  const Draw exponential = [](Philox& random) { return random.exponential(); };
+  EXPECT_EQ(judged(rows_of(600, 3, exponential), "claim: mean(rows) == 1").method,
+            "skewness-corrected-t");
+  const Draw lognormal = [](Philox& random) { return std::exp(1.5 * random.normal()); };
+  const reports::Test test = judged(rows_of(120, 4, lognormal), "claim: mean(rows) == 3.08");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("too skewed for how few they are"));
+}
+
+std::vector<double> chain(double phi, std::size_t count, std::uint32_t stream) {
+  Philox random(stream);
+  double x = random.normal();
+  return rows_of(count, stream + 1000, [&](Philox& next) {
+    x = phi * x + std::sqrt(1 - phi * phi) * next.normal();
+    return x;
+  });
+}
+
+TEST(Rows, OfOneLongChainAreTestedByBatchMeans) {
+  const reports::Test test = judged(chain(0.9, 8000, 5), "claim: mean(rows) == 0");
+  EXPECT_EQ(test.method, "batch-means");
+  EXPECT_EQ(test.verdict, Verdict::pass);
+  bool noted = false;
+  for (const reports::Gate& gate : test.gates) {
+    noted = noted || gate.name == "correlation of successive values, rows of rows";
+  }
+  EXPECT_TRUE(noted);
+}
+
+TEST(Rows, OfAShortChainAreInvalidAndSayWhatTheyAreWorth) {
+  for (const char* claim :
+       {"claim: mean(rows) == 0", "claim: 'distribution(rows) == normal(0, 1)'"}) {
+    const reports::Test test = judged(chain(0.9, 400, 6), claim);
+    EXPECT_EQ(test.verdict, Verdict::invalid);
+    EXPECT_THAT(test.message, HasSubstr("are not independent: 400 of them are worth about"));
+  }
+}
+
+TEST(Rows, OfDependentValuesHaveNoVarianceToTest) {
+  const reports::Test test = judged(chain(0.9, 4000, 7), "claim: variance(rows) <= 2");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("are not independent"));
+}
+
+TEST(Rows, RoundedCoarselyAreNotHeldAgainstAContinuousLaw) {
+  const Draw bytes = [](Philox& random) { return std::round(random.uniform() * 256) / 256; };
+  const reports::Test test =
+      judged(rows_of(50000, 8, bytes), "claim: 'distribution(rows) == uniform(0, 1)'");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("rounded too coarsely"));
+}
+
+TEST(Rows, BeyondWhatDoublesHoldAreInvalidInWords) {
+  for (const double unit : {1e200, 1e-300}) {
+    const Draw scaled = [unit](Philox& random) { return unit * random.normal(); };
+    const reports::Test test = judged(rows_of(200, 9, scaled), "claim: mean(rows) == 0");
+    EXPECT_EQ(test.verdict, Verdict::invalid);
+    EXPECT_THAT(test.message, HasSubstr("in another unit"));
+  }
+}
+
+/// How often a true mean fails, of `runs` files.
+struct Rate {
+  double fail = 0;
+  double invalid = 0;
+};
+
+Rate rate_of(const tests::Law& law, std::size_t count, std::uint32_t runs) {
+  Rate rate;
+  for (std::uint32_t run = 0; run < runs; ++run) {
+    const auto rows = rows_of(count, run, law.draw);
+    const reports::Test test = judged(rows, fmt::format("claim: mean(rows) == {}", law.mean), 0.05);
+    rate.fail += test.verdict == Verdict::fail ? 1. / runs : 0;
+    rate.invalid += test.verdict == Verdict::invalid ? 1. / runs : 0;
+  }
+  return rate;
+}
+
+// Level .05; a rate of 1.25 times it exceeds the bound with probability below 6e-6 (Chernoff, 400
+// files). Before there was a least number of rows lognormal(1.5) failed .19 of its
+// true claims at n = 50.
+TEST(Rows, KeepTheLevelWhateverTheirLaw) {
+  const tests::Law heavy{"lognormal(1.5)", std::exp(1.125),
+                         [](Philox& r) { return std::exp(1.5 * r.normal()); }};
+  for (const tests::Law& law : {laws::normal, laws::exponential, laws::lognormal_one, heavy}) {
+    const Rate rate = rate_of(law, 60, 400);
+    EXPECT_LE(rate.fail, 0.13) << law.name;
+    if (law.name == laws::normal.name) {
+      EXPECT_EQ(rate.invalid, 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,94 @@
+#include "stats/independence_gates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "stats/dependence.h"
+#include "stats/errors.h"
+#include "tests/philox.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::Philox;
+using tests::sample_of;
+
+std::vector<double> chain(double phi, std::size_t n, Philox& random) {
+  std::vector<double> values;
+  double x = random.normal();
+  for (std::size_t t = 0; t < n; ++t) {
+    values.push_back(x);
+    x = phi * x + std::sqrt(1 - phi * phi) * random.normal();
+  }
+  return values;
+}
+
+// Each red with probability 5e-5 on independent normal values: of 20000 more than 8 with
+// probability 1.2e-6 (Poisson, mean 1).
+TEST(IndependenceGates, AreSilentOnIndependentValues) {
+  Philox random(1);
+  int lag = 0;
+  int batch = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const auto x = sample_of(100, [&] { return random.normal(); });
+    lag += lag_one_gate(x).state == GateState::red ? 1 : 0;
+    batch += batch_gate(x).state == GateState::red ? 1 : 0;
+  }
+  EXPECT_LE(lag, 8);
+  EXPECT_LE(batch, 8);
+}
+
+TEST(IndependenceGates, SeeAChainAndItsAlternation) {
+  Philox random(2);
+  const auto positive = chain(0.5, 500, random);
+  EXPECT_EQ(lag_one_gate(positive).state, GateState::red);
+  EXPECT_GT(lag_one_gate(positive).value, lag_one_gate(positive).limit);
+  const auto negative = chain(-0.5, 500, random);
+  EXPECT_EQ(lag_one_gate(negative).state, GateState::red);
+  EXPECT_LT(lag_one_gate(negative).value, lag_one_gate(negative).limit);
+}
+
+// A drift of one and a half deviations from end to end: neighbours hardly notice, batches do.
+TEST(IndependenceGates, SeeADriftThatNeighboursDoNot) {
+  Philox random(3);
+  int neighbours = 0;
+  int batches = 0;
+  for (int k = 0; k < 20; ++k) {
+    double t = 0;
+    const auto x = sample_of(400, [&] { return random.normal() + 1.5 * (t += 1. / 400); });
+    neighbours += lag_one_gate(x).state == GateState::red ? 1 : 0;
+    batches += batch_gate(x).state == GateState::red ? 1 : 0;
+  }
+  EXPECT_EQ(batches, 20);
+  EXPECT_LT(neighbours, 15);
+}
+
+TEST(IndependenceGates, RefuseWhatHasNoOrderOrNoSpread) {
+  const std::vector<double> few{1, 2, 3, 4, 5, 6, 7, 8};
+  EXPECT_THROW(batch_gate(few), std::domain_error);
+  const std::vector<double> same(20, 3.0);
+  EXPECT_THROW(batch_gate(same), ZeroVariance);
+  EXPECT_THROW(lag_one_gate(same), ZeroVariance);
+  // Constant within each batch of five, and of nothing else.
+  std::vector<double> blocks;
+  for (int i = 0; i < 25; ++i) blocks.push_back(i / 5);
+  EXPECT_EQ(batch_gate(blocks).state, GateState::red);
+}
+
+// (1 + .9) / (1 - .9) = 19; deviation of the estimate about 1.5 of 20000 values.
+TEST(IndependenceGates, AutocorrelationTimeOfLongAndShortSequencesAgrees) {
+  Philox random(4);
+  const auto x = chain(0.9, 30000, random);
+  EXPECT_NEAR(autocorrelation_time(x), 19, 8);
+  EXPECT_NEAR(autocorrelation_time(std::span(x).first(8000)), 19, 15);
+  const std::size_t length = sufficient_batch(x);
+  EXPECT_GE(length, default_batch(x.size()));
+  EXPECT_GE(static_cast<double>(length), 10 * autocorrelation_time(x));
+  EXPECT_LT(x.size() % length, length);
+}
+
+}  // namespace
+}  // namespace assay::stats
