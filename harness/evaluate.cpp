@@ -14,6 +14,7 @@
 #include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
+#include "harness/shell.h"
 
 namespace assay::harness {
 namespace {

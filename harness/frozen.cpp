@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/law_evidence.h"
+#include "harness/rows.h"
 
 namespace assay::harness {
 namespace {
@@ -14,8 +15,6 @@ constexpr double least_share = 0.01;
 // 64 pilot points of both sides to a cell.
 constexpr stats::CellNumbers plane_cells{.bands = 16, .cuts = 16};
 constexpr stats::CellNumbers line_cells{.bands = 64, .cuts = 1};
-
-bool is_recorded(const Subject& side) { return side.setup->observations().has_value(); }
 
 /// Whether this side's pilot may choose: rows only if no side has a pilot of its own.
 bool may_choose(const Question& question, std::size_t subject) {

@@ -43,37 +43,31 @@ std::string band(const EmpiricalLaw& law, const Axes& axes) {
   return data + "Z";
 }
 
-std::string steps(const EmpiricalLaw& law, const Axes& axes) {
+/// Through the points where `part` says something.
+template <class Part>
+std::string curve(const EmpiricalLaw& law, const Axes& axes, Part part) {
   std::string data;
   for (const LawPoint& point : law.points) {
-    data += data.empty() ? "M" + axes.at(point.value, point.observed)
-                         : fmt::format("H{}V{}", coordinate(axes.x(point.value)),
-                                       coordinate(axes.y(point.observed)));
-  }
-  return data;
-}
-
-std::string claimed(const EmpiricalLaw& law, const Axes& axes) {
-  std::string data;
-  for (const LawPoint& point : law.points) {
-    if (!point.law || !std::isfinite(*point.law)) continue;
-    data += (data.empty() ? "M" : "L") + axes.at(point.value, *point.law);
+    const Number height = part(point);
+    if (!height || !std::isfinite(*height)) continue;
+    data += (data.empty() ? "M" : "L") + axes.at(point.value, *height);
   }
   return data;
 }
 
 struct Style {
   const char* band;
-  const char* steps;
+  const char* curve;
   double legend_y;
 };
 
 void draw(Svg& svg, const EmpiricalLaw& law, const Axes& axes, const Style& style) {
   svg.path(band(law, axes), style.band);
-  svg.path(steps(law, axes), style.steps);
+  svg.path(curve(law, axes, [](const LawPoint& p) { return Number(p.observed); }), style.curve);
   svg.box({left, style.legend_y - 9, 12, 10}, style.band);
   svg.text({.at = {left + 18, style.legend_y}, .content = law.source, .room = plot.width - 18});
-  if (const std::string line = claimed(law, axes); !line.empty()) svg.path(line, "law");
+  const std::string claimed = curve(law, axes, [](const LawPoint& p) { return p.law; });
+  if (!claimed.empty()) svg.path(claimed, "law");
 }
 
 }  // namespace
@@ -97,9 +91,9 @@ std::string law_chart(const Channel& channel) {
                       .across = {left, left + plot.width},
                       .title = "part of the values up to here",
                       .ticks = 4});
-  draw(svg, channel.laws[0], {x, y}, {"bandfirst", "stepfirst", 14});
+  draw(svg, channel.laws[0], {x, y}, {"bandfirst", "curvefirst", 14});
   if (channel.laws.size() > 1) {
-    draw(svg, channel.laws[1], {x, y}, {"bandsecond", "stepsecond", 14 + line_height});
+    draw(svg, channel.laws[1], {x, y}, {"bandsecond", "curvesecond", 14 + line_height});
   }
   return svg.finish();
 }

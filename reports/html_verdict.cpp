@@ -66,7 +66,7 @@ std::string law_caption(const Test& test) {
   if (laws.size() > 1) {
     return fmt::format(
         "Both empirical distribution functions. Each band holds the law of its sample everywhere "
-        "with probability {}; at other places than those marked it is drawn straight.",
+        "with probability {}.",
         confidence);
   }
   return fmt::format(
