@@ -259,8 +259,8 @@ std::string first_contradiction(const TestWork& work) {
   const auto first = first_inconsistent(*work.pools[0], outcome.secondaries());
   if (!first) return "";
   return fmt::format(
-      "; the first is observation {}: `assay replay RUN.json '{}' {}` draws it again", *first,
-      outcome.question.test->id, *first);
+      "; the first is observation {}: `assay replay RUN.json {} {}` draws it again", *first,
+      shell_quoted(outcome.question.test->id), *first);
 }
 
 void require_activation(TestWork& work) {
