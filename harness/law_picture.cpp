@@ -18,7 +18,7 @@ constexpr std::size_t parts = 64;
 double pointwise_error(std::uint64_t n, double confidence) {
   static std::mutex once;
   static std::map<std::pair<std::uint64_t, double>, double> known;
-  constexpr std::uint64_t limit_from = 2001;  // one value from there on (distribution_band.h)
+  constexpr std::uint64_t limit_from = 1001;  // one value from there on (distribution_band.h)
   const std::scoped_lock lock(once);
   const auto [place, added] = known.try_emplace({std::min(n, limit_from), confidence});
   if (added) place->second = stats::simultaneous_error(n, parts, confidence);

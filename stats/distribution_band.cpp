@@ -130,11 +130,11 @@ DistributionBand ecdf_band(TwoSizes sizes, std::size_t points, double confidence
 }
 
 double simultaneous_error(std::uint64_t n, std::size_t points, double confidence) {
-  constexpr std::uint64_t most = 2000;
+  constexpr std::uint64_t most = 1000;
   if (n <= most) return ecdf_band(n, points, confidence).gamma;
-  // 1 / sqrt(most / 4) is twice 1 / sqrt(most).
-  return 2 * ecdf_band(most, points, confidence).gamma -
-         ecdf_band(most / 4, points, confidence).gamma;
+  // 1 / sqrt(most) is twice 1 / sqrt(4 most).
+  return 2 * ecdf_band(4 * most, points, confidence).gamma -
+         ecdf_band(most, points, confidence).gamma;
 }
 
 BandTest band_test(std::span<const double> sorted_uniforms, std::size_t points) {

@@ -84,13 +84,13 @@ TEST(AndersonDarlingClaim, FailsForWrongTailsAndForABrokenSampler) {
 TEST(AndersonDarlingClaim, IsRefusedWhereItHasNoAnswer) {
   EXPECT_EQ(refused("{claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
                     "allow: 0.01}"),
-            "21:5: `anderson-darling` tests that two laws are the same and knows no distance to "
+            "20:5: `anderson-darling` tests that two laws are the same and knows no distance to "
             "`allow` between them; leave `allow` out, or test by `ks`");
   EXPECT_THAT(refused("{claim: distribution(normal) == distribution(again), test: "
                       "anderson-darling}"),
-              testing::StartsWith("21:5: `test: anderson-darling` does not answer this claim"));
+              testing::StartsWith("20:5: `test: anderson-darling` does not answer this claim"));
   EXPECT_EQ(refused("{claim: distribution(ward.direction) == density, test: anderson-darling}"),
-            "21:5: `test: anderson-darling` does not answer this claim; there is `chi-square-fit`");
+            "20:5: `test: anderson-darling` does not answer this claim; there is `chi-square-fit`");
   EXPECT_EQ(verdict_of("{claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
                        "secondaries: 4}"),
             Verdict::invalid)
@@ -134,7 +134,7 @@ TEST(TwoPartClaim, WithoutAnAtomIsInvalidOrRefused) {
   EXPECT_EQ(none.verdict, Verdict::invalid);
   EXPECT_THAT(none.message, testing::HasSubstr("the pilots show none"));
   EXPECT_EQ(refused("{claim: 'distribution(hits) == normal(0, 1)', test: two-part-ks}"),
-            "21:5: `test: two-part-ks` does not answer this claim; there is `ks`, "
+            "20:5: `test: two-part-ks` does not answer this claim; there is `ks`, "
             "`anderson-darling`");
 }
 
@@ -164,11 +164,11 @@ TEST(TwoSampleCellsClaim, ComparesSamplersAndEstimatorsAsAWhole) {
 TEST(TwoSampleCellsClaim, IsRefusedWhereItHasNoAnswer) {
   EXPECT_EQ(refused("{claim: distribution(ward.direction) == distribution(normal), test: "
                     "chi-square-two-sample}"),
-            "21:5: `chi-square-two-sample` counts in cells of one or two coordinates, the same of "
+            "20:5: `chi-square-two-sample` counts in cells of one or two coordinates, the same of "
             "both sides, which have 2 and 1; name one channel of each");
   EXPECT_EQ(refused("{claim: distribution(ward.direction) == density, test: "
                     "chi-square-two-sample}"),
-            "21:5: `test: chi-square-two-sample` does not answer this claim; there is "
+            "20:5: `test: chi-square-two-sample` does not answer this claim; there is "
             "`chi-square-fit`");
 }
 
@@ -187,21 +187,21 @@ TEST(IntegralClaim, CountsTheMassWithoutAPoint) {
 
 TEST(IntegralClaim, IsRefusedWhereItMeansNothing) {
   EXPECT_EQ(refused("{claim: integral(normal) == 1}"),
-            "21:21: `normal` has no sampler whose draws could be tested; it has `value`");
+            "20:22: `normal` has no sampler whose draws could be tested; it has `value`");
   EXPECT_EQ(refused("{claim: integral(ward.direction.theta) == 1}"),
-            "21:21: `integral` and `inconsistency` are about a whole sampler: name "
+            "20:22: `integral` and `inconsistency` are about a whole sampler: name "
             "`ward.direction`");
   EXPECT_EQ(refused("{claim: integral(ward.direction) == 1, detect: 1%}"),
-            "21:5: a margin in per cent has no meaning here: this is a probability; give an "
+            "20:5: a margin in per cent has no meaning here: this is a probability; give an "
             "absolute number");
   EXPECT_EQ(refused("{claim: integral(ward.direction) == 1 +- 0.1}"),
-            "21:12: `integral` is held against an exact number: `+-` has no method here");
+            "20:13: `integral` is held against an exact number: `+-` has no method here");
   EXPECT_EQ(refused("{claim: integral(ward.direction) == integral(density.direction)}"),
-            "21:40: `integral` is compared with a number");
+            "20:41: `integral` is compared with a number");
   EXPECT_EQ(refused("{claim: integral(ward.direction) == -1}"),
-            "21:12: `integral` is never negative, but it is compared with -1");
+            "20:13: `integral` is never negative, but it is compared with -1");
   EXPECT_EQ(refused("{claim: slope(inconsistency(ward.direction)) == 1}"),
-            "21:12: `inconsistency` is about a sampler, which has no slope");
+            "20:13: `inconsistency` is about a sampler, which has no slope");
 }
 
 TEST(InconsistencyClaim, HoldsForSoundSamplers) {

@@ -168,7 +168,7 @@ TEST(DistributionBand, IntervalsAtItsErrorHoldTheLawEverywhere) {
 TEST(DistributionBand, ErrorOfManyValuesIsNoLargerThanTheExactOne) {
   const double limit = simultaneous_error(1'000'000, 64, .99);
   EXPECT_LT(limit, 4.432e-4);
-  EXPECT_GT(limit, .9 * 4.432e-4);
+  EXPECT_GT(limit, .95 * 4.432e-4);
 }
 
 TEST(DistributionBand, APointwiseErrorTakenForThatOfTheBandIsCaught) {
