@@ -21,14 +21,10 @@ const stats::Moments& moments_of(const Question& question, std::size_t subject, 
   return pilot_channel(question, subject, channel, pilots).moments;
 }
 
-double averaged(const Question& question, const Plan& plan, std::size_t subject) {
-  return question.subjects[subject].averages ? static_cast<double>(plan.primaries[subject]) : 1;
-}
-
 double deviation(const Question& question, std::size_t subject, std::size_t channel,
                  const Pilots& pilots, const Plan& plan) {
   return std::sqrt(moments_of(question, subject, channel, pilots).variance() /
-                   averaged(question, plan, subject));
+                   question.subjects[subject].averaged(plan.primaries[subject]));
 }
 
 stats::ErrorRates rates_of(const ErrorShare& share, const Regions& regions) {
@@ -51,7 +47,7 @@ double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * st
 double point_variance(const Question& question, std::size_t i, std::size_t channel,
                       const Pilots& pilots, const Plan& plan) {
   const stats::Moments& pilot = moments_of(question, i, channel, pilots);
-  const double n = averaged(question, plan, i);
+  const double n = question.subjects[i].averaged(plan.primaries[i]);
   if (question.test->claim.left.name == QuantityName::variance) {
     return 2 + (pilot.kurtosis() - 3) / n;
   }

@@ -14,6 +14,11 @@ double critical_value(double alpha, bool two_sided);
 inline constexpr double look_growth = 2;
 inline constexpr std::size_t most_looks = 10;
 
+// Fewer observations say nothing about their own shape.
+inline constexpr std::uint64_t least_secondaries = 100;
+// What a test without `detect` takes.
+inline constexpr std::uint64_t usual_secondaries = 1000;
+
 /// The smallest level at which a look of this test may be taken.
 double smallest_level(const Question& question, const FamilyPlace& place);
 

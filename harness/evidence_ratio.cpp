@@ -18,10 +18,6 @@ using stats::LogEfficiency;
 using stats::Moments;
 using stats::TestResult;
 
-double primaries_of(const Question& question, std::size_t subject, const ChannelData& data) {
-  return question.subjects[subject].averages ? static_cast<double>(data.primaries) : 1;
-}
-
 const JointMoments& counted(const Question& question, std::span<const JointMoments> with_cost) {
   return with_cost[question.test->cost == CostKind::samples ? samples_cost : rays_cost];
 }
@@ -67,12 +63,8 @@ Evidence cost_evidence(const Question& question, std::span<const ChannelData> da
   std::vector<Moments> costs;
   std::vector<double> divisors;
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    costs.push_back(counted(question, data[i].with_cost).cost);
-    divisors.push_back(primaries_of(question, i, data[i]));
-    if (costs.back().mean > 0) continue;
-    throw std::domain_error(
-        "no cost was counted: an estimator that traces no rays counts its "
-        "`samples`; say `cost: samples`");
+    costs.push_back(counted_cost(question, data[i]).cost);
+    divisors.push_back(question.subjects[i].averaged(data[i].primaries));
   }
   Evidence evidence = compare_means(question, costs, divisors);
   evidence.quantity = question.of_two() ? "ratio of costs" : "cost over the reference";
@@ -84,7 +76,7 @@ Evidence total_variance_evidence(const Question& question, std::span<const Chann
   std::vector<double> divisors;
   for (std::size_t i = 0; i < question.compared(); ++i) {
     totals.push_back(data[i].group_variances);
-    divisors.push_back(1 / primaries_of(question, i, data[i]));
+    divisors.push_back(1 / question.subjects[i].averaged(data[i].primaries));
   }
   Evidence evidence = compare_means(question, totals, divisors);
   evidence.quantity =
@@ -94,12 +86,7 @@ Evidence total_variance_evidence(const Question& question, std::span<const Chann
 
 LogEfficiency efficiency_of(const Question& question, std::size_t subject, std::size_t channel,
                             std::span<const ChannelData> data) {
-  const JointMoments& sample = counted(question, data[subject].with_cost);
-  if (!(sample.cost.mean > 0)) {
-    throw std::domain_error(
-        "no cost was counted: an estimator that traces no rays counts its "
-        "`samples`; say `cost: samples`");
-  }
+  const JointMoments& sample = counted_cost(question, data[subject]);
   if (question.truths[subject].empty()) return stats::log_efficiency_of(sample);
   const Constant truth = truth_of(question, subject, channel, data);
   return stats::log_efficiency_of(sample, {truth.value, truth.standard_error});
@@ -149,7 +136,7 @@ Evidence efficiency_evidence(const Question& question, std::size_t channel,
 
 /// Of each replicate ln(seconds a primary), or -ln(that x variance of a primary).
 Moments logarithms(const Question& question, std::size_t subject, const ChannelData& data) {
-  const double primaries = primaries_of(question, subject, data);
+  const double primaries = question.subjects[subject].averaged(data.primaries);
   Moments logs;
   for (const Replicate& replicate : data.replicates) {
     const double seconds = replicate.seconds / static_cast<double>(replicate.count) / primaries;
@@ -168,6 +155,14 @@ Moments logarithms(const Question& question, std::size_t subject, const ChannelD
 double squared_variation(const Moments& x) { return x.variance() / x.mean / x.mean; }
 
 }  // namespace
+
+const JointMoments& counted_cost(const Question& question, const ChannelData& data) {
+  const JointMoments& sample = counted(question, data.with_cost);
+  if (sample.cost.mean > 0) return sample;
+  throw std::domain_error(
+      "no cost was counted: an estimator that traces no rays counts its `samples`; say "
+      "`cost: samples`");
+}
 
 Constant truth_of(const Question& question, std::size_t subject, std::size_t channel,
                   std::span<const ChannelData> data) {

@@ -19,6 +19,10 @@ Evidence evidence_of_ratio(const Question& question, std::size_t channel,
 Evidence evidence_of_replicates(const Question& question, std::size_t channel,
                                 std::span<const ChannelData> data);
 
+/// Values with what they cost, in rays or samples as the test says. std::domain_error where nothing
+/// was counted.
+const stats::JointMoments& counted_cost(const Question& question, const ChannelData& data);
+
 /// count x the variance of the logarithm of one subject's cost, efficiency or total variance: what
 /// plans and powers need. Nothing where it cannot be computed.
 std::optional<double> log_spread(const Question& question, std::size_t subject, std::size_t channel,

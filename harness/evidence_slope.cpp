@@ -20,30 +20,18 @@ constexpr double least_log_p_of_fit = -11.512925464970229;
 
 QuantityName name_of(const Question& question) { return question.test->claim.left.name; }
 
-double primaries_of(const Question& question, std::size_t subject, const ChannelData& data) {
-  return question.subjects[subject].averages ? static_cast<double>(data.primaries) : 1;
-}
-
-const Moments& cost_of(const Question& question, const ChannelData& data) {
-  return data.with_cost[question.test->cost == CostKind::samples ? samples_cost : rays_cost].cost;
-}
-
 SlopePoint logarithm_of_cost(const Question& question, std::size_t i, const ChannelData& data) {
-  const Moments& cost = cost_of(question, data);
-  if (!(cost.mean > 0)) {
-    throw std::domain_error(
-        "no cost was counted: an estimator that traces no rays counts its "
-        "`samples`; say `cost: samples`");
-  }
+  const Moments& cost = counted_cost(question, data).cost;
   return {.size = question.sizes[i],
-          .estimate = std::log(cost.mean / primaries_of(question, i, data)),
+          .estimate = std::log(cost.mean / question.subjects[i].averaged(data.primaries)),
           .standard_error = cost.standard_error() / cost.mean};
 }
 
 SlopePoint logarithm_of_variance(const Question& question, std::size_t i, const ChannelData& data) {
-  return {.size = question.sizes[i],
-          .estimate = std::log(data.moments.variance() * primaries_of(question, i, data)),
-          .standard_error = stats::log_variance_standard_error(data.moments)};
+  return {
+      .size = question.sizes[i],
+      .estimate = std::log(data.moments.variance() * question.subjects[i].averaged(data.primaries)),
+      .standard_error = stats::log_variance_standard_error(data.moments)};
 }
 
 /// One number for all points has one error: it shifts them together.

@@ -25,10 +25,6 @@ using stats::Interval;
 using stats::Moments;
 using stats::TestResult;
 
-double per_primary(const Question& question, std::size_t subject, const ChannelData& data) {
-  return question.subjects[subject].averages ? static_cast<double>(data.primaries) : 1;
-}
-
 Interval map_ends(const Interval& interval, const std::function<double(double)>& map) {
   const double one = map(interval.low);
   const double other = map(interval.high);
@@ -39,7 +35,8 @@ Interval map_ends(const Interval& interval, const std::function<double(double)>&
 Evidence variance_against_number(const Method& method, const Question& question,
                                  std::size_t channel, const ChannelData& data) {
   const Moments x = data.moments;
-  const double null = question.references[channel].value / per_primary(question, 0, data);
+  const double null =
+      question.references[channel].value / question.subjects[0].averaged(data.primaries);
   const bool chi_square = method.name == "chi-square";
   const auto at = [=](double theta) {
     const double variance = null * std::exp(theta);
@@ -62,8 +59,8 @@ Evidence variance_against_variance(const Method& method, const Question& questio
                                    std::span<const ChannelData> data) {
   const Moments x = data[0].moments;
   const Moments y = data[1].moments;
-  const double null =
-      question.factor * per_primary(question, 1, data[1]) / per_primary(question, 0, data[0]);
+  const double null = question.factor * question.subjects[1].averaged(data[1].primaries) /
+                      question.subjects[0].averaged(data[0].primaries);
   const bool f = method.name == "F";
   const auto at = [=](double theta) {
     const double ratio = null * std::exp(theta);
@@ -266,6 +263,12 @@ bool is_relative(const Question& question, std::size_t channel) {
                         (within && !test.claim.margin.relative);
   return !absolute &&
          (question.kind == QuestionKind::mean_of_two || question.references[channel].value != 0);
+}
+
+double unit_of_theta(const Question& question, std::size_t channel, double other_mean) {
+  if (!is_relative(question, channel)) return 1;
+  return std::abs(question.of_two() ? question.factor * other_mean
+                                    : question.references[channel].value);
 }
 
 double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin) {

@@ -23,16 +23,12 @@ namespace {
 
 using stats::GateState;
 
-// Fewer say nothing about their own shape.
-constexpr std::uint64_t first_look = 100;
-// What a test without `detect` takes.
-constexpr std::uint64_t classical_secondaries = 1000;
 // log-variance is asymptotic: on normal data its level at .001 is 1.3 times nominal here.
 constexpr std::uint64_t log_variance_secondaries = 1000;
 // The most that a method may ask for to be valid; as primaries beyond this cost more than they
 // give.
-constexpr std::uint64_t most_for_a_mean = 64 * classical_secondaries;
-constexpr std::uint64_t most_for_a_variance = 1024 * classical_secondaries;
+constexpr std::uint64_t most_for_a_mean = 64 * usual_secondaries;
+constexpr std::uint64_t most_for_a_variance = 1024 * usual_secondaries;
 constexpr double level_factor = 1.25;
 
 /// Why nothing can be chosen by the pilot: values whose powers are no numbers. "" where all is
@@ -78,7 +74,7 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
       all.push_back({.subject = subject,
                      .channel = channel,
                      .pilot = data,
-                     .averaged = side.averages ? static_cast<double>(plan.primaries[subject]) : 1,
+                     .averaged = side.averaged(plan.primaries[subject]),
                      .rows = side.setup->observations().has_value(),
                      .label = fmt::format(", pilot of {}{}", side.estimator->name, part)});
     }
@@ -123,7 +119,7 @@ std::optional<stats::Gate> tail_gate(const Question& question, const Known& know
   std::vector<double> values(known.pilot.values.begin(), known.pilot.values.end());
   const bool finite =
       std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  if (values.size() < classical_secondaries || !finite) return {};
+  if (values.size() < usual_secondaries || !finite) return {};
   std::optional<stats::Gate> heavier;
   const stats::Range range = range_of(question, known.subject, known.channel, moments);
   if (known.rows || !ends_in_sight(moments.maximum, moments.mean, range.high)) {
@@ -151,8 +147,7 @@ std::string too_heavy(const Question& question, const std::vector<Known>& channe
     if (gate->state != GateState::red) continue;
     reason = fmt::format(
         "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the {} moment that the test rests "
-        "on "
-        "may not exist; clamp the estimator, declare its range, or claim something of its "
+        "on may not exist; clamp the estimator, declare its range, or claim something of its "
         "distribution",
         gate->value, gate->limit, known.label,
         claim == stats::TailClaim::mean ? "second" : "fourth");
@@ -180,7 +175,7 @@ std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) 
 
 /// The same of the skewness-corrected t.
 std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double critical) {
-  std::uint64_t needed = first_look;
+  std::uint64_t needed = least_secondaries;
   for (const Known& known : channels) {
     const stats::PrimaryShape primary = stats::primary_shape(known.pilot.moments);
     const stats::PrimaryShape shape{.skewness = primary.skewness / std::sqrt(known.averaged),
@@ -227,7 +222,7 @@ std::uint64_t intended(const Question& question, const FamilyPlace& place, const
   if (question.test->secondaries) return std::min(*question.test->secondaries, most);
   if (has_rows(question)) return most;
   const auto planned = planned_secondaries(question, place.share, pilots, plan);
-  return std::min(most, planned.value_or(classical_secondaries));
+  return std::min(most, planned.value_or(usual_secondaries));
 }
 
 std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
@@ -241,24 +236,24 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   const bool fixed = question.test->secondaries || size == most;
   // Where the size is open, validity may ask for more; the t test only if looks stay early.
   const std::uint64_t affordable = fixed ? size : std::min(most, std::max(size, most_for_a_mean));
-  const std::uint64_t early = fixed || size <= classical_secondaries ? size : size / 4;
-  std::uint64_t least = std::max(first_look, for_t);
+  const std::uint64_t early = fixed || size <= usual_secondaries ? size : size / 4;
+  std::uint64_t least = std::max(least_secondaries, for_t);
   if (question.test->method) {
-    least = first_look;
+    least = least_secondaries;
   } else if (are_two_valued(question, channels, plan)) {
     plan.method = find_method(question, "binomial");
-    return first_look;
+    return least_secondaries;
   } else if (has_rows(question)) {
     // What more their own shape must be is the data's gates to say (rows.h).
     if (for_t > size) plan.method = find_method(question, "skewness-corrected-t");
     least = size;
-  } else if (for_t > std::max(first_look, early) && for_corrected < for_t &&
+  } else if (for_t > std::max(least_secondaries, early) && for_corrected < for_t &&
              for_corrected <= affordable) {
     plan.method = find_method(question, "skewness-corrected-t");
     least = for_corrected;
   } else if (for_t > affordable && !channels.empty() && are_bounded(question, channels)) {
     plan.method = find_method(question, "bounded");
-    return first_look;
+    return least_secondaries;
   }
   for (const Known& known : channels) {
     stats::Gate gate = stats::predicted_skewness_gate(
@@ -343,9 +338,9 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
     if (!question.test->method && gate.state == GateState::red) gate.state = GateState::amber;
     note(plan, known, gate);
   }
-  if (question.test->method) return first_look;
+  if (question.test->method) return least_secondaries;
   plan.invalid = heavy;
-  if (normal) return first_look;
+  if (normal) return least_secondaries;
   plan.method = find_method(question, "log-variance");
   const std::uint64_t needed = enough_for_log_variance(question, channels, x);
   const std::uint64_t size = intended(question, place, pilots, most, plan);
@@ -367,7 +362,7 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   while (!channels.empty() && channels.back().subject >= question.compared()) channels.pop_back();
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
-  if (question.test->method) return first_look;
+  if (question.test->method) return least_secondaries;
   plan.invalid = heavy;
   std::uint64_t needed = log_variance_secondaries;
   for (const Known& known : channels) {
@@ -388,7 +383,7 @@ std::uint64_t choose_for_points(const Question& question, const FamilyPlace& pla
                                 const Pilots& pilots, Plan& plan) {
   if (question.kind == QuestionKind::cost) return log_variance_secondaries;
   const double x = critical_value(smallest_level(question, place), two_sided(question));
-  return std::clamp(enough_for_t(known_channels(question, pilots, plan), x), first_look,
+  return std::clamp(enough_for_t(known_channels(question, pilots, plan), x), least_secondaries,
                     most_for_a_mean);
 }
 
@@ -398,7 +393,7 @@ std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place
   if (question.of_variances()) return choose_for_variance(question, place, pilots, most, plan);
   if (question.of_laws()) {
     choose_for_laws(question, pilots, plan);
-    return first_look;
+    return least_secondaries;
   }
   if (question.of_spread()) return choose_for_spread(question, place, pilots, most, plan);
   return choose_for_points(question, place, pilots, plan);
@@ -410,7 +405,7 @@ std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
                             const Pilots& pilots, std::uint64_t most, Plan& plan) {
   if (std::string reason = unusable_pilot(question, pilots); !reason.empty()) {
     plan.invalid = std::move(reason);
-    return first_look;
+    return least_secondaries;
   }
   const std::uint64_t least = choose_by_shape(question, place, pilots, most, plan);
   if (has_rows(question)) {

@@ -16,7 +16,6 @@
 namespace assay::harness {
 namespace {
 
-constexpr std::uint64_t classical_secondaries = 1000;
 // Half a day at 40 ns a primary.
 constexpr double most_planned_primaries = 1e12;
 // Ten looks cost twice the observations of one at most, where no reference's error takes part.
@@ -85,7 +84,7 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
     }
     const auto planned = planned_secondaries(question, place.share, pilots, plan);
     if (planned) require_possible(question, plan, *planned);
-    return timed_look(plan, std::max(first, planned.value_or(classical_secondaries)));
+    return timed_look(plan, std::max(first, planned.value_or(usual_secondaries)));
   }
   if (question.test->secondaries) {
     const std::uint64_t given = std::min(*question.test->secondaries, most);
@@ -95,7 +94,7 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   if (is_bounded(question)) return one_look(most);
   const std::optional<std::uint64_t> alone =
       planned_secondaries(question, place.share, pilots, plan);
-  if (!alone) return one_look(std::min(std::max(first, classical_secondaries), most));
+  if (!alone) return one_look(std::min(std::max(first, usual_secondaries), most));
   if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
   if (*alone <= first) return one_look(std::min(first, most));
   std::size_t count = std::min<std::size_t>(most_looks, 1 + std::bit_width((*alone - 1) / first));

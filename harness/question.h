@@ -25,6 +25,12 @@ struct Subject {
   bool averages = true;               ///< variance falls like 1 / primaries
   /// Where `estimator` is this question's own: a point of a sweep.
   std::shared_ptr<const PreparedEstimator> own = nullptr;
+
+  /// Of how many primaries an observation is the average: its variance and cost times this are
+  /// those of one primary.
+  double averaged(std::uint64_t primaries) const {
+    return averages ? static_cast<double>(primaries) : 1;
+  }
 };
 
 enum class QuestionKind {

@@ -6,16 +6,16 @@
 
 #include "harness/claim_size.h"
 #include "harness/constant.h"
+#include "harness/critical.h"
 #include "harness/evidence_ratio.h"
 #include "harness/law_size.h"
+#include "harness/method.h"
 #include "stats/power.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
 namespace {
 
-// Fewer say nothing about their own shape.
-constexpr std::uint64_t least_secondaries = 100;
 // Upper limit of a pilot's variance: exceeded once in a thousand pilots.
 constexpr double pilot_quantile = 3.09;
 
@@ -23,16 +23,6 @@ double upper_variance(const stats::Moments& pilot) {
   const double n = static_cast<double>(pilot.count);
   const double error = std::sqrt(std::max(0.0, pilot.kurtosis() - 1) / n);
   return pilot.variance() * std::exp(pilot_quantile * error);
-}
-
-double averaged(const Question& question, const Plan& plan, std::size_t subject) {
-  return question.subjects[subject].averages ? static_cast<double>(plan.primaries[subject]) : 1;
-}
-
-double unit_of(const Question& question, std::size_t channel, double other_mean) {
-  if (!is_relative(question, channel)) return 1;
-  return std::abs(question.of_two() ? question.factor * other_mean
-                                    : question.references[channel].value);
 }
 
 double secondary_kurtosis(const stats::Moments& pilot, double primaries) {
@@ -54,7 +44,7 @@ std::optional<double> pilot_log_spread(const Question& question, std::size_t sub
   for (const std::size_t channel : side.channels) {
     const auto spread = planned_log_spread(
         question, {.values = pilot.channels[channel], .with_cost = pilot.with_cost[channel]},
-        averaged(question, plan, subject));
+        question.subjects[subject].averaged(plan.primaries[subject]));
     if (spread) most = std::max(most.value_or(0), *spread);
   }
   return most;
@@ -81,8 +71,9 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   // A mean without spread may be compared with one that has some; nothing else can be planned.
   if (constant && question.kind != QuestionKind::mean_of_two) return std::nullopt;
   if (!constant) {
-    planned.standard_deviation = std::sqrt(upper_variance(first) / averaged(question, plan, 0));
-    planned.kurtosis = secondary_kurtosis(first, averaged(question, plan, 0));
+    planned.standard_deviation =
+        std::sqrt(upper_variance(first) / question.subjects[0].averaged(plan.primaries[0]));
+    planned.kurtosis = secondary_kurtosis(first, question.subjects[0].averaged(plan.primaries[0]));
   }
   double other_mean = 0;
   if (question.of_two()) {
@@ -91,14 +82,16 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
     if (is_constant(question, 1, channel, second)) {
       if (constant || question.kind != QuestionKind::mean_of_two) return std::nullopt;
     } else {
-      planned.other_deviation = std::abs(question.factor) *
-                                std::sqrt(upper_variance(second) / averaged(question, plan, 1));
-      planned.other_kurtosis = secondary_kurtosis(second, averaged(question, plan, 1));
+      planned.other_deviation =
+          std::abs(question.factor) *
+          std::sqrt(upper_variance(second) / question.subjects[1].averaged(plan.primaries[1]));
+      planned.other_kurtosis =
+          secondary_kurtosis(second, question.subjects[1].averaged(plan.primaries[1]));
     }
   } else if (!question.references.empty()) {
     planned.reference_error = question.references[channel].standard_error;
   }
-  planned.unit = unit_of(question, channel, other_mean);
+  planned.unit = unit_of_theta(question, channel, other_mean);
   if (planned.unit == 0) {
     throw std::domain_error(
         "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give the "
@@ -349,7 +342,7 @@ PlannedChannel observed_channel(const Question& question, const Regions& regions
   } else {
     observed.reference_error = question.references[channel].standard_error;
   }
-  observed.unit = unit_of(question, channel, other_mean);
+  observed.unit = unit_of_theta(question, channel, other_mean);
   return observed;
 }
 

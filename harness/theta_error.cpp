@@ -3,16 +3,11 @@
 #include <cmath>
 
 #include "harness/constant.h"
+#include "harness/method.h"
 #include "stats/log_variance.h"
 
 namespace assay::harness {
 namespace {
-
-double unit_of(const Question& question, std::size_t channel, std::span<const ChannelData> data) {
-  if (!is_relative(question, channel)) return 1;
-  return std::abs(question.of_two() ? question.factor * data[1].moments.mean
-                                    : question.references[channel].value);
-}
 
 /// Of one side's share in theta, before its unit.
 double side_error(const Question& question, std::size_t subject, const ChannelData& data) {
@@ -39,7 +34,8 @@ stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_
 std::optional<ThetaError> theta_error(const Question& question, std::size_t channel,
                                       std::span<const ChannelData> data) {
   if (!question.of_means() && !question.of_variances()) return std::nullopt;
-  const double unit = unit_of(question, channel, data);
+  const double unit =
+      unit_of_theta(question, channel, question.of_two() ? data[1].moments.mean : 0);
   ThetaError error;
   for (std::size_t i = 0; i < data.size(); ++i) {
     const double side = side_error(question, i, data[i]) / unit;
@@ -67,7 +63,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
     if (found == pilots.end() || !found->second.trouble.empty()) return std::nullopt;
     const stats::Moments& pilot = found->second.channels[side.channels[channel]];
     if (is_constant(question, i, channel, pilot)) return std::nullopt;
-    const double averaged = side.averages ? static_cast<double>(test.plan.primaries[i]) : 1;
+    const double averaged = side.averaged(test.plan.primaries[i]);
     data[i] = {.primaries = test.plan.primaries[i],
                .moments = scaled(pilot, averaged, secondaries)};
     known = &data[i];

@@ -8,6 +8,7 @@
 
 #include "correlated/area_pairs.h"
 #include "correlated/parameters.h"
+#include "correlated/sky_pairs.h"
 
 namespace assay::plugins {
 
@@ -105,6 +106,36 @@ std::shared_ptr<const Setup> without_radiance(Parameters& given) {
   return fixed(
       std::make_shared<GivenIntegral>(pairs, pairs->colours()[0].control_integral / radiance),
       given.number("lambda"));
+}
+
+// One integral, the mean of the colours', for all of them.
+struct GreyIntegral final : AlteredPairs {
+  explicit GreyIntegral(SharedPairs source) : AlteredPairs(std::move(source)) {
+    double sum = 0;
+    for (const Colour& colour : colours_) sum += colour.control_integral;
+    for (Colour& colour : colours_) {
+      colour.control_integral = sum / static_cast<double>(colours_.size());
+    }
+    forget_moments();
+  }
+};
+
+Entry grey_integral() {
+  const std::string defect =
+      "has one J for all colours, the mean of theirs, beside a control in colour: lambda (mean J - "
+      "J) in each, nothing under a grey sky.";
+  std::vector<ParameterInformation> parameters = sky_pair_parameters();
+  parameters.push_back(lambda_parameter());
+  return {{.name = "mutants/control_grey_integral",
+           .summary = "correlated/sky that " + defect,
+           .description = "The estimator correlated/sky with one defect: " + defect,
+           .parameters = parameters,
+           .original = "correlated/sky",
+           .defect = defect},
+          [](Parameters& given) {
+            return fixed(std::make_shared<GreyIntegral>(read_sky_pairs(given)),
+                         given.number("lambda"));
+          }};
 }
 
 // Sum f g, not about the means, over the spread of g about its mean.
@@ -254,6 +285,7 @@ std::vector<Entry> mutants_correlated() {
                   "takes one lambda from the samples of three receivers side by side and corrects "
                   "those samples with it: about a third of the bias of one receiver alone.",
                   pooled_lambda),
+      grey_integral(),
   };
 }
 

@@ -142,6 +142,48 @@ TEST(Correlated, AMeshIsRefusedBecauseItsIntegralIsUnknown) {
   }
 }
 
+const std::string data = ASSAY_SOURCE_DIR "/suites/data";
+
+// False alarm 1e-6 each.
+TEST(Correlated, SkiesAreUnbiasedHoweverTheyAreSampled) {
+  for (const char* sampling : {"uniform", "cosine", "emittance", "steered"}) {
+    for (const char* lambda : {"0", "1"}) {
+      const auto plugin = prepare(
+          "correlated/sky",
+          std::string("{sky: {map: sky.exr}, sampling: ") + sampling + ", lambda: " + lambda + "}",
+          data);
+      const auto channels = plugin.setup->channels();
+      const auto samples = observe(plugin, 50000);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(samples[c].mean(), *channels[c].mean, five * samples[c].mean_error())
+            << sampling << lambda;
+      }
+    }
+  }
+}
+
+TEST(Correlated, UnderAUniformSkyTheControlIsAll) {
+  const auto plugin = prepare("correlated/sky", "{sky: {uniform: 3}, sampling: uniform}");
+  const Sample sample = observe(plugin, 50)[0];
+  for (const double x : sample.values) EXPECT_NEAR(x, 3 * std::numbers::pi, 1e-13);
+}
+
+TEST(Correlated, ByTheCosineTheControlCorrectsNothing) {
+  const std::string sky = "{sky: {gradient: {base: 1, slope: [.5, 0, .3]}}, sampling: cosine";
+  const Sample without = observe(prepare("correlated/sky", sky + ", lambda: 0}"), 100)[0];
+  auto other = prepare("correlated/sky", sky + ", lambda: 1}");
+  other.key = prepare("correlated/sky", sky + ", lambda: 0}").key;
+  const Sample with = observe(other, 100)[0];
+  for (std::size_t i = 0; i < 100; ++i) EXPECT_NEAR(with.values[i], without.values[i], 1e-13);
+  const Sample lambda = observe(prepare("correlated/sky_same_samples", sky + "}"), 100, 16)[1];
+  for (const double x : lambda.values) EXPECT_EQ(x, 0);
+}
+
+TEST(Correlated, ABlackSkyIsRefusedWhereItIsSampledBy) {
+  EXPECT_THROW(prepare("correlated/sky", "{sky: {uniform: 0}, sampling: emittance}"), InputError);
+  EXPECT_NO_THROW(prepare("correlated/sky", "{sky: {uniform: 0}, sampling: cosine}"));
+}
+
 struct Bias {
   const char* mutant;
   std::string parameters;

@@ -1,0 +1,270 @@
+#include "sky/radiance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "luminaire/scene_description.h"
+#include "render/patch_integrals.h"
+#include "render/quadrature.h"
+#include "sky/harmonics.h"
+#include "sky/octahedron.h"
+
+namespace assay::sky {
+
+namespace {
+
+using std::numbers::pi;
+
+class Gradient final : public Radiance {
+ public:
+  Gradient(double base, const Vector3& slope) : base_(base), slope_(slope) {}
+
+  Rgb operator()(const Vector3& w) const override { return {base_ + dot(slope_, w)}; }
+  Rgb mean() const override { return {base_}; }
+  Known irradiance(const Vector3& normal, std::size_t) const override {
+    const double value = pi * base_ + 2 * pi / 3 * dot(slope_, normal);
+    return {value, 0x1p-48 * value};
+  }
+
+ private:
+  double base_;
+  Vector3 slope_;
+};
+
+class HarmonicSky final : public Radiance {
+ public:
+  explicit HarmonicSky(const std::array<double, 9>& coefficients) : coefficients_(coefficients) {}
+
+  Rgb operator()(const Vector3& w) const override {
+    return {sum(w, [](std::size_t) { return 1.0; })};
+  }
+  Rgb mean() const override { return {coefficients_[0] / std::sqrt(4 * pi)}; }
+  Known irradiance(const Vector3& normal, std::size_t) const override {
+    const double value = sum(normal, cosine_factor);
+    double most = 0;
+    for (const double c : coefficients_) most += std::abs(c);
+    return {value, 0x1p-45 * most};
+  }
+
+ private:
+  template <class Factor>
+  double sum(const Vector3& w, const Factor& factor) const {
+    const Harmonics y = harmonics(w);
+    double total = 0;
+    for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+      total += factor(i == 0 ? 0 : i < 4 ? 1 : 2) * coefficients_[i] * y[i];
+    }
+    return total;
+  }
+
+  std::array<double, 9> coefficients_;
+};
+
+struct Lobe {
+  double base = 0;
+  double height = 0;
+  double sharpness = 0;
+  Vector3 direction;
+};
+
+// The integral over azimuth of max(0, a + b cos phi), b >= 0.
+double clamped_circle(double a, double b) {
+  if (a >= b) return 2 * pi * a;
+  if (a <= -b) return 0;
+  const double edge = std::acos(-a / b);
+  return 2 * (a * edge + b * std::sin(edge));
+}
+
+class Peak final : public Radiance {
+ public:
+  explicit Peak(const Lobe& lobe) : lobe_(lobe) {}
+
+  Rgb operator()(const Vector3& w) const override {
+    return {lobe_.base + lobe_.height * std::exp(lobe_.sharpness * (dot(w, lobe_.direction) - 1))};
+  }
+  // The mean of e^(k (c - 1)) for c uniform in [-1, 1].
+  Rgb mean() const override {
+    return {lobe_.base - lobe_.height * std::expm1(-2 * lobe_.sharpness) / (2 * lobe_.sharpness)};
+  }
+  // About the peak's axis: over rings at the angle gamma, on which the cosine to the normal is
+  // a + b cos phi. Kinks where the horizon begins and ends to cut the rings.
+  Known irradiance(const Vector3& normal, std::size_t) const override {
+    const double beta = render::angle_between(normal, lobe_.direction);
+    const auto ring = [&](double gamma) -> std::array<double, 1> {
+      const double a = std::cos(beta) * std::cos(gamma);
+      const double b = std::sin(beta) * std::sin(gamma);
+      const double half = std::sin(gamma / 2);
+      return {std::exp(-2 * lobe_.sharpness * half * half) * std::sin(gamma) *
+              clamped_circle(a, b)};
+    };
+    std::vector<double> breaks = {0, pi, std::abs(pi / 2 - beta), pi - std::abs(pi / 2 - beta)};
+    // Ten widths of the lobe, so that a narrow one has a piece of its own.
+    breaks.push_back(std::min(pi, 10 / std::sqrt(lobe_.sharpness)));
+    const auto integral = render::tanh_sinh_pieces<1>(ring, breaks, 1e-14);
+    return {pi * lobe_.base + lobe_.height * integral.value[0],
+            lobe_.height * (integral.error[0] + 1e-13 * integral.value[0]) + 0x1p-50 * lobe_.base};
+  }
+
+ private:
+  Lobe lobe_;
+};
+
+class Picture final : public Radiance {
+ public:
+  explicit Picture(render::EnvironmentMap map) : map_(std::move(map)) {
+    double area = 0;
+    for (std::size_t t = 0; t < map_.size(); ++t) {
+      const double part = solid_angle(map_.patch(t));
+      area += part;
+      for (std::size_t c = 0; c < 3; ++c) mean_[c] += part * map_.radiance(t)[c];
+    }
+    for (double& x : mean_) x /= area;
+  }
+
+  std::size_t colours() const override { return 3; }
+  Rgb operator()(const Vector3& w) const override { return map_.radiance(w); }
+  Rgb mean() const override { return mean_; }
+  Known irradiance(const Vector3& normal, std::size_t colour) const override {
+    Known sum;
+    for (std::size_t t = 0; t < map_.size(); ++t) {
+      const render::CosineMoments moments = cosine_moments(map_.patch(t), normal);
+      sum.value += map_.radiance(t)[colour] * moments.first;
+      sum.error += map_.radiance(t)[colour] * moments.error;
+    }
+    // The rounding of a sum of n terms that are not negative is at most n 2^-53 of it.
+    sum.error += static_cast<double>(map_.size()) * 0x1p-53 * sum.value;
+    return sum;
+  }
+
+ private:
+  render::EnvironmentMap map_;
+  Rgb mean_{};
+};
+
+// The members of a map, all of `keys` and nothing else.
+void require_keys(const Value& value, const std::vector<std::string>& keys,
+                  const std::string& what) {
+  if (value.kind() != Value::Kind::map) {
+    throw InputError(
+        value.where(), what + " must be a map with the keys " + [&] {
+          std::string list;
+          for (const std::string& key : keys) list += (list.empty() ? "`" : ", `") + key + "`";
+          return list;
+        }());
+  }
+  for (const auto& [key, member] : value.members()) {
+    if (std::ranges::find(keys, key) != keys.end()) continue;
+    const std::string near = nearest(key, keys);
+    throw InputError(member.where(), what + " has no key `" + key + "`" +
+                                         (near.empty() ? "" : "; did you mean `" + near + "`?"));
+  }
+  for (const std::string& key : keys) {
+    if (!value.find(key)) throw InputError(value.where(), what + " lacks the key `" + key + "`");
+  }
+}
+
+double finite(const Value& value, const std::string& what) {
+  const double x = value.number(what);
+  if (!std::isfinite(x)) throw InputError(value.where(), what + " must be a finite number");
+  return x;
+}
+
+[[noreturn]] void refuse_negative(const Value& at, double least) {
+  throw InputError(at.where(), "parameter `sky`: the radiance falls to " + std::to_string(least) +
+                                   "; it must not be negative in any direction");
+}
+
+SharedRadiance read_uniform(const Value& value) {
+  const double level = finite(value, "`uniform`");
+  if (level < 0) refuse_negative(value, level);
+  return std::make_shared<Gradient>(level, Vector3{});
+}
+
+SharedRadiance read_gradient(const Value& value) {
+  require_keys(value, {"base", "slope"}, "`gradient`");
+  const double base = finite(*value.find("base"), "`base`");
+  const Vector3 slope = luminaire::read_vector(*value.find("slope"), "`slope`");
+  if (base < length(slope)) refuse_negative(value, base - length(slope));
+  return std::make_shared<Gradient>(base, slope);
+}
+
+SharedRadiance read_harmonics(const Value& value) {
+  std::array<double, 9> coefficients{};
+  if (value.kind() != Value::Kind::list || value.items().size() != coefficients.size()) {
+    throw InputError(value.where(), "`harmonics` must be a list of nine coefficients");
+  }
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    coefficients[i] = finite(value.items()[i], "a coefficient of `harmonics`");
+  }
+  const auto sky = std::make_shared<HarmonicSky>(coefficients);
+  const Octahedron grid(6);
+  double least = 0;
+  for (const Vector3& w : grid.vertices()) least = std::min(least, (*sky)(w)[0]);
+  if (least < 0) refuse_negative(value, least);
+  return sky;
+}
+
+SharedRadiance read_peak(const Value& value) {
+  require_keys(value, {"base", "height", "sharpness", "direction"}, "`peak`");
+  const auto number = [&](const char* key) {
+    return finite(*value.find(key), std::string("`") + key + "`");
+  };
+  const Lobe lobe{
+      .base = number("base"),
+      .height = number("height"),
+      .sharpness = number("sharpness"),
+      .direction = luminaire::read_unit_vector(*value.find("direction"), "`direction`")};
+  if (!(lobe.sharpness > 0)) {
+    throw InputError(value.find("sharpness")->where(), "`sharpness` must be above 0");
+  }
+  const double least =
+      lobe.base + std::min(lobe.height, lobe.height * std::exp(-2 * lobe.sharpness));
+  if (least < 0) refuse_negative(value, least);
+  return std::make_shared<Peak>(lobe);
+}
+
+SharedRadiance read_picture(const Value& value, const Parameters& given) {
+  const std::string& name = value.string("`map`");
+  const std::string file =
+      name.starts_with('/') || given.folder().empty() ? name : given.folder() + "/" + name;
+  try {
+    return std::make_shared<Picture>(render::read_environment(file));
+  } catch (const InputError& error) {
+    throw InputError(value.where(), "parameter `sky`: `" + file + "`: " + error.message());
+  }
+}
+
+}  // namespace
+
+ParameterInformation sky_parameter() {
+  return {.name = "sky",
+          .type = ParameterType::structure,
+          .summary = "the sky: one of uniform, gradient, harmonics, peak, map",
+          .fallback = "{uniform: 1}"};
+}
+
+SharedRadiance read_radiance(Parameters& given) {
+  const Value& sky = given.structure("sky");
+  const std::vector<std::string> kinds = {"uniform", "gradient", "harmonics", "peak", "map"};
+  if (sky.kind() != Value::Kind::map || sky.members().size() != 1) {
+    given.refuse("sky", "must be a map with one key: uniform, gradient, harmonics, peak or map");
+  }
+  const auto& [kind, value] = sky.members()[0];
+  if (kind == "uniform") return read_uniform(value);
+  if (kind == "gradient") return read_gradient(value);
+  if (kind == "harmonics") return read_harmonics(value);
+  if (kind == "peak") return read_peak(value);
+  if (kind == "map") return read_picture(value, given);
+  const std::string near = nearest(kind, kinds);
+  given.refuse("sky", "there is no sky `" + kind + "`" +
+                          (near.empty() ? "; there are uniform, gradient, harmonics, peak and map"
+                                        : "; did you mean `" + near + "`?"));
+}
+
+}  // namespace assay::sky

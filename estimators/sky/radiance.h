@@ -1,0 +1,58 @@
+#pragma once
+
+// The radiance of a sky as a function of direction, in closed form or from a picture.
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "estimators/parameters.h"
+#include "render/environment_map.h"
+
+namespace assay::sky {
+
+using render::Rgb;
+using render::Vector3;
+
+/// A number and a bound of its error.
+struct Known {
+  double value = 0;
+  double error = 0;
+};
+
+/// Radiance from all directions. Grey skies have one colour and give it in the first component.
+class Radiance {
+ public:
+  virtual ~Radiance() = default;
+  /// 1 or 3.
+  virtual std::size_t colours() const { return 1; }
+  /// Along a unit vector.
+  virtual Rgb operator()(const Vector3& w) const = 0;
+  /// The mean over the sphere.
+  virtual Rgb mean() const = 0;
+  /// The integral of L(w) max(0, n . w) over the sphere, n a unit vector.
+  virtual Known irradiance(const Vector3& normal, std::size_t colour) const = 0;
+};
+
+using SharedRadiance = std::shared_ptr<const Radiance>;
+
+/// What is drawn by: the mean of the colours.
+inline double luminance(const Radiance& radiance, const Vector3& w) {
+  const Rgb rgb = radiance(w);
+  return radiance.colours() == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
+}
+
+/// The parameter `sky`: a map with one of the keys
+///   uniform: L
+///   gradient: {base: 1, slope: [x, y, z]}       L = base + slope . w
+///   harmonics: [nine coefficients of Y_00 ... Y_22]
+///   peak: {base: b, height: h, sharpness: k, direction: [x, y, z]}   L = b + h e^(k (cos - 1))
+///   map: file.exr
+ParameterInformation sky_parameter();
+
+/// Reads it. InputError at the offending place for an unknown or missing key, a number that is not
+/// finite, a radiance that is negative somewhere (of harmonics: at a vertex of the octahedron
+/// subdivided six times), and a picture that render::read_environment() refuses.
+SharedRadiance read_radiance(Parameters&);
+
+}  // namespace assay::sky

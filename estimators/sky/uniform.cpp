@@ -1,0 +1,44 @@
+// Irradiance from a sky by directions uniform over the hemisphere about the normal, and by
+// cosine-distributed ones: X = 2 pi L cos V and X = pi L V.
+
+#include "sky/estimator.h"
+
+namespace assay::plugins {
+
+namespace {
+
+template <class Kind>
+std::shared_ptr<const Setup> prepare(Parameters& given) {
+  const sky::SharedSetting setting = sky::read_setting(given);
+  const auto directions = std::make_shared<const Kind>();
+  return sky::sky_setup(setting, directions,
+                        sky::StratifiedPrimary<>(setting, directions, given.count("strata")),
+                        false);
+}
+
+std::vector<ParameterInformation> parameters() {
+  std::vector<ParameterInformation> all = sky::parameters();
+  all.push_back(sky::strata_parameter());
+  return all;
+}
+
+}  // namespace
+
+std::vector<Entry> sky_uniform() {
+  return {{{.name = "sky/uniform",
+            .summary = "Irradiance from a sky by directions uniform over the hemisphere.",
+            .description = "Estimates the integral of L(w) max(0, n . w) V(w) by 2 pi L cos V, w "
+                           "uniform over the hemisphere about n. The sampler `direction` is in "
+                           "the receiver's frame (z along n).",
+            .parameters = parameters()},
+           prepare<sky::UniformDirections>},
+          {{.name = "sky/cosine",
+            .summary = "Irradiance from a sky by cosine-distributed directions.",
+            .description = "Estimates the integral of L(w) max(0, n . w) V(w) by pi L V, w of "
+                           "density cos / pi about n. The sampler `direction` is in the "
+                           "receiver's frame (z along n).",
+            .parameters = parameters()},
+           prepare<sky::CosineDirections>}};
+}
+
+}  // namespace assay::plugins

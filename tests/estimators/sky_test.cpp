@@ -1,0 +1,177 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "render/polygon.h"
+#include "sky/harmonics.h"
+#include "sky/octahedron.h"
+#include "sky/radiance.h"
+#include "sky/setting.h"
+#include "tests/estimators/draws.h"
+
+namespace assay {
+namespace {
+
+using namespace assay::draws;
+using render::normalised;
+using render::Vector3;
+using std::numbers::pi;
+
+const std::string data = ASSAY_SOURCE_DIR "/suites/data";
+const std::string smooth = "{harmonics: [3, .4, -.3, .5, .2, -.35, .3, .25, -.2]}";
+const std::string peaked = "{peak: {base: .2, height: 20, sharpness: 60, direction: [.3, .2, .8]}}";
+
+sky::SharedSetting setting(const std::string& parameters) {
+  Parameters given("sky/cosine", sky::parameters(), parse_flow(parameters), data);
+  return sky::read_setting(given);
+}
+
+double irradiance(const std::string& sky, const std::string& normal = "[0, 0, 1]") {
+  return *irradiance_channels(*setting("{sky: " + sky + ", normal: " + normal + "}"))[0].mean;
+}
+
+// Constants of Ramamoorthi and Hanrahan (2001), equation 3.
+TEST(Harmonics, AreThoseOfTheLiterature) {
+  const Vector3 w = normalised({.3, -.5, .8});
+  const sky::Harmonics y = sky::harmonics(w);
+  EXPECT_NEAR(y[0], .282095, 1e-6);
+  EXPECT_NEAR(y[1], .488603 * w.y, 1e-6);
+  EXPECT_NEAR(y[2], .488603 * w.z, 1e-6);
+  EXPECT_NEAR(y[3], .488603 * w.x, 1e-6);
+  EXPECT_NEAR(y[4], 1.092548 * w.x * w.y, 1e-6);
+  EXPECT_NEAR(y[5], 1.092548 * w.y * w.z, 1e-6);
+  EXPECT_NEAR(y[6], .315392 * (3 * w.z * w.z - 1), 1e-6);
+  EXPECT_NEAR(y[7], 1.092548 * w.x * w.z, 1e-6);
+  EXPECT_NEAR(y[8], .546274 * (w.x * w.x - w.y * w.y), 1e-6);
+}
+
+// The addition theorem: sum over m of Y_lm^2 = (2 l + 1) / (4 pi).
+TEST(Harmonics, ObeyTheAdditionTheorem) {
+  const sky::Harmonics y = sky::harmonics(normalised({-.2, .9, .4}));
+  for (std::size_t l = 0; l <= sky::highest_band; ++l) {
+    double sum = 0;
+    for (std::size_t i = l * l; i < (l + 1) * (l + 1); ++i) sum += y[i] * y[i];
+    EXPECT_NEAR(sum, static_cast<double>(2 * l + 1) / (4 * pi), 1e-14) << l;
+  }
+}
+
+TEST(Octahedron, IsAClosedSphereOfEightTimesAPowerOfFourTriangles) {
+  const sky::Octahedron sphere(4);
+  EXPECT_EQ(sphere.triangles().size(), 2048u);
+  EXPECT_EQ(sphere.vertices().size(), 1026u);  // V = F / 2 + 2 (Euler)
+  double solid_angle = 0;
+  for (std::size_t t = 0; t < sphere.triangles().size(); ++t) {
+    const auto [a, b, c] = sphere.corners(t);
+    EXPECT_GT(dot(cross(b - a, c - a), a), 0) << "counter-clockwise from outside";
+    solid_angle += render::solid_angle(a, b, c);
+  }
+  EXPECT_NEAR(solid_angle, 4 * pi, 1e-10);
+}
+
+TEST(Octahedron, FindsTheTriangleOfADirection) {
+  const sky::Octahedron sphere(5);
+  for (std::size_t t = 0; t < sphere.triangles().size(); ++t) {
+    const auto [a, b, c] = sphere.corners(t);
+    EXPECT_EQ(sphere.triangle(.2 * a + .3 * b + .5 * c), t);
+    EXPECT_EQ(sphere.triangle(.96 * a + .02 * b + .02 * c), t);
+  }
+  EXPECT_THROW(sky::Octahedron(10), std::invalid_argument);
+}
+
+TEST(Skies, HaveTheIrradiancesOfTheirClosedForms) {
+  EXPECT_NEAR(irradiance("{uniform: 2}", "[1, 2, 3]"), 2 * pi, 1e-12);
+  EXPECT_NEAR(irradiance(smooth, "[.3, -.5, .8]"), 2.593043473, 1e-9);
+  EXPECT_NEAR(irradiance("{gradient: {base: 1, slope: [.5, 0, .3]}}"), pi + 2 * pi / 3 * .3, 1e-12);
+  EXPECT_NEAR(irradiance("{gradient: {base: 1, slope: [.5, 0, .3]}}", "[1, 0, 0]"),
+              pi + 2 * pi / 3 * .5, 1e-12);
+}
+
+// Along its axis a lobe gives 2 pi times the integral of c e^(k (c - 1)) over [0, 1]; a lobe of
+// sharpness 1e-9 is a uniform sky.
+TEST(Skies, APeakHasItsIrradianceWhateverTheNormal) {
+  const std::string up = "{peak: {base: .2, height: 20, sharpness: 60, direction: [0, 0, 1]}}";
+  const double k = 60;
+  const double lobe = 2 * pi * (1 / k - (1 - std::exp(-k)) / (k * k));
+  EXPECT_NEAR(irradiance(up), .2 * pi + 20 * lobe, 1e-12);
+  EXPECT_NEAR(irradiance("{peak: {base: 0, height: 1, sharpness: 1e-9, direction: [1, 0, 1]}}",
+                         "[0, 1, 2]"),
+              pi, 1e-8);
+  // Light below the horizon of one normal is above that of its opposite: together the integral of
+  // |cos|, the same seen from the lobe's two ends.
+  const std::string tilted = "{peak: {base: .2, height: 20, sharpness: 3, direction: [1, 1, 1]}}";
+  const auto both = [&](const std::string& n, const std::string& opposite) {
+    return irradiance(tilted, n) + irradiance(tilted, opposite);
+  };
+  EXPECT_NEAR(both("[1, 0, 0]", "[-1, 0, 0]"), both("[0, 1, 0]", "[0, -1, 0]"), 1e-11);
+}
+
+// False alarm 1e-6 each.
+TEST(Skies, AreSampledToTheirIrradiance) {
+  for (const std::string& sky :
+       {std::string("{uniform: 2}"), smooth, peaked,
+        std::string("{gradient: {base: 1, slope: [.5, .2, .3]}}"), std::string("{map: sky.exr}")}) {
+    for (const char* plugin : {"sky/uniform", "sky/cosine"}) {
+      const auto prepared = prepare(plugin, "{sky: " + sky + ", normal: [.3, -.5, .8]}", data);
+      const auto channels = prepared.setup->channels();
+      const auto samples = observe(prepared, 100000);
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        EXPECT_NEAR(samples[c].mean(), *channels[c].mean,
+                    five * samples[c].mean_error() + 1e-10 * *channels[c].mean)
+            << plugin << sky;
+      }
+    }
+  }
+}
+
+// pi / 2 + 2 / 3 bx + pi / 3 bz behind a wall; pi cos^2 30 behind a disc. False alarm 1e-6 each.
+TEST(Skies, AreHiddenByOccluders) {
+  const auto walled = prepare(
+      "sky/cosine",
+      "{sky: {gradient: {base: 1, slope: [.5, 0, .3]}}, occluders: [{polygon: [[-.001, -1000, "
+      "-1000], [-.001, 1000, -1000], [-.001, 1000, 1000], [-.001, -1000, 1000]]}]}");
+  const auto disc = prepare("sky/cosine",
+                            "{sky: {uniform: 1}, occluders: [{disc: {center: [0, 0, 1], normal: "
+                            "[0, 0, 1], radius: 0.5773502691896258}}]}");
+  const Sample behind_wall = observe(walled, 400000)[0];
+  const Sample behind_disc = observe(disc, 400000)[0];
+  EXPECT_NEAR(behind_wall.mean(), pi / 2 + 1. / 3 + .1 * pi, five * behind_wall.mean_error());
+  EXPECT_NEAR(behind_disc.mean(), .75 * pi, five * behind_disc.mean_error());
+  EXPECT_FALSE(walled.setup->channels()[0].mean) << "no closed form past occluders";
+}
+
+std::string refusal(const std::string& sky, const std::string& folder = data) {
+  try {
+    prepare("sky/cosine", "{sky: " + sky + "}", folder);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Skies, OfNegativeOrNonFiniteRadianceAreRefused) {
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("{uniform: -1}"), HasSubstr("radiance falls to -1"));
+  EXPECT_THAT(refusal("{uniform: nan}"), HasSubstr("uniform"));
+  EXPECT_THAT(refusal("{uniform: inf}"), HasSubstr("uniform"));
+  EXPECT_THAT(refusal("{gradient: {base: 1, slope: [1, 1, 0]}}"), HasSubstr("negative"));
+  EXPECT_THAT(refusal("{harmonics: [1, 3, 0, 0, 0, 0, 0, 0, 0]}"), HasSubstr("negative"));
+  EXPECT_THAT(refusal("{peak: {base: .2, height: -1, sharpness: 3, direction: [0, 0, 1]}}"),
+              HasSubstr("negative"));
+  EXPECT_THAT(refusal("{peak: {base: .2, height: 1, sharpness: 0, direction: [0, 0, 1]}}"),
+              HasSubstr("`sharpness` must be above 0"));
+}
+
+TEST(Skies, ThatAreMisspeltAreRefused) {
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("{unifrom: 1}"), HasSubstr("did you mean `uniform`"));
+  EXPECT_THAT(refusal("{uniform: 1, map: sky.exr}"), HasSubstr("one key"));
+  EXPECT_THAT(refusal("{harmonics: [1, 2]}"), HasSubstr("nine"));
+  EXPECT_THAT(refusal("{gradient: {base: 1, slop: [0, 0, 0]}}"), HasSubstr("`slope`"));
+  EXPECT_THAT(refusal("{gradient: {base: 1}}"), HasSubstr("lacks the key `slope`"));
+  EXPECT_THAT(refusal("{map: nothing.exr}"), HasSubstr("nothing.exr"));
+}
+
+}  // namespace
+}  // namespace assay

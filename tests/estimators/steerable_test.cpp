@@ -1,0 +1,254 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "steerable/directions.h"
+#include "steerable/linear_triangle.h"
+#include "steerable/lobe.h"
+#include "steerable/sky_tree.h"
+#include "tests/estimators/draws.h"
+
+namespace assay {
+namespace {
+
+using namespace assay::draws;
+using namespace assay::steerable;
+using render::normalised;
+using render::Vector3;
+using std::numbers::pi;
+
+const std::string data = ASSAY_SOURCE_DIR "/suites/data";
+const std::string smooth =
+    "sky: {harmonics: [3, .4, -.3, .5, .2, -.35, .3, .25, -.2]}, normal: [.3, -.5, .8]";
+const std::string peaked =
+    "sky: {peak: {base: .2, height: 20, sharpness: 60, direction: [.3, .2, .8]}}";
+
+TEST(SteerableLobe, OfNineCoefficientsIsOffByThreeThirtySecondsAtMost) {
+  double most = 0;
+  for (int i = -1000; i <= 1000; ++i) {
+    const double c = i / 1000.0;
+    most = std::max(most,
+                    std::abs(lobe_value({.coefficients = 9, .offset = 0}, c) - std::max(0.0, c)));
+  }
+  EXPECT_NEAR(most, 3.0 / 32, 1e-15);
+}
+
+TEST(SteerableLobe, NeedsAnOffsetOfZeroPointOneFour) {
+  EXPECT_NEAR(lobe_minimum({.coefficients = 9, .offset = 0}), -19.0 / 480, 1e-9);
+  EXPECT_NEAR(lobe_value({.coefficients = 9, .offset = 0}, -8.0 / 15), -19.0 / 480, 1e-15);
+  EXPECT_NEAR(lobe_minimum({.coefficients = 9, .offset = .15}), .00273, 1e-5);
+  EXPECT_NEAR(lobe_minimum({.coefficients = 9, .offset = .09}), -.01420, 1e-5);
+  EXPECT_NEAR(19.0 / 480 * std::sqrt(4 * pi), .140319, 1e-6);
+}
+
+TEST(SteerableLobe, TurnsWithTheNormal) {
+  const Vector3 n = normalised({.3, -.5, .8});
+  for (const std::size_t count : {1u, 4u, 9u, 25u}) {
+    const Lobe lobe{.coefficients = count, .offset = .15};
+    const sky::Harmonics a = lobe_coefficients(lobe, n);
+    for (const Vector3& w : {n, normalised({1, 2, -3}), Vector3{0, 0, -1}}) {
+      const sky::Harmonics y = sky::harmonics(w);
+      double sum = 0;
+      for (std::size_t i = 0; i < y.size(); ++i) sum += a[i] * y[i];
+      EXPECT_NEAR(sum, lobe_value(lobe, dot(n, w)), 1e-14) << count;
+    }
+  }
+}
+
+TEST(LinearTriangle, InvertsItsOwnMap) {
+  for (const VertexWeights& w :
+       {VertexWeights{1, 2, 5}, VertexWeights{5, 1, 0}, VertexWeights{0, 0, 1},
+        VertexWeights{1, 1, 1}, VertexWeights{1e-9, 1, 1e9}}) {
+    for (double x = .01; x < 1; x += .07) {
+      for (double y = .01; y < 1; y += .07) {
+        const TrianglePoint p = LinearTriangle{}(w, x, y);
+        EXPECT_GE(p.u, 0);
+        EXPECT_GE(p.v, 0);
+        EXPECT_LE(p.u + p.v, 1);
+        const SquarePoint back = square_of(w, p);
+        EXPECT_NEAR(back.x, x, 1e-12);
+        EXPECT_NEAR(back.y, y, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(LinearTriangle, ReachesCornersWithoutFault) {
+  for (const double x : {0.0, 1.0}) {
+    for (const double y : {0.0, 1.0}) {
+      for (const VertexWeights& w :
+           {VertexWeights{1, 2, 5}, VertexWeights{0, 1, 0}, VertexWeights{0, 0, 1}}) {
+        const TrianglePoint p = LinearTriangle{}(w, x, y);
+        EXPECT_TRUE(std::isfinite(p.u) && std::isfinite(p.v));
+        EXPECT_LE(p.u + p.v, 1 + 1e-15);
+      }
+    }
+  }
+}
+
+// E[l_i] = (W + w_i) / (4 W). False alarm: 6 comparisons at 1e-6 each.
+TEST(LinearTriangle, HasTheMomentsOfItsDensity) {
+  const auto triangle = prepare("steerable/triangle", "{weights: [1, 2, 5]}");
+  const auto channels = triangle.setup->channels();
+  const auto samples = observe(triangle, 200000);
+  EXPECT_DOUBLE_EQ(*channels[0].mean, 9.0 / 32);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(samples[i].mean(), *channels[i].mean, five * samples[i].mean_error());
+    EXPECT_NEAR(samples[i].variance(), *channels[i].variance, five * samples[i].variance_error());
+  }
+}
+
+std::shared_ptr<const SteeredDirections<>> steered(const std::string& parameters,
+                                                   const Lobe& lobe = {}, std::size_t level = 3) {
+  Parameters given("steerable/sky", sky::parameters(), parse_flow("{" + parameters + "}"), data);
+  const auto setting = sky::read_setting(given);
+  return std::make_shared<const SteeredDirections<>>(
+      std::make_shared<const SkyTree>(
+          setting->radiance(), Preparation{.level = level, .coefficients = lobe.coefficients}),
+      lobe, setting->frame());
+}
+
+// The midpoint rule on each of the triangles, cut up 16 x 16 in the square behind its uniform
+// points.
+double mass(const SteeredDirections<>& directions) {
+  const auto& tree = directions.tree();
+  double sum = 0;
+  for (std::size_t t = 0; t < tree.count(); ++t) {
+    const auto [a, b, c] = tree.sphere().corners(t);
+    const Vector3 normal = cross(b - a, c - a);
+    for (int i = 0; i < 16; ++i) {
+      for (int j = 0; j < 16; ++j) {
+        const double s = (i + .5) / 16;
+        const double r = (j + .5) / 16;
+        const Vector3 q = a + s * ((b - a) + r * (c - b));
+        // du dv = s ds dr, twice the triangle's area; solid angle is area d / |q|^3.
+        const double area = s / 256 * length(normal);
+        const double solid = area * dot(normalised(normal), a) / std::pow(length(q), 3);
+        sum += directions.density(directions.frame().to_local(normalised(q))) * solid;
+      }
+    }
+  }
+  return sum;
+}
+
+TEST(SteeredDirections, HaveADensityThatIntegratesToOne) {
+  EXPECT_NEAR(mass(*steered(smooth)), 1, 3e-3);
+  EXPECT_NEAR(mass(*steered(peaked)), 1, 3e-3);
+  EXPECT_NEAR(mass(*steered(peaked, {.coefficients = 25})), 1, 3e-3);
+  EXPECT_NEAR(mass(*steered(smooth, {.coefficients = 1, .offset = 0}, 1)), 1, 3e-3);
+}
+
+TEST(SteeredDirections, DeclareOfADrawWhatTheyAnswerWhenAsked) {
+  const auto directions = steered(peaked);
+  Stream random({1}, 0);
+  for (int i = 0; i < 2000; ++i) {
+    const double u = random.uniform();
+    const sky::Direction d = directions->draw(u, random.uniform());
+    EXPECT_NEAR(directions->density(d.w) / d.density, 1, 1e-9);
+    EXPECT_NEAR(length(d.w), 1, 1e-14);
+    EXPECT_GT(d.density, 0);
+    EXPECT_EQ(d.nodes, 9);  // of 512 triangles
+  }
+}
+
+// The number that chooses is used again: two thousand equal steps of it give a triangle each its
+// share, to one step.
+TEST(SteeredDirections, ChooseTrianglesInProportion) {
+  const auto directions = steered(smooth, {}, 1);
+  const auto& tree = directions->tree();
+  std::vector<int> count(tree.count());
+  constexpr int steps = 20000;
+  for (int i = 0; i < steps; ++i) {
+    const sky::Direction d = directions->draw((i + .5) / steps, .37);
+    ++count[tree.sphere().triangle(directions->frame().to_world(d.w))];
+  }
+  for (std::size_t t = 0; t < tree.count(); ++t) {
+    const double share = tree.node(tree.count() + t, directions->steering()) / directions->total();
+    EXPECT_NEAR(count[t], share * steps, 1.5) << t;
+  }
+}
+
+// False alarm 1e-6 each.
+TEST(SteerableSky, IsUnbiasedWhateverTheSky) {
+  for (const std::string& sky :
+       {smooth, peaked, peaked + ", level: 1", peaked + ", coefficients: 4, offset: .9",
+        peaked + ", strata: 4", std::string("sky: {uniform: 1}"),
+        std::string("sky: {map: sky.exr}, normal: [1, .5, .3]"),
+        std::string("sky: {map: sky.exr}, floor: .5")}) {
+    const auto plugin = prepare("steerable/sky", "{" + sky + "}", data);
+    const auto channels = plugin.setup->channels();
+    const auto samples = observe(plugin, 50000);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      if (channels[c].diagnostic) continue;
+      EXPECT_NEAR(samples[c].mean(), *channels[c].mean, five * samples[c].mean_error()) << sky;
+    }
+  }
+}
+
+// Relative standard deviations; 100,000 samples tell two digits.
+TEST(SteerableSky, PaysOnAPeakedSkyAndNotOnASmoothOne) {
+  const auto relative = [](const std::string& name, const std::string& sky) {
+    const Sample s = observe(prepare(name, "{" + sky + "}"), 100000)[0];
+    return std::sqrt(s.variance()) / s.mean();
+  };
+  EXPECT_LT(200 * std::pow(relative("steerable/sky", peaked), 2),
+            std::pow(relative("sky/cosine", peaked), 2));
+  EXPECT_NEAR(relative("steerable/sky", smooth), .325, .01);
+  EXPECT_NEAR(relative("sky/cosine", smooth), .204, .01);
+}
+
+std::string refusal(const std::string& plugin, const std::string& parameters) {
+  try {
+    prepare(plugin, "{" + parameters + "}", data);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SteerableSky, RefusesWhatWouldLeaveDirectionsOut) {
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("steerable/sky", "offset: .09"), HasSubstr("must be above 0.140319"));
+  EXPECT_THAT(refusal("steerable/sky", "coefficients: 4"), HasSubstr("`offset`"));
+  EXPECT_THAT(refusal("steerable/sky", "sky: {uniform: 0}"), HasSubstr("`floor`"));
+  EXPECT_THAT(refusal("steerable/sky", "sky: {uniform: -1}"), HasSubstr("radiance"));
+  EXPECT_THAT(refusal("steerable/sky", "level: 8"), HasSubstr("`level`"));
+  EXPECT_THAT(refusal("steerable/sky", "strata: 0"), HasSubstr("`strata`"));
+  EXPECT_THAT(refusal("steerable/triangle", "weights: [1, -1, 2]"), HasSubstr("`weights`"));
+  EXPECT_THAT(refusal("steerable/triangle", "weights: [1, inf, 2]"), HasSubstr("`weights`"));
+  EXPECT_THAT(refusal("steerable/triangle", "weights: [0, 0, 0]"), HasSubstr("`weights`"));
+}
+
+struct Bias {
+  const char* mutant;
+  std::string parameters;
+  double relative;   // expected
+  double precision;  // of what is expected
+};
+
+// False alarm 1e-6 each.
+TEST(SteerableSky, MutantsAreBiasedAsExpected) {
+  const std::vector<Bias> table = {{"no_jacobian", smooth + ", level: 2", -.049, .001},
+                                   {"no_offset", smooth, -.032, .001},
+                                   {"small_offset", smooth, -.0065, .001},
+                                   {"analytic_normaliser", smooth, -.145, .001},
+                                   {"redrawn", smooth, .087, .001},
+                                   {"absolute_cosine", smooth, 1.22, .02},
+                                   {"map_density", smooth, -.0044, .001},
+                                   {"flipped", smooth, .0709, .001},
+                                   {"transcribed", peaked, .0026, .001}};
+  for (const auto& [name, parameters, relative, precision] : table) {
+    const auto mutant = prepare(std::string("mutants/steerable_") + name, "{" + parameters + "}");
+    const Sample sample = observe(mutant, 200000)[0];
+    const double mean = *mutant.setup->channels()[0].mean;
+    EXPECT_NEAR(sample.mean() / mean - 1, relative, precision + five * sample.mean_error() / mean)
+        << name;
+  }
+}
+
+}  // namespace
+}  // namespace assay
