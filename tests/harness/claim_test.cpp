@@ -316,6 +316,10 @@ Claim some_claim() {
     // A per cent of the least doubles is no double.
     if (claim.margin.relative && claim.margin.value < 1e-300) claim.margin.value = 1e-300;
   }
+  if (name == QuantityName::integral || name == QuantityName::inconsistency) {
+    claim.right = Constant{*positive(), 0};
+    return claim;
+  }
   claim.left.slope = *gen::arbitrary<bool>();
   const bool moment = name == QuantityName::mean || name == QuantityName::variance;
   const int kind = *gen::inRange(0, 3);
