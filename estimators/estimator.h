@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "estimators/cost.h"
+#include "estimators/image.h"
 #include "estimators/parameters.h"
 #include "estimators/sampler.h"
 #include "estimators/stream.h"
@@ -67,6 +68,8 @@ class Setup {
   virtual std::vector<Channel> channels() const = 0;
   virtual std::unique_ptr<Estimator> make() const = 0;
   virtual std::vector<NamedSampler> samplers() const { return {}; }
+  /// The shape of an observation whose first channels are an image.
+  virtual std::optional<ImageShape> image() const { return {}; }
   /// The most secondary estimates there are (recorded data), if bounded.
   virtual std::optional<std::uint64_t> observations() const { return {}; }
   /// The file that ready-made observations are read from: two set-ups of one file share its rows.

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "harness/image_record.h"
 #include "harness/plan_table.h"
 #include "harness/progress_terminal.h"
 #include "harness/replay.h"
@@ -67,13 +68,14 @@ void require_writable(const Output& output) {
 }
 
 /// Every report asked for. Files first: what standard output shows has then been written.
-void write_reports(const reports::Record& record, const Output& output) {
+void write_reports(reports::Record record, const Output& output) {
   std::string to_stdout;
   bool console_placed = false;
   for (const ReportRequest& request : output.reports) {
     console_placed = console_placed || request.kind == "console";
     const bool standard = request.path == "-";
     const bool colour = standard && use_colour(output.colour, stdout);
+    if (request.kind == "json" && !standard) write_maps(record, request.path);
     const std::string text = written(record, request.kind, colour);
     if (standard) {
       to_stdout += text;

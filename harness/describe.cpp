@@ -1,6 +1,7 @@
 #include "harness/describe.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -144,10 +145,21 @@ std::string sampler_text(const NamedSampler& named) {
   return hanging(text, 2, 6);
 }
 
+std::string image_text(const ImageShape& shape) {
+  return hanging(
+      fmt::format("{} x {} pixels of {}, {}", shape.width, shape.height,
+                  fmt::join(shape.components, ", "),
+                  shape.independent ? "independent of each other" : "which depend on each other"),
+      2, 6);
+}
+
 std::string setup_text(const Setup& setup) {
-  std::string out = "\nchannels (with default parameters)\n";
+  std::string out;
+  const std::optional<ImageShape> image = setup.image();
+  if (image) out += "\nimage (with default parameters)\n" + image_text(*image);
+  out += "\nchannels (with default parameters)\n";
   const std::vector<Channel> channels = setup.channels();
-  constexpr std::size_t shown = 20;
+  const std::size_t shown = image ? 4 : 20;
   for (std::size_t i = 0; i < std::min(shown, channels.size()); ++i) {
     out += channel_text(channels[i]);
   }

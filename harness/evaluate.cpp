@@ -10,6 +10,7 @@
 #include "harness/consistency_setup.h"
 #include "harness/constant.h"
 #include "harness/gate_text.h"
+#include "harness/image_judge.h"
 #include "harness/narrate.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
@@ -43,12 +44,15 @@ bool could_be_drawn(TestWork& work) {
     for (const std::size_t channel : side.channels) {
       const ChannelSummary& summary = summary_of(work, subject).channels[channel];
       if (summary.nonfinite == 0) continue;
-      settle(work.outcome, Verdict::error,
-             fmt::format("{} of {} observations of `{}` are not finite, the first is observation "
-                         "{}; `assay replay RUN.json '{}' {}` draws it again",
-                         summary.nonfinite, work.outcome.secondaries(), side.estimator->name,
-                         summary.first_nonfinite, work.outcome.question.test->id,
-                         summary.first_nonfinite));
+      settle(
+          work.outcome, Verdict::error,
+          fmt::format(
+              "{} of {} observations of `{}`{} are not finite, the first is observation "
+              "{}; `assay replay RUN.json '{}' {}` draws it again",
+              summary.nonfinite, work.outcome.secondaries(), side.estimator->name,
+              side.image ? fmt::format(" at pixel {}", element_name(*side.setup->image(), channel))
+                         : "",
+              summary.first_nonfinite, work.outcome.question.test->id, summary.first_nonfinite));
       return false;
     }
   }
@@ -86,11 +90,20 @@ reports::Effect effect_of(const Evidence& evidence, const Regions& regions,
           .relative = evidence.relative};
 }
 
-ChannelOutcome channel_outcome(const TestOutcome& outcome, std::size_t channel,
+ChannelOutcome channel_outcome(const TestWork& work, std::size_t channel,
                                std::span<const ChannelData> data) {
+  const TestOutcome& outcome = work.outcome;
   const Question& question = outcome.question;
   const Regions& regions = outcome.plan.regions[channel];
-  Evidence evidence = evidence_of(outcome.plan.method, question, channel, data);
+  std::optional<ImageOutcome> image;
+  Evidence evidence;
+  if (question.kind == QuestionKind::image) {
+    ImageEvidence found = evidence_of_images(question, image_test(work), data);
+    evidence = std::move(found.evidence);
+    image = std::move(found.outcome);
+  } else {
+    evidence = evidence_of(outcome.plan.method, question, channel, data);
+  }
   const stats::TestResult at_null = evidence.at(0);
   ChannelOutcome result{.index = channel,
                         .name = question.channel_name(channel),
@@ -100,6 +113,7 @@ ChannelOutcome channel_outcome(const TestOutcome& outcome, std::size_t channel,
   result.decision = {.log_p_claimed = log_p_claimed(result.evidence, regions),
                      .log_p_forbidden = log_p_forbidden(result.evidence, regions)};
   result.effect = effect_of(result.evidence, regions, outcome.share());
+  result.image = std::move(image);
   if (question.kind == QuestionKind::mean_of_one) {
     result.reference = question.references[channel].value + question.offset;
   } else if (question.kind == QuestionKind::mean_of_two) {
@@ -158,7 +172,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
     for (reports::Gate& gate : data_gates(outcome, channel, data)) {
       outcome.gates.push_back(std::move(gate));
     }
-    outcome.channels.push_back(channel_outcome(outcome, channel, data));
+    outcome.channels.push_back(channel_outcome(work, channel, data));
   }
   return constants;
 }
@@ -179,6 +193,10 @@ TestSize full_size(const TestOutcome& outcome) {
 void note_sizes(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   for (ChannelOutcome& channel : outcome.channels) {
+    if (channel.image) {
+      channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
+      continue;
+    }
     const std::vector<ChannelData> data = data_of(work, channel.index);
     PlannedChannel observed =
         observed_channel(outcome.question, channel.regions, channel.index, data);
@@ -258,9 +276,8 @@ std::string first_contradiction(const TestWork& work) {
   }
   const auto first = first_inconsistent(*work.pools[0], outcome.secondaries());
   if (!first) return "";
-  return fmt::format(
-      "; the first is observation {}: `assay replay RUN.json {} {}` draws it again", *first,
-      shell_quoted(outcome.question.test->id), *first);
+  return fmt::format("; the first is observation {}: `assay replay RUN.json {} {}` draws it again",
+                     *first, shell_quoted(outcome.question.test->id), *first);
 }
 
 void require_activation(TestWork& work) {
@@ -328,6 +345,9 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
         data.back().all_values.push_back(
             work.pools[subject]->values(each, work.outcome.secondaries()));
       }
+    }
+    if (work.outcome.plan.method.keeps == Keeps::images) {
+      data.back().images = images_of(work, subject);
     }
     if (work.outcome.plan.method.keeps == Keeps::blocks) {
       data.back().replicates = replicates_of(work, subject, index);

@@ -126,6 +126,10 @@ std::string side_text(const Question& question, std::size_t channel) {
   if (question.test->claim.left.name == QuantityName::bias && !question.test->claim.left.slope) {
     return fmt::format("{}", question.offset);
   }
+  if (question.kind == QuestionKind::image) {
+    const auto* number = std::get_if<Constant>(&claim.right);
+    return number != nullptr ? fmt::format("{}", number->value) : "analytic";
+  }
   if (!question.references.empty()) return fmt::format("{}", question.references[channel].value);
   if (question.kind == QuestionKind::fit_to_density) return "its declared density";
   return to_string(question.law);
@@ -184,6 +188,8 @@ std::vector<Method> methods_for(const Question& question) {
       return {{within ? "tost" : "welch", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
               {"binomial", Keeps::moments}};
+    case QuestionKind::image:
+      return {{"image", Keeps::images}};
     case QuestionKind::variance_of_one:
       return {{"chi-square", Keeps::moments}, {"log-variance", Keeps::moments}};
     case QuestionKind::variance_of_two:
@@ -240,6 +246,7 @@ std::string null_hypothesis(const Method&, const Question& question, std::size_t
   std::string text = fmt::format("{} {} {}", to_string(test.claim.left), relation_text(test),
                                  side_text(question, channel));
   text += circumstances(question);
+  if (question.kind == QuestionKind::image) text += " in every pixel";
   if (question.channel_count() > 1) {
     text += fmt::format(" in channel {}", question.channel_name(channel));
   }
@@ -251,7 +258,8 @@ std::string null_hypothesis(const Method&, const Question& question, std::size_t
 bool is_relative(const Question& question, std::size_t channel) {
   const TestEntry& test = *question.test;
   const bool quantile = question.kind == QuestionKind::quantile && !question.of_two();
-  if (!question.of_means() && !quantile) return false;
+  const bool image = question.kind == QuestionKind::image;
+  if (!question.of_means() && !quantile && !image) return false;
   const bool within = test.claim.relation == Relation::within;
   if (quantile || test.claim.left.name == QuantityName::bias) {
     return (test.detect && test.detect->relative) ||
@@ -261,6 +269,11 @@ bool is_relative(const Question& question, std::size_t channel) {
   const bool absolute = (test.detect && !test.detect->relative) ||
                         (test.allow && !test.allow->relative && test.allow->value > 0) ||
                         (within && !test.claim.margin.relative);
+  if (image) {
+    const auto lit = [](const Constant& reference) { return reference.value != 0; };
+    return !absolute && (question.of_two() ||
+                         std::any_of(question.references.begin(), question.references.end(), lit));
+  }
   return !absolute &&
          (question.kind == QuestionKind::mean_of_two || question.references[channel].value != 0);
 }
@@ -309,10 +322,12 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
       return evidence_of_integral(question, data[0]);
     case QuestionKind::inconsistency:
       return evidence_of_inconsistency(question, data[0]);
+    case QuestionKind::image:
+      break;  // image_evidence.h
     case QuestionKind::slope:
       return evidence_of_slope(question, channel, data);
   }
-  throw std::logic_error("a question of no kind");
+  throw std::logic_error("a question that one channel's data do not answer");
 }
 
 }  // namespace assay::harness

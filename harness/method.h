@@ -32,11 +32,12 @@ struct ChannelData {
   std::span<const std::uint64_t> cells = {};
   std::span<const stats::JointMoments> with_cost = {};  ///< by CountedCost
   stats::Moments group_variances = {};
+  std::vector<std::vector<double>> images = {};  ///< observations, the subject's elements of each
   std::vector<Replicate> replicates = {};
 };
 
 /// What a method needs kept of its observations; points: the values of all channels together.
-enum class Keeps { moments, values, points, cells, costs, group_variances, blocks };
+enum class Keeps { moments, values, points, cells, costs, group_variances, blocks, images };
 
 /// Into how many replicates the observations of a method that keeps blocks are cut: enough for the
 /// tails of Student's t to be near the normal's.

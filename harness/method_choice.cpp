@@ -9,6 +9,7 @@
 #include "harness/constant.h"
 #include "harness/critical.h"
 #include "harness/frozen.h"
+#include "harness/image_plan.h"
 #include "harness/mean_evidence.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
@@ -389,6 +390,9 @@ std::uint64_t choose_for_points(const Question& question, const FamilyPlace& pla
 
 std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place,
                               const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  if (question.kind == QuestionKind::image) {
+    return choose_for_image(question, place, pilots, most, plan);
+  }
   if (question.of_means()) return choose_for_mean(question, place, pilots, most, plan);
   if (question.of_variances()) return choose_for_variance(question, place, pilots, most, plan);
   if (question.of_laws()) {

@@ -90,6 +90,14 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
 }
 
 std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  if (channel.image) {
+    return fmt::format(
+        "differs most at {}, {}; {} is {} {}",
+        place_text(channel.image->family.winner, *outcome.question.subjects[0].image),
+        p_text(channel.decision.log_p_claimed), channel.evidence.quantity,
+        show_theta(channel.evidence.estimate, channel.evidence),
+        interval_text(channel, channel.effect.confidence));
+  }
   return fmt::format("{} is {} {}{}, {}{}", channel.evidence.quantity,
                      show_theta(channel.evidence.estimate, channel.evidence),
                      interval_text(channel, channel.effect.confidence),
@@ -144,6 +152,13 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
 
 /// n grows with the square of how much narrower the interval must become.
 std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  if (channel.image) {
+    if (channel.image->wanted == 0) {
+      return "the estimate lies where the claim must not pass, yet not clearly so";
+    }
+    return fmt::format("about {} images would decide if the estimate stands",
+                       reports::human(channel.image->wanted, 2));
+  }
   const double beta = outcome.share().beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
   const double half = (interval.high - interval.low) / 2;

@@ -8,6 +8,7 @@
 
 #include "harness/decision.h"
 #include "harness/family.h"
+#include "harness/image_evidence.h"
 #include "harness/method.h"
 #include "harness/question.h"
 #include "reports/record.h"
@@ -23,6 +24,7 @@ struct Plan {
   stats::LookSchedule looks = {};             ///< sizes are secondaries of each subject
   std::vector<Regions> regions = {};          ///< of each channel
   std::vector<reports::Gate> gates = {};      ///< of the pilot
+  bool single_elements = true;                ///< of an image: whether they keep their level
   std::string invalid = "";                   ///< why no method is valid, if none is
 
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }
@@ -40,6 +42,7 @@ struct ChannelOutcome {
   reports::Effect effect = {};
   std::optional<double> detectable = {};  ///< least theta found with probability 1 - beta
   std::optional<double> reference = {};   ///< a number to mark among the observations
+  std::optional<ImageOutcome> image = {};
 };
 
 /// Natural logarithms of the p-values of one channel at the looks taken, each as of a single look;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "harness/image_record.h"
 #include "stats/holm.h"
 #include "stats/log_variance.h"
 #include "stats/student_t.h"
@@ -76,6 +77,10 @@ reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
   if (!picture.pool->trouble().empty()) return row;
   const Summary& summary = summary_of(picture);
   row.cost = cost_of(summary);
+  if (picture.pool->setup()->image()) {
+    row.channels.push_back(image_channel(*picture.pool->setup(), summary, per_primary(picture)));
+    return row;
+  }
   const std::vector<Channel> channels = picture.pool->setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (channels[i].diagnostic) continue;
@@ -157,6 +162,9 @@ void mark_differences(std::vector<ComparedPair>& pairs, double alpha) {
 
 bool drawn(const Picture& picture) { return picture.pool->trouble().empty(); }
 
+/// Images are compared by claims, not pixel by pixel.
+bool is_image(const Picture& picture) { return picture.pool->setup()->image().has_value(); }
+
 }  // namespace
 
 reports::Cost cost_of(const Summary& summary) {
@@ -178,6 +186,7 @@ void add_pictures(const SuiteRun& run, reports::Suite& suite) {
     for (std::size_t j = i + 1; j < run.pictures.size(); ++j) {
       const Picture& first = run.pictures[i];
       const Picture& second = run.pictures[j];
+      if (is_image(first) || is_image(second)) continue;
       if (!drawn(first) || !drawn(second) || !comparable(first, second, claimed)) continue;
       const std::size_t channels =
           std::min(first.pool->setup()->channels().size(), second.pool->setup()->channels().size());

@@ -1,6 +1,9 @@
 #include "harness/pilot.h"
 
+#include <algorithm>
+
 #include "harness/scheduler.h"
+#include "stats/image.h"
 
 namespace assay::harness {
 namespace {
@@ -9,6 +12,9 @@ namespace {
 // against any test. One that does not average may be a chain or an image: fewer.
 constexpr std::uint64_t averaging_observations = 8192;
 constexpr std::uint64_t other_observations = 512;
+// Of images as many as this many elements pay for, at least the fewest that tell their variance.
+constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
+constexpr std::uint64_t least_images = 2 * stats::least_replicates;
 // Of an image's thousands of channels only the moments are kept.
 constexpr std::size_t kept_channels = 64;
 
@@ -17,8 +23,13 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
   auto pool =
       std::make_shared<Pool>(estimator.setup, key_of(estimator, seed, 0, "pilot"), primaries);
-  const std::uint64_t count = estimator.setup->observations().value_or(
-      averages ? averaging_observations : other_observations);
+  std::uint64_t usual = averages ? averaging_observations : other_observations;
+  if (const auto image = estimator.setup->image()) {
+    usual = std::clamp(image_elements / (image->elements() * primaries), least_images,
+                       other_observations);
+    pool->keep_observations(usual);
+  }
+  const std::uint64_t count = estimator.setup->observations().value_or(usual);
   if (pool->plan().size() <= kept_channels) {
     for (ChannelPlan& channel : pool->plan()) channel.keep = count;
   }
@@ -35,8 +46,11 @@ std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
 }
 
 Pilot read(const Pool& pool) {
-  Pilot pilot{
-      .channels = {}, .primaries = pool.primaries(), .with_cost = {}, .trouble = pool.trouble()};
+  Pilot pilot{.channels = {},
+              .primaries = pool.primaries(),
+              .with_cost = {},
+              .images = {},
+              .trouble = pool.trouble()};
   if (!pilot.trouble.empty()) return pilot;
   const std::vector<ChannelSummary>& channels = pool.prefix(pool.requested()).channels;
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -45,6 +59,8 @@ Pilot read(const Pool& pool) {
     const std::span<const double> kept = pool.values(i, pool.requested());
     if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
   }
+  const auto images = pool.observations(pool.requested());
+  pilot.images.assign(images.begin(), images.end());
   return pilot;
 }
 

@@ -23,7 +23,8 @@ struct Pilot {
   std::uint64_t primaries = 1;
   /// By channel, then CountedCost; empty where not wanted.
   std::vector<std::vector<stats::JointMoments>> with_cost = {};
-  std::string trouble = "";  ///< why there are no numbers: the estimator threw
+  std::vector<std::vector<double>> images = {};  ///< of an image: whole observations
+  std::string trouble = "";                      ///< why there are no numbers: the estimator threw
 };
 
 /// By pilot_name. Averaging estimators at one primary, others at the suite's `primaries`. Of

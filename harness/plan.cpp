@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "harness/critical.h"
+#include "harness/image_plan.h"
 #include "harness/method_choice.h"
 #include "harness/pool.h"
 #include "harness/sample_size.h"
@@ -21,6 +21,16 @@ constexpr double most_planned_primaries = 1e12;
 // Ten looks cost twice the observations of one at most, where no reference's error takes part.
 constexpr std::uint64_t dearest_looks = 4;
 
+/// Primaries that a secondary of each subject costs together; of an image in all its elements.
+std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < plan.primaries.size(); ++i) {
+    const std::optional<ImageShape>& image = question.subjects[i].image;
+    sum += plan.primaries[i] * (image ? image->elements() : 1);
+  }
+  return sum;
+}
+
 /// The most secondaries there are, or that a budget in primaries pays for, all subjects together.
 std::uint64_t most_available(const Question& question, const Plan& plan) {
   std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
@@ -29,9 +39,8 @@ std::uint64_t most_available(const Question& question, const Plan& plan) {
   }
   const std::optional<Budget>& budget = question.test->budget;
   if (!budget || !budget->primaries) return most;
-  const std::uint64_t each =
-      std::accumulate(plan.primaries.begin(), plan.primaries.end(), std::uint64_t{0});
-  return std::min(most, std::max<std::uint64_t>(2, *budget->primaries / each));
+  return std::min(
+      most, std::max<std::uint64_t>(2, *budget->primaries / primaries_of_each(question, plan)));
 }
 
 /// Stops before hours are spent on what was hardly meant.
@@ -43,9 +52,8 @@ void require_possible(const Question& question, const Plan& plan, std::uint64_t 
                      "standard error is too large for the margin; give a larger margin or a "
                      "better reference");
   }
-  const double total = static_cast<double>(secondaries) *
-                       static_cast<double>(std::accumulate(plan.primaries.begin(),
-                                                           plan.primaries.end(), std::uint64_t{0}));
+  const double total =
+      static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(question, plan));
   if (total <= most_planned_primaries) return;
   throw InputError(where, fmt::format("this claim would take about {:.1e} primaries; give a larger "
                                       "margin, or a `budget` to spend on it all the same",
@@ -94,7 +102,9 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   if (is_bounded(question)) return one_look(most);
   const std::optional<std::uint64_t> alone =
       planned_secondaries(question, place.share, pilots, plan);
-  if (!alone) return one_look(std::min(std::max(first, usual_secondaries), most));
+  const std::uint64_t classical =
+      question.kind == QuestionKind::image ? classical_replicates : usual_secondaries;
+  if (!alone) return one_look(std::min(std::max(first, classical), most));
   if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
   if (*alone <= first) return one_look(std::min(first, most));
   std::size_t count = std::min<std::size_t>(most_looks, 1 + std::bit_width((*alone - 1) / first));
@@ -143,6 +153,7 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     const std::uint64_t most = most_available(question, plan);
     const std::uint64_t least = choose_method(question, place, pilots, most, plan);
     plan.looks = plan_looks(question, place, pilots, plan, least);
+    if (plan.invalid.empty()) plan.invalid = too_few_replicates(question, plan);
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2);
     plan.invalid = error.what();

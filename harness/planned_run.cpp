@@ -8,6 +8,7 @@
 #include "harness/frozen.h"
 #include "harness/interrupt.h"
 #include "harness/plan.h"
+#include "stats/image.h"
 
 namespace assay::harness {
 namespace {
@@ -100,7 +101,9 @@ void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& us
     const auto pool =
         pools.for_picture(*estimator, estimator->primaries.value_or(automatic), run.seed, pilots);
     if (!pool->is_marked()) {
-      pool->request(estimator->setup->observations().value_or(picture_secondaries));
+      const bool image = estimator->setup->image().has_value();
+      pool->request(estimator->setup->observations().value_or(image ? stats::least_replicates
+                                                                    : picture_secondaries));
     }
     run.pictures.push_back({estimator, pool});
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <ctime>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -36,6 +37,12 @@ Pool::BlockSums sums_of(const Summary& block) {
   return sums;
 }
 
+/// Primaries that one observation is made of.
+std::uint64_t primaries_of(const Setup& setup, std::uint64_t primaries) {
+  const std::optional<ImageShape> image = setup.image();
+  return image ? primaries * image->elements() : primaries;
+}
+
 ObservationCost difference(const Cost& after, const Cost& before) {
   return {static_cast<double>(after.rays() - before.rays()),
           static_cast<double>(after.samples - before.samples)};
@@ -54,7 +61,7 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
     : setup_(std::move(setup)),
       key_(key),
       primaries_(primaries),
-      block_size_(block_size_of(primaries)),
+      block_size_(block_size_of(primaries_of(*setup_, primaries))),
       plan_(setup_->channels().size()) {}
 
 void Pool::mark(std::uint64_t count) {
@@ -79,6 +86,10 @@ std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) c
   return {kept.data(), std::min<std::size_t>(kept.size(), count)};
 }
 
+std::span<const std::vector<double>> Pool::observations(std::uint64_t count) const {
+  return std::span(observations_).first(std::min<std::size_t>(observations_.size(), count));
+}
+
 std::uint64_t Pool::block_end(std::uint64_t first) const {
   return std::min(first + block_size_, setup_->observations().value_or(most_observations));
 }
@@ -86,6 +97,7 @@ std::uint64_t Pool::block_end(std::uint64_t first) const {
 Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const {
   Block block{.whole = Summary(plan_),
               .values = std::vector<std::vector<double>>(plan_.size()),
+              .observations = {},
               .partial = {},
               .trouble = {}};
   std::vector<double> out(plan_.size());
@@ -104,6 +116,7 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
         add_observation(block.whole.channels[c], out[c], index, cost);
         if (index < plan_[c].keep) block.values[c].push_back(out[c]);
       }
+      if (index < kept_observations_) block.observations.push_back(out);
       if (const auto variance = groups.add(out)) block.whole.group_variances.add(*variance);
       ++block.whole.count;
       if (mark != prefixes_.end() && index + 1 == mark->first) {
@@ -136,6 +149,8 @@ void Pool::fold(Block&& block) {
   for (std::size_t c = 0; c < values_.size(); ++c) {
     values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
   }
+  std::move(block.observations.begin(), block.observations.end(),
+            std::back_inserter(observations_));
   trouble_ = std::move(block.trouble);
 }
 

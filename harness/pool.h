@@ -3,6 +3,7 @@
 // A pool of observations: one stream key, one number of primaries, drawn in blocks. Every test on
 // the same estimator, parameters and primaries reads a prefix of the same pool.
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -28,7 +29,8 @@ class FlushDenormals {
   unsigned saved_;
 };
 
-/// Observations of a block, a power of two that depends on `primaries` alone.
+/// Observations of a block, a power of two that depends on `primaries` alone; of an image they are
+/// those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);
 
 class Pool {
@@ -51,6 +53,10 @@ class Pool {
   /// To keep every block by itself (some hundred bytes for each 16384 primaries); before anything
   /// is drawn.
   void keep_blocks() { keeps_blocks_ = true; }
+  /// To store the first `count` observations whole; before anything is drawn.
+  void keep_observations(std::uint64_t count) {
+    kept_observations_ = std::max(kept_observations_, count);
+  }
 
   /// Observations [0, count) may be read as a prefix. std::logic_error once they are drawn.
   void mark(std::uint64_t count);
@@ -67,6 +73,8 @@ class Pool {
   std::uint64_t largest_prefix() const;
   /// The first values of a channel, at most `count` and as many as were to be kept.
   std::span<const double> values(std::size_t channel, std::uint64_t count) const;
+  /// The first observations, all channels, at most `count` and as many as were to be kept.
+  std::span<const std::vector<double>> observations(std::uint64_t count) const;
   /// A whole block by itself.
   struct BlockSums {
     std::uint64_t count = 0;
@@ -89,7 +97,8 @@ class Pool {
   /// A drawn block, and copies of it at the marked counts that lie inside.
   struct Block {
     Summary whole;
-    std::vector<std::vector<double>> values;  ///< of each channel, where they are kept
+    std::vector<std::vector<double>> values;        ///< of each channel, where they are kept
+    std::vector<std::vector<double>> observations;  ///< whole, where they are kept
     std::vector<std::pair<std::uint64_t, Summary>> partial;
     std::string trouble;
   };
@@ -110,6 +119,8 @@ class Pool {
   Summary running_;
   std::vector<std::vector<double>> values_;
   std::vector<std::size_t> grouped_channels_;
+  std::vector<std::vector<double>> observations_;
+  std::uint64_t kept_observations_ = 0;
   bool keeps_blocks_ = false;
   std::vector<BlockSums> blocks_;
   bool started_ = false;

@@ -68,6 +68,8 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
     }
     return plan;
   }
+  // An image is drawn as maps: no histogram of each pixel.
+  if (pool.setup()->image()) return std::vector<ChannelPlan>(channels.size());
   const auto found = pilots.find(estimator.name);  // a replay has none
   const Pilot pilot = found != pilots.end() ? found->second : Pilot{.trouble = "no pilot"};
   const double averaged =
@@ -127,6 +129,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
       keep = std::max(keep, plan.most_secondaries());
     }
   }
+  if (plan.method.keeps == Keeps::images) pool->keep_observations(plan.most_secondaries());
   keep_for(plan.method, side, *pool);
   for (const std::uint64_t size : plan.looks.sizes) pool->mark(size);
   return pool;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "harness/question_claims.h"
+#include "harness/question_image.h"
 
 namespace assay::harness {
 namespace {
@@ -161,7 +162,7 @@ void check_margins(const Question& question) {
       require_absolute(margin, test, "a distance between laws is a probability");
     }
     for (const Constant& reference : question.references) {
-      if (question.kind == QuestionKind::slope) break;
+      if (question.kind == QuestionKind::slope || question.kind == QuestionKind::image) break;
       if (reference.value == 0) require_absolute(margin, test, "the reference is zero");
     }
     if (margin && !margin->relative && question.on_log_scale() && question.of_two()) {
@@ -229,6 +230,7 @@ bool Question::of_spread() const {
 std::string Question::channel_name(std::size_t channel) const {
   if (kind == QuestionKind::cost) return "cost";
   if (kind == QuestionKind::same_cells) return "cells";
+  if (kind == QuestionKind::image) return image_name(*subjects[0].image);
   if (kind == QuestionKind::total_variance && subjects[0].channels.size() > 1)
     return "all channels";
   return subjects[0].setup->channels()[subjects[0].channels[channel]].name;
@@ -236,6 +238,7 @@ std::string Question::channel_name(std::size_t channel) const {
 
 Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
   Question question = asked(test, estimators);
+  if (has_image(question)) ask_of_images(question);
   if (question.subjects.size() > 1) {
     require_pairs(question, test.claim);
     require_different_data(question, test.claim);

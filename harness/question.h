@@ -21,8 +21,9 @@ struct Subject {
   std::shared_ptr<const Setup> setup;  ///< what is sampled
   std::string purpose = "";            ///< tells the streams of a sampler from its estimator's
   std::uint32_t copy = 0;
-  std::vector<std::size_t> channels;  ///< of the set-up, those the claim is about
-  bool averages = true;               ///< variance falls like 1 / primaries
+  std::vector<std::size_t> channels;     ///< of the set-up, those the claim is about
+  bool averages = true;                  ///< variance falls like 1 / primaries
+  std::optional<ImageShape> image = {};  ///< what these channels are together
   /// Where `estimator` is this question's own: a point of a sweep.
   std::shared_ptr<const PreparedEstimator> own = nullptr;
 
@@ -36,6 +37,7 @@ struct Subject {
 enum class QuestionKind {
   mean_of_one,  ///< mean against a number
   mean_of_two,
+  image,            ///< all elements' means of one image against numbers, or of two
   variance_of_one,  ///< of one primary where the estimator averages
   variance_of_two,
   fit_to_density,  ///< a sampler's draws against its declared density, in cells
@@ -61,9 +63,10 @@ struct Question {
   std::vector<Subject> subjects;  ///< one or two (a slope: one a point), then perhaps a reference
   double factor = 1;              ///< first against factor * second
   double offset = 0;              ///< of a bias: E x against the reference + offset
-  std::vector<Constant> references = {};  ///< a number per channel, for the kinds "of one"
-  Law law = {};                           ///< for fit_to_law
-  bool has_reference_subject = false;     ///< the last subject's mean is the truth of the others
+  /// A number per channel of the subject, for the kinds "of one".
+  std::vector<Constant> references = {};
+  Law law = {};                        ///< for fit_to_law
+  bool has_reference_subject = false;  ///< the last subject's mean is the truth of the others
   /// Of each subject and channel the truth its error is taken about: of a mean squared error in an
   /// efficiency, of a bias in a slope. Empty: the variance, the mean itself.
   std::vector<std::vector<Constant>> truths = {};
@@ -72,7 +75,7 @@ struct Question {
   /// One number from all channels together.
   bool pooled() const {
     return kind == QuestionKind::cost || kind == QuestionKind::total_variance ||
-           kind == QuestionKind::same_cells;
+           kind == QuestionKind::same_cells || kind == QuestionKind::image;
   }
   std::size_t channel_count() const { return pooled() ? 1 : subjects[0].channels.size(); }
   std::string channel_name(std::size_t channel) const;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "harness/consistency_setup.h"
 
 namespace assay::harness {
@@ -12,7 +14,14 @@ std::string parts_of(const PreparedEstimator& estimator) {
   const auto add = [&](const std::string& name) {
     text += (text.empty() ? "`" : ", `") + name + "`";
   };
-  for (const Channel& channel : estimator.setup->channels()) add(channel.name);
+  if (const auto image = estimator.setup->image()) {
+    for (const std::string& component : image->components) add(component);
+    add(element_name(*image, 0));
+    text += ", …";
+    add(element_name(*image, image->elements() - 1));
+  } else {
+    for (const Channel& channel : estimator.setup->channels()) add(channel.name);
+  }
   for (const NamedSampler& named : estimator.setup->samplers()) {
     add(named.name);
     for (const Marginal& marginal : marginals(named.sampler->domain())) {
@@ -41,6 +50,22 @@ std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
     if (channels[i].name == name) return {i};
   }
   return {};
+}
+
+/// The elements of an image, all or those of the component that the part names; none where it names
+/// something else.
+std::vector<std::size_t> elements_named(ImageShape& shape, const std::string& part) {
+  const std::size_t components = shape.components.size();
+  const auto named = std::find(shape.components.begin(), shape.components.end(), part);
+  std::vector<std::size_t> elements;
+  if (!part.empty() && named == shape.components.end()) return elements;
+  const bool whole = part.empty();
+  const std::size_t first = whole ? 0 : static_cast<std::size_t>(named - shape.components.begin());
+  for (std::size_t i = first; i < shape.elements(); i += whole ? 1 : components) {
+    elements.push_back(i);
+  }
+  if (!whole) shape.components = {part};
+  return elements;
 }
 
 /// The sampler a part names, itself or before a marginal's name; the only one when it names none.
@@ -76,6 +101,13 @@ Subject estimates(const Source& source, const PreparedEstimator& estimator) {
                   .channels = source.part.empty() ? tested_channels(channels)
                                                   : channels_named(channels, source.part),
                   .averages = estimator.entry->information.averages};
+  if (auto image = estimator.setup->image()) {
+    std::vector<std::size_t> elements = elements_named(*image, source.part);
+    if (!elements.empty()) {
+      subject.channels = std::move(elements);
+      subject.image = std::move(image);
+    }
+  }
   if (subject.channels.empty()) no_such_part(source, estimator);
   return subject;
 }

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/image_record.h"
 #include "harness/law_picture.h"
 #include "harness/picture.h"
 #include "harness/pools.h"
 #include "harness/quantiles.h"
+#include "harness/question_image.h"
 #include "harness/shell.h"
 
 namespace assay::harness {
@@ -84,6 +86,14 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
 std::vector<reports::Sample> samples_of(const TestWork& work) {
   std::vector<reports::Sample> samples;
   const std::vector<Subject>& subjects = work.outcome.question.subjects;
+  if (has_image(work.outcome.question)) {
+    for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
+      if (!work.pools[subject]->has(work.outcome.secondaries())) continue;
+      samples.push_back(subjects[subject].image ? image_sample(work, subject)
+                                                : sample_of(work, subject, 0));
+    }
+    return samples;
+  }
   // All channels, also where one number is made of them.
   for (std::size_t channel = 0; channel < subjects[0].channels.size(); ++channel) {
     for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
@@ -213,6 +223,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
     test.channels.back().laws = empirical_laws(work, channel.index);
   }
   if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
+  add_image(work, test);
   test.looks = looks_of(outcome, regions);
   test.message = outcome.message;
   return test;

@@ -8,6 +8,7 @@
 #include "harness/constant.h"
 #include "harness/critical.h"
 #include "harness/evidence_ratio.h"
+#include "harness/image_plan.h"
 #include "harness/law_size.h"
 #include "harness/method.h"
 #include "stats/power.h"
@@ -212,10 +213,11 @@ double equivalence_power(const Question& question, const TestSize& size,
                                   n, 0);
 }
 
-/// Quantiles, slopes and counts of draws have none here; nor has a comparison of numbers without a
-/// spread.
+/// Quantiles, slopes, images and counts of draws have none here; nor has a comparison of numbers
+/// without a spread.
 bool has_power(const Question& question, const PlannedChannel& channel) {
-  if (question.kind == QuestionKind::quantile || question.kind == QuestionKind::slope ||
+  using enum QuestionKind;
+  if (question.kind == quantile || question.kind == slope || question.kind == image ||
       question.of_draws()) {
     return false;
   }
@@ -244,6 +246,7 @@ std::optional<std::uint64_t> planned_secondaries(const Question& question, const
   if (question.kind == QuestionKind::quantile) {
     return quantile_secondaries(question, share, pilots, plan);
   }
+  if (question.kind == QuestionKind::image) return image_secondaries(question, share, pilots, plan);
   if (question.kind == QuestionKind::slope) {
     return slope_secondaries(question, share, pilots, plan);
   }
@@ -312,6 +315,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
     case QuestionKind::same_law:
     case QuestionKind::same_cells:
       return power_between_laws(question, size, plan, effect);
+    case QuestionKind::image:
     case QuestionKind::quantile:
     case QuestionKind::integral:
     case QuestionKind::inconsistency:

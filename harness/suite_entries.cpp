@@ -163,7 +163,8 @@ const std::vector<std::string>& method_names() {
                                               "replicates",
                                               "log-total-variance",
                                               "quantile",
-                                              "slope"};
+                                              "slope",
+                                              "image"};
   return names;
 }
 

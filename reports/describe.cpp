@@ -7,6 +7,7 @@
 
 #include "reports/effect.h"
 #include "reports/evidence.h"
+#include "reports/image_text.h"
 #include "reports/number.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
@@ -178,6 +179,7 @@ std::vector<Fact> facts(const Test& test) {
   add(is_proof(test) ? "beside it" : "passing", exclusion_text(test));
   add("margins", margins_fact(test));
   add("channels", channels_fact(test));
+  add("image", image_fact(test));
   add("assumptions", gates_fact(test));
   add("observations", observations_fact(test));
   return result;
@@ -197,7 +199,8 @@ std::string plain_text(const Test& test) {
 
 std::string levels_text(const Suite& suite) {
   return fmt::format("alpha {} (false alarms), beta {} (misses), seed {}{}", human(suite.alpha),
-                     human(suite.beta), suite.seed, suite.timed ? ", timed (numbers do not repeat to the bit)" : "");
+                     human(suite.beta), suite.seed,
+                     suite.timed ? ", timed (numbers do not repeat to the bit)" : "");
 }
 
 }  // namespace assay::reports

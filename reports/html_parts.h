@@ -50,6 +50,10 @@ std::string estimator_pictures(const Suite&);
 /// What the nights of the ledger say, alarms first; empty where none is kept.
 std::string ledger_section(const Ledger&);
 
+/// The maps of an image in colours, the cell outlined where it differs most; empty where there is
+/// no image.
+std::string image_section(const Test&);
+
 std::string suite_section(const Record&, std::size_t suite);
 std::string test_section(const Test&, TestPlace);
 

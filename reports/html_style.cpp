@@ -66,6 +66,8 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
 .chart rect.mean { fill: var(--mean); } .chart rect.variance { fill: var(--variance); }
 .chart .whisker { fill: none; stroke: var(--ink); stroke-width: 1.4; }
 .chart .reference { stroke: var(--ink); stroke-width: 1.4; stroke-dasharray: 4 3; }
+.chart image { image-rendering: pixelated; }
+.chart .outline { fill: none; stroke: #ffffff; stroke-width: 4.5; } .chart .found { fill: none; stroke: #000000; stroke-width: 2; }
 .chart .cell { fill: none; stroke: var(--edge); stroke-width: 1; } .chart .diagonal { fill: var(--edge); }
 .chart .agree { fill: var(--agree); } .chart .differ { fill: var(--differ); } .chart .unclear { fill: var(--paper); }
 .chart .smaller { fill: var(--smaller); } .chart .larger { fill: var(--larger); }

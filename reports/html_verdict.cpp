@@ -145,7 +145,6 @@ void add(HtmlTable& table, const Sample& s) {
              cost_cell(s.cost)});
 }
 
-// An image has a sample a pixel.
 constexpr std::size_t most_rows = 12;
 
 std::string sample_table(const Test& test) {
@@ -185,7 +184,8 @@ std::string test_section(const Test& test, TestPlace place) {
       "class=\"key\">{}</span></summary>\n<div>\n",
       outcome_style(result), anchor(place), open ? " open=\"open\"" : "", badge(test),
       escape_xml(one_line(test.name)), escape_xml(key_number(test)));
-  out += definitions(test) + pictures(test) + gates(test) + looks(test) + sample_table(test);
+  out += definitions(test) + image_section(test) + pictures(test) + gates(test) + looks(test) +
+         sample_table(test);
   return out + replay(test) + "</div>\n</details>\n";
 }
 

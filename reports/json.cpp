@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "reports/base64.h"
 #include "reports/fields.h"
 #include "reports/number.h"
 #include "reports/text.h"
@@ -25,7 +26,6 @@ class Writer {
   void repeated(const char* key, const T& value) {
     object_[key] = tree(value);
   }
-  void no_elements(const char* key) { object_[key] = Json::array(); }
   Json take() { return std::move(object_); }
 
  private:
@@ -38,6 +38,8 @@ Json leaf(double value) {
 }
 Json leaf(const Number& value) { return value ? leaf(*value) : Json(nullptr); }
 Json leaf(const std::string& value) { return clean(value); }
+Json leaf(const Texels& value) { return base64(bytes_of(value.values)); }
+Json leaf(const std::optional<Image>& value) { return value ? tree(*value) : Json(nullptr); }
 Json leaf(Verdict value) { return to_string(value); }
 Json leaf(bool value) { return value; }
 Json leaf(int value) { return value; }

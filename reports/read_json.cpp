@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "reports/base64.h"
 #include "reports/fields.h"
 
 namespace assay::reports {
@@ -52,12 +53,6 @@ class Reader {
   void repeated(const char* key, const T&) {
     T unused{};
     (*this)(key, unused);
-  }
-
-  void no_elements(const char* key) {
-    std::vector<std::string> elements;
-    (*this)(key, elements);
-    if (!elements.empty()) fail(place_ + "." + key, "should be an empty array");
   }
 
   void finish() const {
@@ -102,6 +97,21 @@ void leaf(const Json& node, const std::string& place, Number& value) {
 void leaf(const Json& node, const std::string& place, std::string& value) {
   if (!node.is_string()) wrong_type(place, "text", node);
   value = node.get<std::string>();
+}
+
+void leaf(const Json& node, const std::string& place, Texels& value) {
+  if (!node.is_string()) wrong_type(place, "base64 of 32-bit floats", node);
+  const auto bytes = from_base64(node.get_ref<const std::string&>());
+  if (!bytes || bytes->size() % sizeof(float) != 0) {
+    fail(place, "should be base64 of 32-bit floats");
+  }
+  value.values = floats_of(*bytes);
+}
+
+void leaf(const Json& node, const std::string& place, std::optional<Image>& value) {
+  value.reset();
+  if (node.is_null()) return;
+  read(node, place, value.emplace());
 }
 
 void leaf(const Json& node, const std::string& place, bool& value) {
@@ -204,6 +214,20 @@ void check_version(const Json& root) {
                      version.is_number() ? version.dump() : version.type_name(), schema_version));
 }
 
+/// A map has a number for each element.
+void check_maps(const Record& record) {
+  for (const Suite& suite : record.suites) {
+    for (const Test& test : suite.tests) {
+      for (const Map& map : test.maps) {
+        const std::size_t wanted = map.width * map.height * map.components.size();
+        if (map.texels.values.size() == wanted) continue;
+        fail("maps", fmt::format("{} of \"{}\" should have {} numbers, but has {}", map.name,
+                                 test.id, wanted, map.texels.values.size()));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Record read_json(std::string_view text, std::string_view file_name) {
@@ -212,6 +236,7 @@ Record read_json(std::string_view text, std::string_view file_name) {
     check_version(root);
     Record record;
     read(root, "", record);
+    check_maps(record);
     return record;
   } catch (const ReadError& error) {
     throw ReadError(fmt::format("{}: {}", file_name, error.what()));

@@ -62,6 +62,14 @@ void Svg::box(Box box, const char* style, std::string_view tooltip) {
                   coordinate(std::max(box.height, 0.0)), tooltip_element(tooltip));
 }
 
+void Svg::image(Box box, std::string_view address) {
+  out_ += fmt::format(
+      "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
+      "href=\"{}\"/>\n",
+      coordinate(box.x), coordinate(box.y), coordinate(box.width), coordinate(box.height),
+      escape_attribute(address));
+}
+
 void Svg::text(const Text& text) {
   const std::string full = one_line(text.content);
   const std::string shown =

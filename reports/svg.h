@@ -51,6 +51,9 @@ class Svg {
   Svg(Size size, std::string_view title);
 
   void line(Point from, Point to, const char* style);
+  /// A picture by its address (`data:…`), stretched to the box; its pixels stay squares of one
+  /// colour.
+  void image(Box box, std::string_view address);
   void box(Box box, const char* style, std::string_view tooltip = {});
   void text(const Text& text);
   /// `data` in SVG's path language.

@@ -74,40 +74,69 @@ class ReferenceBlock {
   std::size_t first_ = 0;
 };
 
-// Variance of a jackknifed sum: (n - 1) / n times the sum of squares about the mean.
-double jackknife_variance(const std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const double n = static_cast<double>(values.size());
-  double mean = 0;
-  for (const double value : values) mean += value / n;
-  double squares = 0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return squares * (n - 1) / n;
+// Sums over elements of one or more terms.
+template <std::size_t count>
+using Sums = std::array<double, count>;
+
+template <std::size_t count>
+void add(Sums<count>& sums, const Sums<count>& terms) {
+  for (std::size_t k = 0; k < count; ++k) sums[k] += terms[k];
 }
 
-// The sum over elements of term(estimate of a, estimate of b) and its jackknife.
-template <class First, class Second, class Term>
-SquaredBias jackknife(std::size_t elements, First a, Second b, const Term& term) {
-  double whole = 0;
-  std::vector<double> without_a(a.left_out());
-  std::vector<double> without_b(b.left_out());
+// Covariance of two jackknifed sums: (n - 1) / n times the sum of products about the means.
+template <std::size_t count>
+double jackknife_covariance(const std::vector<Sums<count>>& values, std::size_t i, std::size_t j) {
+  if (values.empty()) return 0;
+  const double n = static_cast<double>(values.size());
+  Sums<count> mean{};
+  for (const Sums<count>& value : values) {
+    for (std::size_t k = 0; k < count; ++k) mean[k] += value[k] / n;
+  }
+  double products = 0;
+  for (const Sums<count>& value : values) products += (value[i] - mean[i]) * (value[j] - mean[j]);
+  return products * (n - 1) / n;
+}
+
+// The sums over elements of term(estimate of a, estimate of b), and without each replicate.
+template <std::size_t count>
+struct Jackknife {
+  Sums<count> whole{};
+  std::vector<Sums<count>> without_a;
+  std::vector<Sums<count>> without_b;
+
+  double covariance(std::size_t i, std::size_t j) const {
+    return jackknife_covariance(without_a, i, j) + jackknife_covariance(without_b, i, j);
+  }
+  double degrees() const {
+    const std::size_t fewest =
+        without_b.empty() ? without_a.size() : std::min(without_a.size(), without_b.size());
+    return static_cast<double>(fewest - 1);
+  }
+};
+
+template <std::size_t count, class First, class Second, class Term>
+Jackknife<count> jackknife(std::size_t elements, First a, Second b, const Term& term) {
+  Jackknife<count> sums;
+  sums.without_a.resize(a.left_out());
+  sums.without_b.resize(b.left_out());
   for (std::size_t first = 0; first < elements; first += block_size) {
     const std::size_t size = std::min(block_size, elements - first);
     a.load(first, size);
     b.load(first, size);
-    for (std::size_t i = 0; i < size; ++i) whole += term(a.all(i), b.all(i));
-    for (std::size_t r = 0; r < without_a.size(); ++r) {
-      for (std::size_t i = 0; i < size; ++i) without_a[r] += term(a.without(r, i), b.all(i));
+    for (std::size_t i = 0; i < size; ++i) add(sums.whole, term(a.all(i), b.all(i)));
+    for (std::size_t r = 0; r < sums.without_a.size(); ++r) {
+      for (std::size_t i = 0; i < size; ++i)
+        add(sums.without_a[r], term(a.without(r, i), b.all(i)));
     }
-    for (std::size_t r = 0; r < without_b.size(); ++r) {
-      for (std::size_t i = 0; i < size; ++i) without_b[r] += term(a.all(i), b.without(r, i));
+    for (std::size_t r = 0; r < sums.without_b.size(); ++r) {
+      for (std::size_t i = 0; i < size; ++i)
+        add(sums.without_b[r], term(a.all(i), b.without(r, i)));
     }
   }
-  if (!std::isfinite(whole)) check::fail({"squared_bias", "sum over the image"}, whole, "finite");
-  const std::size_t fewest =
-      without_b.empty() ? without_a.size() : std::min(without_a.size(), without_b.size());
-  return {whole, std::sqrt(jackknife_variance(without_a) + jackknife_variance(without_b)),
-          static_cast<double>(fewest - 1)};
+  for (const double sum : sums.whole) {
+    if (!std::isfinite(sum)) check::fail({"squared_bias", "sum over the image"}, sum, "finite");
+  }
+  return sums;
 }
 
 double squared_difference(const Estimate& a, const Estimate& b) {
@@ -115,31 +144,29 @@ double squared_difference(const Estimate& a, const Estimate& b) {
   return difference * difference - a.squared_error - b.squared_error;
 }
 
-struct Relative {
-  double constant;
-  double elements;
-  double operator()(const Estimate& a, const Estimate& b) const {
-    return squared_difference(a, b) / (elements * (b.mean * b.mean + constant));
+struct Absolute {
+  Sums<1> operator()(const Estimate& a, const Estimate& b) const {
+    return {squared_difference(a, b)};
   }
 };
 
-struct BeyondMargin {
-  double squared_margin;
-  double operator()(const Estimate& a, const Estimate& b) const {
-    return squared_difference(a, b) - squared_margin * (b.mean * b.mean - b.squared_error);
+struct Relative {
+  double constant;
+  double elements;
+  Sums<1> operator()(const Estimate& a, const Estimate& b) const {
+    return {squared_difference(a, b) / (elements * (b.mean * b.mean + constant))};
+  }
+};
+
+struct BiasAndNorm {
+  Sums<2> operator()(const Estimate& a, const Estimate& b) const {
+    return {squared_difference(a, b), b.mean * b.mean - b.squared_error};
   }
 };
 
 Relative relative_term(const ImageExtent& extent, double constant) {
   check::positive({"relative_bias", "constant"}, constant);
   return {constant, static_cast<double>(extent.elements())};
-}
-
-TestResult margin_test(const SquaredBias& beyond) {
-  if (beyond.standard_error == 0) throw ZeroVariance("image_equivalence: zero standard error");
-  const double t = beyond.estimate / beyond.standard_error;
-  const LogTails tails = student_t_tails(t, beyond.degrees);
-  return {t, {"student-t", {beyond.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
 }
 
 template <class Real>
@@ -150,37 +177,55 @@ ReferenceBlock block_of(const char* function, const ImageReference& reference) {
   return {function, reference};
 }
 
-template <class Real, class Second, class Term>
-SquaredBias jackknife_of(const char* function, const ImageStack<Real>& a, const Second& b,
-                         const Term& term) {
+template <std::size_t count, class Real, class Second, class Term>
+Jackknife<count> jackknife_of(const char* function, const ImageStack<Real>& a, const Second& b,
+                              const Term& term) {
   check::same_extent(function, a.extent, b.extent);
-  return jackknife(a.extent.elements(), block_of(function, a), block_of(function, b), term);
+  return jackknife<count>(a.extent.elements(), block_of(function, a), block_of(function, b), term);
+}
+
+template <class Real, class Second, class Term>
+SquaredBias bias_of(const char* function, const ImageStack<Real>& a, const Second& b,
+                    const Term& term) {
+  const auto sums = jackknife_of<1>(function, a, b, term);
+  return {sums.whole[0], std::sqrt(sums.covariance(0, 0)), sums.degrees()};
+}
+
+template <class Real, class Second>
+ImageDistance distance_of(const ImageStack<Real>& a, const Second& b) {
+  const auto sums = jackknife_of<2>("image_distance", a, b, BiasAndNorm{});
+  return {.squared_bias = sums.whole[0],
+          .squared_norm = sums.whole[1],
+          .bias_variance = sums.covariance(0, 0),
+          .norm_variance = sums.covariance(1, 1),
+          .covariance = sums.covariance(0, 1),
+          .degrees = sums.degrees()};
 }
 
 template <class Real, class Second>
 TestResult equivalence_of(const ImageStack<Real>& a, const Second& b, double margin) {
   check::positive({"image_equivalence", "margin"}, margin);
-  return margin_test(jackknife_of("image_equivalence", a, b, BeyondMargin{margin * margin}));
+  return squared_margin_test(distance_of(a, b), margin * margin);
 }
 
 }  // namespace
 
 template <class Real>
 SquaredBias squared_bias(const ImageStack<Real>& a, const ImageStack<Real>& b) {
-  return jackknife_of("squared_bias", a, b, squared_difference);
+  return bias_of("squared_bias", a, b, Absolute{});
 }
 template <class Real>
 SquaredBias squared_bias(const ImageStack<Real>& a, const ImageReference& b) {
-  return jackknife_of("squared_bias", a, b, squared_difference);
+  return bias_of("squared_bias", a, b, Absolute{});
 }
 
 template <class Real>
 SquaredBias relative_bias(const ImageStack<Real>& a, const ImageStack<Real>& b, double constant) {
-  return jackknife_of("relative_bias", a, b, relative_term(a.extent, constant));
+  return bias_of("relative_bias", a, b, relative_term(a.extent, constant));
 }
 template <class Real>
 SquaredBias relative_bias(const ImageStack<Real>& a, const ImageReference& b, double constant) {
-  return jackknife_of("relative_bias", a, b, relative_term(a.extent, constant));
+  return bias_of("relative_bias", a, b, relative_term(a.extent, constant));
 }
 
 Interval squared_bias_interval(const SquaredBias& bias, double confidence) {
@@ -189,6 +234,33 @@ Interval squared_bias_interval(const SquaredBias& bias, double confidence) {
       student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, bias.degrees) *
       bias.standard_error;
   return {bias.estimate - half, bias.estimate + half, confidence};
+}
+
+template <class Real>
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b) {
+  return distance_of(a, b);
+}
+template <class Real>
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b) {
+  return distance_of(a, b);
+}
+
+ImageDistance with_norm(ImageDistance distance, double squared_norm) {
+  check::positive({"with_norm", "squared norm"}, squared_norm);
+  distance.squared_norm = squared_norm;
+  distance.norm_variance = 0;
+  distance.covariance = 0;
+  return distance;
+}
+
+TestResult squared_margin_test(const ImageDistance& distance, double squared_margin) {
+  const double variance = distance.bias_variance - 2 * squared_margin * distance.covariance +
+                          squared_margin * squared_margin * distance.norm_variance;
+  if (!(variance > 0)) throw ZeroVariance("image_equivalence: zero standard error");
+  const double t =
+      (distance.squared_bias - squared_margin * distance.squared_norm) / std::sqrt(variance);
+  const LogTails tails = student_t_tails(t, distance.degrees);
+  return {t, {"student-t", {distance.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
 }
 
 template <class Real>
@@ -205,6 +277,8 @@ TestResult image_equivalence(const ImageStack<Real>& a, const ImageReference& b,
   template SquaredBias squared_bias(const ImageStack<Real>&, const ImageReference&);               \
   template SquaredBias relative_bias(const ImageStack<Real>&, const ImageStack<Real>&, double);    \
   template SquaredBias relative_bias(const ImageStack<Real>&, const ImageReference&, double);      \
+  template ImageDistance image_distance(const ImageStack<Real>&, const ImageStack<Real>&);         \
+  template ImageDistance image_distance(const ImageStack<Real>&, const ImageReference&);           \
   template TestResult image_equivalence(const ImageStack<Real>&, const ImageStack<Real>&, double); \
   template TestResult image_equivalence(const ImageStack<Real>&, const ImageReference&, double)
 ASSAY_FOR_REAL(float);

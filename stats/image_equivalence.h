@@ -35,10 +35,34 @@ SquaredBias relative_bias(const ImageStack<Real>& a, const ImageReference& b, do
 // Student's interval around the estimate. Throws for a confidence outside (0, 1).
 Interval squared_bias_interval(const SquaredBias& bias, double confidence);
 
-// Null hypothesis: ||E a - E b|| >= margin ||E b||. Statistic: (U - margin^2 N) / its jackknife
-// standard error, N = sum (mean b^2 - vb); Student's t. log_p_lower is the p-value: small when the
-// images are equivalent within the margin. log_p_upper tests ||E a - E b|| <= margin ||E b||.
-// Asymptotic. Throws for a margin that is not positive, ZeroVariance for a zero standard error.
+// The squared bias beside the squared norm that a margin is relative to, N = sum (mean b^2 - vb),
+// unbiased for ||E b||^2, with the jackknife's covariance of the two.
+struct ImageDistance {
+  double squared_bias = 0;
+  double squared_norm = 0;
+  double bias_variance = 0;
+  double norm_variance = 0;
+  double covariance = 0;
+  double degrees = 0;
+};
+
+// Throw std::domain_error as welch_z does.
+template <class Real>
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b);
+template <class Real>
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b);
+
+// The same with a norm that is a number without error: a margin in units of its root.
+ImageDistance with_norm(ImageDistance distance, double squared_norm);
+
+// Null hypothesis: ||E a - E b||^2 >= squared_margin N. Statistic: (U - squared_margin N) / its
+// jackknife standard error; Student's t. log_p_lower is the p-value: small when the images are
+// equivalent within the margin. log_p_upper tests ||E a - E b||^2 <= squared_margin N. Asymptotic.
+// A negative squared margin is no hypothesis of images, but ends of intervals of U / N may lie
+// there. ZeroVariance for a zero standard error.
+TestResult squared_margin_test(const ImageDistance& distance, double squared_margin);
+
+// The same for ||E a - E b|| >= margin ||E b||. Throws for a margin that is not positive.
 template <class Real>
 TestResult image_equivalence(const ImageStack<Real>& a, const ImageStack<Real>& b, double margin);
 template <class Real>

@@ -10,6 +10,9 @@ namespace assay::stats {
 
 enum class ImageStatistic { window, alternating, energy };
 
+// Of an alternating sum: where its sign changes.
+enum class Alternation { columns, rows, checkerboard };
+
 // The most extreme statistic of a group: which sum it was, where, and how far from zero.
 struct ImageFinding {
   ImageStatistic statistic = ImageStatistic::window;
@@ -19,6 +22,7 @@ struct ImageFinding {
   double z = 0;      // signed, positive where the first image is brighter; of the energy: one-sided
   double log_p = 0;  // two-sided (energy: upper tail), of this one sum
   double adjusted_log_p = 0;  // in the family of everything that was looked at; below 0 or 0
+  Alternation alternation = Alternation::columns;
 };
 
 // All looks at a pair of images as one family: Sidak within a group of cells (1967: for two-sided

@@ -50,6 +50,10 @@ struct PyramidOptions {
   std::optional<double> energy_log_p = {};
   bool single_elements = true;
 };
+// The share of the level that the sum over the whole image has: what a difference that is the same
+// everywhere is found by.
+double whole_image_share(const ImageExtent& extent);
+
 template <class Real>
 ImageFamily image_pyramid(const ImageStack<Real>& a, const ImageStack<Real>& b,
                           const PyramidOptions& options = {});

@@ -170,8 +170,9 @@ void offer_windows(std::vector<Best>& best, const Groups& groups, const WindowMo
                              variance * variance / moments.reciprocal_degrees[window]};
     const auto statistic =
         group.grid == Grid::alternating ? ImageStatistic::alternating : ImageStatistic::window;
-    offer(best[static_cast<std::size_t>(&group - groups.data())],
-          {statistic, group.size, group.windows[i], channel, t_to_z(value), 0, 0}, value);
+    ImageFinding candidate{statistic, group.size, group.windows[i], channel, t_to_z(value), 0, 0};
+    if (group.grid == Grid::alternating) candidate.alternation = static_cast<Alternation>(i);
+    offer(best[static_cast<std::size_t>(&group - groups.data())], candidate, value);
   });
 }
 
@@ -295,6 +296,16 @@ ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options
 }
 
 }  // namespace
+
+double whole_image_share(const ImageExtent& extent) {
+  const Groups groups = window_groups(extent, 1 - energy_share);
+  const auto whole = std::max_element(
+      groups.begin(), groups.end(), [](const WindowGroup& a, const WindowGroup& b) {
+        const auto rank = [](const WindowGroup& g) { return g.grid == Grid::aligned ? g.size : 0; };
+        return rank(a) < rank(b);
+      });
+  return whole->share;
+}
 
 template <class Real>
 ImageFamily image_pyramid(const ImageStack<Real>& a, const ImageStack<Real>& b,

@@ -58,10 +58,10 @@ void trace(const World& world, const Roulette& roulette, Direct direct, Stream& 
     tally.value += throughput * roulette.on_going_on(terminal, s.total());
     sees_emission = u >= s.diffuse;
     if (sees_emission) {
-      throughput = throughput * roulette.weight(surface.mirror, s.mirror);
+      throughput = roulette.continued(throughput, surface.mirror, s.mirror);
       v = world.mirrored(v, cost);
     } else {
-      throughput = throughput * roulette.weight(surface.diffuse, s.diffuse);
+      throughput = roulette.continued(throughput, surface.diffuse, s.diffuse);
       v = world.reflected(v, random, cost);
     }
   }

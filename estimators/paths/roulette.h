@@ -70,9 +70,10 @@ class Roulette {
   Spectrum on_going_on(const Spectrum& terminal, double survival) const {
     return (survival - 1) / survival * terminal;
   }
-  /// What the throughput is multiplied by for a reflectance chosen with this probability.
-  Spectrum weight(const Spectrum& reflectance, double probability) const {
-    return 1 / probability * reflectance;
+  /// The throughput after a reflection that was chosen with this probability.
+  Spectrum continued(const Spectrum& throughput, const Spectrum& reflectance,
+                     double probability) const {
+    return 1 / probability * (throughput * reflectance);
   }
 
  private:

@@ -4,9 +4,7 @@
 // drawn, each of weight W a / n. n children are drawn on average, so the expectation is that of one
 // child of weight W a (Szirmay-Kalos, Antal and Sbert 2005).
 
-#include "paths/winners.h"
-
-#include "paths/family.h"
+#include "paths/winners_setup.h"
 
 namespace assay::plugins {
 
@@ -54,13 +52,7 @@ std::vector<Entry> paths_winners() {
             "number of children there too in grey scenes without mirrors. Diagnostic channels: "
             "vertices, bounce_1 to bounce_6. Cost: a camera ray, a closest-hit ray a child, a "
             "shadow ray where one is traced. Sampler: direction.",
-        .parameters = {scene_parameter("sphere"),
-                       direct_parameter(),
-                       {.name = "splitting",
-                        .summary = "N, children of a diffuse vertex of weight and albedo 1",
-                        .fallback = "4",
-                        .low = 1,
-                        .high = 1000}}},
+        .parameters = winners_parameters()},
        prepare}};
 }
 

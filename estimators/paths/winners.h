@@ -41,11 +41,6 @@ class Tree {
   Tree(const World& world, const Rule& rule, Direct direct)
       : world_(world), rule_(rule), direct_(direct) {}
 
-  void trace(Stream& random, Tally& tally, Cost& cost) const {
-    grow({world_.camera(cost), Spectrum::grey(1), 0, true}, random, tally, cost);
-  }
-
- private:
   struct Node {
     Vertex vertex;
     Spectrum weight;
@@ -53,6 +48,11 @@ class Tree {
     bool sees_emission;
   };
 
+  void trace(Stream& random, Tally& tally, Cost& cost) const {
+    grow({world_.camera(cost), Spectrum::grey(1), 0, true}, random, tally, cost);
+  }
+
+  /// Adds what a vertex scores and all that grows from it.
   void grow(const Node& node, Stream& random, Tally& tally, Cost& cost) const {
     const Vertex& v = node.vertex;
     if (!v.surface) return;

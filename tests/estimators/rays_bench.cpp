@@ -21,6 +21,7 @@
 
 #include "estimators/catalogue.h"
 #include "estimators/flow.h"
+#include "paths/mesh_world.h"
 #include "render/hemisphere.h"
 #include "render/scene.h"
 #include "render/triangle_mesh.h"
@@ -30,18 +31,22 @@ namespace {
 using namespace assay;
 using render::Vector3;
 
-constexpr Vector3 centre = {0.3, 0.2, 0.5};
-constexpr double radius = 0.25;
 constexpr unsigned meridians = 40;
 constexpr unsigned parallels = 26;  // 2 * 40 * 25 = 2,000 triangles
 
-std::filesystem::path write_sphere() {
+struct Sphere {
+  Vector3 centre;
+  double radius;
+};
+
+std::filesystem::path write_sphere(const Sphere& sphere) {
+  const auto& [centre, radius] = sphere;
   const auto file = std::filesystem::temp_directory_path() / "assay_rays_bench.obj";
   std::ofstream out(file);
-  const auto vertex = [&](double z, double r, double v) {
+  const auto vertex = [&out, &at_centre = centre](double z, double r, double v) {
     const double phi = 2 * std::numbers::pi * v;
-    out << "v " << centre.x + r * std::cos(phi) << ' ' << centre.y + r * std::sin(phi) << ' '
-        << centre.z + z << '\n';
+    out << "v " << at_centre.x + r * std::cos(phi) << ' ' << at_centre.y + r * std::sin(phi) << ' '
+        << at_centre.z + z << '\n';
   };
   vertex(radius, 0, 0);
   vertex(-radius, 0, 0);
@@ -196,10 +201,79 @@ void print(const char* plugin, double primary, double bare) {
               bare / primary);
 }
 
+// The time of a path tracer by the rays that it counts.
+double ray_time(const char* plugin, const Value& scene) {
+  const Entry& entry = find_plugin(plugin, {});
+  Parameters parameters(plugin, entry.information.parameters, Value::map({{"scene", scene}}), "");
+  const auto setup = entry.prepare(parameters);
+  const auto estimator = setup->make();
+  const StreamKey key = stream_key(1, plugin, parameters.canonical(), 0);
+  constexpr std::uint64_t observations = 1000;
+  Cost cost;
+  std::vector<double> out(setup->channels().size());
+  const auto work = [&] {
+    cost = {};
+    for (std::uint64_t i = 0; i < observations; ++i) {
+      Stream random(key, i);
+      estimator->secondary(random, 256, out, cost);
+    }
+  };
+  const double time = nanoseconds(observations, work);
+  return time * static_cast<double>(observations) / static_cast<double>(cost.rays());
+}
+
+// The rays of one endless path in a scene that needs no scaling.
+std::vector<RTCRay> path_rays(const Value& scene) {
+  const auto description = paths::read_scene(scene, "");
+  const paths::MeshWorld world(std::get<paths::MeshScene>(description.form), description.camera);
+  Stream random(stream_key(1, "rays_bench", "", 1), 0);
+  Cost cost;
+  paths::Vertex v = world.camera(cost);
+  std::vector<RTCRay> rays;
+  while (rays.size() < (1u << 18)) {
+    const paths::Vertex next = world.reflected(v, random, cost);
+    RTCRay ray = bare_ray(next.arriving, INFINITY);
+    ray.org_x = static_cast<float>(v.position.x);
+    ray.org_y = static_cast<float>(v.position.y);
+    ray.org_z = static_cast<float>(v.position.z);
+    ray.tnear = 0;
+    rays.push_back(ray);
+    v = next;
+  }
+  return rays;
+}
+
+// A cube of side 1 about the origin: hardly anything to search, so that the rest shows.
+std::filesystem::path write_cube() {
+  const auto file = std::filesystem::temp_directory_path() / "assay_rays_bench_cube.obj";
+  std::ofstream out(file);
+  for (int i = 0; i < 8; ++i) {
+    out << "v " << (i % 2) - .5 << ' ' << (i / 2 % 2) - .5 << ' ' << (i / 4) - .5 << '\n';
+  }
+  out << "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+  return file;
+}
+
+// Paths inside a mesh whose longest side is 1 and whose middle is the origin: scenes of paths are
+// brought to that.
+void bench_paths(const std::filesystem::path& mesh) {
+  const Value scene = parse_flow("{furnace: {obj: " + mesh.string() +
+                                 ", emission: 1, albedo: .8}, camera: {position: [0, 0, 0], "
+                                 "direction: [.3, .2, 1]}}");
+  const render::TriangleMesh triangles = render::read_obj(mesh);
+  const double bare = Bare({triangles}).intersect_time(path_rays(scene));
+  for (const char* plugin : {"paths/plain", "paths/roulette"}) {
+    const double time = ray_time(plugin, scene);
+    std::printf("%-15s%5zu    %6.1f ns a ray      %6.1f ns a bare ray  ratio %.2f\n", plugin,
+                triangles.triangles.size(), time, bare, bare / time);
+  }
+  std::filesystem::remove(mesh);
+}
+
 }  // namespace
 
 int main() {
-  const std::filesystem::path sphere = write_sphere();
+  const std::filesystem::path sphere = write_sphere({{0.3, 0.2, 0.5}, 0.25});
   const Value scene = parse_flow(
       "{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {polygon: [[-.8, -.6, 1], "
       "[.9, -.6, 1], [.9, .8, 1], [-.8, .8, 1]], radiance: 1}, occluders: [{obj: " +
@@ -227,4 +301,6 @@ int main() {
   print("luminaire/hemisphere", primary_time("luminaire/hemisphere", scene),
         both.intersect_time(uniform));
   std::filesystem::remove(sphere);
+  bench_paths(write_cube());
+  bench_paths(write_sphere({{0, 0, 0}, 0.5}));
 }

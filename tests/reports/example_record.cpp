@@ -161,6 +161,52 @@ Test proof() {
   return t;
 }
 
+// An image of 4 x 3 pixels with two components, whose right side differs.
+Map map_of(const std::string& name, const std::string& source, float base, float right) {
+  Map map{.name = name,
+          .source = source,
+          .file = "run.maps/winners.exr",
+          .width = 4,
+          .height = 3,
+          .components = {"red", "green"},
+          .texels = {}};
+  for (int i = 0; i < 24; ++i) {
+    map.texels.values.push_back(base + 0.125f * static_cast<float>(i % 3) +
+                                (i / 2 % 4 >= 2 ? right : 0.0f));
+  }
+  return map;
+}
+
+ImageFinding finding(const std::string& statistic, const std::string& place, double z) {
+  return {.statistic = statistic,
+          .place = place,
+          .x = 2,
+          .y = 1,
+          .width = 2,
+          .height = 2,
+          .component = "green",
+          .z = z,
+          .log10_p = -46.25,
+          .log10_p_adjusted = -44.63827216398241};
+}
+
+void add_image(Test& t) {
+  t.image = Image{.width = 4,
+                  .height = 3,
+                  .components = {"red", "green"},
+                  .replicates = 64,
+                  .tested = 21,
+                  .constant = 2,
+                  .unseen = 1,
+                  .single_pixels = true,
+                  .sign_flips = true,
+                  .winner = finding("window", "columns 2-3, rows 1-2 of green, z = -14.2", -14.2),
+                  .groups = {}};
+  t.image->groups = {t.image->winner, finding("energy", "the sum of squares of red, z = +3", 3)};
+  t.maps = {map_of("z", "", 0.5f, -14.5f), map_of("p_adjusted", "", 0.5f, -0.499f),
+            map_of("mean", "winners", 0.25f, 0.5f), map_of("variance", "winners", 0.0625f, 0.0f)};
+}
+
 Test failing() {
   Test t = base("mean(winners) == mean(hemisphere)", 18);
   t.verdict = Verdict::fail;
@@ -177,6 +223,7 @@ Test failing() {
   t.channels[0].p_pass = 1;
   t.channels[0].log10_p_pass = 0;
   t.message = "the means differ by -2.04 %; interval [-2.25 %, -1.83 %]";
+  add_image(t);
   return t;
 }
 

@@ -39,7 +39,6 @@ class Randomise {
   }
   template <class T>
   void repeated(const char*, const T&) {}
-  void no_elements(const char*) {}
 
  private:
   static void fill(double& value) { value = *any_double(); }
@@ -59,6 +58,20 @@ class Randomise {
   static void fill(std::vector<T>& values) {
     values.resize(*rc::gen::inRange<std::size_t>(0, 3));
     for (T& value : values) fill(value);
+  }
+  // As many numbers as elements.
+  static void fill(Map& map) {
+    Randomise inner;
+    fields(inner, map);
+    map.width = *rc::gen::inRange<std::uint64_t>(0, 4);
+    map.height = *rc::gen::inRange<std::uint64_t>(0, 4);
+    map.texels.values.resize(map.width * map.height * map.components.size());
+    for (float& value : map.texels.values) value = static_cast<float>(*any_double());
+  }
+  static void fill(Texels&) {}
+  static void fill(std::optional<Image>& image) {
+    image.reset();
+    if (*rc::gen::arbitrary<bool>()) fill(image.emplace());
   }
   template <class T>
   requires requires(Randomise& r, T& value) { fields(r, value); }

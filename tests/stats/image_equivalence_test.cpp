@@ -139,5 +139,35 @@ TEST(ImageEquivalence, BadArgumentsAreRefused) {
   EXPECT_THROW(squared_bias(a.view(), few.view()), std::domain_error);
 }
 
+// The two sums apart give the same test as the sum of their difference, at every margin.
+TEST(ImageEquivalence, TheSquaredMarginTestIsTheSameFromTheTwoSums) {
+  Philox random(870);
+  const OwnedStack a = image(random, 0.05, 3);
+  const OwnedStack b = image(random, 0, 3);
+  const ImageDistance distance = image_distance(a.view(), b.view());
+  const SquaredBias bias = squared_bias(a.view(), b.view());
+  EXPECT_NEAR(distance.squared_bias, bias.estimate, 1e-12 * std::abs(bias.estimate));
+  EXPECT_NEAR(std::sqrt(distance.bias_variance), bias.standard_error, 1e-10 * bias.standard_error);
+  for (const double m : {0.01, 0.05, 0.2}) {
+    const TestResult one = image_equivalence(a.view(), b.view(), m);
+    const TestResult other = squared_margin_test(distance, m * m);
+    EXPECT_DOUBLE_EQ(one.statistic, other.statistic);
+    EXPECT_DOUBLE_EQ(one.log_p_lower, other.log_p_lower);
+  }
+}
+
+// In units of a norm of 1 for each element the margin is a root mean square.
+TEST(ImageEquivalence, ANormWithoutErrorLeavesTheBiasAlone) {
+  Philox random(871);
+  const OwnedStack a = image(random, 0.05, 1);
+  const OwnedStack b = image(random, 0, 1);
+  const ImageDistance plain = with_norm(image_distance(a.view(), b.view()), 144);
+  EXPECT_EQ(plain.norm_variance, 0);
+  const TestResult at = squared_margin_test(plain, plain.squared_bias / 144);
+  EXPECT_NEAR(at.statistic, 0, 1e-9);
+  EXPECT_LT(squared_margin_test(plain, 0.3 * 0.3).log_p_upper, std::log(0.01));
+  EXPECT_THROW(with_norm(plain, 0), std::domain_error);
+}
+
 }  // namespace
 }  // namespace assay::stats

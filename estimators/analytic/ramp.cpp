@@ -1,0 +1,92 @@
+// An image of known means: brightness grows from left to right.
+//
+// X(x, y, c) = m(x, c) (1 + s Z) with m(x, c) = (1 + 9 x / (width - 1)) (1, 0.8, 0.6)_c and Z of
+// mean 0 and variance 1: E[X] = m, Var X = (m s)^2. Z is normal, or exponential less 1 (skewness
+// 2).
+
+#include <array>
+#include <cmath>
+
+#include "analytic/normal.h"
+#include "estimators/imaging.h"
+
+namespace assay::plugins {
+
+namespace {
+
+struct RampPrimary {
+  double mean;
+  double deviation;
+  bool exponential;
+
+  double operator()(Stream& random) const {
+    const double z =
+        exponential ? -std::log(random.uniform_open()) - 1 : analytic::NormalLaw{}(random);
+    return mean + deviation * z;
+  }
+};
+
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  constexpr std::array<double, 3> colour = {1, 0.8, 0.6};
+  const std::size_t width = parameters.count("width");
+  ImageParts<RampPrimary> parts{
+      .shape = {.width = width, .height = parameters.count("height")},
+      .channels = {},
+      .primaries = {},
+      .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
+  if (parameters.boolean("colour")) parts.shape.components = {"red", "green", "blue"};
+  const double spread = parameters.number("spread");
+  const bool exponential = parameters.string("law") == "exponential";
+  for (std::size_t i = 0; i < parts.shape.elements(); ++i) {
+    const std::size_t component = i % parts.shape.components.size();
+    const double column = static_cast<double>(i / parts.shape.components.size() % width);
+    const double mean = (1 + 9 * column / static_cast<double>(width - 1)) * colour[component];
+    const double deviation = mean * spread;
+    parts.channels.push_back({.mean = mean, .variance = deviation * deviation});
+    parts.primaries.push_back({mean, deviation, exponential});
+  }
+  return imaging(std::move(parts));
+}
+
+ParameterInformation size(const char* name, const char* summary) {
+  return {.name = name,
+          .type = ParameterType::count,
+          .summary = summary,
+          .fallback = "16",
+          .low = 2,
+          .high = 4096};
+}
+
+}  // namespace
+
+std::vector<Entry> analytic_ramp() {
+  return {
+      {{.name = "analytic/ramp",
+        .summary = "An image of known means: a ramp with noise in proportion.",
+        .description = "X = m (1 + spread Z), m growing from 1 to 10 from left to right, Z "
+                       "normal, or exponential less its mean. With `shared`, one Z serves all "
+                       "pixels of a primary: they are then fully correlated.",
+        .parameters = {size("width", "columns"),
+                       size("height", "rows"),
+                       {.name = "colour",
+                        .type = ParameterType::boolean,
+                        .summary = "three components, of brightness 1, 0.8 and 0.6, instead of one",
+                        .fallback = "false"},
+                       {.name = "spread",
+                        .summary = "standard deviation of a primary over its mean",
+                        .fallback = "1",
+                        .low = 0,
+                        .high = 1e100},
+                       {.name = "law",
+                        .type = ParameterType::string,
+                        .summary = "of Z",
+                        .fallback = "normal",
+                        .choices = {"normal", "exponential"}},
+                       {.name = "shared",
+                        .type = ParameterType::boolean,
+                        .summary = "whether all pixels get the same random numbers",
+                        .fallback = "false"}}},
+       prepare}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,26 @@
+#pragma once
+
+// The parts of the image of a plane's irradiance: a luminaire estimator at each of a grid of
+// receivers.
+
+#include "estimators/imaging.h"
+#include "luminaire/area.h"
+
+namespace assay::luminaire {
+
+/// The grid: width x height receivers that share the scene's normal, centred on the scene's
+/// receiver, the centres of equal squares of a rectangle `size` long along the width.
+struct Floor {
+  ImageShape shape;
+  std::vector<SharedSetting> settings;  ///< of each pixel, row by row
+  ImageStreams streams = ImageStreams::own;
+};
+
+/// The parameters scene, width, height, size, shared.
+std::vector<ParameterInformation> floor_parameters();
+Floor read_floor(Parameters& parameters);
+
+/// Channels with Lambert's mean, between 0 and the most that any point can bring.
+std::vector<Channel> floor_channels(const Floor& floor);
+
+}  // namespace assay::luminaire

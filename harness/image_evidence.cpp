@@ -1,0 +1,307 @@
+#include "harness/image_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/inversion.h"
+#include "stats/errors.h"
+#include "stats/image_equivalence.h"
+#include "stats/image_pyramid.h"
+#include "stats/image_sign_flip.h"
+#include "stats/moments.h"
+#include "stats/tails.h"
+
+namespace assay::harness {
+namespace {
+
+// Against a reference, this share of the level goes to elements that never varied.
+constexpr double unseen_share = 0.02;
+// Sign vectors are enumerated for so few replicates, some milliseconds' work; for more of them a
+// random choice is looked at, and never of more vectors or longer ones: some seconds' work.
+constexpr std::size_t most_enumerated = 18;
+constexpr double most_flips = 0x1p19;
+constexpr std::size_t most_flipped = 64;
+
+constexpr double certain = std::numeric_limits<double>::lowest();
+
+bool never_varied(const stats::ImageStack<double>& stack, std::size_t element) {
+  const double first = stack.images[0][element];
+  return std::all_of(stack.images.begin(), stack.images.end(),
+                     [&](std::span<const double> image) { return image[element] == first; });
+}
+
+// ---- theta = 0
+
+using Images = std::vector<std::vector<double>>;
+
+/// Means of the images r, r + count, r + 2 count, …: as good as the images themselves for flipping
+/// signs, and there are at most `count` of them.
+Images grouped(const stats::ImageStack<double>& stack, std::size_t count) {
+  const std::size_t groups = std::min(count, stack.images.size());
+  Images means(groups, std::vector<double>(stack.extent.elements()));
+  for (std::size_t g = 0; g < groups; ++g) {
+    const std::size_t members = (stack.images.size() - g + groups - 1) / groups;
+    for (std::size_t r = g; r < stack.images.size(); r += groups) {
+      for (std::size_t i = 0; i < means[g].size(); ++i) {
+        means[g][i] += stack.images[r][i] / static_cast<double>(members);
+      }
+    }
+  }
+  return means;
+}
+
+stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Images& images) {
+  stats::ImageStack<double> stack{extent, {}};
+  for (const std::vector<double>& image : images) stack.images.emplace_back(image);
+  return stack;
+}
+
+stats::FlipMatrix flip_matrix_of(const ImagePair& pair) {
+  const Images first = grouped(pair.first(), most_flipped);
+  const auto a = stack_of(pair.extent(), first);
+  if (!pair.of_two()) return stats::flip_matrix(a, pair.reference());
+  const Images second = grouped(pair.second(), most_flipped);
+  return stats::flip_matrix(a, stack_of(pair.extent(), second));
+}
+
+/// The sum of squares of correlated elements: the share of sign vectors that reach it. nullopt
+/// where so few replicates, or so small a level, leave nothing to reject.
+std::optional<double> flipped_energy(const ImagePair& pair, const ImageTest& test) {
+  const double share = test.share.alpha * stats::energy_share;
+  const stats::FlipMatrix matrix = flip_matrix_of(pair);
+  const double replicates = static_cast<double>(matrix.replicates());
+  if (replicates < 2 + std::log2(1 / share)) return std::nullopt;
+  if (matrix.replicates() <= most_enumerated) return stats::sign_flip(matrix, share).log_p;
+  const double flips = std::ceil(4 / share);
+  if (flips > most_flips) return std::nullopt;
+  Stream random(stream_key(test.flips.bits, "sign flips", "", 0), pair.replicates());
+  return stats::sign_flip(matrix, {share, static_cast<std::uint64_t>(flips)}, random).log_p;
+}
+
+stats::ImageFamily family_of(const ImagePair& pair, const ImageTest& test, ImageOutcome& outcome) {
+  stats::PyramidOptions options{.energy_log_p = {}, .single_elements = test.single_elements};
+  if (!test.independent) {
+    const std::optional<double> log_p = flipped_energy(pair, test);
+    outcome.by_sign_flips = true;
+    outcome.enough_for_flips = log_p.has_value();
+    options.energy_log_p = log_p.value_or(0);
+  }
+  if (pair.of_two()) return stats::image_pyramid(pair.first(), pair.second(), options);
+  const std::vector<double> seen = seen_reference(pair, outcome.unseen);
+  stats::ImageReference reference = pair.reference();
+  reference.value = seen;
+  return stats::image_pyramid(pair.first(), reference, options);
+}
+
+stats::ImageFinding finding_of(const UnseenElement& unseen, const ImagePair& pair) {
+  stats::ImageFinding finding = stats::certain_finding(pair.extent(), unseen.element, unseen.sign);
+  finding.log_p = unseen.log_p;
+  finding.z = z_of(unseen);
+  const double elements = static_cast<double>(pair.extent().elements());
+  finding.adjusted_log_p = std::min(0.0, unseen.log_p + std::log(elements / unseen_share));
+  return finding;
+}
+
+/// The elements that never varied join the family, at the share that was set aside for them.
+void add_unseen(const ImagePair& pair, ImageOutcome& outcome) {
+  if (pair.of_two()) return;
+  stats::ImageFamily& family = outcome.family;
+  for (stats::ImageFinding& group : family.groups) {
+    group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
+  }
+  const auto least = std::min_element(
+      outcome.unseen.begin(), outcome.unseen.end(),
+      [](const UnseenElement& a, const UnseenElement& b) { return a.log_p < b.log_p; });
+  if (least != outcome.unseen.end()) family.groups.push_back(finding_of(*least, pair));
+  stats::decide(family);
+}
+
+// ---- theta beyond 0
+
+stats::ImageDistance distance_of(const ImagePair& pair, bool relative) {
+  const stats::ImageDistance distance = pair.with(
+      [](const auto& first, const auto& second) { return stats::image_distance(first, second); });
+  if (!relative) {
+    return stats::with_norm(distance, static_cast<double>(pair.extent().elements()));
+  }
+  if (!(distance.squared_norm > 0)) {
+    throw std::domain_error(
+        "the image that it is held against is zero within its noise, and a margin in per cent of "
+        "it means nothing; give the margin as a number");
+  }
+  return distance;
+}
+
+double mean_over(std::span<const double> image) {
+  double sum = 0;
+  for (const double value : image) sum += value;
+  return sum / static_cast<double>(image.size());
+}
+
+stats::Moments means_of(const stats::ImageStack<double>& stack) {
+  stats::Moments moments;
+  for (const auto& image : stack.images) moments.add(mean_over(image));
+  return moments;
+}
+
+/// Standard error of theta for a difference that is the same, or in proportion, everywhere.
+double uniform_error(const ImagePair& pair, bool relative) {
+  double error = means_of(pair.first()).standard_error();
+  double mean = 0;
+  if (pair.of_two()) {
+    const stats::Moments second = means_of(pair.second());
+    error = std::hypot(error, second.standard_error());
+    mean = second.mean;
+  } else {
+    mean = mean_over(pair.reference().value);
+  }
+  return relative ? error / std::abs(mean) : error;
+}
+
+/// Replicates at which theta would be excluded from `margin` on: the squared bias's standard error
+/// falls like 1 / R while it is noise, like 1 / sqrt R where there is a bias.
+double wanted_replicates(const stats::ImageDistance& distance, double margin, const ImageTest& test,
+                         double replicates) {
+  const double estimate = std::max(0.0, distance.squared_bias / distance.squared_norm);
+  const double room = margin * margin - estimate;
+  if (!(room > 0)) return 0;
+  const double t =
+      -stats::student_t_quantile({stats::Tail::lower, std::log(test.share.beta)}, distance.degrees);
+  const double needed = (t + 1) * std::sqrt(distance.bias_variance) / distance.squared_norm / room;
+  return replicates * std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
+}
+
+/// Tests of a squared margin. An estimate below zero excludes no more than one of zero would: a
+/// bias smaller than none is excluded by no one.
+stats::TestResult at_squared_margin(const stats::ImageDistance& distance, double margin) {
+  stats::ImageDistance at_least_zero = distance;
+  at_least_zero.squared_bias = std::max(0.0, distance.squared_bias);
+  stats::TestResult result = stats::squared_margin_test(distance, margin);
+  result.log_p_lower = stats::squared_margin_test(at_least_zero, margin).log_p_lower;
+  return result;
+}
+
+stats::Interval interval_of(const stats::ImageDistance& distance, double confidence) {
+  const double step = std::sqrt(distance.bias_variance) / distance.squared_norm;
+  const stats::Interval squared = interval_by_inversion(
+      [&](double margin) { return at_squared_margin(distance, margin); },
+      {.estimate = distance.squared_bias / distance.squared_norm, .step = step}, confidence);
+  return {std::sqrt(std::max(0.0, squared.low)), std::sqrt(std::max(0.0, squared.high)),
+          confidence};
+}
+
+std::string range_text(std::uint32_t first, std::uint32_t count, const char* name) {
+  if (count == 1) return fmt::format("{} {}", name, first);
+  return fmt::format("{}s {}-{}", name, first, first + count - 1);
+}
+
+}  // namespace
+
+std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape) {
+  const std::string component =
+      shape.components.size() > 1 ? " of " + shape.components[finding.channel] : "";
+  const std::string z = fmt::format("z = {:+.3g}", finding.z);
+  const stats::Rectangle& window = finding.window;
+  switch (finding.statistic) {
+    case stats::ImageStatistic::energy:
+      return fmt::format("the sum of squares over the whole image{}, {}", component, z);
+    case stats::ImageStatistic::alternating: {
+      constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
+      return fmt::format("the whole image{} with alternating signs ({}), {}", component,
+                         patterns[static_cast<int>(finding.alternation)], z);
+    }
+    case stats::ImageStatistic::window:
+      break;
+  }
+  if (window.width == 1 && window.height == 1) {
+    return fmt::format("pixel x {}, y {}{}, {}", window.x, window.y, component, z);
+  }
+  if (window.width == shape.width && window.height == shape.height) {
+    return fmt::format("the whole image{}, {}", component, z);
+  }
+  return fmt::format("{}, {}{} ({} x {} pixels), {}", range_text(window.x, window.width, "column"),
+                     range_text(window.y, window.height, "row"), component, window.width,
+                     window.height, z);
+}
+
+double z_of(const UnseenElement& unseen) {
+  if (unseen.log_p == certain) return unseen.sign * std::numeric_limits<double>::infinity();
+  return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
+}
+
+std::vector<UnseenElement> unseen_elements(const Question& question, const ImagePair& pair) {
+  std::vector<UnseenElement> unseen;
+  if (pair.of_two() || !pair.reference().standard_error.empty()) return unseen;
+  const Subject& subject = question.subjects[0];
+  const std::vector<Channel> channels = subject.setup->channels();
+  for (std::size_t i = 0; i < pair.extent().elements(); ++i) {
+    const double constant = pair.first().images[0][i];
+    const double difference = constant - pair.reference().value[i];
+    if (difference == 0 || !never_varied(pair.first(), i)) continue;
+    const Channel& channel = channels[subject.channels[i]];
+    const double reach = difference < 0 ? channel.high - constant : constant - channel.low;
+    const double share = reach > 0 ? std::abs(difference) / reach : 1;
+    const double log_p =
+        share < 1 ? static_cast<double>(pair.replicates()) * std::log1p(-share) : certain;
+    unseen.push_back({i, difference < 0 ? -1.0 : 1.0, log_p});
+  }
+  return unseen;
+}
+
+std::vector<double> seen_reference(const ImagePair& pair, std::span<const UnseenElement> unseen) {
+  const std::span<const double> value = pair.reference().value;
+  std::vector<double> seen(value.begin(), value.end());
+  for (const UnseenElement& u : unseen) seen[u.element] = pair.first().images[0][u.element];
+  return seen;
+}
+
+ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
+                                 std::span<const ChannelData> data) {
+  const ImagePair pair(question, data);
+  stats::check::replicates("image", pair.replicates());
+  const bool relative = is_relative(question, 0);
+  const stats::ImageDistance distance = distance_of(pair, relative);
+  if (!(distance.bias_variance > 0)) {
+    throw stats::ZeroVariance(
+        "every replicate of both images is the same: without spread nothing can be said of what "
+        "was never seen; take fewer `primaries`, or more observations");
+  }
+  ImageEvidence result;
+  result.outcome.unseen = unseen_elements(question, pair);
+  result.outcome.replicates = pair.replicates();
+  result.outcome.single_elements = test.single_elements;
+  result.outcome.family = family_of(pair, test, result.outcome);
+  add_unseen(pair, result.outcome);
+  result.outcome.uniform_error = uniform_error(pair, relative);
+  const TestEntry& entry = *question.test;
+  const bool within = entry.claim.relation == Relation::within;
+  if (within || entry.detect) {
+    const double margin = within ? entry.claim.margin.value : entry.detect->value;
+    result.outcome.wanted =
+        wanted_replicates(distance, margin, test, static_cast<double>(pair.replicates()));
+  }
+  const stats::ImageFamily& family = result.outcome.family;
+  const stats::TestResult equal{
+      .statistic = family.winner.z,
+      .distribution = {"image-family", {static_cast<double>(family.tested)}},
+      .log_p_lower = 0,
+      .log_p_upper = family.log_p,
+      .exactness = stats::Exactness::asymptotic};
+  result.evidence = {
+      .estimate = std::sqrt(std::max(0.0, distance.squared_bias / distance.squared_norm)),
+      .at =
+          [distance, equal](double theta) {
+            return theta > 0 ? at_squared_margin(distance, theta * theta) : equal;
+          },
+      .interval = [distance](double confidence) { return interval_of(distance, confidence); },
+      .quantity = relative ? "relative root mean square difference of the images"
+                           : "root mean square difference of the images",
+      .relative = relative,
+      .distance = true};
+  return result;
+}
+
+}  // namespace assay::harness

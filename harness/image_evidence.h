@@ -1,0 +1,66 @@
+#pragma once
+
+// Evidence about images. theta is the size of their difference over all elements,
+//   theta = ||E a - E b|| / ||E b||, or its root mean square where margins are absolute.
+// "theta = 0" is tested by the family of cells of every size, alternating sums and the sum of
+// squares (stats/image_pyramid.h); other values by the unbiased squared bias
+// (stats/image_equivalence.h).
+
+#include "harness/evidence.h"
+#include "harness/family.h"
+#include "harness/image_pair.h"
+#include "stats/image_family.h"
+
+namespace assay::harness {
+
+/// How the family is tested; frozen by the plan, but for the share of the level.
+struct ImageTest {
+  ErrorShare share = {};        ///< of this look
+  bool single_elements = true;  ///< whether the pilot lets single elements keep their level
+  bool independent = true;      ///< whether an image's elements are; else signs are flipped
+  StreamKey flips = {};         ///< of the signs, where there are too many to enumerate
+};
+
+/// An element that was the same in every replicate and differs from its exact reference: what was
+/// never seen may make up the difference. With values declared to lie in [low, high], at least a
+/// share q = |reference - c| / (the farther end - c) of them is not c, so that
+/// P(all R are c) <= (1 - q)^R: exact. Without a range q is 0.
+struct UnseenElement {
+  std::size_t element = 0;
+  double sign = 0;  ///< of constant - reference
+  double log_p = 0;
+};
+
+/// The normal z of that p, with the difference's sign.
+double z_of(const UnseenElement& unseen);
+
+struct ImageOutcome {
+  stats::ImageFamily family = {};
+  std::vector<UnseenElement> unseen = {};
+  std::size_t replicates = 0;
+  bool single_elements = true;
+  bool by_sign_flips = false;
+  bool enough_for_flips = true;  ///< so many replicates that a sum of squares could be rejected
+  double wanted = 0;             ///< replicates that would decide, as far as can be told; 0: none
+  double uniform_error = 0;      ///< standard error of theta, were it the same everywhere
+};
+
+struct ImageEvidence {
+  Evidence evidence;
+  ImageOutcome outcome;
+};
+
+/// Throws std::domain_error for fewer than 16 replicates, and where nothing varies.
+ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
+                                 std::span<const ChannelData> data);
+
+/// Constants that differ from their exact reference; none of two images.
+std::vector<UnseenElement> unseen_elements(const Question& question, const ImagePair& pair);
+
+/// The reference as far as elements vary, for z: their constants where they do not.
+std::vector<double> seen_reference(const ImagePair& pair, std::span<const UnseenElement> unseen);
+
+/// Where in an image a finding lies: "columns 8-15, rows 16-23 of red (8 x 8 pixels), z = +6.1".
+std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape);
+
+}  // namespace assay::harness

@@ -1,0 +1,24 @@
+#pragma once
+
+// What taking a look at images needs of a test's data.
+
+#include <optional>
+#include <vector>
+
+#include "harness/evaluate.h"
+#include "harness/sample_size.h"
+
+namespace assay::harness {
+
+/// How the family of an image is tested at the current look.
+ImageTest image_test(const TestWork& work);
+
+/// The observations of this look, the subject's elements of each.
+std::vector<std::vector<double>> images_of(const TestWork& work, std::size_t subject);
+
+/// The difference that a test of this size would find by the sum over the whole image, were it the
+/// same everywhere; nullopt where the claim allows a difference.
+std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,
+                                           const ChannelOutcome& channel);
+
+}  // namespace assay::harness

@@ -1,0 +1,30 @@
+#pragma once
+
+// Planning claims on images.
+
+#include <cstdint>
+#include <optional>
+
+#include "harness/outcome.h"
+#include "harness/pilot.h"
+
+namespace assay::harness {
+
+/// Replicates of a claim on images without `detect`.
+inline constexpr std::uint64_t classical_replicates = 64;
+
+/// Whether single elements take part: not where the pilot's skewness would raise their share of
+/// false alarms by more than a quarter (mean over the elements), which no sum thins out. Notes the
+/// gate. Returns the fewest replicates that any method takes.
+std::uint64_t choose_for_image(const Question& question, const FamilyPlace& place,
+                               const Pilots& pilots, std::uint64_t most, Plan& plan);
+
+/// Replicates that exclude `detect` (or prove `within`) where the images are equal; nullopt where
+/// nothing asks for a number.
+std::optional<std::uint64_t> image_secondaries(const Question& question, const ErrorShare& share,
+                                               const Pilots& pilots, const Plan& plan);
+
+/// Why so few replicates are no test; "" where they are enough.
+std::string too_few_replicates(const Question& question, const Plan& plan);
+
+}  // namespace assay::harness

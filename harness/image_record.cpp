@@ -1,0 +1,256 @@
+#include "harness/image_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "estimators/map_file.h"
+#include "harness/picture.h"
+#include "harness/question_image.h"
+#include "harness/text_hash.h"
+#include "stats/image_welch.h"
+#include "stats/tails.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Number;
+
+Number number(double value) { return std::isfinite(value) ? Number(value) : Number(); }
+
+Number log10_of(double log_p) { return log_p / std::log(10.0); }
+
+const char* statistic_name(stats::ImageStatistic statistic) {
+  switch (statistic) {
+    case stats::ImageStatistic::alternating:
+      return "alternating";
+    case stats::ImageStatistic::energy:
+      return "energy";
+    case stats::ImageStatistic::window:
+      break;
+  }
+  return "window";
+}
+
+reports::ImageFinding finding_of(const stats::ImageFinding& finding, const ImageShape& shape) {
+  return {.statistic = statistic_name(finding.statistic),
+          .place = place_text(finding, shape),
+          .x = finding.window.x,
+          .y = finding.window.y,
+          .width = finding.window.width,
+          .height = finding.window.height,
+          .component = shape.components[finding.channel],
+          .z = number(finding.z),
+          .log10_p = log10_of(finding.log_p),
+          .log10_p_adjusted = log10_of(finding.adjusted_log_p)};
+}
+
+reports::Image image_of(const ImageOutcome& outcome, const ImageShape& shape) {
+  const stats::ImageFamily& family = outcome.family;
+  reports::Image image{.width = shape.width,
+                       .height = shape.height,
+                       .components = shape.components,
+                       .replicates = outcome.replicates,
+                       .tested = family.tested,
+                       .constant = family.equal_constants - outcome.unseen.size(),
+                       .unseen = outcome.unseen.size(),
+                       .single_pixels = outcome.single_elements,
+                       .sign_flips = outcome.by_sign_flips,
+                       .winner = {},
+                       .groups = {}};
+  if (family.groups.empty()) return image;
+  image.winner = finding_of(family.winner, shape);
+  for (const stats::ImageFinding& group : family.groups) {
+    image.groups.push_back(finding_of(group, shape));
+  }
+  return image;
+}
+
+// ---- Maps
+
+float narrow(double value) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return std::isfinite(value) ? static_cast<float>(std::clamp(value, -most, most))
+                              : static_cast<float>(value);
+}
+
+reports::Map map_of(const char* name, const ImageShape& shape, const std::vector<double>& values) {
+  reports::Map map{.name = name,
+                   .source = "",
+                   .file = "",
+                   .width = shape.width,
+                   .height = shape.height,
+                   .components = shape.components,
+                   .texels = {}};
+  for (const double value : values) map.texels.values.push_back(narrow(value));
+  return map;
+}
+
+/// z of every element: Welch's, or that of the bound for elements that never varied.
+std::vector<double> z_map(const ImagePair& pair, const std::vector<UnseenElement>& unseen) {
+  std::vector<double> z(pair.extent().elements());
+  if (pair.of_two()) {
+    stats::welch_z(pair.first(), pair.second(), 0, z);
+    return z;
+  }
+  const std::vector<double> seen = seen_reference(pair, unseen);
+  stats::ImageReference reference = pair.reference();
+  reference.value = seen;
+  stats::welch_z(pair.first(), reference, 0, z);
+  for (const UnseenElement& element : unseen) z[element.element] = z_of(element);
+  return z;
+}
+
+/// Sidak over the elements that vary.
+std::vector<double> adjusted_map(const std::vector<double>& z, double tested) {
+  std::vector<double> p;
+  for (const double value : z) {
+    const double log_p =
+        std::isfinite(value)
+            ? std::min(0.0, std::log(2.0) + stats::normal_tails(std::abs(value)).upper)
+            : std::numeric_limits<double>::lowest();
+    p.push_back(std::exp(stats::adjusted(log_p, {.count = tested, .share = 1})));
+  }
+  return p;
+}
+
+/// Mean and variance of one source's elements.
+void add_moments(const TestWork& work, std::size_t subject, reports::Test& test) {
+  const Subject& side = work.outcome.question.subjects[subject];
+  const Summary& summary = work.pools[subject]->prefix(work.outcome.secondaries());
+  std::vector<double> mean;
+  std::vector<double> variance;
+  for (const std::size_t channel : side.channels) {
+    const stats::Moments& moments = summary.channels[channel].moments;
+    mean.push_back(moments.mean);
+    variance.push_back(moments.variance());
+  }
+  const char* const mean_names[] = {"mean", "other_mean"};
+  const char* const variance_names[] = {"variance", "other_variance"};
+  test.maps.push_back(map_of(mean_names[subject], *side.image, mean));
+  test.maps.back().source = side.estimator->listed;
+  test.maps.push_back(map_of(variance_names[subject], *side.image, variance));
+  test.maps.back().source = side.estimator->listed;
+}
+
+void add_maps(const TestWork& work, const ImageOutcome& outcome, reports::Test& test) {
+  const Question& question = work.outcome.question;
+  const ImageShape& shape = *question.subjects[0].image;
+  const std::vector<ChannelData> data = data_of(work, 0);
+  const ImagePair pair(question, data);
+  const std::vector<double> z = z_map(pair, outcome.unseen);
+  const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
+  test.maps.push_back(map_of("z", shape, z));
+  test.maps.push_back(map_of("p_adjusted", shape, adjusted_map(z, tested)));
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    add_moments(work, subject, test);
+  }
+  if (pair.of_two()) return;
+  const std::span<const double> reference = pair.reference().value;
+  test.maps.push_back(map_of("reference", shape, {reference.begin(), reference.end()}));
+}
+
+/// A file name of letters, digits, `-` and `_`, different for different tests.
+std::string file_name(const std::string& id) {
+  constexpr std::size_t longest = 80;
+  std::string name;
+  for (const char c : id.substr(0, longest)) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (plain || c == '-') {
+      name += c;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  return fmt::format("{}-{:08x}.exr", name, text_hash(id) & 0xffffffff);
+}
+
+}  // namespace
+
+reports::Sample image_sample(const TestWork& work, std::size_t subject) {
+  const TestOutcome& outcome = work.outcome;
+  const Subject& side = outcome.question.subjects[subject];
+  const Summary& summary = work.pools[subject]->prefix(outcome.secondaries());
+  reports::Sample sample{.estimator = side.estimator->listed,
+                         .plugin = side.estimator->entry->information.name,
+                         .parameters = side.estimator->parameters,
+                         .channel = image_name(*side.image),
+                         .primaries = outcome.plan.primaries[subject],
+                         .secondaries = outcome.secondaries()};
+  stats::Moments means;
+  double variance = 0;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const std::size_t channel : side.channels) {
+    const ChannelSummary& kept = summary.channels[channel];
+    sample.nonfinite += kept.nonfinite;
+    sample.nonzero += kept.moments.nonzero;
+    if (kept.moments.count < 2) continue;
+    means.add(kept.moments.mean);
+    variance += kept.moments.variance();
+    low = std::min(low, kept.moments.minimum);
+    high = std::max(high, kept.moments.maximum);
+  }
+  if (means.count > 0) {
+    sample.mean = number(means.mean);
+    sample.variance = number(variance / static_cast<double>(means.count));
+    sample.minimum = number(low);
+    sample.maximum = number(high);
+  }
+  sample.cost = cost_of(summary);
+  return sample;
+}
+
+void add_image(const TestWork& work, reports::Test& test) {
+  const TestOutcome& outcome = work.outcome;
+  if (outcome.channels.empty() || !outcome.channels[0].image) return;
+  const ImageOutcome& found = *outcome.channels[0].image;
+  test.image = image_of(found, *outcome.question.subjects[0].image);
+  add_maps(work, found, test);
+}
+
+reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary,
+                                        double per_primary) {
+  const ImageShape shape = *setup.image();
+  const std::vector<Channel> channels = setup.channels();
+  const double elements = static_cast<double>(shape.elements());
+  double mean = 0;
+  double variance = 0;
+  double reference = 0;
+  bool known = true;
+  for (std::size_t i = 0; i < shape.elements(); ++i) {
+    const stats::Moments& moments = summary.channels[i].moments;
+    mean += moments.mean / elements;
+    if (moments.count > 1) variance += per_primary * moments.variance() / elements;
+    known = known && channels[i].mean.has_value();
+    reference += channels[i].mean.value_or(0) / elements;
+  }
+  reports::EstimatorChannel row{.name = image_name(shape),
+                                .mean = {number(mean), {}, {}},
+                                .variance = {number(variance), {}, {}}};
+  if (known) row.reference = number(reference);
+  return row;
+}
+
+void write_maps(reports::Record& record, const std::string& json_path) {
+  const std::filesystem::path path(json_path);
+  const std::filesystem::path folder = path.parent_path() / (path.stem().string() + ".maps");
+  for (reports::Suite& suite : record.suites) {
+    for (reports::Test& test : suite.tests) {
+      if (test.maps.empty()) continue;
+      std::filesystem::create_directories(folder);
+      const std::string name = file_name(test.id);
+      std::vector<MapLayer> layers;
+      for (reports::Map& map : test.maps) {
+        map.file = (folder.filename() / name).string();
+        layers.push_back({map.name, map.components, map.texels.values});
+      }
+      write_map_file((folder / name).string(), {test.image->width, test.image->height}, layers);
+    }
+  }
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,54 @@
+#include "reports/image_text.h"
+
+#include <fmt/format.h>
+
+#include "reports/number.h"
+
+namespace assay::reports {
+namespace {
+
+std::string components_text(const Image& image) {
+  std::string text;
+  for (const std::string& component : image.components) {
+    text += (text.empty() ? " of " : ", ") + component;
+  }
+  return text;
+}
+
+std::string left_out(const Image& image) {
+  std::string text;
+  if (!image.single_pixels) text += "; single pixels are left out: their skewness is too large";
+  if (image.sign_flips) text += "; its pixels depend on each other: signs of whole images flipped";
+  if (image.constant > 0) text += fmt::format("; constant elements: {}", image.constant);
+  if (image.unseen > 0) {
+    text += fmt::format(
+        "; constant elements that are not at their reference: {}, rarer values may be unseen",
+        image.unseen);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string image_fact(const Test& test) {
+  if (!test.image) return {};
+  const Image& image = *test.image;
+  std::string text =
+      fmt::format("{} of {} x {} pixels{}", counted(image.replicates, "image", "images"),
+                  image.width, image.height, components_text(image));
+  if (!image.winner.place.empty()) {
+    text += fmt::format("; differs most at {}, p = {} in all", image.winner.place,
+                        p_text({}, image.winner.log10_p_adjusted));
+  }
+  return text + left_out(image);
+}
+
+std::string map_title(const Map& map) {
+  if (map.name == "z") return "signed z";
+  if (map.name == "p_adjusted") return "p of each pixel, adjusted for all pixels";
+  if (map.name == "reference") return "reference";
+  const bool variance = map.name == "variance" || map.name == "other_variance";
+  return fmt::format("{} of {}", variance ? "variance" : "mean", map.source);
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,119 @@
+// Images of a plane's irradiance: every pixel is a luminaire estimator of its own.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "tests/estimators/draws.h"
+
+namespace assay {
+namespace {
+
+using namespace assay::draws;
+
+constexpr const char* small = "{width: 6, height: 4, size: 3}";
+
+TEST(Floor, DeclaresItsShapeAndNamesItsPixels) {
+  const auto floor = prepare("luminaire/floor", small);
+  const ImageShape shape = floor.setup->image().value();
+  EXPECT_EQ(shape.width, 6u);
+  EXPECT_EQ(shape.height, 4u);
+  EXPECT_EQ(shape.components, std::vector<std::string>{"irradiance"});
+  EXPECT_TRUE(shape.independent);
+  const std::vector<Channel> channels = floor.setup->channels();
+  ASSERT_EQ(channels.size(), 24u);
+  EXPECT_EQ(channels[0].name, "x0y0");
+  EXPECT_EQ(channels[2 * 6 + 5].name, "x5y2");
+}
+
+// The receiver in the middle of an image of odd size is the scene's, whose irradiance is known.
+TEST(Floor, TheMiddlePixelIsTheScenesReceiver) {
+  const auto floor = prepare("luminaire/floor", "{width: 3, height: 3}");
+  EXPECT_NEAR(floor.setup->channels()[4].mean.value(), 0.481046907316, 1e-11);
+}
+
+// A receiver moved by hand: pixel x5y2 of 6 x 4 squares of 0.5.
+TEST(Floor, EveryPixelHasLambertsMeanOfItsPlace) {
+  const auto floor = prepare("luminaire/floor", small);
+  const auto moved =
+      prepare("luminaire/area",
+              "{scene: {receiver: {position: [1.25, 0.25, 0], normal: [0, 0, 1]}, light: {polygon: "
+              "[[.2, -.4, 1], [1.6, .3, 1.4], [-.3, 1.2, 1.1]], radiance: 1}}}");
+  EXPECT_NEAR(floor.setup->channels()[2 * 6 + 5].mean.value(),
+              moved.setup->channels()[0].mean.value(), 1e-12);
+}
+
+// False alarm: 24 comparisons at 1e-6 each.
+TEST(Floor, EveryPixelIsUnbiased) {
+  const auto floor = prepare("luminaire/floor", small);
+  const std::vector<Channel> channels = floor.setup->channels();
+  const std::vector<Sample> samples = observe(floor, 4000);
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    EXPECT_NEAR(samples[i].mean(), channels[i].mean.value(), five * samples[i].mean_error());
+    EXPECT_GE(*std::min_element(samples[i].values.begin(), samples[i].values.end()),
+              channels[i].low);
+    EXPECT_LE(*std::max_element(samples[i].values.begin(), samples[i].values.end()),
+              channels[i].high);
+  }
+}
+
+double correlation(const Sample& x, const Sample& y) {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.values.size(); ++i) {
+    sum += (x.values[i] - x.mean()) * (y.values[i] - y.mean());
+  }
+  return sum / x.size() / std::sqrt(x.variance() * y.variance());
+}
+
+// False alarm of the first: 1e-6.
+TEST(Floor, PixelsAreIndependentUnlessTheySharePoints) {
+  const std::vector<Sample> own = observe(prepare("luminaire/floor", small), 4000);
+  EXPECT_LT(std::abs(correlation(own[7], own[8])), five / std::sqrt(4000.0));
+  const auto floor = prepare("luminaire/floor", "{width: 6, height: 4, size: 3, shared: true}");
+  EXPECT_FALSE(floor.setup->image()->independent);
+  const std::vector<Sample> shared = observe(floor, 4000);
+  EXPECT_GT(correlation(shared[7], shared[8]), 0.5);
+}
+
+TEST(Floor, AMutantScalesSomePixelsAndNoOthers) {
+  const auto floor = prepare("luminaire/floor", "{width: 16, height: 16}");
+  const auto tile = prepare("mutants/floor_tile", "{width: 16, height: 16}");
+  EXPECT_EQ(tile.key, floor.key);
+  const std::vector<Sample> sound = observe(floor, 2);
+  const std::vector<Sample> broken = observe(tile, 2);
+  int changed = 0;
+  for (std::size_t i = 0; i < sound.size(); ++i) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double ratio = broken[i].values[k] / sound[i].values[k];
+      if (sound[i].values[k] == 0 || std::abs(ratio - 1) < 1e-12) continue;
+      EXPECT_NEAR(ratio, 1.02, 1e-12);
+      ++changed;
+    }
+  }
+  EXPECT_GT(changed, 16);  // of 4 x 4 pixels, two observations
+  EXPECT_LE(changed, 32);
+}
+
+TEST(Ramp, ComponentsStandTogetherAndHaveTheirMeans) {
+  const auto ramp = prepare("analytic/ramp", "{width: 4, height: 2, colour: true}");
+  const std::vector<Channel> channels = ramp.setup->channels();
+  ASSERT_EQ(channels.size(), 24u);
+  EXPECT_EQ(channels[3 * 3 + 2].name, "x3y0.blue");
+  EXPECT_DOUBLE_EQ(channels[3 * 3 + 2].mean.value(), 6);
+  EXPECT_DOUBLE_EQ(channels[(4 + 1) * 3 + 1].mean.value(), 3.2);
+}
+
+// False alarm: 2 x 2 comparisons at 1e-6 each.
+TEST(Ramp, BothLawsHaveTheStatedMeanAndVariance) {
+  for (const char* law : {"normal", "exponential"}) {
+    const auto ramp = prepare("analytic/ramp",
+                              std::string("{width: 2, height: 2, spread: 0.5, law: ") + law + "}");
+    const Sample sample = observe(ramp, 100000)[1];
+    EXPECT_NEAR(sample.mean(), 10, five * sample.mean_error()) << law;
+    EXPECT_NEAR(sample.variance(), 25, five * sample.variance_error()) << law;
+  }
+}
+
+}  // namespace
+}  // namespace assay
