@@ -222,14 +222,13 @@ std::shared_ptr<const Setup> survival_above_one(Parameters& parameters) {
 std::vector<Entry> mutants_roulette() {
   return {
       roulette_mutant<TerminalNotSubtracted>(
-          improved,
-          {"terminal_not_subtracted",
-           "adds the terminal value at the end and takes nothing off when going on; +50 % "
-           "in a furnace of albedo 0.5."}),
-      roulette_mutant<ThroughputNotDivided>(
-          classical, {"throughput_not_divided",
-                      "does not divide the throughput by the probability to go on; -33 % in a "
-                      "furnace of albedo 0.5."}),
+          improved, {"terminal_not_subtracted",
+                     "adds the terminal value at the end and takes nothing off when going on; +50 "
+                     "% in a furnace of albedo 0.5."}),
+      roulette_mutant<ThroughputNotDivided>(classical,
+                                            {"throughput_not_divided",
+                                             "does not divide the throughput by the probability to "
+                                             "go on; -33 % in a furnace of albedo 0.5."}),
       mutant(classical,
              {"depth_limit",
               "loses what comes after eight reflections; -0.2 % in a furnace of albedo 0.5, -13.4 "
@@ -262,23 +261,27 @@ std::vector<Entry> mutants_roulette() {
       roulette_mutant<DividedByItself>(
           classical, {"divided_by_itself",
                       "divides each colour by its own albedo, so that the throughput stays what it "
-                      "was; saturated surfaces come out grey."}),
+                      "was; saturated surfaces come out grey: +184 %, +950 % and +2060 % in the "
+                      "built-in coloured sphere."}),
       roulette_mutant<ClampedSurvival>(
           classical, {"clamped_survival",
                       "goes on with probability 1/2 at least, and divides by what it was before; "
-                      "too bright where it was below."}),
-      roulette_mutant<DarkPathsKilled>(
-          classical, {"dark_paths_killed",
-                      "ends paths whose probability to go on is below 0.1 without compensation; "
-                      "too dark where there are such."}),
+                      "too bright where it was below: +67 %, +120 % and +139 % in the coloured "
+                      "sphere by the throughput."}),
+      roulette_mutant<DarkPathsKilled>(classical,
+                                       {"dark_paths_killed",
+                                        "ends paths whose probability to go on is below 0.1 "
+                                        "without compensation; too dark where there are such."}),
       roulette_mutant<LuminanceThroughput>(
           classical, {"luminance_throughput",
-                      "keeps of the throughput its luminance alone; colours are lost."}),
+                      "keeps of the throughput its luminance alone; colours are lost: -58 %, +55 % "
+                      "and +219 % in the coloured sphere by the throughput."}),
       roulette_mutant<SurvivalAfterUpdate>(
-          classical, {"survival_after_update",
-                      "decides by the throughput before the reflection and divides by the "
-                      "probability that follows from the one after it; nothing in grey scenes or "
-                      "by rules of the albedo alone."}),
+          classical,
+          {"survival_after_update",
+           "decides by the throughput before the reflection and divides by the probability that "
+           "follows from the one after it; -48 %, -53 % and -55 % in the coloured sphere by the "
+           "throughput, nothing in grey scenes or by rules of the albedo alone."}),
   };
 }
 

@@ -19,9 +19,12 @@ Scene scene_of(const SphereScene& form, const Camera& camera) {
 
 Scene scene_of(const MeshScene& form, const Camera& camera) {
   auto world = std::make_shared<const MeshWorld>(form, camera);
-  std::optional<ZonedScene> law;
-  if (form.furnace) law = world->furnace();
-  return {world, true, law, global_incoming(mean_emission(*world), mean_albedo(*world))};
+  // Of a furnace without summing over its triangles, whose rounding the right terminal value shows.
+  if (form.furnace) {
+    const ZonedScene& law = world->furnace();
+    return {world, true, law, global_incoming(law.mean_emission(), law.mean_albedo())};
+  }
+  return {world, true, {}, global_incoming(mean_emission(*world), mean_albedo(*world))};
 }
 
 // What a vertex of a zone scores, for one colour; the emission that arrives along the camera's ray

@@ -54,13 +54,9 @@ MeshWorld::Triangle MeshWorld::triangle(const std::array<Vector3, 3>& corners) {
   const double around = at_a + at_b + at_c;
   const Vector3 centre = (at_a * a + at_b * b + at_c * c) / around;
   const double area = length(across) / 2;
-  return {a,
-          b - a,
-          c - a,
-          normalised(across),
-          mesh_resolution * centre,
-          mesh_resolution / 4 * (2 * area / around),
-          area};
+  const double radius = 2 * area / around;
+  const double shift = std::min(0.5, std::max(mesh_resolution, least_shift / radius));
+  return {a, b - a, c - a, normalised(across), shift, shift * centre, shift / 4 * radius, area};
 }
 
 luminaire::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& triangles,

@@ -15,14 +15,15 @@
 
 namespace assay::paths {
 
-/// Surfaces are told apart down to this fraction of the radius of a triangle's inscribed circle.
-///
-/// A path goes on from a point moved by this fraction of the way to the centre of that circle, and
-/// by a quarter of this fraction of its radius off the triangle: so it starts inside of neighbours
-/// that meet at 15 degrees or more, whatever rounding did, and no ray slips out at an edge. With
-/// coordinates of the scene's box rounded to 2^-25 of its size, triangles may be as small as a
-/// 250th.
+/// How far a path goes on from where it arrived, in fractions of the radius of the triangle's
+/// inscribed circle: moved by this much of the way to the circle's centre, and by a quarter as much
+/// of its radius off the triangle. So it starts inside of neighbours that meet at 15 degrees or
+/// more, whatever rounding did, and no ray slips out at an edge.
 inline constexpr double mesh_resolution = 0x1p-14;
+/// The least of it in units of the scene's longest side, 64 times the rounding of a coordinate: a
+/// small triangle takes a larger fraction, half at most, so that triangles whose inscribed circles
+/// are larger than a 100000th of the scene do not leak.
+inline constexpr double least_shift = 0x1p-18;
 
 class MeshWorld {
  public:
@@ -71,8 +72,9 @@ class MeshWorld {
     render::Vector3 first_edge;
     render::Vector3 second_edge;
     render::Vector3 normal;  ///< unit
-    render::Vector3 inside;  ///< mesh_resolution x centre of the inscribed circle
-    double height = 0;       ///< mesh_resolution / 4 x its radius
+    double shift = 0;        ///< fraction of the way to the centre of the inscribed circle
+    render::Vector3 inside;  ///< shift x that centre
+    double height = 0;       ///< shift / 4 x the circle's radius
     double area = 0;
   };
 
@@ -93,7 +95,7 @@ class MeshWorld {
     const render::Vector3 normal = back ? -t.normal : t.normal;
     // Off the plane by rounding only: the projection puts it there.
     const render::Vector3 flat = point - dot(point - t.corner, t.normal) * t.normal;
-    return {(1 - mesh_resolution) * flat + t.inside + t.height * normal, normal, arriving,
+    return {(1 - t.shift) * flat + t.inside + t.height * normal, normal, arriving,
             &surfaces_[surface_of_[triangle]], 2 * triangle + back};
   }
   Vertex arrive(const render::Vector3& origin, const render::Vector3& direction) const {

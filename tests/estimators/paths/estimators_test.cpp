@@ -106,16 +106,43 @@ TEST(Winners, OneChildIsTheClassicalRoulette) {
   EXPECT_DOUBLE_EQ(stated_variance("paths/winners", "{scene: furnace, splitting: 1}"), 2);
 }
 
+// A tetrahedron of diffuse albedo .3 and mirror .4.
+std::string mirror_room() {
+  const auto file = std::filesystem::temp_directory_path() / "assay_paths_mirrors.obj";
+  std::ofstream(file) << "v 1 1 1\nv 1 -1 -1\nv -1 1 -1\nv -1 -1 1\n"
+                         "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+  return "scene: {furnace: {obj: " + file.string() +
+         ", emission: 1, albedo: .3, mirror: .4}, camera: {position: [0, 0, 0], direction: [.3, "
+         ".2, 1]}}";
+}
+
+// L = 1 / (1 - .7), whether emission is hit or known: of what a mirror shows the path must see the
+// emission itself. False-alarm rate 1e-6 each.
+TEST(Mirrors, KeepTheRadianceOfAFurnace) {
+  for (const auto& [plugin, more] : {std::pair{"paths/plain", ""},
+                                     {"paths/roulette", ""},
+                                     {"paths/roulette", ", direct: exact"},
+                                     {"paths/improved_roulette", ", scale: .5"},
+                                     {"paths/improved_roulette", ", scale: .5, direct: exact"},
+                                     {"paths/winners", ", direct: exact"}}) {
+    const draws::Prepared prepared = draws::prepare(plugin, "{" + mirror_room() + more + "}");
+    const auto samples = draws::observe(prepared, observations);
+    const Channel channel = prepared.setup->channels()[0];
+    EXPECT_DOUBLE_EQ(channel.mean.value(), 1 / 0.3);
+    EXPECT_LT(std::abs(samples[0].mean() - 1 / 0.3), draws::five * samples[0].mean_error())
+        << plugin << more;
+    if (channel.variance) {
+      EXPECT_LT(std::abs(samples[0].variance() - *channel.variance),
+                draws::five * samples[0].variance_error())
+          << plugin << more;
+    }
+  }
+}
+
 // In a furnace with mirrors: diffuse .3, mirror .4, N = 4. Vertices of weight 1 have .3 N diffuse
 // children of weight 1/N and .4 mirrored ones of weight 1; of weight 1/N, .3 and .4 / N.
 TEST(Winners, MirrorsAreNotSplit) {
-  const auto file = std::filesystem::temp_directory_path() / "assay_paths_winners.obj";
-  std::ofstream(file) << "v 1 1 1\nv 1 -1 -1\nv -1 1 -1\nv -1 -1 1\n"
-                         "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
-  const draws::Prepared plugin = draws::prepare(
-      "paths/winners", "{scene: {furnace: {obj: " + file.string() +
-                           ", emission: 1, albedo: .3, mirror: .4}, camera: {position: [0, 0, 0], "
-                           "direction: [.3, .2, 1]}}}");
+  const draws::Prepared plugin = draws::prepare("paths/winners", "{" + mirror_room() + "}");
   const auto samples = draws::observe(plugin, observations);
   double one = 1;
   double light = 0;

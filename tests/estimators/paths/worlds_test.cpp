@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "estimators/flow.h"
 #include "paths/closed_mesh.h"
@@ -70,6 +71,52 @@ TEST(MeshWorld, NoRaySlipsThroughFromEdgesAndCorners) {
               << patch << ' ' << u << ' ' << v;
         }
       }
+    }
+  }
+}
+
+// A sphere by meridians and parallels: the triangles at its poles are slivers.
+MeshScene sphere_of_slivers(std::uint32_t count) {
+  MeshScene scene{{}, {}, {{Spectrum::grey(1), Spectrum::grey(0.5), {}}}, true};
+  render::TriangleMesh& mesh = scene.mesh;
+  mesh.vertices = {{0, 0, 1}, {0, 0, -1}};
+  for (std::uint32_t i = 1; i < count; ++i) {
+    for (std::uint32_t j = 0; j < count; ++j) {
+      mesh.vertices.push_back(
+          render::direction_at(std::cos(std::numbers::pi * i / count), double(j) / count));
+    }
+  }
+  const auto at = [&](std::uint32_t i, std::uint32_t j) { return 2 + (i - 1) * count + j % count; };
+  for (std::uint32_t j = 0; j < count; ++j) {
+    mesh.triangles.push_back({0, at(1, j), at(1, j + 1)});
+    mesh.triangles.push_back({1, at(count - 1, j + 1), at(count - 1, j)});
+    for (std::uint32_t i = 1; i + 1 < count; ++i) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  scene.surface_of.assign(mesh.triangles.size(), 0);
+  return scene;
+}
+
+// 80,000 triangles; the smallest inscribed circles are a 10000th of the sphere.
+TEST(MeshWorld, NoRayLeavesAFineMeshThroughItsSlivers) {
+  const MeshScene scene = sphere_of_slivers(200);
+  ASSERT_EQ(why_not_closed(scene.mesh), "");
+  const MeshWorld world(scene, {{0, 0, 0}, {0, 0, 1}});
+  Stream random({1}, 0);
+  Cost cost;
+  Vertex v = world.camera(cost);
+  for (int i = 0; i < 300'000; ++i) {
+    v = world.reflected(v, random, cost);
+    ASSERT_NE(v.surface, nullptr) << i;
+  }
+  // From the slivers themselves, edges and corners: those of the first and the last parallel.
+  for (std::size_t patch = 0; patch < world.patches(); patch += 2) {
+    for (const std::size_t side : {patch, patch + 1}) {
+      const Vertex from = world.on_patch(side, 1, side % 3 == 0 ? 0.5 : 0);
+      if (dot(from.normal, from.position) > 0) continue;
+      ASSERT_NE(world.reflected(from, random, cost).surface, nullptr) << side;
     }
   }
 }
