@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/assumptions.h"
-#include "harness/constant.h"
 #include "harness/critical.h"
 #include "harness/frozen.h"
 #include "harness/image_plan.h"
 #include "harness/mean_evidence.h"
+#include "harness/pilot_shape.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "reports/number.h"
 #include "stats/assumption_gates.h"
 #include "stats/log_variance_level.h"
-#include "stats/pareto_tail.h"
 #include "stats/skewness_corrected_t.h"
 
 namespace assay::harness {
@@ -31,137 +29,6 @@ constexpr std::uint64_t log_variance_secondaries = 1000;
 constexpr std::uint64_t most_for_a_mean = 64 * usual_secondaries;
 constexpr std::uint64_t most_for_a_variance = 1024 * usual_secondaries;
 constexpr double level_factor = 1.25;
-
-/// Why nothing can be chosen by the pilot: values whose powers are no numbers. "" where all is
-/// well.
-std::string unusable_pilot(const Question& question, const Pilots& pilots) {
-  if (question.of_laws()) return "";
-  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
-    const Subject& side = question.subjects[subject];
-    if (pilot_of(side, pilots) == nullptr || !side.purpose.empty()) continue;
-    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const stats::Moments& moments = pilot_channel(question, subject, channel, pilots).moments;
-      if (is_constant(question, subject, channel, moments)) continue;
-      if (std::string reason = beyond_doubles(moments, side.estimator->name); !reason.empty()) {
-        return reason;
-      }
-    }
-  }
-  return "";
-}
-
-/// What is known beforehand of one channel of one subject.
-struct Known {
-  std::size_t subject;
-  std::size_t channel;
-  PilotChannel pilot;
-  double averaged;  ///< how many of the pilot's values make a secondary
-  bool rows;        ///< the test's own data, not a pilot's
-  std::string label;
-};
-
-std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
-                                  const Plan& plan) {
-  std::vector<Known> all;
-  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
-    const Subject& side = question.subjects[subject];
-    const Pilot* pilot = pilot_of(side, pilots);
-    if (pilot == nullptr || !side.purpose.empty()) continue;
-    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const PilotChannel data = pilot_channel(question, subject, channel, pilots);
-      if (is_constant(question, subject, channel, data.moments)) continue;
-      const std::string part =
-          side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";
-      all.push_back({.subject = subject,
-                     .channel = channel,
-                     .pilot = data,
-                     .averaged = side.averaged(plan.primaries[subject]),
-                     .rows = side.setup->observations().has_value(),
-                     .label = fmt::format(", pilot of {}{}", side.estimator->name, part)});
-    }
-  }
-  return all;
-}
-
-/// The method chosen asks nothing of the shape that the pilot's gates complain of.
-void answer_red_gates(Plan& plan) {
-  for (reports::Gate& gate : plan.gates) {
-    if (gate.state == "red") gate.state = "amber";
-  }
-}
-
-/// Notes a gate of the pilot; rows of a file are judged with the test's own data.
-void note(Plan& plan, const Known& known, const stats::Gate& gate) {
-  if (!known.rows) plan.gates.push_back(gate_of(gate, known.label));
-}
-
-/// One tail's gate, from the values signed so that it is the right one.
-stats::Gate right_tail_gate(std::vector<double> values, stats::TailClaim claim) {
-  std::sort(values.begin(), values.end());
-  const std::size_t tail = stats::pareto_tail_size(values.size()) + 1;
-  return stats::pareto_gate(std::span<const double>(values).last(tail), values.size(), claim);
-}
-
-/// Whether a tail is seen to its declared end, so that nothing heavier can hide in it.
-bool ends_in_sight(double farthest, double mean, double declared) {
-  return std::isfinite(declared) && std::abs(farthest - mean) >= std::abs(declared - mean) / 2;
-}
-
-/// At the estimate. A lattice or a rare second part can look like a heavy tail; it is none while
-/// the variance of the variance, (kurtosis - 1) / n, is small. Large, it tells by itself that the
-/// pilot does not know the variance yet.
-GateState tail_state(const stats::Gate& gate, const stats::Moments& moments,
-                     stats::TailClaim claim) {
-  const bool mean = claim == stats::TailClaim::mean;
-  const double variance_of_variance = (moments.kurtosis() - 1) / static_cast<double>(moments.count);
-  // Below the limit, but only a surely light tail explains such a kurtosis.
-  if (!mean && variance_of_variance > 0.01 && gate.value > 0.1) return GateState::red;
-  if (gate.value <= gate.limit) return GateState::green;
-  return variance_of_variance > (mean ? 0.1 : 0.001) ? GateState::red : GateState::amber;
-}
-
-/// The heavier tail's gate, at the estimate: the pilot chooses, it does not accuse.
-std::optional<stats::Gate> tail_gate(const Question& question, const Known& known,
-                                     stats::TailClaim claim) {
-  const stats::Moments& moments = known.pilot.moments;
-  std::vector<double> values(known.pilot.values.begin(), known.pilot.values.end());
-  const bool finite =
-      std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  if (values.size() < usual_secondaries || !finite) return {};
-  std::optional<stats::Gate> heavier;
-  const stats::Range range = range_of(question, known.subject, known.channel, moments);
-  if (known.rows || !ends_in_sight(moments.maximum, moments.mean, range.high)) {
-    heavier = right_tail_gate(values, claim);
-  }
-  if (known.rows || !ends_in_sight(moments.minimum, moments.mean, range.low)) {
-    for (double& value : values) value = -value;
-    const stats::Gate left = right_tail_gate(values, claim);
-    if (!heavier || left.value > heavier->value) heavier = left;
-  }
-  if (!heavier) return {};
-  heavier->low = heavier->value;
-  heavier->state = tail_state(*heavier, moments, claim);
-  return heavier;
-}
-
-/// Notes the tails' gates; says why the claim cannot be tested where one is too heavy.
-std::string too_heavy(const Question& question, const std::vector<Known>& channels,
-                      stats::TailClaim claim, Plan& plan) {
-  std::string reason;
-  for (const Known& known : channels) {
-    const std::optional<stats::Gate> gate = tail_gate(question, known, claim);
-    if (!gate) continue;
-    note(plan, known, *gate);
-    if (gate->state != GateState::red) continue;
-    reason = fmt::format(
-        "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the {} moment that the test rests "
-        "on may not exist; clamp the estimator, declare its range, or claim something of its "
-        "distribution",
-        gate->value, gate->limit, known.label,
-        claim == stats::TailClaim::mean ? "second" : "fourth");
-  }
-  return reason;
-}
 
 std::uint64_t whole(double count) {
   return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
@@ -195,6 +62,24 @@ std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double cr
       needed += needed / 4 + 1;
   }
   return needed;
+}
+
+/// Secondaries from which on what the pilot has not seen of a declared range moves the mean by a
+/// tenth of its standard error at most: an event missed by N primaries has a probability of
+/// ln(1 / alpha) / N or less.
+std::uint64_t enough_to_see(const Question& question, const std::vector<Known>& channels,
+                            double alpha) {
+  constexpr double share_of_error = 0.1;
+  double needed = 2;
+  for (const Known& known : channels) {
+    const stats::Moments& seen = known.pilot.moments;
+    const stats::Range range = range_of(question, known.subject, known.channel, seen);
+    const double beyond = std::max(range.high - seen.maximum, seen.minimum - range.low);
+    const double root =
+        std::log(1 / alpha) * beyond / (share_of_error * std::sqrt(seen.variance()));
+    needed = std::max(needed, root * root / known.averaged);
+  }
+  return whole(needed);
 }
 
 /// Whether every value known of every subject is one of the two ends of its range.
@@ -249,8 +134,11 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   const std::vector<Known> channels = known_channels(question, pilots, plan);
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::mean, plan);
-  const std::uint64_t for_t = enough_for_t(channels, x);
-  const std::uint64_t for_corrected = enough_for_corrected(channels, x);
+  const bool bounded = !channels.empty() && are_bounded(question, channels);
+  const std::uint64_t to_see =
+      bounded ? enough_to_see(question, channels, smallest_level(question, place)) : 2;
+  const std::uint64_t for_t = std::max(to_see, enough_for_t(channels, x));
+  const std::uint64_t for_corrected = std::max(to_see, enough_for_corrected(channels, x));
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
   // Where the size is open, validity may ask for more; the t test only if looks stay early.
@@ -270,7 +158,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
              for_corrected <= affordable) {
     plan.method = find_method(question, "skewness-corrected-t");
     least = for_corrected;
-  } else if (for_t > affordable && !channels.empty() && are_bounded(question, channels)) {
+  } else if (for_t > affordable && bounded) {
     plan.method = find_method(question, "bounded");
     answer_red_gates(plan);
     return least_secondaries;

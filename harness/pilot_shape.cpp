@@ -1,0 +1,136 @@
+#include "harness/pilot_shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/assumptions.h"
+#include "harness/constant.h"
+#include "harness/critical.h"
+#include "harness/mean_evidence.h"
+
+namespace assay::harness {
+namespace {
+
+using stats::GateState;
+
+/// One tail's gate, from the values signed so that it is the right one.
+stats::Gate right_tail_gate(std::vector<double> values, stats::TailClaim claim) {
+  std::sort(values.begin(), values.end());
+  const std::size_t tail = stats::pareto_tail_size(values.size()) + 1;
+  return stats::pareto_gate(std::span<const double>(values).last(tail), values.size(), claim);
+}
+
+/// Whether a tail is seen to its declared end, so that nothing heavier can hide in it.
+bool ends_in_sight(double farthest, double mean, double declared) {
+  return std::isfinite(declared) && std::abs(farthest - mean) >= std::abs(declared - mean) / 2;
+}
+
+/// At the estimate. A lattice or a rare second part can look like a heavy tail; it is none while
+/// the variance of the variance, (kurtosis - 1) / n, is small. Large, it tells by itself that the
+/// pilot does not know the variance yet.
+GateState tail_state(const stats::Gate& gate, const stats::Moments& moments,
+                     stats::TailClaim claim) {
+  const bool mean = claim == stats::TailClaim::mean;
+  const double variance_of_variance = (moments.kurtosis() - 1) / static_cast<double>(moments.count);
+  // Below the limit, but only a surely light tail explains such a kurtosis.
+  if (!mean && variance_of_variance > 0.01 && gate.value > 0.1) return GateState::red;
+  if (gate.value <= gate.limit) return GateState::green;
+  return variance_of_variance > (mean ? 0.1 : 0.001) ? GateState::red : GateState::amber;
+}
+
+/// The heavier tail's gate, at the estimate: the pilot chooses, it does not accuse.
+std::optional<stats::Gate> tail_gate(const Question& question, const Known& known,
+                                     stats::TailClaim claim) {
+  const stats::Moments& moments = known.pilot.moments;
+  std::vector<double> values(known.pilot.values.begin(), known.pilot.values.end());
+  const bool finite =
+      std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  if (values.size() < usual_secondaries || !finite) return {};
+  std::optional<stats::Gate> heavier;
+  const stats::Range range = range_of(question, known.subject, known.channel, moments);
+  if (known.rows || !ends_in_sight(moments.maximum, moments.mean, range.high)) {
+    heavier = right_tail_gate(values, claim);
+  }
+  if (known.rows || !ends_in_sight(moments.minimum, moments.mean, range.low)) {
+    for (double& value : values) value = -value;
+    const stats::Gate left = right_tail_gate(values, claim);
+    if (!heavier || left.value > heavier->value) heavier = left;
+  }
+  if (!heavier) return {};
+  heavier->low = heavier->value;
+  heavier->state = tail_state(*heavier, moments, claim);
+  return heavier;
+}
+
+}  // namespace
+
+std::string unusable_pilot(const Question& question, const Pilots& pilots) {
+  if (question.of_laws()) return "";
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    if (pilot_of(side, pilots) == nullptr || !side.purpose.empty()) continue;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const stats::Moments& moments = pilot_channel(question, subject, channel, pilots).moments;
+      if (is_constant(question, subject, channel, moments)) continue;
+      if (std::string reason = beyond_doubles(moments, side.estimator->name); !reason.empty()) {
+        return reason;
+      }
+    }
+  }
+  return "";
+}
+
+std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
+                                  const Plan& plan) {
+  std::vector<Known> all;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (pilot == nullptr || !side.purpose.empty()) continue;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const PilotChannel data = pilot_channel(question, subject, channel, pilots);
+      if (is_constant(question, subject, channel, data.moments)) continue;
+      const std::string part =
+          side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";
+      all.push_back({.subject = subject,
+                     .channel = channel,
+                     .pilot = data,
+                     .averaged = side.averaged(plan.primaries[subject]),
+                     .rows = side.setup->observations().has_value(),
+                     .label = fmt::format(", pilot of {}{}", side.estimator->name, part)});
+    }
+  }
+  return all;
+}
+
+void answer_red_gates(Plan& plan) {
+  for (reports::Gate& gate : plan.gates) {
+    if (gate.state == "red") gate.state = "amber";
+  }
+}
+
+void note(Plan& plan, const Known& known, const stats::Gate& gate) {
+  if (!known.rows) plan.gates.push_back(gate_of(gate, known.label));
+}
+
+std::string too_heavy(const Question& question, const std::vector<Known>& channels,
+                      stats::TailClaim claim, Plan& plan) {
+  std::string reason;
+  for (const Known& known : channels) {
+    const std::optional<stats::Gate> gate = tail_gate(question, known, claim);
+    if (!gate) continue;
+    note(plan, known, *gate);
+    if (gate->state != GateState::red) continue;
+    reason = fmt::format(
+        "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the {} moment that the test rests "
+        "on may not exist; clamp the estimator, declare its range, or claim something of its "
+        "distribution",
+        gate->value, gate->limit, known.label,
+        claim == stats::TailClaim::mean ? "second" : "fourth");
+  }
+  return reason;
+}
+
+}  // namespace assay::harness
