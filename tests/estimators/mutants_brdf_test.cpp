@@ -38,11 +38,17 @@ TEST(BrdfMutants, HaveTheBiasOfTheirDefect) {
   }
 }
 
+/// What a sampler says of its draws is wrong, not the draws: claims of consistency see it, the
+/// mean need not move.
+bool only_misreports(const std::string& mutant) {
+  return mutant == "mutants/ward_density_sector" || mutant == "mutants/ward_weight_mirrored";
+}
+
 TEST(BrdfMutants, AreBiasedAndActivated) {
   int count = 0;
   for (const Entry& entry : catalogue()) {
     const Information& mutant = entry.information;
-    if (!mutant.original.starts_with("brdf/")) continue;
+    if (!mutant.original.starts_with("brdf/") || only_misreports(mutant.name)) continue;
     ++count;
     const auto prepared = prepare(mutant.name);
     const auto original = prepare(mutant.original);
@@ -54,7 +60,7 @@ TEST(BrdfMutants, AreBiasedAndActivated) {
     // The subtlest, the exponent without + 1, lies 0.8 % off, 7 standard errors of this sample.
     EXPECT_GT(std::abs(sample.mean() - *claimed.mean), five * sample.mean_error()) << mutant.name;
   }
-  EXPECT_EQ(count, 12);
+  EXPECT_EQ(count, 13);
 }
 
 }  // namespace

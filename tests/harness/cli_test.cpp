@@ -207,8 +207,10 @@ TEST(CommandLine, RefusesValuesOutOfRange) {
   EXPECT_EQ(run("--shard", "3/2"), "--shard 3/2: there is no shard 3 of 2");
   EXPECT_EQ(run("--shard", "0/2"),
             "each number of --shard I/N must be a whole number, 1 or more, but it is `0`");
-  EXPECT_EQ(run("--report", "html"),
-            "--report must be KIND=PATH, as in html=run.html, but it is `html`");
+  EXPECT_EQ(
+      run("--report", "html"),
+      "--report must be KIND=PATH, as in html=run.html, where the path - is standard output, but "
+      "it is `html`");
   EXPECT_EQ(run("--inconclusive", "maybe"),
             "--inconclusive cannot be `maybe`; there is: fail, pass");
   EXPECT_EQ(refused({"check", "mean(a) == 1", "--secondaries", "1"}),

@@ -94,7 +94,7 @@ TEST(LuminaireMutants, StateTheirOriginalAndDefect) {
     EXPECT_FALSE(entry.information.defect.empty());
     EXPECT_FALSE(entry.prepare == nullptr);
   }
-  EXPECT_EQ(count, 14);
+  EXPECT_EQ(count, 19);
 }
 
 }  // namespace
