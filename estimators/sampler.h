@@ -66,6 +66,10 @@ class Sampler {
   virtual double density(const Point& point) const = 0;
   /// The function whose integral the weight estimates (for a BRDF: f cos).
   virtual double evaluate(const Point& point) const = 0;
+  /// What rounding may leave of weight x density(point) against evaluate(point), and of a draw's
+  /// density against density(point), relative. A point that is computed, stored and read again
+  /// loses some digits where a lobe is narrow.
+  virtual double rounding() const { return 1e-9; }
   /// How finely a quadrature of the density must look.
   virtual Panels panels() const { return {}; }
   /// The discrete choices that a draw's `lobe` numbers from 0.

@@ -1,6 +1,7 @@
 #include "harness/activation.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "harness/sampler_setup.h"
 
@@ -17,21 +18,34 @@ const Sampler* sampler_of(const Setup& setup, const std::string& name,
   return keep.size() == 1 ? keep[0].sampler.get() : nullptr;
 }
 
+bool same_number(double one, double other) {
+  return one == other || (std::isnan(one) && std::isnan(other));
+}
+
+/// What two samplers say of one point.
+bool same_at(const Point& point, const Sampler& one, const Sampler& other) {
+  return same_number(one.density(point), other.density(point)) &&
+         same_number(one.evaluate(point), other.evaluate(point));
+}
+
 bool same_draw(const SamplerDraw& one, const SamplerDraw& other) {
   return one.point == other.point && one.density == other.density && one.weight == other.weight &&
          one.lobe == other.lobe && one.valid == other.valid;
 }
 
 bool draws_differ(const Subject& subject, const Pool& pool, std::uint64_t observations) {
-  const auto& mine = dynamic_cast<const SamplerSetup&>(*subject.setup).sampler();
+  const auto& setup = dynamic_cast<const SamplerSetup&>(*subject.setup);
+  const Sampler& mine = setup.sampler();
   std::vector<NamedSampler> keep;
-  const Sampler* original = sampler_of(*subject.estimator->original, subject.purpose, keep);
+  const Sampler* original = sampler_of(*subject.estimator->original, setup.name(), keep);
   if (original == nullptr) return true;
   const FlushDenormals flush;
   for (std::uint64_t i = 0; i < observations; ++i) {
     Stream one(pool.key(), i);
     Stream other(pool.key(), i);
-    if (!same_draw(mine.sample(one), original->sample(other))) return true;
+    const SamplerDraw draw = mine.sample(one);
+    if (!same_draw(draw, original->sample(other))) return true;
+    if (draw.valid && !same_at(draw.point, mine, *original)) return true;
   }
   return false;
 }

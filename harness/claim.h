@@ -6,6 +6,8 @@
 //   side     = [ number "*" ] quantity | number [ "+-" number ] | "analytic" | law
 //   quantity = name "(" source { "," number } ")" | "slope" "(" quantity ")"
 //   source   = estimator [ "." part ]
+//   name     = mean | bias | variance | total_variance | worst_variance | quantile | efficiency |
+//              cost | distribution | integral | inconsistency
 //   relation = "==" | "<=" | ">=" | "<" | ">" | "within" margin "of"
 
 #include <optional>
@@ -27,7 +29,9 @@ enum class QuantityName {
   quantile,
   efficiency,
   cost,
-  distribution
+  distribution,
+  integral,      ///< of a sampler's density
+  inconsistency  ///< probability of a sampler's draw that contradicts what it declares
 };
 const char* to_string(QuantityName);
 /// All of them, in the order above.

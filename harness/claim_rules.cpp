@@ -16,9 +16,11 @@ using enum QuantityName;
   throw InputError(where, why);
 }
 
+bool of_a_sampler(QuantityName name) { return name == integral || name == inconsistency; }
+
 bool never_negative(QuantityName name) {
   return name == variance || name == total_variance || name == worst_variance || name == cost ||
-         name == efficiency;
+         name == efficiency || of_a_sampler(name);
 }
 
 void check_arguments(const Quantity& q) {
@@ -45,6 +47,9 @@ void check_quantity(const Quantity& q) {
                        "`variance`",
                        to_string(q.name)));
   }
+  if (q.slope && of_a_sampler(q.name)) {
+    refuse(q.where, fmt::format("`{}` is about a sampler, which has no slope", to_string(q.name)));
+  }
   if (q.slope && q.name == distribution) refuse(q.where, "a distribution has no slope");
 }
 
@@ -53,6 +58,9 @@ void check_side(const Claim& claim, const ScaledQuantity& side) {
   check_quantity(q);
   const Quantity& left = claim.left;
   if (left.slope || q.slope) refuse(q.where, "a slope is compared with a number");
+  if (of_a_sampler(left.name)) {
+    refuse(q.where, fmt::format("`{}` is compared with a number", to_string(left.name)));
+  }
   if (q.name != left.name) {
     refuse(q.where, fmt::format("`{}` on the left cannot be compared with `{}`; both sides must be "
                                 "the same quantity",
@@ -71,6 +79,10 @@ void check_side(const Claim& claim, const Constant& side) {
   const Quantity& left = claim.left;
   if (left.name == distribution) {
     refuse(left.where, "a distribution is compared with `density`, a law or another distribution");
+  }
+  if (of_a_sampler(left.name) && side.standard_error > 0) {
+    refuse(left.where, fmt::format("`{}` is held against an exact number: `+-` has no method here",
+                                   to_string(left.name)));
   }
   if (never_negative(left.name) && !left.slope && side.value < 0) {
     refuse(left.where, fmt::format("`{}` is never negative, but it is compared with {}",

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "harness/sample_size.h"
+#include "harness/sampler_setup.h"
 #include "stats/quantile_test.h"
 #include "stats/slope.h"
 #include "stats/tails.h"
@@ -134,7 +135,38 @@ std::optional<std::uint64_t> most_of(const Question& question, const Channel& of
   return most;
 }
 
+/// The probability counted under the claim, and how far its size is in doubt.
+struct CountedProbability {
+  double value = 0;
+  double error = 0;
+};
+
+CountedProbability counted_probability(const Question& question) {
+  const double claimed = question.references[0].value;
+  if (question.kind == QuestionKind::inconsistency) return {.value = claimed};
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+  return {.value = claimed - draws.cells().grid.total, .error = draws.cells().tolerance()};
+}
+
 }  // namespace
+
+std::optional<std::uint64_t> draws_secondaries(const Question& question, const ErrorShare& share,
+                                               const Regions& regions) {
+  const double distance = distance_of(regions);
+  if (!(distance > 0)) return std::nullopt;
+  const CountedProbability counted = counted_probability(question);
+  const double room = distance - 2 * counted.error;
+  if (!(room > 0)) return impossible_secondaries;
+  const stats::ErrorRates rates = rates_of(share, regions);
+  const auto quantile = [](double level) {
+    return stats::normal_quantile({stats::Tail::upper, std::log(level)});
+  };
+  const double z = quantile(rates.two_sided ? rates.alpha / 2 : rates.alpha) + quantile(rates.beta);
+  const double p = std::clamp(counted.value, 0.0, 0.5) + distance + regions.allow;
+  const double variance = std::min(0.25, p * std::max(0.0, 1 - p));
+  const double count = z * z * (variance / (room * room) + 1 / room);
+  return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
+}
 
 std::optional<std::uint64_t> quantile_secondaries(const Question& question, const ErrorShare& share,
                                                   const Pilots& pilots, const Plan& plan) {

@@ -10,9 +10,9 @@ namespace assay::harness {
 
 const std::vector<QuantityName>& quantity_names() {
   using enum QuantityName;
-  static const std::vector<QuantityName> names{mean,           bias,           variance,
-                                               total_variance, worst_variance, quantile,
-                                               efficiency,     cost,           distribution};
+  static const std::vector<QuantityName> names{
+      mean,       bias, variance,     total_variance, worst_variance, quantile,
+      efficiency, cost, distribution, integral,       inconsistency};
   return names;
 }
 
@@ -38,6 +38,10 @@ const char* to_string(QuantityName name) {
       return "cost";
     case QuantityName::distribution:
       return "distribution";
+    case QuantityName::integral:
+      return "integral";
+    case QuantityName::inconsistency:
+      return "inconsistency";
   }
   return "";
 }

@@ -7,6 +7,7 @@
 
 #include "harness/activation.h"
 #include "harness/assumptions.h"
+#include "harness/consistency_setup.h"
 #include "harness/constant.h"
 #include "harness/gate_text.h"
 #include "harness/image_judge.h"
@@ -14,6 +15,7 @@
 #include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
+#include "harness/shell.h"
 
 namespace assay::harness {
 namespace {
@@ -63,11 +65,11 @@ bool density_is_proper(TestOutcome& outcome) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*outcome.question.subjects[0].setup);
   const stats::CellProbabilities& grid = draws.cells().grid;
   const double excess = grid.total - 1;
-  if (excess <= std::max(1e-9, 2 * grid.total_error)) return true;
+  if (excess <= draws.cells().tolerance()) return true;
   settle(outcome, Verdict::fail,
          fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
                      "{:.1g}): more than 1, so no sampler can follow it",
-                     grid.total, grid.total_error));
+                     grid.total, draws.cells().tolerance()));
   return false;
 }
 
@@ -266,6 +268,18 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
   }
 }
 
+/// Which draw was the first to contradict its sampler, where some did.
+std::string first_contradiction(const TestWork& work) {
+  const TestOutcome& outcome = work.outcome;
+  if (outcome.question.kind != QuestionKind::inconsistency || outcome.verdict != Verdict::fail) {
+    return "";
+  }
+  const auto first = first_inconsistent(*work.pools[0], outcome.secondaries());
+  if (!first) return "";
+  return fmt::format("; the first is observation {}: `assay replay RUN.json {} {}` draws it again",
+                     *first, shell_quoted(outcome.question.test->id), *first);
+}
+
 void require_activation(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   if (outcome.question.test->expect != Expectation::fail) return;
@@ -326,6 +340,12 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
                     .cells = summary.cells,
                     .with_cost = summary.with_cost,
                     .group_variances = summary_of(work, subject).group_variances});
+    if (work.outcome.plan.method.keeps == Keeps::points) {
+      for (const std::size_t each : work.outcome.question.subjects[subject].channels) {
+        data.back().all_values.push_back(
+            work.pools[subject]->values(each, work.outcome.secondaries()));
+      }
+    }
     if (work.outcome.plan.method.keeps == Keeps::images) {
       data.back().images = images_of(work, subject);
     }
@@ -349,7 +369,7 @@ void take_look(TestWork& work, bool may_go_on) {
   }
   if (!work.verdict_only) {
     note_sizes(work);
-    if (outcome.message.empty()) outcome.message = narrate(outcome);
+    if (outcome.message.empty()) outcome.message = narrate(outcome) + first_contradiction(work);
   }
   require_activation(work);
 }

@@ -17,10 +17,11 @@ struct Evidence {
   std::function<stats::TestResult(double)> at;
   /// Two-sided interval of theta.
   std::function<stats::Interval(double)> interval;
-  std::string quantity;   ///< what theta is, in words
-  bool relative = false;  ///< shown in per cent
-  bool ratio = false;     ///< theta is the logarithm of a ratio
-  bool distance = false;  ///< theta cannot be negative: `==` has one direction
+  std::string where = "";  ///< which part of the data speaks most against the claim, in words
+  std::string quantity;    ///< what theta is, in words
+  bool relative = false;   ///< shown in per cent
+  bool ratio = false;      ///< theta is the logarithm of a ratio
+  bool distance = false;   ///< theta cannot be negative: `==` has one direction
 };
 
 }  // namespace assay::harness

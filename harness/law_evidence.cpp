@@ -1,12 +1,16 @@
 #include "harness/law_evidence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "harness/law_cdf.h"
 #include "harness/sampler_setup.h"
 #include "stats/anderson_darling.h"
 #include "stats/binomial.h"
+#include "stats/two_part_ks.h"
 #include "stats/two_valued.h"
 
 namespace assay::harness {
@@ -148,6 +152,24 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
           .distance = true};
 }
 
+/// A distance of which nothing is known.
+Evidence unknown_distance() {
+  return {.estimate = 0,
+          .at = [](double) { return TestResult{.distribution = {.family = "bound"}}; },
+          .interval =
+              [](double confidence) {
+                return Interval{0, 1, confidence};
+              },
+          .quantity = quantity,
+          .distance = true};
+}
+
+/// Without the values at the atom.
+Points away_from(double atom, Points points) {
+  std::erase(points.sorted, atom);
+  return points;
+}
+
 /// A sample without a point says nothing of the points' law.
 void require_points(const Points& points) {
   if (points.sorted.empty()) {
@@ -156,6 +178,12 @@ void require_points(const Points& points) {
 }
 
 }  // namespace
+
+std::optional<double> no_point_of(const Subject& side) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
+  if (draws == nullptr) return std::nullopt;
+  return no_point(draws->marginals()[side.channels[0]]);
+}
 
 Points points_of(const Question& question, std::size_t subject, std::size_t channel,
                  std::span<const double> values) {
@@ -167,6 +195,23 @@ Points points_of(const Question& question, std::size_t subject, std::size_t chan
   }
   std::sort(points.sorted.begin(), points.sorted.end());
   return points;
+}
+
+DeclaredLaw declared_law(const Question& question, std::size_t channel) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
+  DeclaredLaw declared;
+  if (question.kind == QuestionKind::fit_to_law) {
+    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}};
+  } else {
+    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
+    declared.law = {.cdf = std::cref(table), .left_limit = {}};
+    declared.error = table.error;
+  }
+  if (draws != nullptr) {
+    declared.missing = draws->cells().without_density();
+    declared.missing_error = draws->cells().tolerance();
+  }
+  return declared;
 }
 
 Evidence points_against_law(const Points& points, const DeclaredLaw& declared, PointsTest test) {
@@ -187,6 +232,29 @@ Evidence points_against_points(const Points& x, const Points& y) {
   const Evidence rest = from_distance(stats::ks_distance(x.sorted, y.sorted));
   if (!x.of_a_sampler && !y.of_a_sampler) return rest;
   return larger_of(rest, from_proportions(x, y));
+}
+
+Evidence points_split_at(double atom, const Points& x, const Points& y) {
+  const stats::TwoPartTest parts = stats::two_part_ks(x.sorted, y.sorted, atom);
+  const Points x_rest = away_from(atom, x);
+  const Points y_rest = away_from(atom, y);
+  const bool both = !x_rest.sorted.empty() && !y_rest.sorted.empty();
+  Evidence evidence = larger_of(
+      both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted)) : unknown_distance(),
+      from_proportions(x_rest, y_rest));
+  TestResult at_null = evidence.at(0);
+  const bool atom_decides = log_p_two_sided(parts.atom) < parts.rest.log_p_upper;
+  at_null.statistic = atom_decides ? parts.atom.statistic : parts.rest.statistic;
+  at_null.distribution = atom_decides ? parts.atom.distribution : parts.rest.distribution;
+  at_null.log_p_upper = parts.log_p;
+  evidence.at = [at_null, margin = std::move(evidence.at)](double theta) {
+    return theta <= 0 ? at_null : margin(theta);
+  };
+  evidence.quantity = fmt::format(
+      "largest distance of distribution functions away from {0:.6g}, or of the probabilities of "
+      "{0:.6g},",
+      atom);
+  return evidence;
 }
 
 }  // namespace assay::harness

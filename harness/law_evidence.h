@@ -24,6 +24,10 @@ struct Points {
   std::uint64_t missing() const { return draws - sorted.size(); }
 };
 
+/// The value of a subject's first channel that stands for a draw without a point; only samplers
+/// have one.
+std::optional<double> no_point_of(const Subject& side);
+
 Points points_of(const Question& question, std::size_t subject, std::size_t channel,
                  std::span<const double> values);
 
@@ -36,6 +40,9 @@ struct DeclaredLaw {
   double missing = 0;        ///< probability of no point
   double missing_error = 0;  ///< of it
 };
+
+/// What a claim about one sample holds it against: the law it names, or the sampler's density.
+DeclaredLaw declared_law(const Question& question, std::size_t channel);
 
 /// Which test of "the law is the declared one" the points get. Anderson and Darling's has the
 /// tails' weight and knows no margin: of theta above 0, and of intervals, it leaves to Kolmogorov
@@ -50,5 +57,10 @@ Evidence points_against_law(const Points& points, const DeclaredLaw& declared,
 
 /// Two samplers share the level always: whether mass is missing is not known beforehand.
 Evidence points_against_points(const Points& x, const Points& y);
+
+/// Values of one law that may have an atom: whether it is as probable in both (Fisher's exact test,
+/// 1935), and whether the other values follow one law; the parts share the level. theta is the
+/// larger of the two differences. A sample that is all atom says nothing of the rest.
+Evidence points_split_at(double atom, const Points& x, const Points& y);
 
 }  // namespace assay::harness

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/evidence_cells.h"
+#include "harness/evidence_draws.h"
 #include "harness/evidence_quantile.h"
 #include "harness/evidence_ratio.h"
 #include "harness/evidence_slope.h"
-#include "harness/law_cdf.h"
 #include "harness/law_evidence.h"
 #include "harness/mean_evidence.h"
 #include "harness/rows.h"
 #include "harness/sampler_setup.h"
-#include "stats/chi_square_fit.h"
 #include "stats/chi_square_variance.h"
 #include "stats/f_ratio.h"
 #include "stats/log_variance.h"
@@ -81,57 +81,21 @@ Evidence variance_against_variance(const Method& method, const Question& questio
           .ratio = true};
 }
 
-Evidence law_against_law(const Question& question, std::size_t channel,
+Evidence law_against_law(const Method& method, const Question& question, std::size_t channel,
                          std::span<const ChannelData> data) {
-  return points_against_points(points_of(question, 0, channel, data[0].values),
-                               points_of(question, 1, channel, data[1].values));
-}
-
-DeclaredLaw reference_law(const Question& question, std::size_t channel) {
-  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
-  DeclaredLaw declared;
-  if (question.kind == QuestionKind::fit_to_law) {
-    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}};
-  } else {
-    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
-    declared.law = {.cdf = std::cref(table), .left_limit = {}};
-    declared.error = table.error;
-  }
-  if (draws != nullptr) {
-    declared.missing = draws->cells().without_density();
-    declared.missing_error = draws->cells().tolerance();
-  }
-  return declared;
+  const Points x = points_of(question, 0, channel, data[0].values);
+  const Points y = points_of(question, 1, channel, data[1].values);
+  const std::vector<std::optional<Atom>>& atoms = method.frozen.atoms;
+  if (channel < atoms.size() && atoms[channel]) return points_split_at(atoms[channel]->value, x, y);
+  return points_against_points(x, y);
 }
 
 Evidence values_against_law(const Method& method, const Question& question, std::size_t channel,
                             const ChannelData& data) {
   return points_against_law(points_of(question, 0, channel, data.values),
-                            reference_law(question, channel),
+                            declared_law(question, channel),
                             method.name == "anderson-darling" ? PointsTest::anderson_darling
                                                               : PointsTest::kolmogorov_smirnov);
-}
-
-/// theta = w, Cohen's effect size over the cells.
-Evidence cells_against_density(const Question& question, const ChannelData& data) {
-  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  const stats::CellProbabilities& grid = draws.cells().grid;
-  stats::CellCounts counts{.observed = {data.cells.begin(), data.cells.end()},
-                           .probability = grid.probability};
-  counts.probability.push_back(draws.cells().missing());
-  const stats::ChiSquareFit fit =
-      stats::chi_square_fit(counts, {.probability_tolerance = draws.cells().tolerance()});
-  const auto at = [fit](double theta) {
-    return theta == 0 ? fit.test : stats::chi_square_fit_effect(fit, std::max(0.0, theta));
-  };
-  const auto interval = [fit](double confidence) {
-    return stats::chi_square_fit_interval(fit, confidence);
-  };
-  return {.estimate = fit.effect,
-          .at = at,
-          .interval = interval,
-          .quantity = "effect size w over the cells",
-          .distance = true};
 }
 
 /// What the claim does not say itself: of what a bias or an error is taken, what is counted.
@@ -188,6 +152,12 @@ std::string relation_text(const TestEntry& test) {
   return fmt::format("within {} of", to_string(test.claim.margin));
 }
 
+/// Whether a side is a sampler's draws, whose mass without a point is a part of its own.
+bool about_draws(const Question& question) {
+  return std::any_of(question.subjects.begin(), question.subjects.end(),
+                     [](const Subject& side) { return !side.purpose.empty(); });
+}
+
 /// A margin that the method cannot test.
 void require_margins(const Method& method, const Question& question) {
   const TestEntry& test = *question.test;
@@ -233,7 +203,12 @@ std::vector<Method> methods_for(const Question& question) {
     case QuestionKind::fit_to_law:
       return {{"ks", Keeps::values}, {"anderson-darling", Keeps::values}};
     case QuestionKind::same_law:
-      return {{"ks", Keeps::values}};
+    case QuestionKind::same_cells: {
+      const Method cells{two_sample_cells, Keeps::points};
+      if (question.kind == QuestionKind::same_cells) return {cells};
+      if (about_draws(question)) return {{"ks", Keeps::values}, cells};
+      return {{"ks", Keeps::values}, {"two-part-ks", Keeps::values}, cells};
+    }
     case QuestionKind::cost:
     case QuestionKind::efficiency:
       if (question.test->cost == CostKind::seconds) return {{"replicates", Keeps::blocks}};
@@ -243,6 +218,9 @@ std::vector<Method> methods_for(const Question& question) {
       return {{question.of_two() ? "quantile" : "binomial", Keeps::values}};
     case QuestionKind::total_variance:
       return {{"log-total-variance", Keeps::group_variances}};
+    case QuestionKind::integral:
+    case QuestionKind::inconsistency:
+      return {{"binomial", Keeps::cells}};
     case QuestionKind::slope:
       return {{"slope", question.test->claim.left.name == QuantityName::cost ? Keeps::costs
                                                                              : Keeps::moments}};
@@ -330,7 +308,9 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
     case QuestionKind::fit_to_law:
       return values_against_law(method, question, channel, data[0]);
     case QuestionKind::same_law:
-      return law_against_law(question, channel, data);
+      return law_against_law(method, question, channel, data);
+    case QuestionKind::same_cells:
+      return cells_against_cells(method, question, data);
     case QuestionKind::cost:
     case QuestionKind::efficiency:
     case QuestionKind::total_variance:
@@ -338,6 +318,10 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
       return evidence_of_ratio(question, channel, data);
     case QuestionKind::quantile:
       return evidence_of_quantile(question, channel, data);
+    case QuestionKind::integral:
+      return evidence_of_integral(question, data[0]);
+    case QuestionKind::inconsistency:
+      return evidence_of_inconsistency(question, data[0]);
     case QuestionKind::image:
       break;  // image_evidence.h
     case QuestionKind::slope:

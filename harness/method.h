@@ -3,6 +3,8 @@
 // The methods by name: which there are for a question, what null hypothesis each tests, and the
 // evidence it draws from data.
 
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "harness/evidence.h"
 #include "harness/question.h"
 #include "harness/summary.h"
+#include "stats/sampled_cells.h"
 
 namespace assay::harness {
 
@@ -24,7 +27,8 @@ struct Replicate {
 struct ChannelData {
   std::uint64_t primaries = 1;
   stats::Moments moments = {};
-  std::span<const double> values = {};  ///< where the method needs them
+  std::span<const double> values = {};                   ///< where the method needs them
+  std::vector<std::span<const double>> all_values = {};  ///< of every channel, for Keeps::points
   std::span<const std::uint64_t> cells = {};
   std::span<const stats::JointMoments> with_cost = {};  ///< by CountedCost
   stats::Moments group_variances = {};
@@ -32,16 +36,29 @@ struct ChannelData {
   std::vector<Replicate> replicates = {};
 };
 
-/// What a method needs kept of its observations.
-enum class Keeps { moments, values, cells, costs, group_variances, blocks, images };
+/// What a method needs kept of its observations; points: the values of all channels together.
+enum class Keeps { moments, values, points, cells, costs, group_variances, blocks, images };
 
 /// Into how many replicates the observations of a method that keeps blocks are cut: enough for the
 /// tails of Student's t to be near the normal's.
 inline constexpr std::uint64_t replicate_count = 32;
 
+/// A value that comes again and again, and what part of the pilot's values it is.
+struct Atom {
+  double value;
+  double share;
+};
+
+/// What a method takes from the pilot, before the test's own data are seen.
+struct Frozen {
+  std::vector<std::optional<Atom>> atoms = {};                 ///< of each channel: two-part-ks
+  std::shared_ptr<const stats::SampledCells> cells = nullptr;  ///< chi-square-two-sample
+};
+
 struct Method {
   std::string name;  ///< as in suites and records
   Keeps keeps;
+  Frozen frozen = {};
 };
 
 /// The methods that answer a question, the default first; `test:` may force any of them.

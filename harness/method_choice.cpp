@@ -8,6 +8,7 @@
 #include "harness/assumptions.h"
 #include "harness/constant.h"
 #include "harness/critical.h"
+#include "harness/frozen.h"
 #include "harness/image_plan.h"
 #include "harness/mean_evidence.h"
 #include "harness/rows.h"
@@ -394,7 +395,10 @@ std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place
   }
   if (question.of_means()) return choose_for_mean(question, place, pilots, most, plan);
   if (question.of_variances()) return choose_for_variance(question, place, pilots, most, plan);
-  if (question.of_laws()) return least_secondaries;
+  if (question.of_laws()) {
+    choose_for_laws(question, pilots, plan);
+    return least_secondaries;
+  }
   if (question.of_spread()) return choose_for_spread(question, place, pilots, most, plan);
   return choose_for_points(question, place, pilots, plan);
 }

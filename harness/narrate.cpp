@@ -98,10 +98,11 @@ std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
         show_theta(channel.evidence.estimate, channel.evidence),
         interval_text(channel, channel.effect.confidence));
   }
-  return fmt::format("{} is {} {}{}, {}", channel.evidence.quantity,
+  return fmt::format("{} is {} {}{}, {}{}", channel.evidence.quantity,
                      show_theta(channel.evidence.estimate, channel.evidence),
                      interval_text(channel, channel.effect.confidence),
-                     in_channel(outcome, channel), p_text(channel.decision.log_p_claimed));
+                     in_channel(outcome, channel), p_text(channel.decision.log_p_claimed),
+                     channel.evidence.where);
 }
 
 /// In an alarm any estimate decides once the room between the margins holds a standard error

@@ -37,6 +37,14 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
   return pool;
 }
 
+std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
+  auto pool = std::make_shared<Pool>(
+      subject.setup, key_of(*subject.estimator, seed, 0, subject.purpose + " pilot"), 1);
+  for (ChannelPlan& channel : pool->plan()) channel.keep = averaging_observations;
+  pool->request(averaging_observations);
+  return pool;
+}
+
 Pilot read(const Pool& pool) {
   Pilot pilot{.channels = {},
               .primaries = pool.primaries(),
@@ -58,15 +66,19 @@ Pilot read(const Pool& pool) {
 
 }  // namespace
 
+std::string pilot_name(const Subject& subject) {
+  return subject.estimator->name + (subject.purpose.empty() ? "" : "." + subject.purpose);
+}
+
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots) {
-  const auto found = pilots.find(subject.estimator->name);
+  const auto found = pilots.find(pilot_name(subject));
   return found != pilots.end() && found->second.trouble.empty() ? &found->second : nullptr;
 }
 
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots) {
   const Subject& side = question.subjects[subject];
-  const Pilot& pilot = pilots.at(side.estimator->name);
+  const Pilot& pilot = pilots.at(pilot_name(side));
   const std::size_t index = side.channels[channel];
   return {.moments = pilot.channels[index],
           .values = index < pilot.values.size() ? std::span<const double>(pilot.values[index])
@@ -82,6 +94,10 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
     pools.push_back(pilot_pool(*estimator, run.seed));
     if (!run.with_cost.contains(estimator->name)) continue;
     for (ChannelPlan& channel : pools.back()->plan()) channel.with_cost = true;
+  }
+  for (const Subject* subject : run.draws) {
+    names.push_back(pilot_name(*subject));
+    pools.push_back(draws_pool(*subject, run.seed));
   }
   draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
   Pilots pilots;

@@ -27,15 +27,19 @@ struct Pilot {
   std::string trouble = "";                      ///< why there are no numbers: the estimator threw
 };
 
-/// By estimator name. Averaging estimators at one primary, others at the suite's `primaries`. Of
+/// By pilot_name. Averaging estimators at one primary, others at the suite's `primaries`. Of
 /// ready-made data it is all rows, which are the test's own: only the method is chosen by them.
 using Pilots = std::map<std::string, Pilot>;
 
 struct PilotRun {
   std::uint64_t seed;
   unsigned threads;
-  std::set<std::string> with_cost = {};  ///< names of those whose costs are wanted
+  std::set<std::string> with_cost = {};    ///< names of those whose costs are wanted
+  std::vector<const Subject*> draws = {};  ///< samplers whose draws are wanted besides
 };
+
+/// The estimator's name, and after a dot the sampler's of a subject that is its draws.
+std::string pilot_name(const Subject& subject);
 
 /// The pilot of a subject, if it has one that went well.
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);

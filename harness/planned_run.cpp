@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "harness/frozen.h"
 #include "harness/interrupt.h"
 #include "harness/plan.h"
 #include "stats/image.h"
@@ -79,6 +80,17 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
+/// Samplers' draws of which a method takes something beforehand.
+std::vector<const Subject*> piloted_draws(const std::vector<Question>& questions,
+                                          const std::vector<bool>& chosen) {
+  std::vector<const Subject*> all;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!chosen[i]) continue;
+    for (const Subject* subject : piloted_draws(questions[i])) all.push_back(subject);
+  }
+  return all;
+}
+
 void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& used,
                   const Primaries& primaries, const Pilots& pilots, Pools& pools) {
   for (const PreparedEstimator* estimator : used) {
@@ -107,9 +119,12 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
   const std::vector<FamilyPlace> place = places(run.suite, questions);
   const auto used = used_by(questions, chosen, run);
-  run.pilots = run_pilots(
-      with_sweeps(used, questions, chosen),
-      {.seed = run.seed, .threads = options.threads, .with_cost = costly(questions)}, progress);
+  run.pilots = run_pilots(with_sweeps(used, questions, chosen),
+                          {.seed = run.seed,
+                           .threads = options.threads,
+                           .with_cost = costly(questions),
+                           .draws = piloted_draws(questions, chosen)},
+                          progress);
   const Pilots& pilots = run.pilots;
   stop_if_interrupted();
   const Primaries primaries = choose_primaries(questions, place, pilots);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/sampler_setup.h"
+#include "harness/consistency_setup.h"
 
 namespace assay::harness {
 namespace {
@@ -47,11 +47,14 @@ std::vector<Range> data_ranges(const Setup& setup, std::uint64_t rows) {
 }
 
 std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
+  if (dynamic_cast<const ConsistencySetup*>(&setup) != nullptr) {
+    return {{.cells = 1 + setup.cell_count()}, {}};
+  }
   std::vector<ChannelPlan> plan;
   for (const Marginal& marginal : setup.marginals()) {
     plan.push_back(with_histogram({marginal.low, marginal.high}));
   }
-  plan.push_back({.cells = setup.cells().size()});
+  plan.push_back({.cells = setup.cell_count()});
   return plan;
 }
 
@@ -120,7 +123,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
                                                    .copy = side.copy,
                                                    .primaries = plan.primaries[subject]},
                                                   seed, pilots);
-  if (plan.method.keeps == Keeps::values) {
+  if (plan.method.keeps == Keeps::values || plan.method.keeps == Keeps::points) {
     for (const std::size_t channel : side.channels) {
       std::uint64_t& keep = pool->plan()[channel].keep;
       keep = std::max(keep, plan.most_secondaries());

@@ -99,13 +99,28 @@ Question about_moments(const TestEntry& test, const Estimators& estimators) {
   return question;
 }
 
+/// Cells are those of one or two coordinates, the same of both sides.
+void require_plane(const Question& question) {
+  const std::size_t first = question.subjects[0].channels.size();
+  const std::size_t second = question.subjects[1].channels.size();
+  if (first == second && first <= 2) return;
+  throw InputError(question.test->where,
+                   fmt::format("`{}` counts in cells of one or two coordinates, the same of both "
+                               "sides, which have {} and {}; name one channel of each",
+                               two_sample_cells, first, second));
+}
+
 Question about_distribution(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   const Source& source = claim.left.source;
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
-    return {.test = &test,
-            .kind = QuestionKind::same_law,
-            .subjects = {values(source, estimators), values(other->quantity.source, estimators)}};
+    const bool cells = test.method == two_sample_cells;
+    Question question{
+        .test = &test,
+        .kind = cells ? QuestionKind::same_cells : QuestionKind::same_law,
+        .subjects = {values(source, estimators), values(other->quantity.source, estimators)}};
+    if (cells) require_plane(question);
+    return question;
   }
   const Law& law = std::get<Law>(claim.right);
   if (law.name == "density") {
@@ -142,6 +157,7 @@ void check_margins(const Question& question) {
     throw InputError(test.where, "`detect` and `allow` must both be in per cent or both absolute");
   }
   for (const auto& margin : {test.detect, test.allow, within}) {
+    if (question.of_draws()) require_absolute(margin, test, "this is a probability");
     if (test.claim.left.name == QuantityName::distribution) {
       require_absolute(margin, test, "a distance between laws is a probability");
     }
@@ -196,6 +212,9 @@ Question asked(const TestEntry& test, const Estimators& estimators) {
       return about_quantile(test, estimators);
     case total_variance:
       return about_total_variance(test, estimators);
+    case integral:
+    case inconsistency:
+      return about_draws(test, estimators);
   }
   throw std::logic_error("a claim about no quantity");
 }
@@ -210,6 +229,7 @@ bool Question::of_spread() const {
 
 std::string Question::channel_name(std::size_t channel) const {
   if (kind == QuestionKind::cost) return "cost";
+  if (kind == QuestionKind::same_cells) return "cells";
   if (kind == QuestionKind::image) return image_name(*subjects[0].image);
   if (kind == QuestionKind::total_variance && subjects[0].channels.size() > 1)
     return "all channels";

@@ -43,12 +43,18 @@ enum class QuestionKind {
   fit_to_density,  ///< a sampler's draws against its declared density, in cells
   fit_to_law,      ///< values against a law's distribution function
   same_law,        ///< values of two against each other
+  same_cells,      ///< values of two, one or two channels together, counted in cells
   cost,            ///< of one primary where the estimator averages; the kinds from here on are
   efficiency,      ///< of one estimator against a number or of two, as the subjects say
   quantile,
   total_variance,  ///< summed over the channels
+  integral,        ///< of a sampler's density, against a number
+  inconsistency,   ///< probability of a draw that contradicts its sampler, against a number
   slope            ///< a power law over the subjects, one a point of the sweep
 };
+
+/// The method that makes a claim about two laws one about cells of all their channels together.
+inline constexpr const char* two_sample_cells = "chi-square-two-sample";
 
 /// What a claim asks of the suite's estimators.
 struct Question {
@@ -69,7 +75,7 @@ struct Question {
   /// One number from all channels together.
   bool pooled() const {
     return kind == QuestionKind::cost || kind == QuestionKind::total_variance ||
-           kind == QuestionKind::image;
+           kind == QuestionKind::same_cells || kind == QuestionKind::image;
   }
   std::size_t channel_count() const { return pooled() ? 1 : subjects[0].channels.size(); }
   std::string channel_name(std::size_t channel) const;
@@ -92,7 +98,12 @@ struct Question {
   /// The law of single values is the subject, not a mean over them.
   bool of_laws() const {
     return kind == QuestionKind::fit_to_density || kind == QuestionKind::fit_to_law ||
-           kind == QuestionKind::same_law || kind == QuestionKind::quantile;
+           kind == QuestionKind::same_law || kind == QuestionKind::same_cells ||
+           kind == QuestionKind::quantile || of_draws();
+  }
+  /// A sampler's own bookkeeping is the subject.
+  bool of_draws() const {
+    return kind == QuestionKind::integral || kind == QuestionKind::inconsistency;
   }
 };
 

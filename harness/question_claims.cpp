@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "harness/sampler_setup.h"
+
 namespace assay::harness {
 namespace {
 
@@ -136,6 +138,16 @@ void require_slope_of_something(const TestEntry& test, const Subject& subject) {
                                to_string(name), test.claim.left.source.estimator));
 }
 
+void require_whole_sampler(const Source& source, const Estimators& estimators) {
+  const Subject marginal = draws(source, estimators, Draws::cells);
+  const std::vector<Channel> channels = marginal.setup->channels();
+  if (channels[marginal.channels[0]].name == cell_channel) return;
+  throw InputError(source.where,
+                   fmt::format("`integral` and `inconsistency` are about a whole sampler: name "
+                               "`{}.{}`",
+                               source.estimator, marginal.purpose));
+}
+
 }  // namespace
 
 Question about_bias(const TestEntry& test, const Estimators& estimators) {
@@ -226,6 +238,17 @@ Question about_quantile(const TestEntry& test, const Estimators& estimators) {
 
 Question about_total_variance(const TestEntry& test, const Estimators& estimators) {
   return one_or_two(test, QuestionKind::total_variance, estimators);
+}
+
+Question about_draws(const TestEntry& test, const Estimators& estimators) {
+  const Claim& claim = test.claim;
+  const bool integral = claim.left.name == QuantityName::integral;
+  require_whole_sampler(claim.left.source, estimators);
+  return {.test = &test,
+          .kind = integral ? QuestionKind::integral : QuestionKind::inconsistency,
+          .subjects = {draws(claim.left.source, estimators,
+                             integral ? Draws::cells : Draws::consistency)},
+          .references = {std::get<Constant>(claim.right)}};
 }
 
 Question about_slope(const TestEntry& test, const Estimators& estimators) {

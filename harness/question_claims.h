@@ -22,6 +22,9 @@ Question about_quantile(const TestEntry& test, const Estimators& estimators);
 /// The variances of all channels, added.
 Question about_total_variance(const TestEntry& test, const Estimators& estimators);
 
+/// What a sampler's density integrates to, or how often its draws contradict it.
+Question about_draws(const TestEntry& test, const Estimators& estimators);
+
 /// The exponent s of a quantity that goes like (swept parameter)^s; a subject a point.
 Question about_slope(const TestEntry& test, const Estimators& estimators);
 

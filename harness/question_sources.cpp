@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "harness/sampler_setup.h"
+#include "harness/consistency_setup.h"
 
 namespace assay::harness {
 namespace {
@@ -120,6 +120,11 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
   const PreparedEstimator& estimator = estimator_of(source, estimators);
   std::string rest;
   const std::vector<NamedSampler> samplers = estimator.setup->samplers();
+  if (samplers.empty() && source.part.empty()) {
+    throw InputError(source.where,
+                     fmt::format("`{}` has no sampler whose draws could be tested; it has {}",
+                                 source.estimator, parts_of(estimator)));
+  }
   const NamedSampler* named = sampler_named(samplers, source.part, rest);
   if (named == nullptr) no_such_part(source, estimator);
   Subject subject{.estimator = &estimator,
@@ -127,8 +132,14 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
                   .purpose = named->name,
                   .channels = {},
                   .averages = false};
+  if (what == Draws::consistency) {
+    subject.setup = consistency_setup(*named, source.where);
+    subject.purpose = consistency_purpose(named->name);
+  }
   const std::vector<Channel> channels = subject.setup->channels();
-  if (!rest.empty()) {
+  if (what == Draws::consistency && rest.empty()) {
+    subject.channels = channels_named(channels, inconsistent_channel);
+  } else if (!rest.empty() && what != Draws::consistency) {
     subject.channels = channels_named(channels, rest);
     if (rest == cell_channel) subject.channels.clear();
   } else if (what == Draws::cells) {

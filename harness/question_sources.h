@@ -19,8 +19,9 @@ const PreparedEstimator& estimator_of(const Source& source, const Estimators& es
 Subject estimates(const Source& source, const PreparedEstimator& estimator);
 Subject estimates(const Source& source, const Estimators& estimators);
 
-/// A sampler's draws: cells of the whole domain, all marginals, or the marginal the part names.
-enum class Draws { cells, marginals };
+/// A sampler's draws: cells of the whole domain, all marginals, or whether they are consistent. Of
+/// marginals the part may name one.
+enum class Draws { cells, marginals, consistency };
 Subject draws(const Source& source, const Estimators& estimators, Draws what);
 
 /// A distribution's source: a channel where the part names one, else a sampler.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "harness/image_record.h"
+#include "harness/law_picture.h"
 #include "harness/picture.h"
 #include "harness/pools.h"
 #include "harness/quantiles.h"
@@ -219,6 +220,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   test.samples = samples_of(work);
   for (const ChannelOutcome& channel : outcome.channels) {
     test.channels.push_back(channel_of(channel, holm && outcome.place.inside, regions));
+    test.channels.back().laws = empirical_laws(work, channel.index);
   }
   if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
   add_image(work, test);

@@ -10,6 +10,7 @@
 
 #include "estimators/catalogue.h"
 #include "harness/commands.h"
+#include "harness/frozen.h"
 #include "harness/looks.h"
 #include "harness/pools.h"
 #include "harness/progress_terminal.h"
@@ -169,12 +170,23 @@ struct Rebuilt {
   TestWork work;
 };
 
+/// The pilots of the run: they depend on the seed and the estimators alone.
+Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t seed) {
+  std::vector<const PreparedEstimator*> all;
+  for (const auto& [name, estimator] : rebuilt.estimators) all.push_back(&estimator);
+  const std::unique_ptr<Progress> progress = make_progress(false);
+  return run_pilots(all, {.seed = seed, .threads = 0, .draws = piloted_draws(question)}, *progress);
+}
+
 std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded) {
   auto rebuilt = std::make_unique<Rebuilt>();
   rebuilt->suite = suite_of(recorded);
   rebuilt->estimators = prepare_all(rebuilt->suite);
   Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
   Plan plan = recorded_plan(question, recorded.test);
+  if (takes_from_pilot(plan.method)) {
+    freeze(question, pilots_of(*rebuilt, question, recorded.seed), plan);
+  }
   rebuilt->work.outcome = {
       .question = std::move(question),
       .place = {.inside = false,

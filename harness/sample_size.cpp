@@ -9,8 +9,8 @@
 #include "harness/critical.h"
 #include "harness/evidence_ratio.h"
 #include "harness/image_plan.h"
+#include "harness/law_size.h"
 #include "harness/method.h"
-#include "harness/sampler_setup.h"
 #include "stats/power.h"
 #include "stats/tails.h"
 
@@ -193,30 +193,6 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
   return count.value_or(impossible_secondaries);
 }
 
-stats::DistancePlan distance_plan(const Question& question, const ErrorShare& share, double allow) {
-  return {.two_samples = question.of_two(),
-          .allow = allow,
-          .rates = {.alpha = share.alpha, .beta = share.beta, .two_sided = false}};
-}
-
-stats::FitPlan fit_plan(const Question& question, const ErrorShare& share, double allow) {
-  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  return {.degrees_of_freedom = static_cast<double>(draws.cells().size() - 1),
-          .allow = allow,
-          .rates = {.alpha = share.alpha, .beta = share.beta, .two_sided = false}};
-}
-
-std::optional<std::uint64_t> for_laws(const Question& question, const ErrorShare& share,
-                                      const Plan& plan) {
-  const Regions& regions = plan.regions[0];
-  if (!regions.detect) return std::nullopt;
-  if (plan.method.keeps == Keeps::cells) {
-    return stats::chi_square_fit_sample_size(fit_plan(question, share, regions.allow),
-                                             *regions.detect);
-  }
-  return stats::ks_sample_size(distance_plan(question, share, regions.allow), *regions.detect);
-}
-
 /// The probability of showing `within` where theta is 0.
 double equivalence_power(const Question& question, const TestSize& size,
                          const PlannedChannel& channel) {
@@ -237,16 +213,21 @@ double equivalence_power(const Question& question, const TestSize& size,
                                   n, 0);
 }
 
-/// Quantiles, slopes and images have none here; nor has a comparison of numbers without a spread.
+/// Quantiles, slopes, images and counts of draws have none here; nor has a comparison of numbers
+/// without a spread.
 bool has_power(const Question& question, const PlannedChannel& channel) {
   using enum QuestionKind;
-  if (question.kind == quantile || question.kind == slope || question.kind == image) return false;
+  if (question.kind == quantile || question.kind == slope || question.kind == image ||
+      question.of_draws()) {
+    return false;
+  }
   return !has_log_spread(question) || channel.kurtosis + channel.other_kurtosis > 2;
 }
 
 /// Methods of which no formula says what they find: their power is not quoted.
 bool has_no_power(const Method& method) {
-  return method.name == "binomial" || method.name == "bounded" || method.name == "anderson-darling";
+  return method.name == "binomial" || method.name == "bounded" ||
+         method.name == "anderson-darling" || method.name == "two-part-ks";
 }
 
 bool all_piloted(const Question& question, const Pilots& pilots) {
@@ -259,7 +240,7 @@ bool all_piloted(const Question& question, const Pilots& pilots) {
 std::optional<std::uint64_t> planned_secondaries(const Question& question, const ErrorShare& share,
                                                  const Pilots& pilots, const Plan& plan) {
   if (question.of_laws() && question.kind != QuestionKind::quantile) {
-    return for_laws(question, share, plan);
+    return laws_secondaries(question, share, plan);
   }
   if (!all_piloted(question, pilots)) return std::nullopt;
   if (question.kind == QuestionKind::quantile) {
@@ -297,10 +278,8 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
   } else if (question.on_log_scale()) {
     found =
         std::log(stats::log_variance_detectable(variance_plan(rates, regions.allow, channel), n));
-  } else if (plan.method.keeps == Keeps::cells) {
-    found = stats::chi_square_fit_detectable(fit_plan(question, share, regions.allow), n);
   } else {
-    found = stats::ks_detectable(distance_plan(question, share, regions.allow), n);
+    found = detectable_between_laws(question, size, plan);
   }
   if (!std::isfinite(found)) return std::nullopt;
   return found;
@@ -332,15 +311,14 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
       return stats::log_variance_power(variance_plan(rates, regions.allow, channel), n,
                                        std::exp(effect));
     case QuestionKind::fit_to_density:
-      if (plan.method.keeps == Keeps::cells) {
-        return stats::chi_square_fit_power(fit_plan(question, share, regions.allow), n, effect);
-      }
-      [[fallthrough]];
     case QuestionKind::fit_to_law:
     case QuestionKind::same_law:
-      return stats::ks_power_bound(distance_plan(question, share, regions.allow), n, effect);
+    case QuestionKind::same_cells:
+      return power_between_laws(question, size, plan, effect);
     case QuestionKind::image:
     case QuestionKind::quantile:
+    case QuestionKind::integral:
+    case QuestionKind::inconsistency:
     case QuestionKind::slope:
       break;
   }

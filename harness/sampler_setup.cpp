@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "harness/domain_chart.h"
@@ -132,6 +133,12 @@ class SamplerEstimator final : public Estimator {
   std::vector<Marginal> marginals_;
 };
 
+std::string range_text(const std::string& name, double low, double high) {
+  return fmt::format("{} {:.3g} to {:.3g}", name, low, high);
+}
+
+}  // namespace
+
 void require_sound(const NamedSampler& named, const Location& where) {
   const Sampler& sampler = *named.sampler;
   const auto [low, high] = sampler.bounds();
@@ -146,9 +153,10 @@ void require_sound(const NamedSampler& named, const Location& where) {
   }
 }
 
-}  // namespace
-
-double DensityCells::tolerance() const { return std::max(1e-9, 2 * grid.total_error); }
+double DensityCells::tolerance() const {
+  const double parts = static_cast<double>(size()) + 10;
+  return 2 * grid.total_error + parts * std::numeric_limits<double>::epsilon() * grid.total;
+}
 
 double DensityCells::missing() const {
   const double rest = 1 - grid.total;
@@ -189,6 +197,14 @@ const DensityCells& SamplerSetup::cells() const {
   return *cells_;
 }
 
+std::size_t SamplerSetup::cell_count() const {
+  const int lobes = sampler().lobes();
+  std::size_t count =
+      static_cast<std::size_t>(lobes) * (on_interval(sampler()) ? interval_cells : grid_.size());
+  for (int lobe = 0; lobe < lobes; ++lobe) if (sampler().point_mass(lobe) != 0) ++count;
+  return count + 1;
+}
+
 std::size_t SamplerSetup::cell(const SamplerDraw& draw) const {
   const std::size_t each = on_interval(sampler()) ? interval_cells : grid_.size();
   const int lobes = sampler().lobes();
@@ -207,6 +223,39 @@ std::size_t SamplerSetup::cell(const SamplerDraw& draw) const {
   if (on_interval(sampler())) return lobe * each + interval_grid(sampler()).index(draw.point[0]);
   const auto [first, second] = chart_by(sampler().domain(), 0).coordinates(draw.point);
   return lobe * each + grid_.index(first, second);
+}
+
+std::string SamplerSetup::describe_cell(std::size_t cell) const {
+  const bool interval = on_interval(sampler());
+  const std::size_t each = interval ? interval_cells : grid_.size();
+  const auto lobes = static_cast<std::size_t>(sampler().lobes());
+  const std::vector<Marginal> coordinates = marginals();
+  if (cell < lobes * each) {
+    const std::string lobe = lobes > 1 ? fmt::format(" of lobe {}", cell / each) : "";
+    const std::size_t place = cell % each;
+    if (interval) {
+      const auto [low, high] = sampler().bounds();
+      const double width = (high - low) / static_cast<double>(interval_cells);
+      const double from = low + static_cast<double>(place) * width;
+      return range_text(coordinates[0].name, from, from + width) + lobe;
+    }
+    const std::size_t row = grid_.y_borders.size() - 1;
+    const auto range = [&](std::size_t which, const std::vector<double>& borders, std::size_t i) {
+      return range_text(coordinates[which].name, borders[i], borders[i + 1]);
+    };
+    // Of a triangle the second coordinate of a cell is a share of what the first leaves.
+    const bool triangle = sampler().domain() == Domain::triangle;
+    const std::string second = triangle ? range_text("v / (1 - u)", grid_.y_borders[place % row],
+                                                     grid_.y_borders[place % row + 1])
+                                        : range(1, grid_.y_borders, place % row);
+    return range(0, grid_.x_borders, place / row) + ", " + second + lobe;
+  }
+  std::size_t next = lobes * each;
+  for (std::size_t lobe = 0; lobe < lobes; ++lobe) {
+    if (sampler().point_mass(static_cast<int>(lobe)) == 0) continue;
+    if (cell == next++) return fmt::format("the points of lobe {}", lobe);
+  }
+  return "the draws without a point";
 }
 
 const stats::TabulatedLaw& SamplerSetup::marginal_law(const std::string& marginal) const {

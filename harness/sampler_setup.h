@@ -23,8 +23,8 @@ inline const std::string cell_channel = "cell";
 struct DensityCells {
   stats::CellProbabilities grid;
   std::size_t size() const { return grid.probability.size() + 1; }
-  /// What the quadrature may have missed of all probability: twice the estimated error, as little
-  /// as 1e-9.
+  /// What the quadrature may be off in all probability: twice the estimated error, and the rounding
+  /// of a sum over the cells of a density that is right to some ten units in its last place.
   double tolerance() const;
   /// 1 minus the total, and exactly 0 where the tolerance could explain it.
   double missing() const;
@@ -37,24 +37,29 @@ struct DensityCells {
 /// the marginal's range.
 double no_point(const Marginal& marginal);
 
-class SamplerSetup final : public Setup {
+class SamplerSetup : public Setup {
  public:
   explicit SamplerSetup(NamedSampler named);
 
   std::vector<Channel> channels() const override;
   std::unique_ptr<Estimator> make() const override;
 
+  /// How many cells there are, the last for draws without a point.
+  std::size_t cell_count() const;
   /// By quadrature of the declared density, on first use; then kept.
   const DensityCells& cells() const;
   /// The law of a marginal under the declared density, given a point; 1 - total() is the mass
   /// without one. On first use; then kept.
   const stats::TabulatedLaw& marginal_law(const std::string& marginal) const;
   const Sampler& sampler() const { return *named_.sampler; }
+  const std::string& name() const { return named_.name; }
   std::vector<Marginal> marginals() const;
 
   /// Number of the cell of a draw. Throws std::domain_error for a point outside the domain and a
   /// lobe that the sampler does not have.
   std::size_t cell(const SamplerDraw& draw) const;
+  /// "theta 0.1 to 0.2, phi 0 to 0.196" of lobe 1, where there are several.
+  std::string describe_cell(std::size_t cell) const;
 
  private:
   NamedSampler named_;
@@ -64,8 +69,12 @@ class SamplerSetup final : public Setup {
   mutable std::map<std::string, stats::TabulatedLaw> laws_;
 };
 
-/// The same set-up for the same sampler, so that its tables are made once. InputError at `where`
-/// for a sampler without lobes and for an interval whose bounds are not finite and ascending.
+/// InputError at `where` for a sampler without lobes and for an interval whose bounds are not
+/// finite and ascending.
+void require_sound(const NamedSampler& named, const Location& where);
+
+/// The same set-up for the same sampler, so that its tables are made once. Throws as
+/// require_sound.
 std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where);
 
 }  // namespace assay::harness

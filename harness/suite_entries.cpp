@@ -155,6 +155,8 @@ const std::vector<std::string>& method_names() {
                                               "log-variance",
                                               "ks",
                                               "anderson-darling",
+                                              "two-part-ks",
+                                              "chi-square-two-sample",
                                               "chi-square-fit",
                                               "log-cost",
                                               "log-efficiency",

@@ -40,4 +40,8 @@ std::string histogram_chart(const Observations&);
 /// Normal quantile plot: a sample from a normal law follows the line mean + standard deviation * z.
 std::string quantile_chart(const Sample&);
 
+/// Empirical distribution functions within their bands, one or two, and the law that was claimed of
+/// one.
+std::string law_chart(const Channel&);
+
 }  // namespace assay::reports

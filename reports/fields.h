@@ -104,6 +104,22 @@ void fields(Archive& a, T& distribution) {
   a("parameters", distribution.parameters);
 }
 
+template <class Archive, maybe_const<LawPoint> T>
+void fields(Archive& a, T& point) {
+  a("value", point.value);
+  a("observed", point.observed);
+  a("low", point.low);
+  a("high", point.high);
+  a("law", point.law);
+}
+
+template <class Archive, maybe_const<EmpiricalLaw> T>
+void fields(Archive& a, T& law) {
+  a("source", law.source);
+  a("confidence", law.confidence);
+  a("points", law.points);
+}
+
 template <class Archive, maybe_const<Channel> T>
 void fields(Archive& a, T& channel) {
   a("name", channel.name);
@@ -117,6 +133,7 @@ void fields(Archive& a, T& channel) {
   a("log10_p_pass", channel.log10_p_pass);
   a("effect", channel.effect);
   a("reference", channel.reference);
+  a("laws", channel.laws);
 }
 
 template <class Archive, maybe_const<Look> T>

@@ -75,6 +75,9 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
 .chart .detect { stroke: var(--mean); stroke-width: 1.6; stroke-dasharray: 6 3; }
 .chart .interval { fill: none; stroke: var(--variance); stroke-width: 2; } .chart .estimate { fill: var(--variance); }
 .chart .first { fill: var(--variance); fill-opacity: .45; stroke: var(--variance); stroke-width: 1; }
+.chart .bandfirst { fill: var(--variance); fill-opacity: .2; stroke: none; } .chart .bandsecond { fill: var(--mean); fill-opacity: .2; stroke: none; }
+.chart .curvefirst { fill: none; stroke: var(--variance); stroke-width: 1.4; } .chart .curvesecond { fill: none; stroke: var(--mean); stroke-width: 1.4; }
+.chart .law { fill: none; stroke: var(--ink); stroke-width: 1.4; stroke-dasharray: 5 3; }
 .chart .second { fill: none; stroke: var(--mean); stroke-width: 1.8; }
 .chart .points { fill: none; stroke: var(--variance); stroke-width: 4; stroke-linecap: round; }
 .chart .normal { stroke: var(--ink); stroke-width: 1.2; stroke-dasharray: 4 3; }

@@ -59,12 +59,29 @@ std::string histogram_caption(const Test& test, const std::vector<const Sample*>
   return text + (worst_channel(test).reference ? "; dashed: the reference." : ".");
 }
 
+std::string law_caption(const Test& test) {
+  const std::vector<EmpiricalLaw>& laws = worst_channel(test).laws;
+  if (laws.empty()) return {};
+  const std::string confidence = confidence_text(laws[0].confidence);
+  if (laws.size() > 1) {
+    return fmt::format(
+        "Both empirical distribution functions. Each band holds the law of its sample everywhere "
+        "with probability {}.",
+        confidence);
+  }
+  return fmt::format(
+      "The empirical distribution function. The band holds the law of the sample everywhere with "
+      "probability {}; dashed: the law claimed.",
+      confidence);
+}
+
 std::string pictures(const Test& test) {
   const std::vector<const Sample*> samples = drawn_samples(test);
   std::string out = "<div class=\"figures\">\n";
   out += figure(interval_chart(test), interval_caption(test));
   out += figure(histogram_chart({samples, worst_channel(test).reference}),
                 histogram_caption(test, samples));
+  out += figure(law_chart(worst_channel(test)), law_caption(test));
   for (const Sample* sample : samples)
     out +=
         figure(quantile_chart(*sample), "Normal quantile plot: on the dashed line where normal.");

@@ -72,6 +72,8 @@ std::string scientific(double log10_value) {
 }
 
 std::string p_text(Number p, Number log10_p) {
+  // What cannot be under the claim has the least logarithm there is, of 300 digits.
+  if (log10_p && std::isfinite(*log10_p) && *log10_p < -1e6) return "below 1e-1000000";
   if (log10_p && std::isfinite(*log10_p) && *log10_p < -4) return scientific(*log10_p);
   if (!p) return log10_p ? p_text(std::pow(10.0, *log10_p), std::nullopt) : no_number;
   if (!std::isfinite(*p)) return non_finite(*p);

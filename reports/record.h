@@ -108,6 +108,26 @@ struct Distribution {
   bool operator==(const Distribution&) const = default;
 };
 
+/// An empirical distribution function at one of its values, what the law it is drawn from may be
+/// there, and what the claimed law is.
+struct LawPoint {
+  double value = 0;
+  double observed = 0;  ///< part of the values up to here
+  double low = 0;       ///< of the band
+  double high = 0;
+  Number law;  ///< null where two samples are compared
+  bool operator==(const LawPoint&) const = default;
+};
+
+/// The empirical law of one sample: with probability `confidence` all of its band's points hold the
+/// law that the sample was drawn from.
+struct EmpiricalLaw {
+  std::string source;  ///< the estimator's name
+  double confidence = 0;
+  std::vector<LawPoint> points;
+  bool operator==(const EmpiricalLaw&) const = default;
+};
+
 /// The numbers of one channel of a claim.
 struct Channel {
   std::string name;
@@ -120,6 +140,7 @@ struct Channel {
   Number log10_p_adjusted, log10_p_pass;  ///< of these two, which may underflow as well
   Effect effect;
   Number reference;  ///< what the mean is marked against in the histogram, if a number
+  std::vector<EmpiricalLaw> laws;  ///< of a claim about laws of one coordinate: one or two
   bool operator==(const Channel&) const = default;
 };
 

@@ -1,11 +1,11 @@
 #include "stats/chi_square_fit.h"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "stats/check.h"
+#include "stats/chi_square_effect.h"
 #include "stats/special.h"
 #include "stats/tails.h"
 
@@ -108,9 +108,10 @@ double pearson(const std::vector<PooledCell>& cells) {
   return sum;
 }
 
-LogTails effect_tails(const ChiSquareFit& fit, double effect) {
-  const double noncentrality = static_cast<double>(fit.observations) * effect * effect;
-  return noncentral_chi_square_tails(fit.test.statistic, {fit.degrees_of_freedom, noncentrality});
+ChiSquareStatistic statistic_of(const ChiSquareFit& fit) {
+  return {.value = fit.test.statistic,
+          .degrees_of_freedom = fit.degrees_of_freedom,
+          .observations = static_cast<double>(fit.observations)};
 }
 
 }  // namespace
@@ -137,36 +138,16 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
               tails.lower,
               special::clamp_log(log_p),
               Exactness::asymptotic};
-  fit.effect = std::sqrt(std::max(0.0, statistic - fit.degrees_of_freedom) / n);
+  fit.effect = statistic_of(fit).effect();
   return fit;
 }
 
 TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect) {
-  check::non_negative({"chi_square_fit_effect", "null_effect"}, null_effect);
-  const LogTails tails = effect_tails(fit, null_effect);
-  const double n = static_cast<double>(fit.observations);
-  return {fit.test.statistic,
-          {"noncentral-chi-square", {fit.degrees_of_freedom, n * null_effect * null_effect}},
-          tails.lower,
-          tails.upper,
-          Exactness::asymptotic};
+  return chi_square_effect(statistic_of(fit), null_effect);
 }
 
 Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence) {
-  check::inside_unit({"chi_square_fit_interval", "confidence"}, confidence);
-  const double log_tail = std::log((1 - confidence) / 2);
-  // Both tails are monotone in w; an end is 0 when even w = 0 is not rejected from that side.
-  const auto end = [&](auto excess) {
-    if (excess(0.0) >= 0) return 0.0;
-    double high = fit.effect + 1 / std::sqrt(static_cast<double>(fit.observations));
-    while (excess(high) < 0) high *= 2;
-    std::uintmax_t iterations = 200;
-    const auto ends = boost::math::tools::toms748_solve(
-        excess, 0.0, high, boost::math::tools::eps_tolerance<double>(44), iterations);
-    return std::midpoint(ends.first, ends.second);
-  };
-  return {end([&](double w) { return effect_tails(fit, w).upper - log_tail; }),
-          end([&](double w) { return log_tail - effect_tails(fit, w).lower; }), confidence};
+  return chi_square_effect_interval(statistic_of(fit), confidence);
 }
 
 }  // namespace assay::stats

@@ -129,6 +129,14 @@ DistributionBand ecdf_band(TwoSizes sizes, std::size_t points, double confidence
   return band;
 }
 
+double simultaneous_error(std::uint64_t n, std::size_t points, double confidence) {
+  constexpr std::uint64_t most = 1000;
+  if (n <= most) return ecdf_band(n, points, confidence).gamma;
+  // 1 / sqrt(most) is twice 1 / sqrt(4 most).
+  return 2 * ecdf_band(4 * most, points, confidence).gamma -
+         ecdf_band(most, points, confidence).gamma;
+}
+
 BandTest band_test(std::span<const double> sorted_uniforms, std::size_t points) {
   check_sorted(sorted_uniforms);
   check::unit({"band_test", "smallest value"}, sorted_uniforms.front());

@@ -88,6 +88,57 @@ class Redrawn final : public Sampler {
   std::shared_ptr<const Sampler> original_;
 };
 
+// The original's points with one part of what is said of them exchanged.
+class Misreported : public Sampler {
+ public:
+  explicit Misreported(std::shared_ptr<const Sampler> original) : original_(std::move(original)) {}
+  Domain domain() const override { return original_->domain(); }
+  SamplerDraw sample(Stream& random) const override { return original_->sample(random); }
+  double density(const Point& p) const override { return original_->density(p); }
+  double evaluate(const Point& p) const override { return original_->evaluate(p); }
+  Panels panels() const override { return original_->panels(); }
+
+ protected:
+  const Sampler& original() const { return *original_; }
+
+ private:
+  std::shared_ptr<const Sampler> original_;
+};
+
+struct WeightWithoutCosine final : Misreported {
+  using Misreported::Misreported;
+  SamplerDraw sample(Stream& random) const override {
+    SamplerDraw draw = original().sample(random);
+    if (draw.valid) draw.weight /= draw.point[2];
+    return draw;
+  }
+};
+
+// One hundredth of the azimuth beside the mirrored direction's, phi - pi in [0.05, 0.05 + pi / 50).
+bool in_sector(const Point& p) {
+  const double turned = std::atan2(-p[1], -p[0]);
+  return turned >= 0.05 && turned < 0.05 + pi / 50;
+}
+
+struct DensityOffInASector final : Misreported {
+  using Misreported::Misreported;
+  double density(const Point& p) const override {
+    return (in_sector(p) ? 1.001 : 1) * Misreported::density(p);
+  }
+};
+
+// Tangent and bitangent exchanged: the mirror image about the diagonal of the surface axes.
+struct MirroredWeight final : Misreported {
+  using Misreported::Misreported;
+  SamplerDraw sample(Stream& random) const override {
+    SamplerDraw draw = original().sample(random);
+    if (!draw.valid) return draw;
+    const Point mirrored{draw.point[1], draw.point[0], draw.point[2]};
+    draw.weight = evaluate(mirrored) / draw.density;
+    return draw;
+  }
+};
+
 // All of the original's parameters, so that the key of the streams is the same; the defects are in
 // the published sampler, which is the only choice.
 std::vector<ParameterInformation> with_sampler(std::vector<ParameterInformation> parameters) {
@@ -166,6 +217,16 @@ Entry ashikhmin_shirley_redrawn(Defect defect) {
           }};
 }
 
+template <class Wrapper>
+Entry misreported_ward(Defect defect) {
+  return {information("brdf/ward", std::move(defect), brdf::ward_parameters()),
+          [](Parameters& given) {
+            const auto original = std::make_shared<Ward>(brdf::ward(given));
+            return mutated(given, *original,
+                           std::make_shared<Wrapper>(brdf::published_sampler(original)));
+          }};
+}
+
 }  // namespace
 
 std::vector<Entry> mutants_brdf() {
@@ -183,6 +244,15 @@ std::vector<Entry> mutants_brdf() {
                           "in the paper of 1992."}),
       ward<NoSineOfAzimuth>({"ward_no_sine", "the y component of h lacks the factor sin phi."}),
       ward_redrawn({"ward_redrawn", redrawn_what}),
+      misreported_ward<WeightWithoutCosine>(
+          {"ward_weight_without_cosine", "the weight is f / p, without the cosine."}),
+      misreported_ward<DensityOffInASector>(
+          {"ward_density_sector",
+           "the density at a point is declared .1 % too large in a hundredth of the azimuth, from "
+           "0.05 beyond the mirrored direction's on."}),
+      misreported_ward<MirroredWeight>(
+          {"ward_weight_mirrored",
+           "the weight takes the BRDF of the direction with its x and y exchanged."}),
       ashikhmin_shirley<SingleQuadrant<AshikhminShirley>>(
           {"ashikhmin_shirley_single_quadrant", quadrant}),
       ashikhmin_shirley<UniformAzimuth<AshikhminShirley>>(

@@ -120,7 +120,8 @@ TEST(Claim, SaysWhatWasExpectedAndWhere) {
             "`distribution(x) == normal(0, 1)`");
   EXPECT_EQ(refused("skewness(a) == 1"),
             "1:1: there is no quantity `skewness`; expected one of mean, bias, variance, "
-            "total_variance, worst_variance, quantile, efficiency, cost, distribution");
+            "total_variance, worst_variance, quantile, efficiency, cost, distribution, "
+            "integral, inconsistency");
   EXPECT_EQ(refused("mean(a) == 1 2"), "1:14: the claim is over before the number `2`");
   EXPECT_EQ(refused("1 == mean(a)"),
             "1:1: a claim begins with a quantity, as in `mean(area) == 0.5`");
@@ -314,6 +315,10 @@ Claim some_claim() {
     claim.margin = {*positive(), *gen::arbitrary<bool>()};
     // A per cent of the least doubles is no double.
     if (claim.margin.relative && claim.margin.value < 1e-300) claim.margin.value = 1e-300;
+  }
+  if (name == QuantityName::integral || name == QuantityName::inconsistency) {
+    claim.right = Constant{*positive(), 0};
+    return claim;
   }
   claim.left.slope = *gen::arbitrary<bool>();
   const bool moment = name == QuantityName::mean || name == QuantityName::variance;

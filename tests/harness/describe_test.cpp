@@ -110,8 +110,8 @@ TEST(Describe, KeepsEveryManualWithinAHundredColumns) {
 }
 
 TEST(Describe, SuggestsTheNearestPlugin) {
-  EXPECT_EQ(refusal([] { describe("area"); }),
-            "there is no plugin `area`; did you mean `luminaire/area`?");
+  EXPECT_EQ(refusal([] { describe("hemisphere"); }),
+            "there is no plugin `hemisphere`; did you mean `luminaire/hemisphere`?");
 }
 
 TEST(Wrapped, BreaksAtBlanksAndKeepsLineEnds) {

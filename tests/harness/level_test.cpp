@@ -27,6 +27,10 @@ const std::map<std::string, std::string> estimators{
     {"negative", "plugin: analytic/normal, mean: -4, deviation: 3, primaries: 1"},
     {"pareto", "plugin: analytic/heavy_tail, index: 12, primaries: 4"},
     {"uniform", "plugin: analytic/exponential_uniform, primaries: 16"},
+    {"hits", "plugin: luminaire/hemisphere, scene: triangle"},
+    {"hits_again", "plugin: luminaire/hemisphere, scene: triangle"},
+    {"ward", "plugin: brdf/ward"},
+    {"ward_again", "plugin: brdf/ward"},
     {"importance", "plugin: analytic/exponential_importance, primaries: 16"},
 };
 
@@ -107,6 +111,27 @@ TEST(Level, OfLawsIsWhatTheirPValuesSay) {
              {"claim: distribution(normal) == distribution(again), secondaries: 100",
               Shape::at_most_uniform},
              {"claim: distribution(importance.x) == density, secondaries: 1280"}});
+}
+
+// Nine in ten values of `hits` are 0, the rest continuous. `two-part-ks` is conservative, as the
+// smaller of two p-values doubled; cells are asymptotic.
+TEST(Level, OfTwoLawsInPartsAndInCellsIsWhatTheirPValuesSay) {
+  expect_level(1000, {{"claim: distribution(hits) == distribution(hits_again), secondaries: 500",
+                       Shape::at_most_uniform},
+                      {"claim: distribution(ward.direction) == distribution(ward_again.direction), "
+                       "test: chi-square-two-sample, secondaries: 2000",
+                       Shape::at_most_uniform},
+                      {"claim: distribution(normal) == distribution(again), "
+                       "test: chi-square-two-sample, secondaries: 1000",
+                       Shape::at_most_uniform}});
+}
+
+// Ward's density misses 2 % below the horizon, which the draws make up; an exact binomial test.
+TEST(Level, OfIntegralsIsWhatTheirPValuesSay) {
+  expect_level(1000,
+               {{"claim: integral(ward.direction) == 1, secondaries: 2000", Shape::at_most_uniform},
+                {"claim: integral(ward.direction) <= 0.99, allow: 0.01, secondaries: 2000",
+                 Shape::at_most_uniform}});
 }
 
 // The reference is drawn anew for every seed from the law that its error declares.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "harness/evaluate.h"
+#include "harness/frozen.h"
 #include "harness/plan.h"
 #include "harness/pools.h"
 #include "harness/scheduler.h"
@@ -68,7 +69,11 @@ inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : prepared.asked->estimators) all.push_back(&estimator);
   Silence silence;
-  prepared.pilots = run_pilots(all, {.seed = seed, .threads = 1}, silence);
+  std::vector<const Subject*> draws;
+  for (const Question& question : prepared.asked->questions) {
+    for (const Subject* subject : piloted_draws(question)) draws.push_back(subject);
+  }
+  prepared.pilots = run_pilots(all, {.seed = seed, .threads = 1, .draws = draws}, silence);
   const Primaries primaries =
       choose_primaries(prepared.asked->questions, prepared.place, prepared.pilots);
   for (std::size_t i = 0; i < prepared.place.size(); ++i) {

@@ -128,8 +128,8 @@ TEST(SuiteOfClaim, SaysWhatIsWrong) {
   const auto refused_check = [](const CheckArguments& arguments) {
     return refusal([&] { suite_of_claim(arguments); });
   };
-  EXPECT_EQ(refused_check({.claim = "mean(area) == analytic"}),
-            "1:6: there is no plugin `area`; did you mean `luminaire/area`?");
+  EXPECT_EQ(refused_check({.claim = "mean(hemisphere) == analytic"}),
+            "1:6: there is no plugin `hemisphere`; did you mean `luminaire/hemisphere`?");
   EXPECT_EQ(refused_check({.claim = "mean(lamb) == 1", .estimators = {"lamp=luminaire/area"}}),
             "1:6: no --estimator is named `lamb`; did you mean `lamp`?");
   EXPECT_EQ(

@@ -1,5 +1,6 @@
 #include "tests/reports/example_record.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -79,6 +80,20 @@ Channel channel(const std::string& name, const Effect& effect) {
   return c;
 }
 
+// Of nine values of a uniform law on [0, 1]; the claimed law is null where there is none.
+EmpiricalLaw empirical_law(const std::string& source, double shift, bool claimed) {
+  EmpiricalLaw law{.source = source, .confidence = 0.99};
+  for (int i = 1; i < 10; ++i) {
+    const double part = 0.1 * i;
+    law.points.push_back({.value = part + shift,
+                          .observed = part,
+                          .low = std::max(0.0, part - 0.25),
+                          .high = std::min(1.0, part + 0.25)});
+    if (claimed) law.points.back().law = part;
+  }
+  return law;
+}
+
 Effect mean_effect(double estimate, double half_width) {
   return {"relative difference of means", estimate, estimate - half_width,
           estimate + half_width,          0.99,     true};
@@ -118,6 +133,7 @@ Test passing() {
   t.ok = true;
   t.samples = {sample("area", {0.4812, 0.031, 0.01})};
   t.channels = {channel("value", mean_effect(0.00031, 0.00125))};
+  t.channels[0].laws = {empirical_law("area", 0.02, true)};
   t.message = "no evidence of bias; a bias of 0.31 % or more is excluded";
   return t;
 }
@@ -140,6 +156,7 @@ Test proof() {
   t.channels[0].log10_p_pass = -1204.64;
   t.channels[0].effect.low.reset();
   t.channels[0].reference.reset();
+  t.channels[0].laws = {empirical_law("area", 0, false), empirical_law("hemisphere", 0.1, false)};
   t.message = "proved: the variance is 0.252 times as large";
   return t;
 }

@@ -209,6 +209,8 @@ TEST(Charts, NothingIsDrawnFromNothing) {
   EXPECT_EQ(interval_chart(reports::Test{}), "");
   EXPECT_EQ(histogram_chart({}), "");
   EXPECT_EQ(quantile_chart(Sample{}), "");
+  EXPECT_EQ(law_chart(Channel{}), "");
+  EXPECT_EQ(law_chart({.laws = {{.source = "one point", .points = {{}}}}}), "");
 }
 
 }  // namespace

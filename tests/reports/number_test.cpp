@@ -30,6 +30,7 @@ TEST(Numbers, EffectsCarryASign) {
 
 TEST(Numbers, SmallPValuesComeFromTheirLogarithm) {
   EXPECT_EQ(p_text(0.0, -1204.64), "2.3e-1205");
+  EXPECT_EQ(p_text(0.0, -7.8e307), "below 1e-1000000");
   EXPECT_EQ(p_text(2.3e-45, std::nullopt), "2.3e-45");
   EXPECT_EQ(p_text(std::nullopt, -2.0), "0.01");
   EXPECT_EQ(p_text(0.0431, std::nullopt), "0.043");

@@ -1,0 +1,116 @@
+#include "harness/evidence_cells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/law_evidence.h"
+#include "harness/sampler_setup.h"
+#include "stats/chi_square_fit.h"
+#include "stats/chi_square_two_sample.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr const char* quantity = "effect size w over the cells";
+
+/// Counts of one side; the last cell is that of draws without a point.
+std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
+                                     const ChannelData& data) {
+  std::vector<std::uint64_t> counts(cells.size() + 1);
+  const std::span<const double> first = data.all_values[0];
+  const bool plane = data.all_values.size() > 1;
+  const std::optional<double> none = no_point_of(side);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const bool point = first[i] != none;
+    ++counts[point ? cells.index({first[i], plane ? data.all_values[1][i] : 0}) : cells.size()];
+  }
+  return counts;
+}
+
+std::string range_text(const std::string& name, const std::vector<double>& borders,
+                       std::size_t part) {
+  if (borders.empty()) return "any " + name;
+  if (part == 0) return fmt::format("{} below {:.3g}", name, borders.front());
+  if (part == borders.size()) return fmt::format("{} from {:.3g} on", name, borders.back());
+  return fmt::format("{} {:.3g} to {:.3g}", name, borders[part - 1], borders[part]);
+}
+
+std::string describe(const stats::SampledCells& cells, const Subject& side, std::size_t cell) {
+  if (cell == cells.size()) return "the draws without a point";
+  const std::vector<Channel> channels = side.setup->channels();
+  const auto after = std::upper_bound(cells.before.begin(), cells.before.end(), cell);
+  const auto band = static_cast<std::size_t>(after - cells.before.begin()) - 1;
+  const std::string first = range_text(channels[side.channels[0]].name, cells.band_borders, band);
+  if (side.channels.size() == 1) return first;
+  return first + ", " +
+         range_text(channels[side.channels[1]].name, cells.cut_borders[band],
+                    cell - cells.before[band]);
+}
+
+const stats::PooledPair& farthest(const stats::ChiSquareTwoSample& fit) {
+  return *std::max_element(fit.cells.begin(), fit.cells.end(),
+                           [](const auto& a, const auto& b) { return a.part < b.part; });
+}
+
+std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) {
+  const auto part = [](const stats::PooledCell& cell) {
+    const double difference = static_cast<double>(cell.observed) - cell.expected;
+    return difference * difference / cell.expected;
+  };
+  const auto worst =
+      std::max_element(fit.cells.begin(), fit.cells.end(),
+                       [&](const auto& a, const auto& b) { return part(a) < part(b); });
+  return fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
+                     draws.describe_cell(worst->members.front()), worst->observed, worst->expected);
+}
+
+}  // namespace
+
+Evidence cells_against_density(const Question& question, const ChannelData& data) {
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+  const stats::CellProbabilities& grid = draws.cells().grid;
+  stats::CellCounts counts{.observed = {data.cells.begin(), data.cells.end()},
+                           .probability = grid.probability};
+  counts.probability.push_back(draws.cells().missing());
+  const stats::ChiSquareFit fit =
+      stats::chi_square_fit(counts, {.probability_tolerance = draws.cells().tolerance()});
+  const auto at = [fit](double theta) {
+    return theta == 0 ? fit.test : stats::chi_square_fit_effect(fit, std::max(0.0, theta));
+  };
+  const auto interval = [fit](double confidence) {
+    return stats::chi_square_fit_interval(fit, confidence);
+  };
+  return {.estimate = fit.effect,
+          .at = at,
+          .interval = interval,
+          .where = worst_of(fit, draws),
+          .quantity = quantity,
+          .distance = true};
+}
+
+Evidence cells_against_cells(const Method& method, const Question& question,
+                             std::span<const ChannelData> data) {
+  if (!method.frozen.cells) throw std::domain_error("the pilots gave no cells to count in");
+  const stats::SampledCells& cells = *method.frozen.cells;
+  const stats::ChiSquareTwoSample fit =
+      stats::chi_square_two_sample({.x = counts_in(cells, question.subjects[0], data[0]),
+                                    .y = counts_in(cells, question.subjects[1], data[1])});
+  const auto at = [fit](double theta) {
+    return theta <= 0 ? fit.test : stats::chi_square_effect(fit.statistic, theta);
+  };
+  const auto interval = [fit](double confidence) {
+    return stats::chi_square_effect_interval(fit.statistic, confidence);
+  };
+  const stats::PooledPair& worst = farthest(fit);
+  return {.estimate = fit.statistic.effect(),
+          .at = at,
+          .interval = interval,
+          .where = fmt::format("; farthest apart in {}, {} against {}",
+                               describe(cells, question.subjects[0], worst.members.front()),
+                               worst.x, worst.y),
+          .quantity = quantity,
+          .distance = true};
+}
+
+}  // namespace assay::harness

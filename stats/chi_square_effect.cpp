@@ -1,0 +1,53 @@
+#include "stats/chi_square_effect.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "stats/check.h"
+#include "stats/tails.h"
+
+namespace assay::stats {
+namespace {
+
+LogTails effect_tails(const ChiSquareStatistic& statistic, double effect) {
+  return noncentral_chi_square_tails(
+      statistic.value, {statistic.degrees_of_freedom, statistic.observations * effect * effect});
+}
+
+}  // namespace
+
+double ChiSquareStatistic::effect() const {
+  return std::sqrt(std::max(0.0, value - degrees_of_freedom) / observations);
+}
+
+TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_effect) {
+  check::non_negative({"chi_square_effect", "null_effect"}, null_effect);
+  const LogTails tails = effect_tails(statistic, null_effect);
+  return {statistic.value,
+          {"noncentral-chi-square",
+           {statistic.degrees_of_freedom, statistic.observations * null_effect * null_effect}},
+          tails.lower,
+          tails.upper,
+          Exactness::asymptotic};
+}
+
+Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence) {
+  check::inside_unit({"chi_square_effect_interval", "confidence"}, confidence);
+  const double log_tail = std::log((1 - confidence) / 2);
+  // Both tails are monotone in w; an end is 0 when even w = 0 is not rejected from that side.
+  const auto end = [&](auto excess) {
+    if (excess(0.0) >= 0) return 0.0;
+    double high = statistic.effect() + 1 / std::sqrt(statistic.observations);
+    while (excess(high) < 0) high *= 2;
+    std::uintmax_t iterations = 200;
+    const auto ends = boost::math::tools::toms748_solve(
+        excess, 0.0, high, boost::math::tools::eps_tolerance<double>(44), iterations);
+    return std::midpoint(ends.first, ends.second);
+  };
+  return {end([&](double w) { return effect_tails(statistic, w).upper - log_tail; }),
+          end([&](double w) { return log_tail - effect_tails(statistic, w).lower; }), confidence};
+}
+
+}  // namespace assay::stats
