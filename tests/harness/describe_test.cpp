@@ -73,11 +73,16 @@ TEST(Describe, OffersThePartsThatClaimsCanName) {
     const std::vector<ParameterInformation>& declared = entry.information.parameters;
     const auto required = [](const ParameterInformation& p) { return p.fallback.empty(); };
     if (std::ranges::any_of(declared, required)) continue;
-    // Its trees never end in the scene that its original has by default; it has no sampler more.
-    if (entry.information.name == "mutants/at_least_one_child") continue;
     Parameters parameters(entry.information.name, declared, Value{}, ".");
     const std::string text = manual(entry, catalogue());
-    for (const NamedSampler& named : entry.prepare(parameters)->samplers()) {
+    std::shared_ptr<const Setup> setup;
+    const std::string refused = refusal([&] { setup = entry.prepare(parameters); });
+    if (setup == nullptr) {
+      // Some mutants cannot live in the scene that their original has by default.
+      EXPECT_THAT(refused, HasSubstr("never end")) << entry.information.name;
+      continue;
+    }
+    for (const NamedSampler& named : setup->samplers()) {
       const std::string line = text.substr(text.find("\n  " + named.name + ": "));
       const bool offered = line.substr(0, line.find('\n', 1)).find("marginals") != line.npos;
       EXPECT_EQ(offered, refusal([&] { sampler_setup(named, {}); }) == "(nothing was refused)")
