@@ -75,7 +75,7 @@ TEST(Describe, OffersThePartsThatClaimsCanName) {
     if (std::ranges::any_of(declared, required)) continue;
     Parameters parameters(entry.information.name, declared, Value{}, ".");
     const std::string text = manual(entry, catalogue());
-    std::shared_ptr<const Setup> setup;
+    std::shared_ptr<const assay::Setup> setup;
     const std::string refused = refusal([&] { setup = entry.prepare(parameters); });
     if (setup == nullptr) {
       // Some mutants cannot live in the scene that their original has by default.
