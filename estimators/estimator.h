@@ -39,6 +39,7 @@ class Estimator {
 enum class BiasClass {
   unbiased,
   inverse_primaries,  ///< bias falls like 1 / primaries (ratios)
+  inverse_bootstrap,  ///< bias falls like 1 / bootstrap (a normaliser from so many points)
   start_up,           ///< a chain that has not forgotten its start
   reconstruction,     ///< bias of a filter or an interpolation
 };

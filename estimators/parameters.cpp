@@ -116,7 +116,8 @@ void Parameters::check(const ParameterInformation& parameter, const Value& value
 
 double Parameters::in_range(const ParameterInformation& parameter, double number) const {
   if (!within(parameter, number)) {
-    refuse(parameter.name, "must be " + range_text(parameter) + ", but it is " + shown(number));
+    refuse(parameter.name, "must be " + range_text(parameter) + ", but it is " + shown(number) +
+                               (parameter.reason.empty() ? "" : ": " + parameter.reason));
   }
   return number;
 }

@@ -28,6 +28,7 @@ struct ParameterInformation {
   bool low_excluded = false;
   bool high_excluded = false;
   std::vector<std::string> choices = {};  ///< of a string: the only texts allowed
+  std::string reason = "";  ///< why nothing outside the range will do, if that is not plain
 };
 
 /// The values a user gave for one estimator, checked against what the plugin declares.

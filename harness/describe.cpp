@@ -65,6 +65,8 @@ const char* bias_text(BiasClass bias) {
       return "unbiased";
     case BiasClass::inverse_primaries:
       return "falls like 1 / primaries";
+    case BiasClass::inverse_bootstrap:
+      return "falls like 1 / bootstrap";
     case BiasClass::start_up:
       return "start-up: the chain has not forgotten where it began";
     case BiasClass::reconstruction:

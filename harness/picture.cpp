@@ -26,6 +26,8 @@ const char* bias_name(BiasClass bias) {
       return "unbiased";
     case BiasClass::inverse_primaries:
       return "O(1/M)";
+    case BiasClass::inverse_bootstrap:
+      return "O(1/bootstrap)";
     case BiasClass::start_up:
       return "start-up";
     case BiasClass::reconstruction:

@@ -42,7 +42,9 @@ class MeshWorld {
     ++cost.camera_rays;
     return arrive(camera_.position, camera_.direction);
   }
-  Vertex reflected(const Vertex& from, Stream& random, Cost& cost) const {
+  /// `Random` gives uniform numbers: a stream, or the coordinates of a Markov chain.
+  template <class Random>
+  Vertex reflected(const Vertex& from, Random& random, Cost& cost) const {
     ++cost.closest_hit_rays;
     const double u = random.uniform();
     const double v = random.uniform();

@@ -6,31 +6,13 @@
 // scene with the other estimators and nothing of their roulette, direct light or splitting.
 
 #include "paths/family.h"
+#include "paths/walk.h"
 
 namespace assay::plugins {
 
 namespace {
 
 using namespace paths;
-
-template <class World>
-void walk(const World& world, double survival, Stream& random, Tally& tally, Cost& cost) {
-  Spectrum throughput = Spectrum::grey(1);
-  Vertex v = world.camera(cost);
-  for (std::size_t bounce = 0; v.surface; ++bounce) {
-    tally.count(bounce);
-    tally.value += throughput * v.surface->emission;
-    if (random.uniform() >= survival) return;
-    const bool mirrors = !(v.surface->mirror == Spectrum{});
-    if (mirrors && random.uniform() < 0.5) {
-      throughput = 2 / survival * (throughput * v.surface->mirror);
-      v = world.mirrored(v, cost);
-    } else {
-      throughput = (mirrors ? 2 : 1) / survival * (throughput * v.surface->diffuse);
-      v = world.reflected(v, random, cost);
-    }
-  }
-}
 
 ParameterInformation survival_parameter() {
   return {.name = "survival",
@@ -64,7 +46,7 @@ std::shared_ptr<const Setup> plain(Parameters& parameters) {
   return with_world(scene, [&](const auto& world) {
     return setup(scene, known(scene, q),
                  [world, q](Stream& random, Tally& tally, Cost& cost) {
-                   walk(*world, q, random, tally, cost);
+                   paths::walk(*world, world->camera(cost), q, random, tally, cost);
                  },
                  {direction_sampler()});
   });
@@ -81,7 +63,7 @@ std::shared_ptr<const Setup> ray_free(Parameters& parameters) {
   const double q = parameters.number("survival");
   const auto world = std::make_shared<const RayFreeWorld>(*sphere, description.camera);
   return setup(scene, known(scene, q), [world, q](Stream& random, Tally& tally, Cost& cost) {
-    walk(*world, q, random, tally, cost);
+    paths::walk(*world, world->camera(cost), q, random, tally, cost);
   });
 }
 

@@ -57,7 +57,9 @@ class SphereWorld {
     const Camera& camera = zones_.camera();
     return zones_.vertex(scene_.exit(camera.position, camera.direction, false));
   }
-  Vertex reflected(const Vertex& from, Stream& random, Cost& cost) const {
+  /// `Random` gives uniform numbers: a stream, or the coordinates of a Markov chain.
+  template <class Random>
+  Vertex reflected(const Vertex& from, Random& random, Cost& cost) const {
     ++cost.closest_hit_rays;
     const double u = random.uniform();
     const double v = random.uniform();

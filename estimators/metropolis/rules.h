@@ -1,0 +1,118 @@
+#pragma once
+
+// How a chain decides, what its steps count for, and how it starts.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "metropolis/lazy_coordinates.h"
+#include "metropolis/target.h"
+
+namespace assay::metropolis {
+
+/// One step of a chain, from `current` to `proposed`.
+struct Step {
+  const Contribution& current;   ///< x
+  const Contribution& proposed;  ///< y
+  double acceptance;             ///< a
+  bool large;
+  bool accepted;      ///< weights do without it: a is its expectation
+  double normaliser;  ///< b, the estimate of the integral of I
+};
+
+/// Sums over steps.
+struct Tally {
+  std::vector<Spectrum> pixels;
+  double steps = 0;
+  double acceptance = 0;
+
+  void add(std::size_t pixel, double weight, const Spectrum& value) {
+    pixels[pixel] += weight * value;
+  }
+};
+
+/// What F(y) and F(x) of a step are multiplied by.
+struct Weights {
+  double proposed;
+  double current;
+};
+
+/// How a chain decides and what its steps count for.
+class Rules {
+ public:
+  virtual ~Rules() = default;
+  /// a = min(1, I(y) / I(x)); 1 where I(x) = 0.
+  virtual double acceptance(double proposed, double current) const;
+  virtual Weights weights(const Step& step) const = 0;
+  /// Adds a step to the sums: both ends, each in its own pixel.
+  virtual void record(const Step& step, Tally& tally) const;
+};
+
+/// Veach and Guibas' (1997) use of both ends of a step by the expected value: a b / I(y) and
+/// (1 - a) b / I(x).
+class MeanValueRules : public Rules {
+ public:
+  Weights weights(const Step& step) const override;
+};
+
+/// Kelemen et al.'s (2002, section 3.4) weights, which take the large steps as a second way of
+/// sampling, uniform, and combine the two by multiple importance: (a + [large]) / (I(y) / b +
+/// p_large) and (1 - a) / (I(x) / b + p_large).
+class MultipleImportanceRules : public Rules {
+ public:
+  explicit MultipleImportanceRules(double p_large) : p_large_(p_large) {}
+  Weights weights(const Step& step) const override;
+
+ protected:
+  double p_large() const { return p_large_; }
+
+ private:
+  double p_large_;
+};
+
+/// What a chain is made from and is at.
+struct Walker {
+  const Target& target;
+  LazyCoordinates& coordinates;
+  Stream& random;
+  Cost& cost;
+  Contribution current = {};
+
+  /// The value of a proposal; nothing where it has left the unit cube.
+  Contribution propose(bool large);
+};
+
+/// Finds the first state.
+class Start {
+ public:
+  virtual ~Start() = default;
+  /// Puts the walker at its first state and returns b, the mean of I over independent points.
+  virtual double operator()(Walker& walker) const = 0;
+};
+
+/// The first state is one of `count` independent points, drawn in proportion to I; b is the mean of
+/// I over the same points, so that E[b h(first)] is the integral of h I for every h.
+class ResampledStart : public Start {
+ public:
+  explicit ResampledStart(std::uint64_t count) : count_(count) {}
+  double operator()(Walker& walker) const override;
+
+ protected:
+  std::uint64_t count() const { return count_; }
+
+ private:
+  std::uint64_t count_;
+};
+
+/// The first state is a uniform point; b is the mean of I over `count` others.
+class UniformStart final : public Start {
+ public:
+  explicit UniformStart(std::uint64_t count) : count_(count) {}
+  double operator()(Walker& walker) const override;
+
+ private:
+  std::uint64_t count_;
+};
+
+}  // namespace assay::metropolis
