@@ -123,7 +123,8 @@ SharedTarget named(Parameters& given, const std::string& name, std::size_t pixel
   }
   if (name == "peak" || name == "coloured_peak") return peak(pixels, name != "peak");
   if (name == "boundary") {
-    return std::make_shared<ProductTarget>(std::vector<Product>{{1, {Decay{20}}}}, pixels, false);
+    return std::make_shared<ProductTarget>(
+        std::vector<Product>{{0.02, {Linear{}}}, {1, {Decay{20}}}}, pixels, false);
   }
   if (name == "mixture") {
     return mixture_of(parse_flow("{dimensions: 4, base: 0.02, lobes: [{height: 30, centre: 0.3, "

@@ -1,0 +1,218 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "metropolis/chain.h"
+#include "metropolis/parameters.h"
+#include "metropolis/product_target.h"
+#include "tests/estimators/draws.h"
+
+namespace assay {
+namespace {
+
+using namespace assay::draws;
+using namespace assay::metropolis;
+
+std::vector<double> means(const Prepared& plugin) {
+  std::vector<double> all;
+  const std::size_t elements = plugin.setup->image()->elements();
+  for (std::size_t i = 0; i < elements; ++i) all.push_back(*plugin.setup->channels()[i].mean);
+  return all;
+}
+
+// scipy: integrate.dblquad over each eighth of u, times 8, breakpoints at the peak.
+TEST(MetropolisTargets, ThePeaksPixelsAreThoseOfQuadrature) {
+  const std::vector<double> exact = {0.08125, 0.1487441092, 1.0054325007, 0.2688211094,
+                                     0.33125, 0.39375,      0.45625,      0.51875};
+  const std::vector<double> found = means(prepare("metropolis/independent"));
+  ASSERT_EQ(found.size(), exact.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    EXPECT_NEAR(found[i], exact[i], 1e-9) << i;
+    sum += found[i] / 8;
+  }
+  EXPECT_NEAR(sum, 0.40053096, 1e-8);
+}
+
+// The midpoint rule with 20,000 nodes is off by about 1e-9.
+TEST(MetropolisTargets, FactorsIntegrateAsTheMidpointRuleDoes) {
+  for (const Factor& factor : {Factor(Linear{.2, .7}), Factor(Gaussian{.3, .02}),
+                               Factor(Gaussian{-.1, .05}), Factor(Decay{20})}) {
+    for (const auto& [low, high] : {std::pair(0.0, 1.0), std::pair(.25, .5), std::pair(.9, 1.0)}) {
+      double sum = 0;
+      constexpr int nodes = 20000;
+      for (int i = 0; i < nodes; ++i) {
+        sum += value(factor, low + (high - low) * (i + .5) / nodes) * (high - low) / nodes;
+      }
+      EXPECT_NEAR(integral(factor, low, high), sum, 1e-8);
+    }
+  }
+}
+
+TEST(MetropolisTargets, FarTailsOfAGaussianKeepTheirDigits) {
+  // mpmath: 0.01 sqrt(pi / 2) erfc(20 / sqrt(2)), less the part beyond 1.
+  EXPECT_NEAR(integral(Factor(Gaussian{.3, .01}), .5, 1) / 6.90270e-91, 1, 1e-4);
+  EXPECT_NEAR(integral(Factor(Gaussian{.7, .01}), 0, .5) / 6.90270e-91, 1, 1e-4);
+}
+
+// False alarm 1e-6 each of some 70 comparisons.
+TEST(MetropolisTargets, IndependentPointsFindTheExactImage) {
+  for (const char* target : {"constant", "peak", "coloured_peak", "boundary", "mixture", "branches",
+                             "sphere", "coloured_sphere"}) {
+    const auto plugin = prepare("metropolis/independent", std::string("{target: ") + target + "}");
+    const std::vector<double> exact = means(plugin);
+    const auto samples = observe(plugin, 2000, 200);
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      EXPECT_NEAR(samples[i].mean(), exact[i], five * samples[i].mean_error()) << target << i;
+    }
+  }
+}
+
+TEST(MetropolisTargets, AMixtureInPlaceIsTheBuiltInOne) {
+  const auto named = prepare("metropolis/independent", "{target: mixture}");
+  const auto in_place = prepare("metropolis/independent",
+                                "{target: {mixture: {dimensions: 4, base: .02, lobes: [{height: "
+                                "30, centre: [.3, .3, .3, .3], "
+                                "width: .1}, {height: 60, centre: .7, width: .08}]}}}");
+  EXPECT_EQ(means(named), means(in_place));
+}
+
+struct Form {
+  const char* plugin;
+  std::string parameters;
+};
+
+// False alarm 1e-6 each of some 200 comparisons.
+TEST(MetropolisChains, AreUnbiasedInEveryPixelFromTheBootstrap) {
+  for (const std::string target : {"constant", "peak", "coloured_peak", "boundary", "mixture",
+                                   "branches", "sphere", "coloured_sphere"}) {
+    for (const char* boundary : {"wrap", "reflect", "reject"}) {
+      const auto plugin =
+          prepare("metropolis/mean_value",
+                  "{target: " + target + ", boundary: " + boundary + ", bootstrap: 64}");
+      const std::vector<double> exact = means(plugin);
+      const auto samples = observe(plugin, 2000, 100);
+      for (std::size_t i = 0; i < exact.size(); ++i) {
+        EXPECT_NEAR(samples[i].mean(), exact[i], five * samples[i].mean_error())
+            << target << boundary << i;
+      }
+    }
+  }
+}
+
+// Where all points are of one importance nothing is left to chance but the pixel.
+TEST(MetropolisChains, OfAConstantAcceptEverythingAndKnowTheMean) {
+  for (const char* plugin : {"metropolis/mean_value", "metropolis/multiple_importance"}) {
+    const auto samples = observe(prepare(plugin, "{target: constant}"), 50, 40);
+    for (std::size_t i = 0; i < 50; ++i) {
+      EXPECT_NEAR(samples[9].values[i], 1, 1e-15);   // normaliser
+      EXPECT_NEAR(samples[10].values[i], 1, 1e-15);  // acceptance
+    }
+  }
+  const auto samples = observe(prepare("metropolis/mean_value", "{target: constant}"), 50, 40);
+  for (const double x : samples[8].values) EXPECT_NEAR(x, 1, 1e-14);
+}
+
+// Both weightings with large steps alone and b known are of independent points: false alarm 1e-6.
+TEST(MetropolisChains, StepsOfMultipleImportanceNeedNoAcceptanceWhereAllAreLarge) {
+  const auto plugin =
+      prepare("metropolis/multiple_importance", "{target: boundary, p_large: 1, bootstrap: 20000}");
+  const std::vector<double> exact = means(plugin);
+  const auto samples = observe(plugin, 400, 200);
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    EXPECT_NEAR(samples[i].mean(), exact[i], five * samples[i].mean_error() + 1e-3 * exact[i]) << i;
+  }
+}
+
+TEST(MetropolisChains, CostIsThatOfAllPaths) {
+  const auto plugin = prepare("metropolis/mean_value", "{bootstrap: 70}");
+  std::vector<double> out(plugin.setup->channels().size());
+  Cost cost;
+  Stream random(plugin.key, 0);
+  plugin.setup->make()->secondary(random, 30, out, cost);
+  EXPECT_EQ(cost.samples, 100u);
+  EXPECT_EQ(cost.rays(), 0u);
+  const auto sphere = prepare("metropolis/mean_value", "{target: sphere, bootstrap: 70}");
+  Stream other(sphere.key, 0);
+  sphere.setup->make()->secondary(other, 30, out, cost);
+  EXPECT_GT(cost.closest_hit_rays, 100u);
+}
+
+TEST(MetropolisChains, AnObservationIsAFunctionOfItsStreamAlone) {
+  const auto plugin = prepare("metropolis/mean_value", "{target: sphere, bootstrap: 16}");
+  const auto estimator = plugin.setup->make();
+  std::vector<double> first(plugin.setup->channels().size());
+  std::vector<double> again = first;
+  Cost cost;
+  Stream zero(plugin.key, 0);
+  estimator->secondary(zero, 50, first, cost);
+  Stream one(plugin.key, 1);
+  estimator->secondary(one, 50, again, cost);
+  Stream zero_again(plugin.key, 0);
+  estimator->secondary(zero_again, 50, again, cost);
+  EXPECT_EQ(first, again);
+}
+
+// False alarm 1e-6: normal for the difference of two means of 4000.
+TEST(MetropolisChains, LargeStepsAndLengthForgetAUniformStart) {
+  const auto bias = [](const char* parameters, std::uint64_t steps) {
+    const auto plugin = prepare("metropolis/uniform_start", parameters);
+    const Sample bright = observe(plugin, 4000, steps)[2];
+    return std::pair(bright.mean() - means(plugin)[2], bright.mean_error());
+  };
+  const auto rare = bias("{p_large: .02}", 200);
+  const auto half = bias("{p_large: .5}", 200);
+  const auto longer = bias("{p_large: .5}", 800);
+  EXPECT_LT(rare.first, half.first - five * std::hypot(rare.second, half.second));
+  EXPECT_LT(half.first, longer.first - five * std::hypot(half.second, longer.second));
+  EXPECT_LT(half.first, -five * half.second);
+}
+
+std::string refusal(const std::string& plugin, const std::string& parameters) {
+  try {
+    prepare(plugin, parameters);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MetropolisParameters, AreRefusedByNameAndReason) {
+  using testing::AllOf;
+  using testing::HasSubstr;
+  const std::string plugin = "metropolis/mean_value";
+  EXPECT_THAT(refusal(plugin, "{p_large: 0}"),
+              AllOf(HasSubstr("p_large"), HasSubstr("never leaves")));
+  EXPECT_THAT(refusal(plugin, "{p_large: 1.5}"), HasSubstr("p_large"));
+  EXPECT_THAT(refusal(plugin, "{bootstrap: 0}"),
+              AllOf(HasSubstr("bootstrap"), HasSubstr("normaliser")));
+  EXPECT_THAT(refusal(plugin, "{pixels: 1}"), HasSubstr("pixels"));
+  EXPECT_THAT(refusal(plugin, "{boundary: clamp}"), HasSubstr("boundary"));
+  EXPECT_THAT(refusal(plugin, "{target: peek}"), AllOf(HasSubstr("target"), HasSubstr("`peak`")));
+  EXPECT_THAT(refusal(plugin, "{target: {mixture: {dimensions: 33, base: 1, lobes: []}}}"),
+              HasSubstr("dimensions"));
+  EXPECT_THAT(refusal(plugin, "{target: {mixture: {dimensions: 2, base: 0, lobes: []}}}"),
+              HasSubstr("0 everywhere"));
+  EXPECT_THAT(refusal(plugin,
+                      "{target: {mixture: {dimensions: 2, base: 1, lobes: [{height: 1, centre: "
+                      "[.1], width: .1}]}}}"),
+              HasSubstr("centre"));
+  EXPECT_THAT(refusal(plugin,
+                      "{target: {mixture: {dimensions: 2, base: 1, lobes: [{height: 1, centre: "
+                      ".1, width: 0}]}}}"),
+              HasSubstr("width"));
+  EXPECT_THAT(refusal(plugin,
+                      "{target: {sphere: {zones: [{top: 1, emission: 1, albedo: .5}], survival: "
+                      "1}}}"),
+              HasSubstr("survival"));
+  EXPECT_THAT(refusal(plugin,
+                      "{target: {sphere: {zones: [{top: 1, emission: 1, albedo: 1}], survival: "
+                      ".5}}}"),
+              HasSubstr("albedo"));
+  EXPECT_THAT(refusal(plugin, "{target: [peak]}"), HasSubstr("target"));
+}
+
+}  // namespace
+}  // namespace assay
