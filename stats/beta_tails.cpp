@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "stats/check.h"
+#include "stats/convergents.h"
 #include "stats/special.h"
 #include "stats/tails.h"
 
@@ -28,10 +29,7 @@ double beta_fraction(BetaPoint point, BetaShape shape) {
   const auto [x, y] = point;
   const double lambda = a * y - b * x;
   double reciprocal = 1 / (a + 1);
-  double before = 1;
-  double now = a * (lambda + 1) * reciprocal;
-  double inverse_before = 0;
-  double inverse_now = 1;
+  special::Convergents fraction{.now = a * (lambda + 1) * reciprocal};
   double last = 0;
   for (double n = 1; n < 1e5;) {
     for (const double end = n + 4; n < end; ++n) {
@@ -40,22 +38,12 @@ double beta_fraction(BetaPoint point, BetaShape shape) {
       const double left = n * (b - n) * r;
       const double numerator = (a + n - 1) * (a + b + n - 1) * left * r;
       const double denominator = n + left + (a + n) * (lambda + 1 + n * (1 + y)) * next;
-      const double later = denominator * now + numerator * before;
-      const double inverse_later = denominator * inverse_now + numerator * inverse_before;
-      before = now;
-      inverse_before = inverse_now;
-      now = later;
-      inverse_now = inverse_later;
+      fraction.add(numerator, denominator);
       reciprocal = next;
     }
-    const double scale = 1 / now;
-    const double value = inverse_now * scale;
+    const double value = fraction.reciprocal();
     if (std::abs(value - last) <= 1e-12 * value) return value;
     last = value;
-    before *= scale;
-    inverse_before *= scale;
-    inverse_now = value;
-    now = 1;
   }
   return last;
 }

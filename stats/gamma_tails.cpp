@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "stats/check.h"
+#include "stats/convergents.h"
 #include "stats/special.h"
 #include "stats/tails.h"
 
@@ -31,31 +32,18 @@ double log_far_lower(double shape, double x) {
 // recurrence, a division only where they are compared. All is divided by b_0, which may be huge.
 double log_far_upper(double shape, double x) {
   const double per_first = 1 / (x + 1 - shape);
-  double before = 1;
-  double now = 1;
-  double inverse_before = 0;
-  double inverse_now = per_first;
+  special::Convergents fraction{.inverse_now = per_first};
   double last = 0;
   for (double k = 1; k < 1e7;) {
     for (const double end = k + 4; k < end; ++k) {
       const double numerator = k * per_first * ((shape - k) * per_first);
       const double denominator = 1 + 2 * k * per_first;
-      const double later = denominator * now + numerator * before;
-      const double inverse_later = denominator * inverse_now + numerator * inverse_before;
-      before = now;
-      inverse_before = inverse_now;
-      now = later;
-      inverse_now = inverse_later;
+      fraction.add(numerator, denominator);
     }
-    const double scale = 1 / now;
-    const double value = inverse_now * scale;
+    const double value = fraction.reciprocal();
     if (std::abs(value - last) <= 1e-12 * value)
       return special::log_gamma_prefix(shape, x) + std::log(value);
     last = value;
-    before *= scale;
-    inverse_before *= scale;
-    inverse_now = value;
-    now = 1;
   }
   return special::log_gamma_prefix(shape, x) + std::log(last);
 }

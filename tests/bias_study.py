@@ -14,14 +14,12 @@ observations are taken at bias 0 and fewer than 0.02 at 0.05. Results stand in h
 import argparse
 import collections
 import concurrent.futures
-import json
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 
-from study import lower_limit
+from study import lower_limit, tests_on_fixed_shares
 
 ALPHA, BETA, DETECT = 1e-3, 1e-2, 0.01
 ALLOWS = (0.005, 0)
@@ -51,13 +49,7 @@ def suite_text():
 
 
 def outcomes(assay, suite, seed):
-    # A shard, even the only one, rests on the fixed share of alpha.
-    done = subprocess.run([assay, "run", str(suite), "--seed", str(seed), "--threads", "1",
-                           "--quiet", "--shard", "1/1", "--report", "json=-"],
-                          capture_output=True, text=True, check=False)
-    if done.returncode not in (0, 1, 3):
-        raise RuntimeError(f"seed {seed}: exit code {done.returncode}: {done.stderr}")
-    tests = json.loads(done.stdout)["suites"][0]["tests"]
+    tests = tests_on_fixed_shares(assay, suite, seed)
     return [(test["verdict"], test["samples"][0]["secondaries"]) for test in tests]
 
 

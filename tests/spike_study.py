@@ -14,17 +14,15 @@ Results stand in harness/README.md.
 import argparse
 import collections
 import concurrent.futures
-import json
 import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 import numpy
 from scipy import stats
 
-from study import lower_limit
+from study import lower_limit, tests_on_fixed_shares
 
 OBSERVATIONS = 100_000
 PROBABILITIES = (1e-3, 1e-4, 1e-5, 1e-6)
@@ -54,13 +52,7 @@ def suite_text():
 
 
 def verdicts(assay, suite, seed):
-    # A shard, even the only one, rests on the fixed share of alpha.
-    done = subprocess.run([assay, "run", str(suite), "--seed", str(seed), "--threads", "1",
-                           "--quiet", "--shard", "1/1", "--report", "json=-"],
-                          capture_output=True, text=True, check=False)
-    if done.returncode not in (0, 1, 3):
-        raise RuntimeError(f"seed {seed}: exit code {done.returncode}: {done.stderr}")
-    tests = json.loads(done.stdout)["suites"][0]["tests"]
+    tests = tests_on_fixed_shares(assay, suite, seed)
     return [(test["verdict"], test["method"]) for test in tests]
 
 

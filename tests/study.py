@@ -33,14 +33,24 @@ def lower_limit(count, runs, confidence):
     return low
 
 
-def run(arguments, seed):
-    command = [arguments.assay, "run", *arguments.suites, "--seed", str(seed), "--threads", "1",
-               "--alpha", str(arguments.alpha), "--coarsen", str(arguments.coarsen), "--quiet",
-               "--report", "json=-"]
+def record_of(assay, suites, seed, *options):
+    """The record of a run on one thread."""
+    command = [assay, "run", *map(str, suites), "--seed", str(seed), "--threads", "1", "--quiet",
+               "--report", "json=-", *options]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1, 3):
         raise RuntimeError(f"seed {seed}: exit code {done.returncode}: {done.stderr}")
     return json.loads(done.stdout)
+
+
+def tests_on_fixed_shares(assay, suite, seed):
+    """The tests of a suite. A shard, even the only one, rests on the fixed share of alpha."""
+    return record_of(assay, [suite], seed, "--shard", "1/1")["suites"][0]["tests"]
+
+
+def run(arguments, seed):
+    return record_of(arguments.assay, arguments.suites, seed, "--alpha", str(arguments.alpha),
+                     "--coarsen", str(arguments.coarsen))
 
 
 def verdicts_of_true_claims(record):

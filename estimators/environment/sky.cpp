@@ -2,33 +2,15 @@
 
 #include <algorithm>
 #include <string>
-
-#include "luminaire/setting.h"
+#include <utility>
 
 namespace assay::environment {
 
-Sky::Sky(render::EnvironmentMap map, const render::Vector3& normal,
-         const std::vector<render::Shape>& occluders)
-    : map_(std::move(map)), frame_(render::Frame::about(normal)) {
-  if (!occluders.empty()) scene_.emplace(occluders);
-}
-
 std::vector<ParameterInformation> parameters() {
-  return {{.name = "map",
-           .type = ParameterType::string,
-           .summary = "the sky: an OpenEXR picture, latitude-longitude, +z the first row's pole"},
-          {.name = "normal",
-           .type = ParameterType::structure,
-           .summary = "the receiver's normal, of any length",
-           .fallback = "[0, 0, 1]"},
-          {.name = "position",
-           .type = ParameterType::structure,
-           .summary = "where the receiver is, for the occluders' sake",
-           .fallback = "[0, 0, 0]"},
-          {.name = "occluders",
-           .type = ParameterType::structure,
-           .summary = "what hides the sky: a list as in the scenes of the luminaire family",
-           .fallback = "[]"}};
+  return sky::with_receiver(
+      {.name = "map",
+       .type = ParameterType::string,
+       .summary = "the sky: an OpenEXR picture, latitude-longitude, +z the first row's pole"});
 }
 
 namespace {
@@ -45,13 +27,8 @@ render::EnvironmentMap read_map(Parameters& parameters) {
 }  // namespace
 
 SharedSky read_sky(Parameters& parameters) {
-  const luminaire::Receiver receiver{
-      .position = luminaire::read_vector(parameters.structure("position"), "`position`"),
-      .normal = luminaire::read_unit_vector(parameters.structure("normal"), "`normal`")};
-  const auto occluders =
-      luminaire::read_occluders(parameters.structure("occluders"), parameters.folder());
-  return std::make_shared<const Sky>(read_map(parameters), receiver.normal,
-                                     luminaire::occluder_shapes(occluders, receiver));
+  sky::Receiver receiver = sky::read_receiver(parameters);
+  return std::make_shared<const Sky>(read_map(parameters), std::move(receiver));
 }
 
 std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primaries) {

@@ -7,42 +7,28 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "estimators/estimator.h"
 #include "render/environment_map.h"
-#include "render/frame.h"
 #include "render/patch_integrals.h"
-#include "render/scene.h"
+#include "sky/receiver.h"
 
 namespace assay::environment {
 
 using render::Rgb;
 
-class Sky {
+class Sky : public sky::Receiver {
  public:
-  /// `occluders` are in the receiver's frame.
-  Sky(render::EnvironmentMap map, const render::Vector3& normal,
-      const std::vector<render::Shape>& occluders);
+  Sky(render::EnvironmentMap map, sky::Receiver receiver)
+      : sky::Receiver(std::move(receiver)), map_(std::move(map)) {}
 
   const render::EnvironmentMap& map() const { return map_; }
-  const render::Frame& frame() const { return frame_; }
-  bool open() const { return !scene_; }  ///< whether there are no occluders
-
-  /// Whether nothing stands in a direction of the receiver's frame. Counts a shadow ray also under
-  /// the open sky, which a renderer cannot know beforehand.
-  bool visible(const render::Vector3& local, Cost& cost) const {
-    ++cost.shadow_rays;
-    return !scene_ || !scene_->occluded({.origin = {}, .direction = local});
-  }
 
  private:
   render::EnvironmentMap map_;
-  render::Frame frame_;
-  std::optional<render::Scene> scene_;
 };
 
 using SharedSky = std::shared_ptr<const Sky>;

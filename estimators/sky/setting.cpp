@@ -3,15 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "luminaire/setting.h"
-
 namespace assay::sky {
-
-Setting::Setting(SharedRadiance radiance, const Vector3& normal,
-                 const std::vector<render::Shape>& occluders)
-    : radiance_(std::move(radiance)), frame_(render::Frame::about(normal)) {
-  if (!occluders.empty()) scene_.emplace(occluders);
-}
 
 Rgb Setting::received(const Vector3& w, Cost& cost) const {
   if (w.z <= 0 || !visible(w, cost)) return {};
@@ -20,29 +12,11 @@ Rgb Setting::received(const Vector3& w, Cost& cost) const {
   return value;
 }
 
-std::vector<ParameterInformation> parameters() {
-  return {sky_parameter(),
-          {.name = "normal",
-           .type = ParameterType::structure,
-           .summary = "the receiver's normal, of any length",
-           .fallback = "[0, 0, 1]"},
-          {.name = "position",
-           .type = ParameterType::structure,
-           .summary = "where the receiver is, for the occluders' sake",
-           .fallback = "[0, 0, 0]"},
-          {.name = "occluders",
-           .type = ParameterType::structure,
-           .summary = "what hides the sky: a list as in the scenes of the luminaire family",
-           .fallback = "[]"}};
-}
+std::vector<ParameterInformation> parameters() { return with_receiver(sky_parameter()); }
 
 SharedSetting read_setting(Parameters& given) {
-  const luminaire::Receiver receiver{
-      .position = luminaire::read_vector(given.structure("position"), "`position`"),
-      .normal = luminaire::read_unit_vector(given.structure("normal"), "`normal`")};
-  const auto occluders = luminaire::read_occluders(given.structure("occluders"), given.folder());
-  return std::make_shared<const Setting>(read_radiance(given), receiver.normal,
-                                         luminaire::occluder_shapes(occluders, receiver));
+  Receiver receiver = read_receiver(given);
+  return std::make_shared<const Setting>(read_radiance(given), std::move(receiver));
 }
 
 std::vector<Channel> irradiance_channels(const Setting& setting, std::optional<double> gain) {

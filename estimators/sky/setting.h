@@ -6,34 +6,25 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "estimators/estimator.h"
-#include "render/frame.h"
-#include "render/scene.h"
 #include "sky/radiance.h"
+#include "sky/receiver.h"
 
 namespace assay::sky {
 
 /// What does not depend on the sample. Directions are of the receiver's frame, z along its normal.
-class Setting {
+class Setting : public Receiver {
  public:
-  /// `normal` is of unit length; `occluders` are in the receiver's frame.
-  Setting(SharedRadiance radiance, const Vector3& normal,
-          const std::vector<render::Shape>& occluders);
+  Setting(SharedRadiance radiance, Receiver receiver)
+      : Receiver(std::move(receiver)), radiance_(std::move(radiance)) {}
 
   const Radiance& radiance() const { return *radiance_; }
-  const render::Frame& frame() const { return frame_; }
-  bool open() const { return !scene_; }  ///< whether there are no occluders
   std::size_t colours() const { return radiance_->colours(); }
 
-  /// Whether nothing stands in a direction. Counts a shadow ray also under the open sky, which a
-  /// renderer cannot know beforehand.
-  bool visible(const Vector3& w, Cost& cost) const {
-    ++cost.shadow_rays;
-    return !scene_ || !scene_->occluded({.origin = {}, .direction = w});
-  }
-  Rgb radiance(const Vector3& w) const { return (*radiance_)(frame_.to_world(w)); }
+  Rgb radiance(const Vector3& w) const { return (*radiance_)(frame().to_world(w)); }
   /// L cos+ V; below the horizon 0, and no ray is traced.
   Rgb received(const Vector3& w, Cost& cost) const;
   /// The mean of the colours of a value.
@@ -43,8 +34,6 @@ class Setting {
 
  private:
   SharedRadiance radiance_;
-  render::Frame frame_;
-  std::optional<render::Scene> scene_;
 };
 
 using SharedSetting = std::shared_ptr<const Setting>;

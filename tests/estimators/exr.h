@@ -1,10 +1,11 @@
 #pragma once
 
-// Writing small OpenEXR pictures.
+// Small OpenEXR pictures, written and read.
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 
 #include <string>
@@ -35,6 +36,20 @@ inline void write_exr(const std::string& file, const Picture& picture) {
   Imf::OutputFile output(file.c_str(), header);
   output.setFrameBuffer(buffer);
   output.writePixels(picture.height);
+}
+
+/// One channel, row after row.
+inline std::vector<float> read_exr_channel(const std::string& file, const std::string& channel) {
+  Imf::InputFile input(file.c_str());
+  const Imath::Box2i window = input.header().dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x + 1);
+  std::vector<float> values(width * static_cast<std::size_t>(window.max.y + 1));
+  Imf::FrameBuffer buffer;
+  buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, values.data(), window, sizeof(float),
+                                          sizeof(float) * width));
+  input.setFrameBuffer(buffer);
+  input.readPixels(window.min.y, window.max.y);
+  return values;
 }
 
 }  // namespace assay::draws

@@ -37,15 +37,9 @@ estimators:
 tests:
   - )";
 
-reports::Test tested(const std::string& test) {
-  return run_text(estimators + test + "\n", {.threads = 1}).suites[0].tests[0];
-}
+reports::Test tested(const std::string& test) { return run_test(estimators + test + "\n"); }
 
-Verdict verdict_of(const std::string& test) {
-  const reports::Test result = tested(test);
-  testing::Test::RecordProperty("message", result.message);
-  return result.verdict;
-}
+Verdict verdict_of(const std::string& test) { return run_verdict(estimators + test + "\n"); }
 
 std::string refused(const std::string& test) {
   return refusal([&] { run_text(estimators + test + "\n"); });

@@ -1,9 +1,5 @@
 // Claims about images, from YAML to verdict, record and maps.
 
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +11,7 @@
 #include "reports/json.h"
 #include "reports/read_json.h"
 #include "running.h"
+#include "tests/estimators/exr.h"
 
 namespace assay::harness {
 namespace {
@@ -166,19 +163,6 @@ TEST(ImageClaims, PixelsThatAreTooSkewedAreInvalidAndSayWhatHelps) {
   EXPECT_NE(test.message.find("`primaries`"), std::string::npos) << test.message;
 }
 
-std::vector<float> read_layer(const std::string& file, const std::string& channel) {
-  Imf::InputFile input(file.c_str());
-  const Imath::Box2i window = input.header().dataWindow();
-  const auto width = static_cast<std::size_t>(window.max.x + 1);
-  std::vector<float> values(width * static_cast<std::size_t>(window.max.y + 1));
-  Imf::FrameBuffer buffer;
-  buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, values.data(), window, sizeof(float),
-                                          sizeof(float) * width));
-  input.setFrameBuffer(buffer);
-  input.readPixels(window.min.y, window.max.y);
-  return values;
-}
-
 TEST(ImageClaims, MapsReadBackEqualToTheRecord) {
   const Workplace place;
   const std::string suite = place.write(
@@ -191,7 +175,8 @@ TEST(ImageClaims, MapsReadBackEqualToTheRecord) {
   ASSERT_EQ(test.maps.size(), 6u);
   for (const reports::Map& map : test.maps) {
     EXPECT_EQ(map.file.find("run.maps/s_mean_a_mean_b"), 0u) << map.file;
-    EXPECT_EQ(read_layer(place.file(map.file), map.name + ".irradiance"), map.texels.values)
+    EXPECT_EQ(draws::read_exr_channel(place.file(map.file), map.name + ".irradiance"),
+              map.texels.values)
         << map.name;
   }
   EXPECT_EQ(map_named(test, "other_mean").source, "b");

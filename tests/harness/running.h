@@ -49,6 +49,18 @@ inline reports::Record run_text(const std::string& text, const RunOptions& optio
   return run_files({place.write("suite.yaml", text)}, options);
 }
 
+/// The only test of a suite given as text, run on one thread.
+inline reports::Test run_test(const std::string& text) {
+  return run_text(text, {.threads = 1}).suites[0].tests[0];
+}
+
+/// Its verdict; the message is kept for when the verdict is not the one expected.
+inline reports::Verdict run_verdict(const std::string& text) {
+  const reports::Test result = run_test(text);
+  testing::Test::RecordProperty("message", result.message);
+  return result.verdict;
+}
+
 inline const reports::Test& test_named(const reports::Record& record, const std::string& name) {
   for (const reports::Suite& suite : record.suites) {
     for (const reports::Test& test : suite.tests) {

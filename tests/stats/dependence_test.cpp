@@ -15,6 +15,7 @@
 namespace assay::stats {
 namespace {
 
+using tests::autoregressive;
 using tests::draw_values;
 using tests::Law;
 using tests::Philox;
@@ -28,17 +29,6 @@ std::vector<double> sequence(double phi, std::size_t n) {
   for (std::size_t t = 1; t <= n; ++t) {
     x = phi * x + std::sin(static_cast<double>(t * t));
     values.push_back(x);
-  }
-  return values;
-}
-
-// A stationary AR(1) chain of unit variance; of its n values (1 - phi) / (1 + phi) are effective.
-std::vector<double> chain(double phi, std::size_t n, Philox& random) {
-  std::vector<double> values;
-  double x = random.normal();
-  for (std::size_t t = 0; t < n; ++t) {
-    values.push_back(x);
-    x = phi * x + std::sqrt(1 - phi * phi) * random.normal();
   }
   return values;
 }
@@ -75,7 +65,7 @@ TEST(Dependence, TheEffectiveSizeOfAnAutoregressionIsItsClosedForm) {
   for (const double phi : {0.0, .5, .9}) {
     Philox random(test_case++);
     const double expected = 40000 * (1 - phi) / (1 + phi);
-    const double seen = effective_sample_size(chain(phi, 40000, random));
+    const double seen = effective_sample_size(autoregressive(phi, 40000, random));
     std::printf("  phi %.1f: %.0f, closed form %.0f\n", phi, seen, expected);
     EXPECT_NEAR(seen / expected, 1, .3);
   }
@@ -87,7 +77,7 @@ TEST(Dependence, LugsailLeansToTheSafeSide) {
   Moments plain;
   Moments lugsail;
   for (int run = 0; run < 400; ++run) {
-    const auto x = chain(.9, 10000, random);
+    const auto x = autoregressive(.9, 10000, random);
     plain.add(batch_variance(x, 100));
     lugsail.add(lugsail_variance(x, 100));
   }
@@ -151,7 +141,7 @@ TEST(Dependence, LongBatchesKeepTheLevelOnACorrelatedChainAndTheTTestDoesNot) {
     int rejected = 0;
     bool enough = false;
     for (int run = 0; run < 1000; ++run) {
-      const BatchedMean test = batch_means_t(chain(.9, 10000, random), {0}, length);
+      const BatchedMean test = batch_means_t(autoregressive(.9, 10000, random), {0}, length);
       rejected += log_p_two_sided(test.result) <= std::log(.01);
       enough = test.enough;
     }
@@ -176,7 +166,7 @@ TEST(Dependence, ACorrelationOfATenthIsFoundInTwoThousandValues) {
   Philox random(542);
   int missed = 0;
   for (int run = 0; run < 20; ++run) {
-    missed += lag_one_test(chain(.1, 2000, random)).log_p_upper > std::log(.05);
+    missed += lag_one_test(autoregressive(.1, 2000, random)).log_p_upper > std::log(.05);
   }
   EXPECT_LT(missed, 5);
 }

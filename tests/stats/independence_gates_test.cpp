@@ -13,18 +13,9 @@
 namespace assay::stats {
 namespace {
 
+using tests::autoregressive;
 using tests::Philox;
 using tests::sample_of;
-
-std::vector<double> chain(double phi, std::size_t n, Philox& random) {
-  std::vector<double> values;
-  double x = random.normal();
-  for (std::size_t t = 0; t < n; ++t) {
-    values.push_back(x);
-    x = phi * x + std::sqrt(1 - phi * phi) * random.normal();
-  }
-  return values;
-}
 
 // Each red with probability 5e-5 on independent normal values: of 20000 more than 8 with
 // probability 1.2e-6 (Poisson, mean 1).
@@ -43,10 +34,10 @@ TEST(IndependenceGates, AreSilentOnIndependentValues) {
 
 TEST(IndependenceGates, SeeAChainAndItsAlternation) {
   Philox random(2);
-  const auto positive = chain(0.5, 500, random);
+  const auto positive = autoregressive(0.5, 500, random);
   EXPECT_EQ(lag_one_gate(positive).state, GateState::red);
   EXPECT_GT(lag_one_gate(positive).value, lag_one_gate(positive).limit);
-  const auto negative = chain(-0.5, 500, random);
+  const auto negative = autoregressive(-0.5, 500, random);
   EXPECT_EQ(lag_one_gate(negative).state, GateState::red);
   EXPECT_LT(lag_one_gate(negative).value, lag_one_gate(negative).limit);
 }
@@ -81,7 +72,7 @@ TEST(IndependenceGates, RefuseWhatHasNoOrderOrNoSpread) {
 // (1 + .9) / (1 - .9) = 19; deviation of the estimate about 1.5 of 20000 values.
 TEST(IndependenceGates, AutocorrelationTimeOfLongAndShortSequencesAgrees) {
   Philox random(4);
-  const auto x = chain(0.9, 30000, random);
+  const auto x = autoregressive(0.9, 30000, random);
   EXPECT_NEAR(autocorrelation_time(x), 19, 8);
   EXPECT_NEAR(autocorrelation_time(std::span(x).first(8000)), 19, 15);
   const std::size_t length = sufficient_batch(x);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -28,6 +29,17 @@ stats::Moments draw_moments(std::size_t n, Draw&& draw) {
   stats::Moments moments;
   for (std::size_t i = 0; i < n; ++i) moments.add(draw());
   return moments;
+}
+
+/// A stationary AR(1) chain of unit variance; of its n values (1 - phi) / (1 + phi) are effective.
+inline std::vector<double> autoregressive(double phi, std::size_t n, Philox& random) {
+  std::vector<double> values;
+  double x = random.normal();
+  for (std::size_t t = 0; t < n; ++t) {
+    values.push_back(x);
+    x = phi * x + std::sqrt(1 - phi * phi) * random.normal();
+  }
+  return values;
 }
 
 inline std::vector<double> sorted(std::vector<double> values) {
