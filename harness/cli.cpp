@@ -171,6 +171,8 @@ Command plan_command(const Given& given, const CLI::App& sub) {
 
 Command check_command(const Given& given, const CLI::App& sub) {
   require(given.claim, "a claim", sub);
+  if (given.claim.ends_with(".yaml"))
+    usage_error("`assay check` tests one claim; a suite is run by `assay run " + given.claim + "`");
   // Assigned, not initialised in one expression: GCC 12 destroys the members of a nested aggregate
   // twice when a later one throws, and options() throws at a wrong value.
   CheckCommand command;

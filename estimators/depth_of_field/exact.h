@@ -1,0 +1,40 @@
+#pragma once
+
+// What the average over the lens is, without a ray.
+
+#include "depth_of_field/scene_description.h"
+
+namespace assay::depth_of_field {
+
+/// The first two moments of the radiance at a lens point uniform on the disc.
+struct Moments {
+  double mean = 0;
+  double square = 0;
+  double error = 0;  ///< bound of the quadrature's error in either
+  double variance() const { return square - mean * mean; }
+};
+
+/// The part of a disc of radius 1 inside a half-plane whose edge is at the signed distance d from
+/// its centre, positive inside: 1 - (acos d - d sqrt(1 - d^2)) / pi; 0 below -1, 1 above 1. The
+/// variance over the disc of "inside?" is c (1 - c).
+double half_plane_coverage(double d);
+
+/// The Fourier transform of the uniform density on the unit disc: j(z) = 2 J1(z) / z, j(0) = 1.
+double disc_response(double z);
+/// Its first zero, beyond which it is below 0.133 in size.
+inline constexpr double first_zero_of_disc_response = 3.8317059702075125;
+
+/// Mean and second moment of m + a cos(k X + p) with X = x + r w, w uniform on the unit disc: mean
+/// m + a cos(k x + p) j(k r), second moment m^2 + 2 m a cos() j(k r) + a^2 / 2 (1 + cos 2() j(2 k
+/// r)).
+Moments sinusoid_moments(const Texture& texture, const Footprint& seen);
+
+/// The moments of a pixel: closed form where one surface fills the whole lens, else
+/// quadrature_moments().
+Moments exact_moments(const SceneDescription& scene, const PlanePoint& pixel);
+
+/// Across the lens in closed form along u between the edges, along v by quadrature between the
+/// places where the picture changes, to 1e-12 of the value.
+Moments quadrature_moments(const SceneDescription& scene, const PlanePoint& pixel);
+
+}  // namespace assay::depth_of_field

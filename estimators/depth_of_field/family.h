@@ -1,0 +1,39 @@
+#pragma once
+
+// What the estimators of the family share: parameters, channels, and the primary at one pixel.
+
+#include "depth_of_field/disc_sampler.h"
+#include "depth_of_field/exact.h"
+#include "depth_of_field/setting.h"
+
+namespace assay::depth_of_field {
+
+/// `scene`.
+ParameterInformation scene_parameter(const char* fallback);
+SharedSetting read_setting(Parameters&);
+
+/// `pixel`: the point of the focal plane.
+ParameterInformation pixel_parameter();
+PlanePoint read_pixel(Parameters&);
+
+/// Average radiance over the lens at one pixel: mean and range; the variance of one lens sample
+/// divided by `samples` where the subtraction in it leaves nine digits.
+Channel radiance_channel(const SceneDescription& scene, const Moments& moments, double samples = 1);
+
+/// One lens sample at one pixel: the radiance along the ray from a point of the lens.
+template <class Disc = UniformDisc>
+struct LensPrimary {
+  SharedSetting setting;
+  PlanePoint pixel;
+
+  PlanePoint draw(Stream& random) const {
+    const double s = random.uniform();
+    return Disc{}(s, random.uniform());
+  }
+  double value(const PlanePoint& u, Cost& cost) const { return setting->radiance(pixel, u, cost); }
+};
+
+/// A mutant's static information.
+Information mutant_information(std::string name, const Information& original, std::string defect);
+
+}  // namespace assay::depth_of_field

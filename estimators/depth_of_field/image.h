@@ -1,0 +1,110 @@
+#pragma once
+
+// An image behind a thin lens with a number of lens samples for each pixel, fixed beforehand.
+
+#include <utility>
+
+#include "depth_of_field/allocation.h"
+#include "depth_of_field/family.h"
+#include "depth_of_field/prediction.h"
+
+namespace assay::depth_of_field {
+
+/// An image's pixels, how many lens samples each gets, and what finding that out cost.
+struct ImagePlan {
+  SharedSetting setting;
+  Grid grid;
+  std::vector<std::uint64_t> counts;
+  std::vector<bool> background;  ///< of the prediction; empty without one
+  std::vector<Moments> exact;    ///< of one lens sample
+  Cost overhead;                 ///< of one image, beside its lens samples
+};
+
+/// Static information of depth_of_field/image, and its parameters `scene`, `width`, `height`,
+/// `size`.
+Information image_information();
+std::vector<ParameterInformation> grid_parameters();
+Grid read_grid(Parameters&);
+
+/// Reads the parameters of depth_of_field/image. Predictions follow `rules`, or what `prediction`
+/// says.
+ImagePlan read_image_plan(Parameters&, const PredictionRules* rules = nullptr);
+
+/// What a lens sample at a pixel is and what it is divided by.
+struct SoundShading {
+  double sample(const ImagePlan& plan, std::size_t pixel, Stream& random, Cost& cost) const {
+    const double s = random.uniform();
+    const PlanePoint u = UniformDisc{}(s, random.uniform());
+    return plan.setting->radiance(plan.grid.pixel(pixel), u, cost);
+  }
+  double divisor(const ImagePlan& plan, std::size_t pixel) const {
+    return static_cast<double>(plan.counts[pixel]);
+  }
+};
+
+/// Which pixels have the largest noise sigma^2 / N, and the least that is not zero.
+struct NoiseExtremes {
+  std::size_t worst = 0;
+  std::size_t quietest = 0;
+};
+NoiseExtremes noise_extremes(const ImagePlan& plan);
+
+/// Channels: the pixels, then the diagnostic ones `worst` and `quietest`, which repeat pixels.
+std::vector<Channel> image_channels(const ImagePlan& plan);
+
+/// A primary is an image: the prediction's rays, and for each pixel its number of lens samples from
+/// a substream of its own.
+template <class Shading>
+class LensImage final : public Estimator {
+ public:
+  LensImage(std::shared_ptr<const ImagePlan> plan, Shading shading)
+      : plan_(std::move(plan)), shading_(std::move(shading)), ends_(noise_extremes(*plan_)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const std::size_t pixels = plan_->grid.pixels();
+    for (std::size_t i = 0; i < pixels; ++i) {
+      Stream mine = random.substream(static_cast<std::uint32_t>(i));
+      double sum = 0;
+      const std::uint64_t count = primaries * plan_->counts[i];
+      for (std::uint64_t k = 0; k < count; ++k) sum += shading_.sample(*plan_, i, mine, cost);
+      out[i] = sum / (static_cast<double>(primaries) * shading_.divisor(*plan_, i));
+    }
+    out[pixels] = out[ends_.worst];
+    out[pixels + 1] = out[ends_.quietest];
+    cost.camera_rays += primaries * plan_->overhead.camera_rays;
+    cost.samples += primaries;
+  }
+
+ private:
+  std::shared_ptr<const ImagePlan> plan_;
+  Shading shading_;
+  NoiseExtremes ends_;
+};
+
+template <class Shading>
+class LensImageSetup final : public Setup {
+ public:
+  LensImageSetup(ImagePlan plan, Shading shading)
+      : plan_(std::make_shared<const ImagePlan>(std::move(plan))), shading_(std::move(shading)) {}
+
+  std::vector<Channel> channels() const override { return image_channels(*plan_); }
+  std::optional<ImageShape> image() const override {
+    return ImageShape{plan_->grid.width, plan_->grid.height, {"radiance"}, true};
+  }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<LensImage<Shading>>(plan_, shading_);
+  }
+  std::vector<NamedSampler> samplers() const override { return lens_samplers<>(); }
+
+ private:
+  std::shared_ptr<const ImagePlan> plan_;
+  Shading shading_;
+};
+
+template <class Shading = SoundShading>
+std::shared_ptr<const Setup> image_setup(ImagePlan plan, Shading shading = {}) {
+  return std::make_shared<const LensImageSetup<Shading>>(std::move(plan), std::move(shading));
+}
+
+}  // namespace assay::depth_of_field

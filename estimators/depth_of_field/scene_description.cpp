@@ -1,0 +1,179 @@
+#include "depth_of_field/scene_description.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimators/flow.h"
+#include "luminaire/scene_description.h"
+
+namespace assay::depth_of_field {
+
+namespace {
+
+using luminaire::require_keys;
+using luminaire::required_key;
+
+double finite(const Value& value, const std::string& what) {
+  const double number = value.number(what);
+  if (!std::isfinite(number)) throw InputError(value.where(), what + " must be finite");
+  return number;
+}
+
+double positive(const Value& value, const std::string& what) {
+  const double number = finite(value, what);
+  if (!(number > 0)) throw InputError(value.where(), what + " must be above 0");
+  return number;
+}
+
+double at_least_zero(const Value& value, const std::string& what) {
+  const double number = finite(value, what);
+  if (number < 0) throw InputError(value.where(), what + " must not be negative");
+  return number;
+}
+
+Interval interval(const Value& value, const std::string& what) {
+  if (value.kind() != Value::Kind::list || value.items().size() != 2) {
+    throw InputError(value.where(), what + " must be a list of two numbers, low and high");
+  }
+  const Interval out{finite(value.items()[0], what), finite(value.items()[1], what)};
+  if (!(out.low < out.high)) {
+    throw InputError(value.where(), what + " must ascend: nothing lies between its ends");
+  }
+  return out;
+}
+
+Lens lens(const Value& value) {
+  require_keys(value, "the lens", {"radius", "focus"});
+  return {positive(required_key(value, "the lens", "radius"), "the lens's radius"),
+          positive(required_key(value, "the lens", "focus"), "the lens's focus")};
+}
+
+Texture texture(const Value& value) {
+  Texture out{.mean =
+                  at_least_zero(required_key(value, "a plane", "radiance"), "a plane's radiance")};
+  const Value* const amplitude = value.find("amplitude");
+  const Value* const wavelength = value.find("wavelength");
+  const Value* const phase = value.find("phase");
+  if (!amplitude != !wavelength || (phase && !amplitude)) {
+    throw InputError(value.where(),
+                     "a sinusoid needs `amplitude` and `wavelength`, and may have a `phase`");
+  }
+  if (!amplitude) return out;
+  out.amplitude = at_least_zero(*amplitude, "a plane's amplitude");
+  if (out.amplitude > out.mean) {
+    throw InputError(amplitude->where(),
+                     "a plane's amplitude must not exceed its radiance, or the radiance would be "
+                     "negative in its troughs");
+  }
+  out.frequency = 2 * std::numbers::pi / positive(*wavelength, "a plane's wavelength");
+  if (phase) out.phase = finite(*phase, "a plane's phase");
+  return out;
+}
+
+Plane plane(const Value& value) {
+  require_keys(value, "a plane",
+               {"depth", "x", "y", "radiance", "amplitude", "wavelength", "phase"});
+  return {.depth = positive(required_key(value, "a plane", "depth"), "a plane's depth"),
+          .x = interval(required_key(value, "a plane", "x"), "a plane's x"),
+          .y = interval(required_key(value, "a plane", "y"), "a plane's y"),
+          .texture = texture(value)};
+}
+
+bool overlap(const Interval& a, const Interval& b) { return a.low < b.high && b.low < a.high; }
+
+// Which of two at one depth is seen would be left to rounding.
+void require_apart(const std::vector<Plane>& planes, const Value& blame) {
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    for (std::size_t j = i + 1; j < planes.size(); ++j) {
+      const Plane& a = planes[i];
+      const Plane& b = planes[j];
+      if (std::abs(a.depth - b.depth) > 1e-5 * a.depth) continue;
+      if (overlap(a.x, b.x) && overlap(a.y, b.y)) {
+        throw InputError(blame.where(), "two planes of one depth overlap: which is seen there?");
+      }
+    }
+  }
+}
+
+SceneDescription scene(const Value& value) {
+  require_keys(value, "the scene", {"lens", "background", "planes"});
+  const Value& planes = required_key(value, "the scene", "planes");
+  if (planes.kind() != Value::Kind::list || planes.items().empty()) {
+    throw InputError(planes.where(), "planes must be a list of one or more");
+  }
+  SceneDescription out{.lens = lens(required_key(value, "the scene", "lens"))};
+  if (const Value* const background = value.find("background")) {
+    out.background = at_least_zero(*background, "the background");
+  }
+  for (const Value& item : planes.items()) out.planes.push_back(plane(item));
+  std::ranges::stable_sort(out.planes, {}, &Plane::depth);
+  require_apart(out.planes, planes);
+  return out;
+}
+
+struct Named {
+  const char* name;
+  const char* scene;
+};
+
+constexpr Named named[] = {
+    // A black half-plane before a sharp white one: discs of confusion of radius 0.1 on the half-
+    // plane, 0.2 on the focal plane.
+    {"edge",
+     "{lens: {radius: .2, focus: 2}, planes: ["
+     "{depth: 1, x: [0, 100], y: [-100, 100], radiance: 0}, "
+     "{depth: 2, x: [-100, 100], y: [-100, 100], radiance: 1}]}"},
+    // 1/2 + 1/2 cos behind the focal plane: discs of radius 0.2, three radians of the wave.
+    {"sinusoid",
+     "{lens: {radius: .2, focus: 2}, planes: ["
+     "{depth: 4, x: [-100, 100], y: [-100, 100], radiance: .5, amplitude: .5, "
+     "wavelength: .41887902047863907}]}"},
+    // A sharp book on a sharp wall with a near strip across it, out of focus, bright as a lamp.
+    {"strip",
+     "{lens: {radius: .2, focus: 4}, planes: ["
+     "{depth: 2, x: [-.03, .03], y: [-100, 100], radiance: 4}, "
+     "{depth: 3.9, x: [-.8, .9], y: [-.4, .6], radiance: .6, amplitude: .2, wavelength: .4}, "
+     "{depth: 4.1, x: [-100, 100], y: [-100, 100], radiance: 1, amplitude: .2, wavelength: .7}]}"},
+    // A sharp head before lights far behind.
+    {"portrait",
+     "{lens: {radius: .1, focus: 2}, background: .02, planes: ["
+     "{depth: 2, x: [-.5, .6], y: [-1, .5], radiance: .6, amplitude: .3, wavelength: .15}, "
+     "{depth: 8, x: [-2.6, -2.4], y: [1, 1.2], radiance: 8}, "
+     "{depth: 8, x: [2.9, 3.1], y: [.4, .6], radiance: 8}, "
+     "{depth: 9, x: [-100, 100], y: [-100, 2.5], radiance: .3, amplitude: .1, wavelength: 3}]}"},
+    // Three boards one behind the other, the middle one sharp.
+    {"boards",
+     "{lens: {radius: .15, focus: 3}, background: .2, planes: ["
+     "{depth: 1.5, x: [-.6, -.42], y: [-.6, .5], radiance: .9, amplitude: .3, wavelength: .3}, "
+     "{depth: 3, x: [-.7, .8], y: [-.6, .6], radiance: .7, amplitude: .5, wavelength: .2}, "
+     "{depth: 6, x: [-9, 9], y: [-9, 1.6], radiance: .3, amplitude: .2, wavelength: 1.2}]}"},
+};
+
+}  // namespace
+
+Interval SceneDescription::range() const {
+  Interval out{background, background};
+  for (const Plane& p : planes) {
+    out.low = std::min(out.low, p.texture.mean - p.texture.amplitude);
+    out.high = std::max(out.high, p.texture.mean + p.texture.amplitude);
+  }
+  return out;
+}
+
+std::vector<std::string> built_in_scenes() {
+  std::vector<std::string> names;
+  for (const Named& entry : named) names.emplace_back(entry.name);
+  return names;
+}
+
+SceneDescription read_scene(const Value& value) {
+  if (value.kind() != Value::Kind::scalar) return scene(value);
+  const std::string& name = value.string("the scene");
+  for (const Named& entry : named) {
+    if (name == entry.name) return scene(parse_flow(entry.scene));
+  }
+  throw InputError(value.where(), "there is no scene `" + name + "`; " +
+                                      luminaire::alternatives(name, built_in_scenes()));
+}
+
+}  // namespace assay::depth_of_field

@@ -1,0 +1,60 @@
+#pragma once
+
+// What a lens looks at: rectangles that face it, at several depths, plain or with a sinusoid of
+// radiance across them.
+
+#include <string>
+#include <vector>
+
+#include "depth_of_field/thin_lens.h"
+#include "estimators/value.h"
+
+namespace assay::depth_of_field {
+
+struct Interval {
+  double low = 0;
+  double high = 0;
+  bool contains(double x) const { return low <= x && x <= high; }
+};
+
+/// Radiance mean + amplitude cos(frequency x + phase).
+struct Texture {
+  double mean = 0;
+  double amplitude = 0;
+  double frequency = 0;  ///< 2 pi / wavelength
+  double phase = 0;
+
+  double at(double x) const {
+    return amplitude == 0 ? mean : mean + amplitude * std::cos(frequency * x + phase);
+  }
+};
+
+/// A rectangle of constant depth with edges along x and y; stops light from behind.
+struct Plane {
+  double depth = 1;
+  Interval x;
+  Interval y;
+  Texture texture;
+
+  bool contains(const PlanePoint& p) const { return x.contains(p.x) && y.contains(p.y); }
+};
+
+struct SceneDescription {
+  Lens lens;
+  double background = 0;      ///< radiance of what no plane hides
+  std::vector<Plane> planes;  ///< the nearest first
+
+  /// The least and the largest radiance there is.
+  Interval range() const;
+};
+
+/// Reads a scene: the name of a built-in one, or a map as in estimators/README.md. InputError at
+/// the offending node for an unknown name or key, a missing key, a number that is not finite, a
+/// lens without extent, a depth or focus that is not positive, an empty range, a radiance that is
+/// negative somewhere, an amplitude without a wavelength, and planes of one depth that overlap.
+SceneDescription read_scene(const Value& value);
+
+/// The built-in scenes' names.
+std::vector<std::string> built_in_scenes();
+
+}  // namespace assay::depth_of_field

@@ -1,0 +1,66 @@
+#include "depth_of_field/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "depth_of_field/exact.h"
+
+namespace assay::depth_of_field {
+
+Spectrum& Spectrum::travel(double distance) {
+  for (Frequency& w : waves_) w.slope -= distance * w.position;
+  return *this;
+}
+
+Spectrum& Spectrum::curve(double bend) {
+  for (Frequency& w : waves_) w.position -= bend * w.slope;
+  return *this;
+}
+
+Spectrum& Spectrum::reflect(double spread) {
+  for (Frequency& w : waves_) {
+    const double z = spread * w.slope;
+    w.power *= std::exp(-z * z);
+  }
+  return *this;
+}
+
+Spectrum& Spectrum::occlude(std::span<const MaskWave> mask) {
+  const std::vector<Frequency> before = waves_;
+  for (const Frequency& w : before) {
+    for (const MaskWave& m : mask) {
+      const double power = w.power * m.power;
+      waves_.push_back({w.position + m.frequency, w.slope, power});
+      waves_.push_back({w.position - m.frequency, w.slope, power});
+    }
+  }
+  return *this;
+}
+
+std::vector<CameraFrequency> Spectrum::at_camera(const Lens& lens) const {
+  std::vector<CameraFrequency> out;
+  for (const Frequency& w : waves_) {
+    out.push_back({w.position + w.slope / lens.focus, -w.slope / lens.focus, w.power});
+  }
+  return out;
+}
+
+double lens_variance(std::span<const CameraFrequency> waves, const Lens& lens) {
+  double sum = 0;
+  for (const CameraFrequency& w : waves) {
+    const double j = disc_response(lens.radius * w.lens);
+    sum += w.power * (1 - j * j);
+  }
+  return sum;
+}
+
+double image_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens) {
+  double highest = 0;
+  for (const CameraFrequency& w : waves) {
+    if (lens.radius * std::abs(w.lens) >= first_zero_of_disc_response) continue;
+    highest = std::max(highest, std::abs(w.image));
+  }
+  return highest;
+}
+
+}  // namespace assay::depth_of_field

@@ -1,0 +1,76 @@
+#pragma once
+
+// Frequencies of the local light field around a ray, and what happens to them on the way to the
+// lens (Durand et al. 2005, "A frequency analysis of light transport"; Soler et al. 2009).
+//
+// l(x, v) is the radiance at the transverse position x along the slope v in the light's direction;
+// a frequency (Wx, Wv) is a wave cos(Wx x + Wv v + phase). As the field is real, one of each pair
+// of opposite frequencies is kept. Where light moves by (x, v) -> M (x, v), frequencies move by the
+// inverse transpose of M:
+//   travel over d          x += d v        Wv -= d Wx
+//   reflection, curvature  v += c x        Wx -= c Wv      (a mirror of curvature k: c = 2 k, k > 0
+//                                                            where it scatters)
+//   reflection, lobe       average over slopes   power exp(-(s Wv)^2), s the lobe's deviation
+//   occlusion              times a mask of x     every Wx becomes Wx + W and Wx - W for the mask's
+//   W
+// At the lens, focused at depth f, the pixel that sees the point X of the focal plane gathers the
+// slopes v = (u - X) / f from its points u, so that a frequency is Wx + Wv / f across the lens and
+// -Wv / f across the image.
+
+#include <span>
+#include <vector>
+
+#include "depth_of_field/thin_lens.h"
+
+namespace assay::depth_of_field {
+
+struct Frequency {
+  double position = 0;  ///< Wx, radians per unit length
+  double slope = 0;     ///< Wv, radians per unit slope
+  double power = 0;     ///< variance that the wave has over its phase: amplitude^2 / 2
+};
+
+/// A wave as the camera has it.
+struct CameraFrequency {
+  double lens = 0;   ///< radians per unit length across the lens
+  double image = 0;  ///< the same across the focal plane
+  double power = 0;
+};
+
+/// A wave of a mask: its frequency and the square of its amplitude over 4 (the power that it gives
+/// to each of the two waves that a wave of power 1 becomes).
+struct MaskWave {
+  double frequency = 0;
+  double power = 0;
+};
+
+/// A light field as a set of waves.
+class Spectrum {
+ public:
+  explicit Spectrum(std::vector<Frequency> waves) : waves_(std::move(waves)) {}
+
+  Spectrum& travel(double distance);
+  /// The slope of a surface changes by `bend` / 2 for each unit of length.
+  Spectrum& curve(double bend);
+  /// A lobe of Gaussian slopes of standard deviation `spread`.
+  Spectrum& reflect(double spread);
+  /// Times 1 + sum over the mask's waves of its cosines: what there was stays.
+  Spectrum& occlude(std::span<const MaskWave> mask);
+
+  const std::vector<Frequency>& waves() const { return waves_; }
+  std::vector<CameraFrequency> at_camera(const Lens& lens) const;
+
+ private:
+  std::vector<Frequency> waves_;
+};
+
+/// The variance of the radiance over the lens, averaged over the waves' phases: by Parseval the
+/// power that is not on the axis of no variation across the lens, sum of power (1 - j(radius W)^2)
+/// with j the disc's transform.
+double lens_variance(std::span<const CameraFrequency> waves, const Lens& lens);
+
+/// The highest frequency across the image, in size, that the lens lets through: of waves with
+/// radius W below the first zero of the disc's transform.
+double image_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens);
+
+}  // namespace assay::depth_of_field

@@ -1,0 +1,45 @@
+#pragma once
+
+// Scattered samples of an image, and the image from them.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "depth_of_field/prediction.h"
+
+namespace assay::depth_of_field {
+
+/// A sample at the middle of a pixel; its neighbours are `spacing` pixels away.
+struct ImageSample {
+  std::size_t x = 0;
+  std::size_t y = 0;
+  std::size_t spacing = 1;
+};
+
+/// Pixels whose spacing is decided together, in tiles of this side.
+inline constexpr std::size_t tile_side = 8;
+
+/// A square grid of samples in each tile, the same spacing in all.
+std::vector<ImageSample> regular_samples(const Grid& grid, std::size_t spacing);
+
+/// In each tile the largest spacing of 1, 2, 4, 8 pixels that gives its highest frequency two
+/// samples a period (Nyquist): spacing x pitch <= pi / bandwidth.
+std::vector<ImageSample> samples_by_bandwidth(const Grid& grid, std::span<const double> bandwidth);
+
+/// How much of a sample a pixel gets.
+struct Share {
+  std::size_t sample = 0;
+  double weight = 0;
+};
+
+/// Shares of one pixel as they fall: a tent of a sample's own spacing to either side, in x and in
+/// y. Between samples of one spacing they are those of bilinear interpolation.
+using Splats = std::vector<std::vector<Share>>;
+Splats tents(const Grid& grid, std::span<const ImageSample> samples);
+
+/// Each pixel's shares divided by their sum: what is constant stays so, where samples are dense and
+/// where they are sparse.
+Splats normalised(Splats splats);
+
+}  // namespace assay::depth_of_field

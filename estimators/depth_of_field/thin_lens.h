@@ -1,0 +1,61 @@
+#pragma once
+
+// A thin lens in the plane z = 0 about the origin that looks along +z: each point of a pixel's
+// image is gathered over the whole lens, and points of one depth, `focus`, are sharp.
+//
+// A pixel is named by the point P of the plane z = focus that it sees. The ray from the lens point
+// radius (u, v), |(u, v)| <= 1, through P meets the plane at depth z in
+//   x = (1 - z / focus) radius u + z / focus P.x,   y likewise:
+// the lens is seen there as a disc of radius |1 - z / focus| radius, the disc of confusion.
+
+#include <cmath>
+#include <numbers>
+
+#include "estimators/stream.h"
+#include "render/scene.h"
+
+namespace assay::depth_of_field {
+
+struct Lens {
+  double radius = 0;  ///< of the aperture
+  double focus = 1;   ///< depth of what is sharp
+};
+
+/// A point of a plane of constant depth, or of the unit disc.
+struct PlanePoint {
+  double x = 0;
+  double y = 0;
+};
+
+/// The map from lens points (unit disc) to points at one depth: x = scale u + offset.x.
+struct Footprint {
+  double scale = 0;  ///< negative behind the focal plane; its size is the radius of confusion
+  PlanePoint offset;
+
+  PlanePoint at(const PlanePoint& u) const {
+    return {scale * u.x + offset.x, scale * u.y + offset.y};
+  }
+};
+
+inline Footprint footprint(const Lens& lens, const PlanePoint& pixel, double depth) {
+  const double magnified = depth / lens.focus;
+  return {(1 - magnified) * lens.radius, {magnified * pixel.x, magnified * pixel.y}};
+}
+
+/// From the lens point through the pixel's point of the focal plane; t is depth / focus.
+inline render::Ray lens_ray(const Lens& lens, const PlanePoint& pixel, const PlanePoint& u) {
+  const render::Vector3 from{lens.radius * u.x, lens.radius * u.y, 0};
+  return {from, render::Vector3{pixel.x, pixel.y, lens.focus} - from};
+}
+
+/// A point uniform on the unit disc from two numbers uniform on [0, 1): the radius is the root of
+/// the first, so that equal areas are equally probable.
+struct UniformDisc {
+  PlanePoint operator()(double s, double t) const {
+    const double radius = std::sqrt(s);
+    const double angle = 2 * std::numbers::pi * t;
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+  }
+};
+
+}  // namespace assay::depth_of_field

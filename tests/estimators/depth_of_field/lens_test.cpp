@@ -1,0 +1,199 @@
+// Lens integration at a pixel against independent quadrature, and the transport of frequencies.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numbers>
+
+#include "depth_of_field/covariance.h"
+#include "depth_of_field/exact.h"
+#include "depth_of_field/spectrum.h"
+#include "tests/estimators/draws.h"
+#include "tests/estimators/table.h"
+
+namespace assay {
+namespace {
+
+using namespace depth_of_field;
+using namespace assay::draws;
+
+const char* const corner =
+    "{lens: {radius: .2, focus: 2}, background: .3, planes: [{depth: 1, x: [0, 100], y: [-100, "
+    ".02], radiance: 0}, {depth: 3, x: [-.1, .05], y: [-.1, 100], radiance: .5, amplitude: .5, "
+    "wavelength: .1, phase: .4}]}";
+
+SceneDescription scene_of(const std::string& name) {
+  if (name == "corner") return read_scene(parse_flow(corner));
+  return read_scene(parse_flow(name));
+}
+
+TEST(DepthOfField, MomentsAreThoseOfAnIndependentQuadrature) {
+  for (const auto& row : tests::table("depth_of_field.csv")) {
+    if (row[0] == "parseval") continue;
+    const PlanePoint pixel{std::stod(row[1]), std::stod(row[2])};
+    const Moments moments = exact_moments(scene_of(row[0]), pixel);
+    EXPECT_NEAR(moments.mean, std::stod(row[3]), 1e-10) << row[0] << row[1];
+    EXPECT_NEAR(moments.square, std::stod(row[4]), 1e-10) << row[0] << row[1];
+  }
+}
+
+TEST(DepthOfField, QuadratureAgreesWithTheClosedForms) {
+  for (const double x : {-.19, -.1, 0., .03, .15}) {
+    const Moments edge = quadrature_moments(scene_of("edge"), {x, 0});
+    EXPECT_NEAR(edge.mean, half_plane_coverage(-x / .2), 1e-12);
+    EXPECT_NEAR(edge.variance(), edge.mean * (1 - edge.mean), 1e-12);
+    const SceneDescription wave = scene_of("sinusoid");
+    const Moments closed =
+        sinusoid_moments(wave.planes[0].texture, footprint(wave.lens, {x, 0}, 4));
+    const Moments integral = quadrature_moments(wave, {x, 0});
+    EXPECT_NEAR(integral.mean, closed.mean, 1e-12);
+    EXPECT_NEAR(integral.square, closed.square, 1e-12);
+  }
+}
+
+// By Parseval the power off the axis is the variance over the lens, whose phases are averaged.
+TEST(DepthOfField, ThePowerOffTheAxisIsTheVarianceOverTheLens) {
+  const Lens lens{.2, 2};
+  for (const auto& row : tests::table("depth_of_field.csv")) {
+    if (row[0] != "parseval") continue;
+    const auto waves =
+        Spectrum({{std::stod(row[2]), 0, .5}}).travel(std::stod(row[1])).at_camera(lens);
+    EXPECT_NEAR(lens_variance(waves, lens), std::stod(row[3]), 1e-9);
+  }
+}
+
+/// A point in phase space moves by (x, v) -> M (x, v), a wave W . (x, v) keeps its phase.
+TEST(DepthOfField, TravelAndCurvatureKeepThePhaseOfEveryRay) {
+  const Frequency wave{3, -2, 1};
+  const double x = .7;
+  const double v = -.4;
+  const Frequency travelled = Spectrum({wave}).travel(1.5).waves()[0];
+  EXPECT_NEAR(travelled.position * (x + 1.5 * v) + travelled.slope * v,
+              wave.position * x + wave.slope * v, 1e-14);
+  const Frequency curved = Spectrum({wave}).curve(.8).waves()[0];
+  EXPECT_NEAR(curved.position * x + curved.slope * (v + .8 * x), wave.position * x + wave.slope * v,
+              1e-14);
+}
+
+// A wave on a plane, followed along lens rays to the camera: its frequencies are the derivatives of
+// its phase by lens point and by pixel.
+TEST(DepthOfField, FrequenciesAtTheCameraAreDerivativesOfThePhase) {
+  const Lens lens{.3, 2};
+  for (const double depth : {.5, 2., 7.}) {
+    const auto waves = Spectrum({{5, 0, 1}}).travel(depth).at_camera(lens);
+    const auto phase = [&](double u, double pixel) {
+      return 5 * footprint(lens, {pixel, 0}, depth).at({u / lens.radius, 0}).x;
+    };
+    EXPECT_NEAR(waves[0].lens, phase(1, 0) - phase(0, 0), 1e-12);
+    EXPECT_NEAR(waves[0].image, phase(0, 1) - phase(0, 0), 1e-12);
+  }
+}
+
+TEST(DepthOfField, AMaskMovesWavesToBothSides) {
+  const std::array<MaskWave, 1> mask{{{7, .25}}};
+  const auto waves = Spectrum({{2, 1, 4}}).occlude(mask).waves();
+  ASSERT_EQ(waves.size(), 3u);
+  EXPECT_EQ(waves[1].position, 9);
+  EXPECT_EQ(waves[2].position, -5);
+  EXPECT_EQ(waves[2].slope, 1);
+  EXPECT_EQ(waves[1].power, 1);
+}
+
+// A Gaussian of waves as a set and as its covariance, through the same chain.
+TEST(DepthOfField, CovariancesFollowSetsOfWaves) {
+  std::vector<Frequency> waves;
+  double total = 0;
+  for (int i = -60; i <= 60; ++i) {
+    for (int j = -60; j <= 60; ++j) {
+      const double a = i / 12.;
+      const double b = j / 12.;
+      waves.push_back({2 * a, 3 * b + a, std::exp(-(a * a + b * b) / 2)});
+      total += waves.back().power;
+    }
+  }
+  Spectrum set(waves);
+  set.travel(.7).curve(.3).reflect(.2).travel(1.1);
+  Covariance gauss(total, {.position = 4, .slope = 10, .both = 2});
+  gauss.travel(.7).curve(.3).reflect(.2).travel(1.1);
+  Covariance::Spread sum;
+  double power = 0;
+  for (const Frequency& w : set.waves()) {
+    power += w.power;
+    sum.position += w.power * w.position * w.position;
+    sum.slope += w.power * w.slope * w.slope;
+    sum.both += w.power * w.position * w.slope;
+  }
+  EXPECT_NEAR(power / gauss.power(), 1, 1e-4);
+  EXPECT_NEAR(sum.position / power / gauss.spread().position, 1, 1e-3);
+  EXPECT_NEAR(sum.slope / power / gauss.spread().slope, 1, 1e-3);
+  EXPECT_NEAR(sum.both / power / gauss.spread().both, 1, 1e-3);
+}
+
+TEST(DepthOfField, ForLowFrequenciesTheCovariancePredictsTheDiscsVariance) {
+  const Lens lens{.1, 2};
+  const auto waves = Spectrum({{.5, 0, 1}}).travel(3).at_camera(lens);
+  const Covariance covariance = Covariance(1, {.position = .25}).travel(3);
+  EXPECT_NEAR(covariance.lens_variance(lens) / lens_variance(waves, lens), 1, 1e-3);
+}
+
+// False alarm 1e-6 each.
+TEST(DepthOfField, RaysThroughTheLensHaveTheExactMoments) {
+  for (const std::string& scene :
+       {std::string("edge"), std::string("sinusoid"), std::string(corner)}) {
+    const auto plugin =
+        prepare("depth_of_field/pixel", "{scene: " + scene + ", pixel: [.04, .01]}");
+    const Channel channel = plugin.setup->channels()[0];
+    const Sample sample = observe(plugin, 100000)[0];
+    EXPECT_NEAR(sample.mean(), *channel.mean, five * sample.mean_error()) << scene;
+    EXPECT_NEAR(sample.variance(), *channel.variance, five * sample.variance_error()) << scene;
+  }
+}
+
+// False alarm 1e-6 each.
+TEST(DepthOfField, JitterAndFreshPilotsLeaveNoBias) {
+  for (const char* plugin : {"depth_of_field/pixel", "depth_of_field/two_stage"}) {
+    const std::string jitter = std::string(plugin) == "depth_of_field/pixel" ? ", jitter: 3" : "";
+    const auto prepared = prepare(plugin, "{pixel: [.14, 0]" + jitter + "}");
+    const Sample sample = observe(prepared, 60000)[0];
+    EXPECT_NEAR(sample.mean(), *prepared.setup->channels()[0].mean, five * sample.mean_error());
+  }
+}
+
+struct Refusal {
+  const char* scene;
+  const char* names;
+};
+
+TEST(DepthOfField, WrongScenesAreRefusedByName) {
+  const std::vector<Refusal> table = {
+      {"egde", "edge"},
+      {"{lens: {radius: 0, focus: 1}, planes: [{depth: 1, x: [0, 1], y: [0, 1], radiance: 1}]}",
+       "radius"},
+      {"{lens: {radius: 1, focus: -1}, planes: [{depth: 1, x: [0, 1], y: [0, 1], radiance: 1}]}",
+       "focus"},
+      {"{lens: {radius: 1, focus: 1}, planes: []}", "planes"},
+      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 0, x: [0, 1], y: [0, 1], radiance: 1}]}",
+       "depth"},
+      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 1, x: [1, 0], y: [0, 1], radiance: 1}]}",
+       "ascend"},
+      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 1, x: [0, 1], y: [0, 1], radiance: 1, "
+       "amplitude: 2, wavelength: 1}]}",
+       "amplitude"},
+      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 1, x: [0, 1], y: [0, 1], radiance: 1, "
+       "amplitude: 1}]}",
+       "wavelength"},
+      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 1, x: [0, 2], y: [0, 2], radiance: 1}, "
+       "{depth: 1, x: [1, 3], y: [1, 3], radiance: 2}]}",
+       "overlap"}};
+  for (const auto& [scene, names] : table) {
+    try {
+      prepare("depth_of_field/pixel", std::string("{scene: ") + scene + "}");
+      ADD_FAILURE() << scene;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(names), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace assay
