@@ -100,7 +100,8 @@ TEST(VirtualLights, ByTheMarginalDensityEvenEmissionGivesAConstant) {
   for (const char* camera : {"0.5, 0.5", "0.005, 0.005"}) {
     const auto plugin =
         prepare("virtual_lights/weighted", in({.camera = camera}, ", weighting: marginal"));
-    for (const double x : observe(plugin, 50, 16)[0].values) EXPECT_NEAR(x, 0.25, 1e-13);
+    const Sample sample = observe(plugin, 50, 16)[0];
+    for (const double x : sample.values) EXPECT_NEAR(x, 0.25, 1e-13);
   }
 }
 
@@ -112,7 +113,8 @@ TEST(VirtualLights, AFurnaceOfAnyShapeHasTheSquareOfItsAlbedo) {
       ASSAY_SOURCE_DIR "/suites/data");
   EXPECT_DOUBLE_EQ(*plugin.setup->channels()[0].mean, 2 * 0.36);
   EXPECT_EQ(*plugin.setup->channels()[1].mean, 1);
-  for (const double x : observe(plugin, 20, 64)[0].values) EXPECT_NEAR(x, 0.72, 1e-12);
+  const Sample sample = observe(plugin, 20, 64)[0];
+  for (const double x : sample.values) EXPECT_NEAR(x, 0.72, 1e-12);
 }
 
 TEST(VirtualLights, AGivenIntegralScalesTheEstimate) {
