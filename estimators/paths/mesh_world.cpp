@@ -101,10 +101,7 @@ Spectrum MeshWorld::sampled_light(const Vertex& v, Stream& random, Cost& cost) c
   const double cosines =
       leaving * std::abs(dot(way, triangles_[triangle].normal)) / (square * square);
   if (!(leaving > 0) || cosines == 0) return {};
-  ++cost.shadow_rays;
-  // What lies nearer to the light than this is the light itself.
-  constexpr double far = 1 - 0x1p-12;
-  if (scene_.occluded(render::Ray{v.position, way, 0, far})) return {};
+  if (!sees(v, light, cost)) return {};
   const Spectrum& emission = light.surface->emission;
   const double area_over_share = light_.total() / mean(emission);
   return cosines * area_over_share / std::numbers::pi * (v.surface->diffuse * emission);

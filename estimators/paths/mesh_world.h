@@ -37,6 +37,18 @@ class MeshWorld {
   const Surface& surface(std::size_t patch) const { return surfaces_[surface_of_[patch / 2]]; }
   bool has_light() const { return light_.total() > 0; }
   double patch_area(std::size_t patch) const { return triangles_[patch / 2].area; }
+  /// In the units of the fitted scene, as all positions are: its longest side is 1.
+  std::array<render::Vector3, 3> corners(std::size_t triangle) const {
+    const Triangle& t = triangles_[triangle];
+    return {t.corner, t.corner + t.first_edge, t.corner + t.second_edge};
+  }
+  /// Whether nothing stands between two vertices. One shadow ray; what lies within 2^-12 of the way
+  /// to the second is that point itself.
+  bool sees(const Vertex& from, const Vertex& to, Cost& cost) const {
+    ++cost.shadow_rays;
+    constexpr double far = 1 - 0x1p-12;
+    return !scene_.occluded(render::Ray{from.position, to.position - from.position, 0, far});
+  }
 
   Vertex camera(Cost& cost) const {
     ++cost.camera_rays;

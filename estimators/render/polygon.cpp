@@ -7,7 +7,7 @@ namespace assay::render {
 
 namespace {
 
-const Vector3& next(const Polygon& polygon, std::size_t i) {
+const Vector3& next(std::span<const Vector3> polygon, std::size_t i) {
   return polygon[i + 1 == polygon.size() ? 0 : i + 1];
 }
 
@@ -53,7 +53,7 @@ Polygon clipped(const Polygon& polygon, const HalfSpace& half_space) {
   return extent && kept.size() >= 3 ? kept : Polygon{};
 }
 
-double lambert(const Polygon& polygon, const Vector3& n) {
+double lambert(std::span<const Vector3> polygon, const Vector3& n) {
   double sum = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector3 across = cross(polygon[i], next(polygon, i));

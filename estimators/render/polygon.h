@@ -2,6 +2,7 @@
 
 // Planar polygons as lists of vertices in order, and what a point sees of them.
 
+#include <span>
 #include <vector>
 
 #include "render/vector.h"
@@ -33,7 +34,7 @@ Polygon clipped(const Polygon& polygon, const HalfSpace& half_space);
 ///   E = | sum over edges of angle(v_i, v_i+1) dot(n, normalised(v_i x v_i+1)) | / 2
 /// (Lambert 1760; Baum, Rushmeier and Winget 1989, equation 12). In [0, pi]. Edges through the
 /// origin subtend nothing and add nothing.
-double lambert(const Polygon& polygon, const Vector3& n);
+double lambert(std::span<const Vector3> polygon, const Vector3& n);
 
 /// The integral of dot(n, w)^2 over the directions w in which a convex polygon is seen from the
 /// origin, which must not lie in its plane. With Omega its solid angle, m_i the edges' unit normals

@@ -1,0 +1,158 @@
+// Mutants of virtual lights: the sound parts with one replaced.
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "virtual_lights/family.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace virtual_lights;
+using std::numbers::pi;
+
+// Replacements for parts of the kernels.
+
+struct TargetIntegralOne : Weighted {
+  Spectrum result(const Sums& sums, double) const {
+    return sums.target > 0 ? 1 / sums.target * sums.full : Spectrum{};
+  }
+};
+
+struct DensityOfDirection : Weighted {
+  double target(const LightPath& path, double geometry, bool seen) const {
+    return seen ? geometry / path.from_cosine() : 0;
+  }
+};
+
+struct TargetUnhidden : Weighted {
+  double target(const LightPath& path, double geometry, bool) const {
+    return Weighted::target(path, geometry, true);
+  }
+};
+
+// Sums of the ratios and of their number.
+struct MeanOfWeights : Weighted {
+  Spectrum full(const LightPath& path, double geometry) const {
+    return 1 / Weighted::target(path, geometry, true) * Weighted::full(path, geometry);
+  }
+  double target(const LightPath&, double, bool seen) const { return seen ? 1 : 0; }
+};
+
+struct PowerNotDivided : Classic {
+  Spectrum result(const Sums& sums, double) const { return sums.full; }
+};
+
+struct ClampedDistance : Classic {
+  double least = 0;  ///< distance, in units of the scene's longest side
+
+  Spectrum full(const LightPath& path, double geometry) const {
+    const double square = squared_length(path.at.position - room->receiver().position);
+    const double clamped = std::max(square, least * least);
+    return Classic::full(path, geometry * square / clamped);
+  }
+};
+
+// Entries.
+
+Information described(const char* name, const char* original, const char* defect) {
+  return {
+      .name = std::string("mutants/") + name,
+      .summary = std::string(original) + " that " + defect,
+      .description = std::string("The estimator ") + original + " with one defect: it " + defect,
+      .original = original,
+      .defect = defect};
+}
+
+Information of_weighted(const char* name, const char* defect) {
+  Information information = described(name, "virtual_lights/weighted", defect);
+  information.parameters = weighted_parameters();
+  information.bias = BiasClass::inverse_primaries;
+  information.averages = false;
+  return information;
+}
+
+Information of_classic(const char* name, const char* defect) {
+  Information information = described(name, "virtual_lights/classic", defect);
+  information.parameters = {scene_parameter()};
+  return information;
+}
+
+template <class Broken>
+Entry weighted_mutant(const char* name, const char* defect) {
+  return {of_weighted(name, defect), [](Parameters& parameters) {
+            const Scene scene = read_room(parameters);
+            const Weighted sound = read_weighted(parameters, scene.room);
+            return setup(scene, weighted_recipe(Broken{sound}));
+          }};
+}
+
+std::shared_ptr<const Setup> other_paths(Parameters& parameters) {
+  const Scene scene = read_room(parameters);
+  const Weighted sound = read_weighted(parameters, scene.room);
+  Recipe broken = weighted_recipe(sound);
+  broken.sums = [sound](Stream& random, std::uint64_t primaries, Cost& cost) {
+    Stream elsewhere = random.substream(1);
+    Sums sums = shoot_all(sound, primaries, random, cost);
+    sums.target = shoot_all(sound, primaries, elsewhere, cost).target;
+    return sums;
+  };
+  return setup(scene, std::move(broken));
+}
+
+std::shared_ptr<const Setup> power_not_divided(Parameters& parameters) {
+  const Scene scene = read_room(parameters);
+  return setup(scene, recipe(PowerNotDivided{{scene.room}}));
+}
+
+std::shared_ptr<const Setup> clamped_distance(Parameters& parameters) {
+  const Scene scene = read_room(parameters);
+  return setup(scene, recipe(ClampedDistance{{scene.room}, parameters.number("least_distance")}));
+}
+
+Information clamped_information() {
+  Information information = of_classic(
+      "clamped_distance",
+      "takes no distance for less than `least_distance`: the spikes are gone, and so is the light "
+      "that they stand for, more of it the nearer the receiver is to a corner.");
+  information.parameters.push_back({.name = "least_distance",
+                                    .summary = "in units of the scene's longest side",
+                                    .fallback = "0.1",
+                                    .low = 0});
+  return information;
+}
+
+}  // namespace
+
+std::vector<Entry> mutants_virtual_lights() {
+  return {
+      weighted_mutant<TargetIntegralOne>(
+          "target_integral_one",
+          "takes the target's integral for 1 although not all of it can be shot at: 1 / G - 1 too "
+          "much, +20 % in a cube that emits evenly, +32 % in the middle of the floor where the "
+          "ceiling alone emits. It does not fall with M."),
+      weighted_mutant<DensityOfDirection>(
+          "density_of_direction",
+          "divides the target, a density by area, by the density of the direction that the light "
+          "was shot along: inconsistent, the limit depends on the units of length."),
+      weighted_mutant<TargetUnhidden>(
+          "target_unhidden",
+          "leaves the visibility between receiver and virtual light out of the target: too dark "
+          "where something hides a part of what would be seen; nothing in convex rooms."),
+      weighted_mutant<MeanOfWeights>(
+          "mean_of_weights",
+          "averages the ratios of integrand and target in place of dividing their sums: "
+          "inconsistent."),
+      {of_weighted("target_of_other_paths",
+                   "sums the target over other paths than the integrand: consistent, but the "
+                   "spikes of the two no longer cancel."),
+       other_paths},
+      {of_classic("power_not_divided",
+                  "gives each of M virtual lights the power of all: M times too much."),
+       power_not_divided},
+      {clamped_information(), clamped_distance}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,35 @@
+#pragma once
+
+// What is known of the light of a room without sampling it.
+
+#include <optional>
+#include <string>
+
+#include "virtual_lights/room.h"
+
+namespace assay::virtual_lights {
+
+/// The density that the target is divided by.
+enum class Weighting {
+  conditional,  ///< of y1 given y0, in the space of paths
+  marginal,     ///< of y1
+};
+
+/// A number, or why it is not known.
+struct Known {
+  std::optional<double> value = {};
+  std::string why_not = {};
+};
+
+/// G, the integral of the target over what the shooting can reach; the target is the density by
+/// area of y1 as the receiver's diffuse reflection would choose it, cos cos' V / (pi r^2). By form
+/// factors F of the walls of a convex room: conditional, sum of F times the share of power that is
+/// not on the wall itself; marginal, sum of F over the walls that some light reaches. 1 for the
+/// marginal density in any closed room that emits evenly.
+Known target_integral(const Room& room, Weighting weighting);
+
+/// The radiance that the receiver sends after exactly two reflections in a closed room that emits
+/// evenly: a Le a' of walls that reflect a' all, and a Le sum F a' of a convex room.
+std::optional<Spectrum> twice_reflected(const Room& room);
+
+}  // namespace assay::virtual_lights

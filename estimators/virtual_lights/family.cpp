@@ -1,0 +1,159 @@
+#include "virtual_lights/family.h"
+
+#include <utility>
+
+namespace assay::virtual_lights {
+
+namespace {
+
+using Pick = double Spectrum::*;
+constexpr std::array<Pick, 3> colours = {&Spectrum::red, &Spectrum::green, &Spectrum::blue};
+constexpr std::array<const char*, 3> colour_names = {"red", "green", "blue"};
+
+class LightsEstimator final : public Estimator {
+ public:
+  LightsEstimator(Recipe recipe, bool grey) : recipe_(std::move(recipe)), grey_(grey) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const double count = static_cast<double>(primaries);
+    const Sums sums = recipe_.sums(random, primaries, cost);
+    const Spectrum value = recipe_.result(sums, count);
+    std::size_t at = 0;
+    for (const Pick colour : colours) {
+      if (at == 0 || !grey_) out[at++] = value.*colour;
+    }
+    if (recipe_.has_target) out[at] = sums.target / count;
+  }
+
+ private:
+  Recipe recipe_;
+  bool grey_;
+};
+
+std::vector<Channel> channels(const Scene& scene, const Recipe& recipe) {
+  const std::optional<Spectrum> known = twice_reflected(*scene.room);
+  std::vector<Channel> all;
+  for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
+    Channel channel{.name = scene.grey ? "radiance" : colour_names[c], .low = 0};
+    if (known) {
+      channel.mean = (*known).*colours[c];
+      // Ratios of sums of thousands of terms: rounding, and the lift of points off their walls.
+      channel.rounding = 1e-12 * *channel.mean;
+    }
+    all.push_back(channel);
+  }
+  if (recipe.has_target) {
+    all.push_back({.name = "target", .mean = recipe.target.value, .low = 0, .diagnostic = true});
+  }
+  return all;
+}
+
+class LightsSetup final : public Setup {
+ public:
+  LightsSetup(const Scene& scene, Recipe recipe)
+      : channels_(virtual_lights::channels(scene, recipe)),
+        recipe_(std::move(recipe)),
+        grey_(scene.grey) {}
+
+  std::vector<Channel> channels() const override { return channels_; }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<LightsEstimator>(recipe_, grey_);
+  }
+  std::vector<NamedSampler> samplers() const override { return {paths::direction_sampler()}; }
+  Cost cost() const override { return {.camera_rays = 1}; }
+
+ private:
+  std::vector<Channel> channels_;
+  Recipe recipe_;
+  bool grey_;
+};
+
+void require_diffuse(Parameters& parameters, const paths::MeshWorld& world) {
+  bool light = false;
+  for (std::size_t i = 0; i < world.patches(); ++i) {
+    const paths::Surface& surface = world.surface(i);
+    if (!(surface.mirror == Spectrum{})) {
+      parameters.refuse("scene", "a virtual light reflects diffusely: every `mirror` must be 0");
+    }
+    light = light || paths::largest(surface.emission) > 0;
+  }
+  if (!light) parameters.refuse("scene", "there is no light to shoot: no surface emits");
+}
+
+void require_receiver(Parameters& parameters, const paths::MeshWorld& world) {
+  Cost uncounted;
+  const Vertex seen = world.camera(uncounted);
+  if (!seen.surface) parameters.refuse("scene", "the camera sees no surface");
+  if (seen.surface->diffuse == Spectrum{}) {
+    parameters.refuse("scene", "the camera sees a surface of albedo 0, which reflects no light");
+  }
+}
+
+double given_target_integral(Parameters& parameters, const Room& room, Weighting weighting) {
+  const Value& value = parameters.structure("target_integral");
+  if (value.kind() == Value::Kind::scalar && value.string("target_integral") == "exact") {
+    const Known known = target_integral(room, weighting);
+    if (!known.value) {
+      parameters.refuse("target_integral",
+                        "`exact` is " + known.why_not + ". Give the integral as a number");
+    }
+    return *known.value;
+  }
+  const double number = value.number("target_integral");
+  if (!std::isfinite(number) || number <= 0 || number > 1) {
+    parameters.refuse("target_integral",
+                      "must be `exact` or a number above 0 and at most 1: the target is a density");
+  }
+  return number;
+}
+
+}  // namespace
+
+Scene read_room(Parameters& parameters) {
+  const paths::Scene scene = paths::read_scene(parameters);
+  const auto* const world = std::get_if<paths::SharedMesh>(&scene.world);
+  if (!world) parameters.refuse("scene", "virtual lights need triangles: a furnace or surfaces");
+  require_diffuse(parameters, **world);
+  require_receiver(parameters, **world);
+  return {std::make_shared<const Room>(*world), scene.grey};
+}
+
+Weighted read_weighted(Parameters& parameters, SharedRoom room) {
+  const bool marginal = parameters.string("weighting") == "marginal";
+  const Weighting weighting = marginal ? Weighting::marginal : Weighting::conditional;
+  if (marginal && !room->why_no_marginal().empty()) {
+    parameters.refuse("weighting", "the marginal density is " + room->why_no_marginal());
+  }
+  const double integral = given_target_integral(parameters, *room, weighting);
+  return {{std::move(room)}, weighting, integral};
+}
+
+ParameterInformation scene_parameter() {
+  return {.name = "scene",
+          .type = ParameterType::structure,
+          .summary = "furnace or box, or a camera and one of furnace and surfaces",
+          .fallback = "furnace"};
+}
+
+std::vector<ParameterInformation> weighted_parameters() {
+  return {
+      scene_parameter(),
+      {.name = "weighting",
+       .type = ParameterType::string,
+       .summary = "the shooting density that the target is divided by: of the virtual light given "
+                  "where the light comes from, or whatever that is",
+       .fallback = "conditional",
+       .choices = {"conditional", "marginal"}},
+      {.name = "target_integral",
+       .type = ParameterType::structure,
+       .summary = "G, the integral of the target over what the shooting can reach: exact (closed "
+                  "rooms, convex or, marginal, of even emission) or a number in (0, 1]",
+       .fallback = "exact"}};
+}
+
+std::shared_ptr<const Setup> setup(const Scene& scene, Recipe recipe) {
+  return std::make_shared<LightsSetup>(scene, std::move(recipe));
+}
+
+}  // namespace assay::virtual_lights

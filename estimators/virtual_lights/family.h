@@ -1,0 +1,63 @@
+#pragma once
+
+// What the plugins of virtual lights share: parameters, channels, set-up.
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "virtual_lights/lights.h"
+
+namespace assay::virtual_lights {
+
+/// A room and how it is told.
+struct Scene {
+  SharedRoom room;
+  bool grey = true;
+};
+
+/// Reads `scene`. InputError there for a sphere of zones, a mirror, a camera that sees nothing or
+/// something black, and for a scene without light.
+Scene read_room(Parameters&);
+
+/// Reads `weighting` and `target_integral`. InputError at the first where the marginal density is
+/// not known, at the second where `exact` is asked for and not known, saying why.
+Weighted read_weighted(Parameters&, SharedRoom);
+
+ParameterInformation scene_parameter();
+std::vector<ParameterInformation> weighted_parameters();
+
+/// Writes one observation of `primaries` light paths.
+using Observe = std::function<Sums(Stream&, std::uint64_t primaries, Cost&)>;
+using Result = std::function<Spectrum(const Sums&, double primaries)>;
+
+/// How an observation is made, and whether it has the diagnostic channel `target`, the mean of
+/// g / p, with its mean G where that is known.
+struct Recipe {
+  Observe sums;
+  Result result;
+  bool has_target = false;
+  Known target = {};
+};
+
+std::shared_ptr<const Setup> setup(const Scene&, Recipe);
+
+/// The recipe of a kernel.
+template <class Kernel>
+Recipe recipe(const Kernel& kernel) {
+  return {[kernel](Stream& random, std::uint64_t primaries, Cost& cost) {
+            return shoot_all(kernel, primaries, random, cost);
+          },
+          [kernel](const Sums& sums, double primaries) { return kernel.result(sums, primaries); }};
+}
+
+/// The same of a weighted kernel, with its channel `target`.
+template <class Kernel>
+Recipe weighted_recipe(const Kernel& kernel) {
+  Recipe made = recipe(kernel);
+  made.has_target = true;
+  made.target = target_integral(*kernel.room, kernel.weighting);
+  return made;
+}
+
+}  // namespace assay::virtual_lights

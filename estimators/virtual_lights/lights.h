@@ -1,0 +1,71 @@
+#pragma once
+
+// What virtual lights bring to the receiver: sums over light paths, and what is made of them.
+// Parts that a mutant can replace are members of a template parameter.
+
+#include <numbers>
+#include <utility>
+
+#include "virtual_lights/exact.h"
+
+namespace assay::virtual_lights {
+
+/// Sums over the light paths of an observation.
+struct Sums {
+  Spectrum full;      ///< of f / p
+  double target = 0;  ///< of g / p
+};
+
+/// The mean of f / p: classical virtual lights.
+struct Classic {
+  SharedRoom room;
+
+  LightPath shoot(Stream& random, Cost& cost) const { return room->shoot(random, cost); }
+  Spectrum full(const LightPath& path, double geometry) const {
+    return room->reflected(path, geometry);
+  }
+  double target(const LightPath&, double /*geometry*/, bool /*seen*/) const { return 0; }
+  Spectrum result(const Sums& sums, double count) const { return 1 / count * sums.full; }
+};
+
+/// G sum (f / p) / sum (g / p), g = geometry V / pi: weighted importance sampling. 0 where no path
+/// has been seen.
+struct Weighted : Classic {
+  Weighting weighting = Weighting::conditional;
+  double target_integral = 1;  ///< G
+
+  double density(const LightPath& path) const {
+    return weighting == Weighting::conditional ? Room::conditional_density(path)
+                                               : room->marginal_density(path.at);
+  }
+  double target(const LightPath& path, double geometry, bool seen) const {
+    return seen ? geometry / (std::numbers::pi * density(path)) : 0;
+  }
+  Spectrum result(const Sums& sums, double /*count*/) const {
+    return sums.target > 0 ? target_integral / sums.target * sums.full : Spectrum{};
+  }
+};
+
+/// Adds a path that has been shot to the sums.
+template <class Kernel>
+void add_path(const Kernel& kernel, const LightPath& path, Sums& sums, Cost& cost) {
+  if (!path.at.surface) return;
+  const double geometry = kernel.room->geometry(path.at);
+  if (geometry == 0) return;
+  const bool seen = kernel.room->sees(path.at, cost);
+  if (seen) sums.full += kernel.full(path, geometry);
+  sums.target += kernel.target(path, geometry, seen);
+}
+
+/// The sums of `count` light paths.
+template <class Kernel>
+Sums shoot_all(const Kernel& kernel, std::uint64_t count, Stream& random, Cost& cost) {
+  Sums sums;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    add_path(kernel, kernel.shoot(random, cost), sums, cost);
+  }
+  cost.samples += count;
+  return sums;
+}
+
+}  // namespace assay::virtual_lights

@@ -1,0 +1,83 @@
+#pragma once
+
+// A scene of triangles as a source of virtual lights, and the receiver that a camera sees in it.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "luminaire/setting.h"
+#include "paths/family.h"
+#include "virtual_lights/enclosure.h"
+
+namespace assay::virtual_lights {
+
+using paths::Spectrum;
+using paths::Vertex;
+
+/// The way of light from the point y0 of what emits to the point y1 where it arrives, y1 being the
+/// virtual light.
+struct LightPath {
+  Vertex from;
+  Vertex at;  ///< without a surface: the light has left the scene
+  /// Emitted power divided by the density of the path: y0 is drawn in proportion to the radiance
+  /// averaged over the colours, the direction in proportion to the cosine.
+  Spectrum power;
+
+  double from_cosine() const { return dot(at.arriving, from.normal); }
+  double at_cosine() const { return -dot(at.arriving, at.normal); }
+  double squared_distance() const { return squared_length(at.position - from.position); }
+};
+
+class Room {
+ public:
+  /// What emits does so on both sides, in a closed room on the inner side alone. `world` must have
+  /// light, its camera see a surface.
+  explicit Room(paths::SharedMesh world);
+
+  const paths::MeshWorld& world() const { return *world_; }
+  const Vertex& receiver() const { return receiver_; }
+  const Enclosure& walls() const { return enclosure_; }
+
+  LightPath shoot(Stream& random, Cost& cost) const;
+
+  /// cos+ cos+' / r^2 between the receiver and a virtual light, whatever stands between.
+  double geometry(const Vertex& light) const;
+  bool sees(const Vertex& light, Cost& cost) const { return world_->sees(receiver_, light, cost); }
+  /// The radiance that the receiver reflects of one virtual light that it sees.
+  Spectrum reflected(const LightPath& path, double geometry) const;
+
+  /// Density of y1 by area given y0: cos cos' / (pi r^2).
+  static double conditional_density(const LightPath& path);
+  /// Density of y1 by area whatever y0: its irradiance over all power, by Lambert's formula. Only
+  /// where why_no_marginal() is empty.
+  double marginal_density(const Vertex& at) const;
+  const std::string& why_no_marginal() const { return why_no_marginal_; }
+
+  /// The radiance that all inner sides emit, if it is the same everywhere in a closed room.
+  const std::optional<Spectrum>& even_emission() const { return even_emission_; }
+  /// The form factor from the receiver to a triangle that nothing hides.
+  double form_factor(std::size_t triangle) const { return form_factor(receiver_, triangle); }
+  /// Of all power, the share of each wall of a convex room, by the number of the wall.
+  std::vector<double> shares_of_power() const;
+
+ private:
+  double form_factor(const Vertex& from, std::size_t triangle) const;
+  std::optional<Spectrum> find_even_emission() const;
+  double brightness(std::size_t triangle) const {
+    return paths::mean(world_->surface(2 * triangle).emission);
+  }
+
+  paths::SharedMesh world_;
+  Vertex receiver_;
+  Enclosure enclosure_;
+  std::vector<std::uint32_t> sides_;  // that emit: patches of the world
+  std::vector<std::uint32_t> lamps_;  // triangles that emit
+  luminaire::ShareTable shares_;
+  std::optional<Spectrum> even_emission_;
+  std::string why_no_marginal_;
+};
+
+using SharedRoom = std::shared_ptr<const Room>;
+
+}  // namespace assay::virtual_lights

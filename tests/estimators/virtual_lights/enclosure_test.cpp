@@ -1,0 +1,79 @@
+#include "virtual_lights/enclosure.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace assay::virtual_lights {
+namespace {
+
+using render::TriangleMesh;
+using render::Vector3;
+
+// Quadrilaterals as two triangles each, no vertex shared.
+void add(TriangleMesh& mesh, const std::array<Vector3, 4>& corners) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Vector3& corner : corners) mesh.vertices.push_back(corner);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+// Counter-clockwise from inside.
+TriangleMesh cube(double low = 0, double high = 1) {
+  const double a = low, b = high;
+  TriangleMesh mesh;
+  add(mesh, {{{a, a, a}, {b, a, a}, {b, b, a}, {a, b, a}}});
+  add(mesh, {{{a, a, b}, {a, b, b}, {b, b, b}, {b, a, b}}});
+  add(mesh, {{{a, b, a}, {b, b, a}, {b, b, b}, {a, b, b}}});
+  add(mesh, {{{a, a, a}, {a, b, a}, {a, b, b}, {a, a, b}}});
+  add(mesh, {{{b, a, a}, {b, a, b}, {b, b, b}, {b, b, a}}});
+  add(mesh, {{{a, a, a}, {a, a, b}, {b, a, b}, {b, a, a}}});
+  return mesh;
+}
+
+TriangleMesh turned(TriangleMesh mesh) {
+  for (auto& [a, b, c] : mesh.triangles) std::swap(b, c);
+  return mesh;
+}
+
+constexpr Vector3 middle = {0.5, 0.5, 0.5};
+
+TEST(Enclosure, ACubeHasSixWallsWhicheverWayItIsWritten) {
+  for (const bool inwards : {true, false}) {
+    const Enclosure room = enclosure(inwards ? cube() : turned(cube()), middle);
+    EXPECT_EQ(room.why_open, "");
+    EXPECT_EQ(room.why_not_convex, "");
+    EXPECT_EQ(room.counter_clockwise, inwards);
+    ASSERT_EQ(room.wall_of.size(), 12u);
+    for (std::size_t i = 0; i < 12; i += 2) EXPECT_EQ(room.wall_of[i], room.wall_of[i + 1]);
+    EXPECT_EQ(std::set(room.wall_of.begin(), room.wall_of.end()).size(), 6u);
+  }
+}
+
+TEST(Enclosure, AMissingTriangleOpensIt) {
+  TriangleMesh mesh = cube();
+  mesh.triangles.pop_back();
+  EXPECT_THAT(enclosure(mesh, middle).why_open, testing::HasSubstr("belongs to one triangle only"));
+  EXPECT_NE(enclosure(mesh, middle).why_not_convex, "");
+}
+
+TEST(Enclosure, APointOutsideIsNotEnclosed) {
+  EXPECT_THAT(enclosure(cube(), {2, 0.5, 0.5}).why_open, testing::HasSubstr("not inside"));
+}
+
+TEST(Enclosure, ABoxInTheRoomLeavesItClosedButNotConvex) {
+  TriangleMesh mesh = cube();
+  const auto shift = static_cast<std::uint32_t>(mesh.vertices.size());
+  const TriangleMesh box = turned(cube(0.1, 0.2));
+  mesh.vertices.insert(mesh.vertices.end(), box.vertices.begin(), box.vertices.end());
+  for (const auto& [a, b, c] : box.triangles) {
+    mesh.triangles.push_back({a + shift, b + shift, c + shift});
+  }
+  const Enclosure room = enclosure(mesh, middle);
+  EXPECT_EQ(room.why_open, "");
+  EXPECT_NE(room.why_not_convex, "");
+}
+
+}  // namespace
+}  // namespace assay::virtual_lights
