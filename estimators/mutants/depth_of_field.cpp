@@ -147,7 +147,7 @@ std::vector<Entry> mutants_depth_of_field() {
       mutant(
           "lens_blur_by_depth", pixel_information(),
           "has discs of confusion of radius A |depth - focus| / depth, divided by the depth and "
-          "not by the focus: too small behind the focal plane; +44 % at the crest of `sinusoid`.",
+          "not by the focus: too small behind the focal plane; +42 % at the crest of `sinusoid`.",
           blur_by_depth),
       mutant("lens_pilot_reused", two_stage_information(),
              "averages the pilot with the samples that it asks for: too few follow a pilot that "
