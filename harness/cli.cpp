@@ -156,8 +156,16 @@ std::string replayable_check(const Given& given) {
   return line.text();
 }
 
-Command run_command(const Given& given, const CLI::App& sub) {
+void require_suites(const Given& given, const CLI::App& sub) {
   require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
+  for (const std::string& suite : given.suites) {
+    if (suite.ends_with(".json"))
+      usage_error("a suite is a YAML file; a saved run is shown by `assay report " + suite + "`");
+  }
+}
+
+Command run_command(const Given& given, const CLI::App& sub) {
+  require_suites(given, sub);
   RunCommand command{given.suites, given.sets, options(given), output(given)};
   command.options.ledger = given.ledger;
   command.options.command = replayable_run(given);
@@ -165,7 +173,7 @@ Command run_command(const Given& given, const CLI::App& sub) {
 }
 
 Command plan_command(const Given& given, const CLI::App& sub) {
-  require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
+  require_suites(given, sub);
   return PlanCommand{given.suites, given.sets, options(given), given.quiet};
 }
 

@@ -130,16 +130,16 @@ constexpr Named named[] = {
      "wavelength: .41887902047863907}]}"},
     // A sharp book on a sharp wall with a near strip across it, out of focus, bright as a lamp.
     {"strip",
-     "{lens: {radius: .2, focus: 4}, planes: ["
-     "{depth: 2, x: [-.03, .03], y: [-100, 100], radiance: 4}, "
+     "{lens: {radius: .06, focus: 4}, planes: ["
+     "{depth: 2, x: [-.1, .1], y: [-100, 100], radiance: 4}, "
      "{depth: 3.9, x: [-.8, .9], y: [-.4, .6], radiance: .6, amplitude: .2, wavelength: .4}, "
      "{depth: 4.1, x: [-100, 100], y: [-100, 100], radiance: 1, amplitude: .2, wavelength: .7}]}"},
     // A sharp head before lights far behind.
     {"portrait",
      "{lens: {radius: .1, focus: 2}, background: .02, planes: ["
      "{depth: 2, x: [-.5, .6], y: [-1, .5], radiance: .6, amplitude: .3, wavelength: .15}, "
-     "{depth: 8, x: [-2.6, -2.4], y: [1, 1.2], radiance: 8}, "
-     "{depth: 8, x: [2.9, 3.1], y: [.4, .6], radiance: 8}, "
+     "{depth: 8, x: [-3.4, -2.6], y: [1, 1.8], radiance: 8}, "
+     "{depth: 8, x: [2.7, 3.5], y: [.4, 1.2], radiance: 8}, "
      "{depth: 9, x: [-100, 100], y: [-100, 2.5], radiance: .3, amplitude: .1, wavelength: 3}]}"},
     // Three boards one behind the other, the middle one sharp.
     {"boards",

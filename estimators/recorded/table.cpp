@@ -137,8 +137,8 @@ class Reader {
     const std::size_t expected = table_.columns.size();
     if (fields.size() == expected) return;
     const Field& at = fields[std::min(fields.size() - 1, expected)];
-    refuse(at.column, "this row has " + std::to_string(fields.size()) + " numbers, but there are " +
-                          std::to_string(expected) + " columns; every row needs the same number");
+    refuse(at.column, "numbers in this row: " + std::to_string(fields.size()) + ", but columns: " +
+                          std::to_string(expected) + "; every row needs the same number");
   }
 
   double number(const Field& field) const {

@@ -105,7 +105,7 @@ TEST_F(Recorded, RefusesAnEmptyField) {
 }
 
 TEST_F(Recorded, RefusesRaggedRows) {
-  expect_refused("1 2\n3\n", {2, 1}, "this row has 1 numbers, but there are 2 columns");
+  expect_refused("1 2\n3\n", {2, 1}, "numbers in this row: 1, but columns: 2");
   expect_refused("1 2\n3 4 5\n", {2, 5}, "this row has 3 numbers");
   expect_refused("# columns: a\n1 2\n", {2, 3}, "there are 1 columns");
 }

@@ -173,6 +173,8 @@ TEST(CommandLine, NamesWhatIsMissingOrTooMuch) {
   EXPECT_EQ(refused({}), "no command; see `assay --help`");
   EXPECT_EQ(refused({"run"}), "`assay run` needs a suite file; see `assay run --help`");
   EXPECT_EQ(refused({"check"}), "`assay check` needs a claim; see `assay check --help`");
+  EXPECT_EQ(refused({"run", "a.json"}),
+            "a suite is a YAML file; a saved run is shown by `assay report a.json`");
   EXPECT_EQ(refused({"check", "a.yaml"}),
             "`assay check` tests one claim; a suite is run by `assay run a.yaml`");
   EXPECT_EQ(refused({"check", "mean(a)", "==", "3"}),

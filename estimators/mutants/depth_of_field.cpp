@@ -1,0 +1,184 @@
+// Mutants of depth of field: lenses, counts, predictions or splats with one thing wrong.
+
+#include <algorithm>
+#include <utility>
+
+#include "depth_of_field/image.h"
+#include "depth_of_field/pixel.h"
+#include "depth_of_field/reconstruction.h"
+#include "depth_of_field/two_stage.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace depth_of_field;
+
+// The radius of a lens point in proportion to its number: too many points near the middle.
+struct CrowdedDisc {
+  PlanePoint operator()(double s, double t) const { return UniformDisc{}(s * s, t); }
+};
+
+// Lens points are moved in by focus / depth of what the middle of the lens sees, so that discs of
+// confusion have the radius A |depth - focus| / depth.
+struct BlurByDepth {
+  SharedSetting setting;
+  PlanePoint pixel;
+  double factor;
+
+  double operator()(Stream& random, Cost& cost) const {
+    const double s = random.uniform();
+    const PlanePoint u = UniformDisc{}(s, random.uniform());
+    return setting->radiance(pixel, {factor * u.x, factor * u.y}, cost);
+  }
+};
+
+std::shared_ptr<const Setup> blur_by_depth(Parameters& given) {
+  const SharedSetting setting = read_setting(given);
+  const PlanePoint pixel = read_pixel(given);
+  if (given.count("jitter") != 1) given.refuse("jitter", "must be 1 here");
+  Cost uncounted;
+  const Plane* const seen = setting->first_hit(pixel, {}, uncounted);
+  const double factor = seen ? setting->scene().lens.focus / seen->depth : 1;
+  if (factor > 1)
+    given.refuse("scene",
+                 "what the middle of the lens sees must not be in front of the focal plane");
+  Channel channel = radiance_channel(setting->scene(), exact_moments(setting->scene(), pixel));
+  channel.variance.reset();
+  return averaging(std::move(channel), BlurByDepth{setting, pixel, factor});
+}
+
+// The pilot's samples are averaged with those that it asks for.
+struct PilotReused {
+  template <class Draw>
+  double operator()(const StageRule& rule, const Draw& draw) const {
+    Tally all;
+    for (std::uint64_t i = 0; i < rule.pilot; ++i) all.add(draw());
+    for (const double n = rule.count(all.variance()); all.count < n;) all.add(draw());
+    return all.mean();
+  }
+};
+
+// Samples are drawn until their own estimate of the error is small enough.
+struct StoppedByItsError {
+  template <class Draw>
+  double operator()(const StageRule& rule, const Draw& draw) const {
+    Tally all;
+    for (std::uint64_t i = 0; i < rule.pilot; ++i) all.add(draw());
+    while (all.count < rule.count(all.variance())) all.add(draw());
+    return all.mean();
+  }
+};
+
+// Every pixel is divided by the mean number of lens samples.
+struct DividedByTheMean : SoundShading {
+  double mean;
+  double divisor(const ImagePlan&, std::size_t) const { return mean; }
+};
+
+std::shared_ptr<const Setup> divided_by_the_mean(Parameters& given) {
+  ImagePlan plan = read_image_plan(given);
+  double sum = 0;
+  for (const std::uint64_t n : plan.counts) sum += static_cast<double>(n);
+  DividedByTheMean shading;
+  shading.mean = sum / static_cast<double>(plan.counts.size());
+  return image_setup(std::move(plan), shading);
+}
+
+// Pixels whose ray of the prediction hits nothing are taken by a pinhole.
+struct SharpBackground : SoundShading {
+  double sample(const ImagePlan& plan, std::size_t pixel, Stream& random, Cost& cost) const {
+    if (!plan.background[pixel]) return SoundShading::sample(plan, pixel, random, cost);
+    return plan.setting->radiance(plan.grid.pixel(pixel), {}, cost);
+  }
+};
+
+std::shared_ptr<const Setup> sharp_background(Parameters& given) {
+  const PredictionRules rules =
+      given.string("prediction") == "covariance" ? covariance_rules() : wave_rules();
+  return image_setup(read_image_plan(given, &rules), SharpBackground{});
+}
+
+std::shared_ptr<const Setup> fronts_ignored(Parameters& given) {
+  PredictionRules rules = wave_rules();
+  rules.occludes = [](const Plane& front, const Lens& lens) { return front.depth >= lens.focus; };
+  return image_setup(read_image_plan(given, &rules));
+}
+
+// The largest frequency with its sign: -Wv / f made it positive, Wv itself is not.
+double signed_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens) {
+  double highest = 0;
+  for (const CameraFrequency& w : waves) {
+    if (lens.radius * std::abs(w.lens) >= first_zero_of_disc_response) continue;
+    highest = std::max(highest, -w.image);
+  }
+  return highest;
+}
+
+std::shared_ptr<const Setup> signed_maximum(Parameters& given) {
+  ReconstructionRules rules;
+  rules.prediction.bandwidth = signed_bandwidth;
+  return prepare_reconstruction(given, rules);
+}
+
+Splats as_they_fall(Splats splats) { return splats; }
+
+std::shared_ptr<const Setup> unnormalised(Parameters& given) {
+  ReconstructionRules rules;
+  rules.weights = as_they_fall;
+  return prepare_reconstruction(given, rules);
+}
+
+using Prepare = std::shared_ptr<const Setup> (*)(Parameters&);
+
+Entry mutant(const char* name, const Information& original, const char* defect, Prepare prepare) {
+  return {mutant_information(std::string("mutants/") + name, original, defect), prepare};
+}
+
+}  // namespace
+
+std::vector<Entry> mutants_depth_of_field() {
+  return {
+      mutant("lens_crowded", pixel_information(),
+             "draws lens points with a radius in proportion to a random number, not to its root: "
+             "too many near the middle; +8 % where a segment of the disc is lit at d / r = 1/2, "
+             "and its sampler shows it.",
+             prepare_pixel<CrowdedDisc>),
+      mutant(
+          "lens_blur_by_depth", pixel_information(),
+          "has discs of confusion of radius A |depth - focus| / depth, divided by the depth and "
+          "not by the focus: too small behind the focal plane; +42 % at the crest of `sinusoid`.",
+          blur_by_depth),
+      mutant("lens_pilot_reused", two_stage_information(),
+             "averages the pilot with the samples that it asks for: too few follow a pilot that "
+             "saw nothing; too dark where a small part of the lens is lit.",
+             prepare_two_stage<PilotReused>),
+      mutant("lens_stopped_by_error", two_stage_information(),
+             "draws until the samples' own estimate of their error is small enough: stops too "
+             "early where it has seen nothing; too dark where a small part of the lens is lit.",
+             prepare_two_stage<StoppedByItsError>),
+      mutant(
+          "lens_divided_by_mean", image_information(),
+          "divides each pixel's sum by the mean number of lens samples, not by the pixel's: "
+          "too bright by its share of samples where there is variance, dark where there is none.",
+          divided_by_the_mean),
+      mutant("lens_sharp_background", image_information(),
+             "gives the lens no aperture in pixels whose middle sees no surface: what is blurred "
+             "across the background there is cut off.",
+             sharp_background),
+      mutant("lens_fronts_ignored", image_information(),
+             "predicts nothing from occluders in front of the focal plane: no bias, but one lens "
+             "sample where there is most noise.",
+             fronts_ignored),
+      mutant("bandwidth_signed", reconstruction_information(),
+             "takes the largest frequency with its sign: those that are all negative count as "
+             "none, and waves are sampled eight pixels apart.",
+             signed_maximum),
+      mutant("splats_unnormalised", reconstruction_information(),
+             "does not divide by the sum of the weights: too bright where dense samples and sparse "
+             "ones meet, too dark beyond the last sample.",
+             unnormalised),
+  };
+}
+
+}  // namespace assay::plugins
