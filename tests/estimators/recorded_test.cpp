@@ -106,8 +106,8 @@ TEST_F(Recorded, RefusesAnEmptyField) {
 
 TEST_F(Recorded, RefusesRaggedRows) {
   expect_refused("1 2\n3\n", {2, 1}, "numbers in this row: 1, but columns: 2");
-  expect_refused("1 2\n3 4 5\n", {2, 5}, "this row has 3 numbers");
-  expect_refused("# columns: a\n1 2\n", {2, 3}, "there are 1 columns");
+  expect_refused("1 2\n3 4 5\n", {2, 5}, "numbers in this row: 3, but columns: 2");
+  expect_refused("# columns: a\n1 2\n", {2, 3}, "numbers in this row: 2, but columns: 1");
 }
 
 TEST_F(Recorded, RefusesBadHeaders) {
