@@ -103,7 +103,8 @@ std::vector<double> ProductTarget::means() const {
 ImageShape BranchingTarget::shape() const { return {.width = form_.width, .height = 1}; }
 
 Contribution BranchingTarget::at(Coordinates& point, Cost&) const {
-  const std::size_t pixel = pixel_of(point.uniform(), form_.width);
+  constexpr std::size_t stripes = 32;
+  const std::size_t pixel = pixel_of(point.uniform(), stripes * form_.width) % form_.width;
   const double f = pixel % 2 == 0
                        ? form_.level
                        : form_.lobe.height * value(form_.lobe.factors[0], point.uniform());

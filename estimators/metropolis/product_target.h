@@ -56,8 +56,9 @@ class ProductTarget final : public Target {
   bool coloured_;
 };
 
-/// Paths of two lengths: of a row of pixels the even ones bring `level`, whatever else; the odd
-/// ones look at a second coordinate and bring `lobe` of it.
+/// Paths of two lengths. The first coordinate crosses 32 stripes a pixel, of pixel 0, 1, 2 ... in
+/// turn. Those of even pixels bring `level`, whatever else; those of odd ones look at a second
+/// coordinate and bring `lobe` of it.
 class BranchingTarget final : public Target {
  public:
   struct Form {

@@ -133,7 +133,7 @@ SharedTarget named(Parameters& given, const std::string& name, std::size_t pixel
   }
   if (name == "branches") {
     return std::make_shared<BranchingTarget>(
-        BranchingTarget::Form{pixels, 1, {20, {Gaussian{0.5, 0.02}}}});
+        BranchingTarget::Form{pixels, 1, {100, {Gaussian{0.5, 0.004}}}});
   }
   if (name == "sphere" || name == "coloured_sphere") {
     return sphere_of(paths::read_scene(Value::scalar(name), given.folder()), 0.8, pixels);
