@@ -49,8 +49,7 @@ TEST(CellRecord, HasWhatWasDrawnExpectedAndTheDifferenceInEveryCell) {
   }
 }
 
-// One quadrant of azimuths is drawn, all four are declared: nothing is drawn in three quarters of
-// the columns.
+// Half vectors of one quadrant are drawn, of all four declared.
 TEST(CellRecord, ShowsWhereASamplerIsWrong) {
   const reports::Test test = tested("distribution(quadrant.direction) == density");
   EXPECT_EQ(test.verdict, reports::Verdict::fail);
