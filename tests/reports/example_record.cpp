@@ -411,8 +411,8 @@ Suite triangle() {
   s.estimators[3].variance_of = "secondary";
   s.estimators[2].channels[0].reference_variance = 0.0119;
   compare_all(s);
-  s.tests = {passing(),          proof(),     failing(), caught_mutant(), unseen_mutant(),
-             surviving_mutant(), undecided(), invalid(), broken(),        not_run()};
+  s.tests = {passing(),   proof(),   failing(), caught_mutant(), surviving_mutant(),
+             undecided(), invalid(), broken(),  not_run(),       unseen_mutant()};
   return s;
 }
 
