@@ -15,12 +15,13 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const auto techniques = std::make_shared<const Techniques>(setting, read_reflectance(given),
                                                              solid_angle_sampling(setting));
   const WeightedByHeuristic alone(Heuristic::balance(), {0, 1});
-  std::optional<Known> variance;
+  KnownPrimary primary{.high = highest_of_brdf(*techniques)};
   if (const auto known = moments(*techniques, alone)) {
-    variance = known->one_sample_variance({0, 1});
+    primary.mean = known->radiance();
+    primary.variance = known->one_sample_variance({0, 1});
   }
   return averaging(
-      radiance_channel(*techniques, variance, highest_of_brdf(*techniques)),
+      radiance_channel(*techniques, primary),
       [techniques, alone](Stream& random, Cost& cost) {
         return from_brdf(alone, techniques->brdf(random, cost));
       },

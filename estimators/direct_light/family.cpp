@@ -72,11 +72,16 @@ Channel mean_channel(const Techniques& techniques) {
   return channel;
 }
 
-Channel radiance_channel(const Techniques& techniques, const std::optional<Known>& variance,
-                         double high) {
-  Channel channel = mean_channel(techniques);
+Channel radiance_channel(const Techniques& techniques, const KnownPrimary& primary) {
+  // Quadrature takes its time where a BRDF has kinks: not twice.
+  const bool by_quadrature = primary.mean && !techniques.reflectance().constant();
+  Channel channel = by_quadrature ? Channel{.name = "radiance",
+                                            .mean = primary.mean->value,
+                                            .mean_error = primary.mean->error}
+                                  : mean_channel(techniques);
   channel.low = 0;
-  channel.high = high;
+  channel.high = primary.high;
+  const auto& variance = primary.variance;
   if (variance && variance->error <= 1e-8 * variance->value) channel.variance = variance->value;
   return channel;
 }

@@ -35,8 +35,15 @@ Pair read_probabilities(Parameters&);
 /// The channel `radiance` with its mean, where that is known, and nothing else.
 Channel mean_channel(const Techniques&);
 
-/// The channel with its range [0, high], and the variance where it is known to 1e-8.
-Channel radiance_channel(const Techniques&, const std::optional<Known>& variance, double high);
+/// What is known of a primary.
+struct KnownPrimary {
+  std::optional<Known> mean = {};
+  std::optional<Known> variance = {};
+  double high = 0;  ///< no primary is above
+};
+/// The channel with the range [0, high], the mean of the primary, or of mean_channel() where that
+/// is in closed form or none is given, and the variance where it is known to 1e-8.
+Channel radiance_channel(const Techniques&, const KnownPrimary&);
 
 /// The most that a draw of the BRDF brings when all the light of the scene is weighted by 1.
 double highest_of_brdf(const Techniques&);

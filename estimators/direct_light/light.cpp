@@ -15,12 +15,13 @@ using namespace direct_light;
 std::shared_ptr<const Setup> prepare(Parameters& given) {
   const SharedTechniques techniques = read_techniques(given);
   const WeightedByHeuristic alone(Heuristic::balance(), {1, 0});
-  std::optional<Known> variance;
+  KnownPrimary primary{.high = std::numeric_limits<double>::infinity()};
   if (const auto known = moments(*techniques, alone)) {
-    variance = known->one_sample_variance({1, 0});
+    primary.mean = known->radiance();
+    primary.variance = known->one_sample_variance({1, 0});
   }
   return averaging(
-      radiance_channel(*techniques, variance, std::numeric_limits<double>::infinity()),
+      radiance_channel(*techniques, primary),
       [techniques, alone](Stream& random, Cost& cost) {
         return from_light(alone, techniques->light(random, cost));
       },

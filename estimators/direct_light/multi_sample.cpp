@@ -23,15 +23,16 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const Counts counts = read_counts(given);
   const Heuristic heuristic = read_heuristic(given);
   const WeightedByHeuristic combination(heuristic, counts.shares());
-  std::optional<Known> variance;
+  KnownPrimary primary{.high = highest(*techniques, counts)};
   if (heuristic.smooth()) {
     if (const auto known = moments(*techniques, combination)) {
-      variance = known->multi_sample_variance(counts);
+      primary.mean = known->radiance();
+      primary.variance = known->multi_sample_variance(counts);
     }
   }
   std::vector<NamedSampler> samplers = light_samplers(techniques);
   samplers.push_back(brdf_samplers(techniques)[0]);
-  return averaging(radiance_channel(*techniques, variance, highest(*techniques, counts)),
+  return averaging(radiance_channel(*techniques, primary),
                    MultiSamplePrimary<>(techniques, counts, combination), std::move(samplers));
 }
 

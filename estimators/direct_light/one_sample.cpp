@@ -15,15 +15,15 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const Pair probabilities = read_probabilities(given);
   const Heuristic heuristic = read_heuristic(given);
   const WeightedByHeuristic combination(heuristic, probabilities);
-  std::optional<Known> variance;
+  // As in the multi-sample model, with one draw.
+  KnownPrimary primary{.high = highest_of_brdf(*techniques) / probabilities.brdf};
   if (heuristic.smooth()) {
     if (const auto known = moments(*techniques, combination)) {
-      variance = known->one_sample_variance(probabilities);
+      primary.mean = known->radiance();
+      primary.variance = known->one_sample_variance(probabilities);
     }
   }
-  // As in the multi-sample model, with one draw.
-  const double highest = highest_of_brdf(*techniques) / probabilities.brdf;
-  return averaging(radiance_channel(*techniques, variance, highest),
+  return averaging(radiance_channel(*techniques, primary),
                    OneSamplePrimary<>(techniques, probabilities, combination),
                    mixture_samplers(techniques, probabilities));
 }
