@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "reports/effect.h"
 #include "reports/number.h"
@@ -26,11 +27,6 @@ std::string plain(std::string text) {
   return text;
 }
 
-/// "0.31 %", "a factor of 1.2": in the form in which the effect is shown.
-std::string size_text(double theta, const ChannelOutcome& channel) {
-  return reports::margin_text(std::abs(theta), channel.effect);
-}
-
 /// "difference from the reference is +0.31 % [+0.12 %, +0.5 %] (99 % interval)".
 std::string finding(const ChannelOutcome& channel) {
   return fmt::format("{} is {}", reports::effect_name(channel.effect),
@@ -48,6 +44,15 @@ const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
                            });
 }
 
+/// Of two values of theta the one that is shown as the larger: of ratios near one, -14.3 % is less
+/// than +16.2 %, though its logarithm is as far from zero.
+double farther(double x, double y, const Evidence& evidence) {
+  constexpr double near = std::numbers::ln2;
+  const bool in_per_cent = evidence.ratio && std::abs(x) <= near && std::abs(y) <= near;
+  const auto size = [&](double theta) { return std::abs(in_per_cent ? std::expm1(theta) : theta); };
+  return size(x) > size(y) ? x : y;
+}
+
 /// The largest effect in the claim's forbidden direction that the interval holds.
 double excluded_beyond(const ChannelOutcome& channel) {
   const stats::Interval interval = channel.evidence.interval(channel.effect.confidence);
@@ -62,7 +67,7 @@ double excluded_beyond(const ChannelOutcome& channel) {
     case Relation::within:
       break;
   }
-  return std::max(std::abs(interval.low), std::abs(interval.high));
+  return farther(interval.low, interval.high, channel.evidence);
 }
 
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -70,7 +75,8 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     std::string text = "no evidence against the claim";
     if (channel.detectable) {
       text += fmt::format("; {} or more would have been found with probability {:g}",
-                          size_text(*channel.detectable, channel), 1 - outcome.share().beta);
+                          reports::margin_text(*channel.detectable, channel.effect),
+                          1 - outcome.share().beta);
     }
     return text;
   }
@@ -81,10 +87,10 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
   const double towards = channel.regions.relation == Relation::at_least ? -excluded : excluded;
   if (one_sided && towards <= 0) {
     return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
-                       size_text(excluded, channel), interval);
+                       reports::size_text(excluded, channel.effect), interval);
   }
   return fmt::format("no evidence against the claim; {} or more is excluded by {}",
-                     size_text(excluded, channel), interval);
+                     reports::size_text(excluded, channel.effect), interval);
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {

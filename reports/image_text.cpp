@@ -48,8 +48,8 @@ std::string map_title(const Map& map) {
   if (map.name == "p_adjusted") return "p of each pixel, adjusted for all pixels";
   if (map.name == "reference") return "reference";
   if (map.name == "cells_observed") return "Draws in each cell";
-  if (map.name == "cells_expected") return "Draws expected by the density";
-  if (map.name == "cells_z") return "(drawn - expected) / sqrt(expected)";
+  if (map.name == "cells_expected") return "Draws expected";
+  if (map.name == "cells_z") return "Drawn - expected, in standard deviations";
   const bool variance = map.name == "variance" || map.name == "other_variance";
   return fmt::format("{} of {}", variance ? "variance of one image" : "mean", map.source);
 }

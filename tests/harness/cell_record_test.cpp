@@ -66,6 +66,22 @@ TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
             "u 0 to 1 from top to bottom, v / (1 - u) 0 to 1 from left to right");
 }
 
+// Of both samples together each cell has its part, so what is expected of the first sums to what it
+// has, and where nothing differs the differences are of one standard deviation: their mean square
+// over 256 cells is 1 within five of its own standard deviations, sqrt(2 / 256).
+TEST(CellRecord, OfTwoSamplesTheFirstIsHeldAgainstBothTogether) {
+  const reports::Test test = tested(
+      "distribution(ward.direction) == distribution(ward.direction), test: "
+      "chi-square-two-sample");
+  ASSERT_EQ(test.maps.size(), 3u) << test.message;
+  EXPECT_NE(test.maps[0].source.find("of theta from top to bottom"), std::string::npos);
+  EXPECT_EQ(test.maps[0].width * test.maps[0].height, 256u);
+  EXPECT_NEAR(sum(test.maps[0]), sum(test.maps[1]), 5 * std::sqrt(20000 * 0.25));
+  double square = 0;
+  for (const float z : test.maps[2].texels.values) square += z * z / 256.0;
+  EXPECT_NEAR(square, 1, 5 * std::sqrt(2 / 256.0));
+}
+
 TEST(CellRecord, OfAnIntervalOrAMarginalThereIsNone) {
   EXPECT_TRUE(tested("distribution(normal.x) == density").maps.empty());
   EXPECT_TRUE(tested("distribution(ward.direction.theta) == density").maps.empty());

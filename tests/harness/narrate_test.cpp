@@ -1,6 +1,9 @@
 #include "harness/narrate.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "reports/effect.h"
 #include "running.h"
@@ -15,6 +18,7 @@ reports::Test told(const std::string& test) {
 estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
   other: {plugin: analytic/normal, mean: 2.01, primaries: 1}
+  unit: {plugin: analytic/normal, mean: 2, deviation: 0.1, primaries: 1}
 tests:
   - {name: test, )" + test + "}\n"),
                     "test");
@@ -89,6 +93,20 @@ TEST(Narrate, TheIntervalOfAPassIsTheOneThatExcludes) {
   EXPECT_LT(*effect.high, 0.1);
   EXPECT_GT(*effect.low, -0.1);
   expect_said(test, Verdict::pass, " % or more is excluded by the 98 % interval");
+}
+
+// The larger of the ends as they are shown: upwards a ratio has more per cent than downwards.
+TEST(Narrate, WhatIsExcludedOfARatioIsAnEndOfItsInterval) {
+  for (const char* side : {"== 0.01", "<= 0.01"}) {
+    const reports::Test test =
+        told(std::string("claim: variance(unit) ") + side + ", detect: 40%, secondaries: 1000");
+    const reports::Effect& effect = test.channels[0].effect;
+    const double high = std::abs(std::expm1(*effect.high));
+    const double low = std::abs(std::expm1(*effect.low));
+    const bool upper = std::string(side).starts_with("<") || high > low;
+    expect_said(test, Verdict::pass,
+                fmt::format("{:.3g} % or more is excluded", 100 * (upper ? high : low)));
+  }
 }
 
 TEST(Narrate, TheIntervalOfAFailIsTheOneThatRefutes) {

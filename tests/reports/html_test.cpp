@@ -291,7 +291,7 @@ TEST(Html, TheCellsOfASamplersDomainAreDrawn) {
                cells_map("cells_z", {0, 0, 0, 0, 0, 22})};
   const std::string page = html(record_of(test));
   EXPECT_NE(page.find("Draws in each cell: theta 0 to 1.571 from top"), std::string::npos);
-  EXPECT_NE(page.find("Draws expected by the density"), std::string::npos);
+  EXPECT_NE(page.find("Draws expected: theta"), std::string::npos);
   // Observed and expected on one scale, up to 60, and z beyond its own.
   EXPECT_EQ(occurrences(page, ">60</text>"), 2u);
   EXPECT_NE(page.find("&gt;= +15"), std::string::npos);
