@@ -66,8 +66,12 @@ class Block {
 
   void write(std::vector<std::string>& lines) const {
     lines.push_back(line("mutant", [](const Column& column) { return column.heading; }));
-    for (std::size_t r = 0; r < names_.size(); ++r)
-      lines.push_back(line(names_[r], [r](const Column& column) { return column.cells[r]; }));
+    for (std::size_t r = 0; r < names_.size(); ++r) {
+      const bool any = std::any_of(columns_.begin(), columns_.end(),
+                                   [r](const Column& column) { return !column.cells[r].empty(); });
+      if (any)
+        lines.push_back(line(names_[r], [r](const Column& column) { return column.cells[r]; }));
+    }
   }
 
  private:
