@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdio>
 #include <string>
 
+#include "render/vector.h"
 #include "tests/estimators/draws.h"
 
 namespace assay {
 namespace {
 
 using namespace assay::draws;
+using render::Vector3;
 
 const std::array<const char*, 6> walls = {
     "[[0,0,0],[1,0,0],[1,1,0],[0,1,0]]", "[[0,0,1],[0,1,1],[1,1,1],[1,0,1]]",
@@ -115,6 +118,52 @@ TEST(VirtualLights, AFurnaceOfAnyShapeHasTheSquareOfItsAlbedo) {
   EXPECT_EQ(*plugin.setup->channels()[1].mean, 1);
   const Sample sample = observe(plugin, 20, 64)[0];
   for (const double x : sample.values) EXPECT_NEAR(x, 0.72, 1e-12);
+}
+
+// A box of the given sides about a centre, turned by an angle about (1, 2, 3), whose walls all emit
+// 1 and reflect 0.5, with what its camera in the middle sees of it.
+std::string turned_box(const Vector3& centre, const Vector3& sides, double angle) {
+  const Vector3 axis = render::normalised({1, 2, 3});
+  const auto written = [](const Vector3& v) {
+    char text[96];
+    std::snprintf(text, sizeof text, "[%.17g, %.17g, %.17g]", v.x, v.y, v.z);
+    return std::string(text);
+  };
+  const auto turned = [&](const Vector3& v) {  // Rodrigues
+    return std::cos(angle) * v + std::sin(angle) * cross(axis, v) +
+           (1 - std::cos(angle)) * dot(axis, v) * axis;
+  };
+  const auto corner = [&](int i) {
+    return written(centre + turned({((i & 1) - 0.5) * sides.x, ((i >> 1 & 1) - 0.5) * sides.y,
+                                    ((i >> 2 & 1) - 0.5) * sides.z}));
+  };
+  std::string text = "{scene: {camera: {position: " + written(centre) +
+                     ", direction: " + written(turned({0.1, 0.05, -1})) + "}, surfaces: [";
+  const char* separator = "";
+  for (const auto& [a, b, c, d] : {std::array{0, 1, 3, 2},
+                                   {4, 6, 7, 5},
+                                   {2, 3, 7, 6},
+                                   {0, 2, 6, 4},
+                                   {1, 5, 7, 3},
+                                   {0, 4, 5, 1}}) {
+    text += std::string(separator) + "{polygon: [" + corner(a) + ", " + corner(b) + ", " +
+            corner(c) + ", " + corner(d) + "], emission: 1, albedo: 0.5}";
+    separator = ", ";
+  }
+  return text + "]}, weighting: marginal}";
+}
+
+TEST(VirtualLights, ABoxIsClosedWhereverItStandsAndHoweverItIsTurned) {
+  for (int i = 0; i < 40; ++i) {
+    const Vector3 centre = {0.1 * i, 7.3 - 0.7 * i, 0.3};
+    for (const double angle : {0., 0.37 * i}) {
+      const Vector3 sides = {1.1, 0.7 + 0.1 * i, 0.9};
+      const auto plugin = prepare("virtual_lights/weighted", turned_box(centre, sides, angle));
+      const auto channels = plugin.setup->channels();
+      EXPECT_EQ(channels[0].mean, 0.25) << i << " " << angle;
+      EXPECT_EQ(channels[1].mean, 1) << i << " " << angle;
+    }
+  }
 }
 
 TEST(VirtualLights, AGivenIntegralScalesTheEstimate) {
