@@ -75,12 +75,15 @@ reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
                                 .defect = information.defect,
                                 .primaries = picture.pool->primaries(),
                                 .secondaries = picture.pool->largest_prefix(),
-                                .confidence = confidence};
+                                .confidence = confidence,
+                                .variance_of = information.averages ? "primary" : "secondary"};
   if (!picture.pool->trouble().empty()) return row;
   const Summary& summary = summary_of(picture);
   row.cost = cost_of(summary);
   if (picture.pool->setup()->image()) {
-    row.channels.push_back(image_channel(*picture.pool->setup(), summary, per_primary(picture)));
+    row.channels.push_back(
+        image_channel(*picture.pool->setup(), summary,
+                      {.averaged = per_primary(picture), .confidence = confidence}));
     return row;
   }
   const std::vector<Channel> channels = picture.pool->setup()->channels();
@@ -144,6 +147,8 @@ ComparedPair compare(const Picture& first, const Picture& second, std::size_t ch
   pair.log_variance_p = stats::log_p_two_sided(stats::log_variance_ratio(x, y, null));
   pair.row.mean_p = std::exp(pair.log_mean_p);
   pair.row.variance_p = std::exp(pair.log_variance_p);
+  pair.row.log10_mean_p = pair.log_mean_p / std::log(10.0);
+  pair.row.log10_variance_p = pair.log_variance_p / std::log(10.0);
   pair.row.variance_ratio = number(x.variance() / y.variance() / null);
   return pair;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/colour_scale.h"
 #include "reports/html_table.h"
 #include "reports/record.h"
 
@@ -50,8 +51,20 @@ std::string overview(const Record&);
 /// The estimators of a suite as bars, in numbers, and in pairs.
 std::string estimator_pictures(const Suite&);
 
+/// Which method sees which defect, as a picture and in words; empty where a suite has no mutant
+/// that was tested by two methods.
+std::string kill_section(const Record& record, std::size_t suite);
+
 /// What the nights of the ledger say, alarms first; empty where none is kept.
 std::string ledger_section(const Ledger&);
+
+/// One component of a map in colours with its scale below, a rectangle of it outlined if there is
+/// one.
+std::string map_picture(const Map&, std::size_t component, const ColourScale&,
+                        const ImageFinding* found);
+
+/// The cells of a sampler's domain: drawn, expected and the difference; empty where there are none.
+std::string cells_section(const Test&);
 
 /// The maps of an image in colours, the cell outlined where it differs most; empty where there is
 /// no image.

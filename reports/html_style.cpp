@@ -71,6 +71,8 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
 .chart .cell { fill: none; stroke: var(--edge); stroke-width: 1; } .chart .diagonal { fill: var(--edge); }
 .chart .agree { fill: var(--agree); } .chart .differ { fill: var(--differ); } .chart .unclear { fill: var(--paper); }
 .chart .smaller { fill: var(--smaller); } .chart .larger { fill: var(--larger); }
+.chart .kill { fill: var(--variance); stroke: var(--edge); stroke-width: 1; } .chart .k0 { fill-opacity: .6; } .chart .k1 { fill-opacity: .47; }
+.chart .k2 { fill-opacity: .36; } .chart .k3 { fill-opacity: .26; } .chart .k4 { fill-opacity: .17; } .chart .k5 { fill-opacity: .09; }
 .chart .allowed { fill: var(--band); } .chart .zero { stroke: var(--ink); stroke-width: 1.2; }
 .chart .detect { stroke: var(--mean); stroke-width: 1.6; stroke-dasharray: 6 3; }
 .chart .interval { fill: none; stroke: var(--variance); stroke-width: 2; } .chart .estimate { fill: var(--variance); }
@@ -88,7 +90,7 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
   table.cards tr { padding: 8px 0; border-bottom: 1px solid var(--edge); }
   table.cards td { display: grid; grid-template-columns: 11em minmax(0, 1fr); gap: 8px; border: 0; padding: 2px 0; text-align: left; overflow-wrap: anywhere; }
   table.cards td.empty { display: none; }
-  table.cards td::before { content: attr(data-label); color: var(--muted); } }
+  table.cards td::before { content: attr(data-label); color: var(--muted); white-space: normal; } }
 @media screen and (max-width: 480px) { table.cards td { grid-template-columns: 8em minmax(0, 1fr); } }
 @media (max-width: 620px) { body { padding: 16px 12px 40px; } dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 6px; } }
 @media print { body { max-width: none; padding: 0; font-size: 11px; } .tools { display: none; }
