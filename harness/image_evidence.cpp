@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "harness/inversion.h"
 #include "stats/errors.h"
@@ -17,21 +16,13 @@
 namespace assay::harness {
 namespace {
 
-// Against a reference, this share of the level goes to elements that never varied.
+// This share of the level goes to elements that never varied.
 constexpr double unseen_share = 0.02;
 // Sign vectors are enumerated for so few replicates, some milliseconds' work; for more of them a
 // random choice is looked at, and never of more vectors or longer ones: some seconds' work.
 constexpr std::size_t most_enumerated = 18;
 constexpr double most_flips = 0x1p19;
 constexpr std::size_t most_flipped = 64;
-
-constexpr double certain = std::numeric_limits<double>::lowest();
-
-bool never_varied(const stats::ImageStack<double>& stack, std::size_t element) {
-  const double first = stack.images[0][element];
-  return std::all_of(stack.images.begin(), stack.images.end(),
-                     [&](std::span<const double> image) { return image[element] == first; });
-}
 
 // ---- theta = 0
 
@@ -44,11 +35,14 @@ Images grouped(const stats::ImageStack<double>& stack, std::size_t count) {
   Images means(groups, std::vector<double>(stack.extent.elements()));
   for (std::size_t g = 0; g < groups; ++g) {
     const std::size_t members = (stack.images.size() - g + groups - 1) / groups;
+    const std::span<const double> first = stack.images[0];
     for (std::size_t r = g; r < stack.images.size(); r += groups) {
       for (std::size_t i = 0; i < means[g].size(); ++i) {
-        means[g][i] += stack.images[r][i] / static_cast<double>(members);
+        // From the first image on: the mean of a constant is that constant, without rounding.
+        means[g][i] += (stack.images[r][i] - first[i]) / static_cast<double>(members);
       }
     }
+    for (std::size_t i = 0; i < means[g].size(); ++i) means[g][i] += first[i];
   }
   return means;
 }
@@ -59,41 +53,43 @@ stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Image
   return stack;
 }
 
-stats::FlipMatrix flip_matrix_of(const ImagePair& pair) {
-  const Images first = grouped(pair.first(), most_flipped);
-  const auto a = stack_of(pair.extent(), first);
-  if (!pair.of_two()) return stats::flip_matrix(a, pair.reference());
-  const Images second = grouped(pair.second(), most_flipped);
-  return stats::flip_matrix(a, stack_of(pair.extent(), second));
+stats::FlipMatrix flips_of(const stats::ImageStack<double>& a, const stats::ImageReference& b) {
+  const Images first = grouped(a, most_flipped);
+  return stats::flip_matrix(stack_of(a.extent, first), b);
+}
+
+stats::FlipMatrix flips_of(const stats::ImageStack<double>& a, const stats::ImageStack<double>& b) {
+  const Images first = grouped(a, most_flipped);
+  const Images second = grouped(b, most_flipped);
+  return stats::flip_matrix(stack_of(a.extent, first), stack_of(b.extent, second));
 }
 
 /// The sum of squares of correlated elements: the share of sign vectors that reach it. nullopt
 /// where so few replicates, or so small a level, leave nothing to reject.
-std::optional<double> flipped_energy(const ImagePair& pair, const ImageTest& test) {
+std::optional<double> flipped_energy(const VaryingPart& varying, const ImageTest& test) {
   const double share = test.share.alpha * stats::energy_share;
-  const stats::FlipMatrix matrix = flip_matrix_of(pair);
+  const stats::FlipMatrix matrix =
+      varying.with([](const auto& a, const auto& b) { return flips_of(a, b); });
   const double replicates = static_cast<double>(matrix.replicates());
   if (replicates < 2 + std::log2(1 / share)) return std::nullopt;
   if (matrix.replicates() <= most_enumerated) return stats::sign_flip(matrix, share).log_p;
   const double flips = std::ceil(4 / share);
   if (flips > most_flips) return std::nullopt;
-  Stream random(stream_key(test.flips.bits, "sign flips", "", 0), pair.replicates());
+  Stream random(stream_key(test.flips.bits, "sign flips", "", 0), varying.first().images.size());
   return stats::sign_flip(matrix, {share, static_cast<std::uint64_t>(flips)}, random).log_p;
 }
 
-stats::ImageFamily family_of(const ImagePair& pair, const ImageTest& test, ImageOutcome& outcome) {
+stats::ImageFamily family_of(const VaryingPart& varying, const ImageTest& test,
+                             ImageOutcome& outcome) {
   stats::PyramidOptions options{.energy_log_p = {}, .single_elements = test.single_elements};
   if (!test.independent) {
-    const std::optional<double> log_p = flipped_energy(pair, test);
+    const std::optional<double> log_p = flipped_energy(varying, test);
     outcome.by_sign_flips = true;
     outcome.enough_for_flips = log_p.has_value();
     options.energy_log_p = log_p.value_or(0);
   }
-  if (pair.of_two()) return stats::image_pyramid(pair.first(), pair.second(), options);
-  const std::vector<double> seen = seen_reference(pair, outcome.unseen);
-  stats::ImageReference reference = pair.reference();
-  reference.value = seen;
-  return stats::image_pyramid(pair.first(), reference, options);
+  return varying.with(
+      [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
 }
 
 stats::ImageFinding finding_of(const UnseenElement& unseen, const ImagePair& pair) {
@@ -107,7 +103,6 @@ stats::ImageFinding finding_of(const UnseenElement& unseen, const ImagePair& pai
 
 /// The elements that never varied join the family, at the share that was set aside for them.
 void add_unseen(const ImagePair& pair, ImageOutcome& outcome) {
-  if (pair.of_two()) return;
   stats::ImageFamily& family = outcome.family;
   for (stats::ImageFinding& group : family.groups) {
     group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
@@ -227,53 +222,23 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
                      window.height, z);
 }
 
-double z_of(const UnseenElement& unseen) {
-  if (unseen.log_p == certain) return unseen.sign * std::numeric_limits<double>::infinity();
-  return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
-}
-
-std::vector<UnseenElement> unseen_elements(const Question& question, const ImagePair& pair) {
-  std::vector<UnseenElement> unseen;
-  if (pair.of_two() || !pair.reference().standard_error.empty()) return unseen;
-  const Subject& subject = question.subjects[0];
-  const std::vector<Channel> channels = subject.setup->channels();
-  for (std::size_t i = 0; i < pair.extent().elements(); ++i) {
-    const double constant = pair.first().images[0][i];
-    const double difference = constant - pair.reference().value[i];
-    if (difference == 0 || !never_varied(pair.first(), i)) continue;
-    const Channel& channel = channels[subject.channels[i]];
-    const double reach = difference < 0 ? channel.high - constant : constant - channel.low;
-    const double share = reach > 0 ? std::abs(difference) / reach : 1;
-    const double log_p =
-        share < 1 ? static_cast<double>(pair.replicates()) * std::log1p(-share) : certain;
-    unseen.push_back({i, difference < 0 ? -1.0 : 1.0, log_p});
-  }
-  return unseen;
-}
-
-std::vector<double> seen_reference(const ImagePair& pair, std::span<const UnseenElement> unseen) {
-  const std::span<const double> value = pair.reference().value;
-  std::vector<double> seen(value.begin(), value.end());
-  for (const UnseenElement& u : unseen) seen[u.element] = pair.first().images[0][u.element];
-  return seen;
-}
-
 ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
                                  std::span<const ChannelData> data) {
   const ImagePair pair(question, data);
   stats::check::replicates("image", pair.replicates());
   const bool relative = is_relative(question, 0);
   const stats::ImageDistance distance = distance_of(pair, relative);
-  if (!(distance.bias_variance > 0)) {
+  const VaryingPart varying(question, pair);
+  if (!varying.any() || !(distance.bias_variance > 0)) {
     throw stats::ZeroVariance(
         "every replicate of both images is the same: without spread nothing can be said of what "
         "was never seen; take fewer `primaries`, or more observations");
   }
   ImageEvidence result;
-  result.outcome.unseen = unseen_elements(question, pair);
+  result.outcome.unseen = varying.unseen();
   result.outcome.replicates = pair.replicates();
   result.outcome.single_elements = test.single_elements;
-  result.outcome.family = family_of(pair, test, result.outcome);
+  result.outcome.family = family_of(varying, test, result.outcome);
   add_unseen(pair, result.outcome);
   result.outcome.uniform_error = uniform_error(pair, relative);
   const TestEntry& entry = *question.test;

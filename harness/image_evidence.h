@@ -8,6 +8,7 @@
 
 #include "harness/evidence.h"
 #include "harness/family.h"
+#include "harness/image_constants.h"
 #include "harness/image_pair.h"
 #include "stats/image_family.h"
 
@@ -20,19 +21,6 @@ struct ImageTest {
   bool independent = true;      ///< whether an image's elements are; else signs are flipped
   StreamKey flips = {};         ///< of the signs, where there are too many to enumerate
 };
-
-/// An element that was the same in every replicate and differs from its exact reference: what was
-/// never seen may make up the difference. With values declared to lie in [low, high], at least a
-/// share q = |reference - c| / (the farther end - c) of them is not c, so that
-/// P(all R are c) <= (1 - q)^R: exact. Without a range q is 0.
-struct UnseenElement {
-  std::size_t element = 0;
-  double sign = 0;  ///< of constant - reference
-  double log_p = 0;
-};
-
-/// The normal z of that p, with the difference's sign.
-double z_of(const UnseenElement& unseen);
 
 struct ImageOutcome {
   stats::ImageFamily family = {};
@@ -53,12 +41,6 @@ struct ImageEvidence {
 /// Throws std::domain_error for fewer than 16 replicates, and where nothing varies.
 ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
                                  std::span<const ChannelData> data);
-
-/// Constants that differ from their exact reference; none of two images.
-std::vector<UnseenElement> unseen_elements(const Question& question, const ImagePair& pair);
-
-/// The reference as far as elements vary, for z: their constants where they do not.
-std::vector<double> seen_reference(const ImagePair& pair, std::span<const UnseenElement> unseen);
 
 /// Where in an image a finding lies: "columns 8-15, rows 16-23 of red (8 x 8 pixels), z = +6.1".
 std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape);

@@ -90,17 +90,11 @@ reports::Map map_of(const char* name, const ImageShape& shape, const std::vector
 }
 
 /// z of every element: Welch's, or that of the bound for elements that never varied.
-std::vector<double> z_map(const ImagePair& pair, const std::vector<UnseenElement>& unseen) {
+std::vector<double> z_map(const Question& question, const ImagePair& pair) {
+  const VaryingPart varying(question, pair);
   std::vector<double> z(pair.extent().elements());
-  if (pair.of_two()) {
-    stats::welch_z(pair.first(), pair.second(), 0, z);
-    return z;
-  }
-  const std::vector<double> seen = seen_reference(pair, unseen);
-  stats::ImageReference reference = pair.reference();
-  reference.value = seen;
-  stats::welch_z(pair.first(), reference, 0, z);
-  for (const UnseenElement& element : unseen) z[element.element] = z_of(element);
+  varying.with([&](const auto& a, const auto& b) { stats::welch_z(a, b, 0, z); });
+  for (const UnseenElement& element : varying.unseen()) z[element.element] = z_of(element);
   return z;
 }
 
@@ -141,7 +135,7 @@ void add_maps(const TestWork& work, const ImageOutcome& outcome, reports::Test& 
   const ImageShape& shape = *question.subjects[0].image;
   const std::vector<ChannelData> data = data_of(work, 0);
   const ImagePair pair(question, data);
-  const std::vector<double> z = z_map(pair, outcome.unseen);
+  const std::vector<double> z = z_map(question, pair);
   const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
   test.maps.push_back(map_of("z", shape, z));
   test.maps.push_back(map_of("p_adjusted", shape, adjusted_map(z, tested)));

@@ -63,28 +63,44 @@ std::vector<double> smoothed(const ImageExtent& extent, std::vector<double> valu
   return values;
 }
 
+// The mean of each element's own variance and that of its neighbourhood.
+std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance) {
+  std::vector<double> steady = smoothed(extent, variance);
+  for (std::size_t i = 0; i < steady.size(); ++i) steady[i] = std::midpoint(steady[i], variance[i]);
+  return steady;
+}
+
+// The reference leaves the difference, and its error joins the variance. It joins that of the
+// weight only where something varied: alone, an error of 1e-17 would weigh 1e17.
+void add_reference(const ImageReference& reference, Half& half) {
+  std::vector<double> squared(half.difference.size());
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    const double error = check::reference_error("image_pyramid", reference, i);
+    squared[i] = error * error;
+    half.difference[i] -= reference.value[i];
+    half.variance[i] += squared[i];
+  }
+  const std::vector<double> steady = steadied(reference.extent, squared);
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    if (half.weight[i] > 0) half.weight[i] += steady[i];
+  }
+}
+
 template <class Real>
 Half half_of(const ImagePair<Real>& pair, std::size_t half) {
   HalfMoments a = half_moments(pair.a, half);
-  Half result{std::move(a.mean), std::move(a.squared_error), {}};
+  Half result{std::move(a.mean), std::move(a.squared_error), {}, {}};
   if (pair.b != nullptr) {
     const HalfMoments b = half_moments(*pair.b, half);
     for (std::size_t i = 0; i < b.mean.size(); ++i) {
       result.difference[i] -= b.mean[i];
       result.variance[i] += b.squared_error[i];
     }
-  } else {
-    for (std::size_t i = 0; i < result.difference.size(); ++i) {
-      const double error = check::reference_error("image_pyramid", *pair.reference, i);
-      result.difference[i] -= pair.reference->value[i];
-      result.variance[i] += error * error;
-    }
   }
-  result.weight = smoothed(pair.a.extent, result.variance);
-  for (std::size_t i = 0; i < result.weight.size(); ++i) {
-    const double variance = std::midpoint(result.weight[i], result.variance[i]);
-    result.weight[i] = variance > 0 ? 1 / std::sqrt(variance) : 0;
-  }
+  for (const double variance : result.variance) result.varied.push_back(variance > 0);
+  result.weight = steadied(pair.a.extent, result.variance);
+  if (pair.reference != nullptr) add_reference(*pair.reference, result);
+  for (double& weight : result.weight) weight = weight > 0 ? 1 / std::sqrt(weight) : 0;
   return result;
 }
 

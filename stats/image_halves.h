@@ -12,12 +12,13 @@ namespace assay::stats {
 inline constexpr std::size_t halves = 2;
 
 // Of one half: D = mean a - mean b, its squared error v, and the weight that the other half takes:
-// 1 / sqrt of the mean of v and of v smoothed over 3 x 3 elements of the channel, or zero where
-// that is zero. A single element's v is from few values and can be tiny by chance; its weight alone
-// would then carry the whole sum.
+// 1 / sqrt of the mean of v and of v smoothed over 3 x 3 elements of the channel, or zero where no
+// replicate of the half varied in these elements. A single element's v is from few values and can
+// be tiny by chance; its weight alone would then carry the whole sum.
 struct Half {
   std::vector<double> difference;
   std::vector<double> variance;
+  std::vector<unsigned char> varied;  // whether any replicate of the half differs from another
   std::vector<double> weight;
 };
 

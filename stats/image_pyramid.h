@@ -28,12 +28,12 @@ ImageFamily image_pyramid(const ZMap& map);
 // element.
 //
 // Cells: the replicates are dealt to two halves; each half's variances, steadied by those of 3 x 3
-// neighbours, give the other half its weights w ~ 1 / sqrt(va + vb). A replicate's cell value is
-// its weighted sum, T the Welch statistic of (mean of a - mean of b), averaged over the halves,
-// from the variances of the cell values over replicates. Weights and values are independent, so the
-// numerator has mean zero for any law of the elements, and correlation between elements is in the
-// variance: adding up the elements' own z would be wrong for both (README.md has the rates). Single
-// elements: welch_z.
+// neighbours, give the other half its weights w ~ 1 / sqrt(va + vb), 0 where nothing varied. A
+// replicate's cell value is its weighted sum, T the Welch statistic of (mean of a - mean of b),
+// averaged over the halves, from the variances of the cell values over replicates. Weights and
+// values are independent, so the numerator has mean zero for any law of the elements, and
+// correlation between elements is in the variance: adding up the elements' own z would be wrong for
+// both (README.md has the rates). Single elements: welch_z.
 //
 // Energy: with D = mean a - mean b of halves 0 and 1 and v the squared errors of D,
 //   u = w1^2 (D0^2 - v0) + w0^2 (D1^2 - v1) + 2 w0 w1 D0 D1,     E u = (bias (w0 + w1))^2

@@ -36,6 +36,9 @@ class WindowMoments {
     m2_[window] += delta * (value - mean_[window]);
   }
 
+  // The sum did not vary; what is left is the rounding of larger sums that it was taken from.
+  void did_not_vary(std::size_t window) { m2_[window] = 0; }
+
   // The replicates added since the last call are a part whose mean enters with this factor.
   void finish_part(double count, double factor) {
     for (std::size_t i = 0; i < mean_.size(); ++i) {
@@ -70,8 +73,14 @@ std::size_t count_windows(const Groups& groups) {
   return count;
 }
 
+// Of all elements in the window, those that alternate too.
+double total_of(const WindowSums& sums, const WindowGroup& group, std::size_t index) {
+  return group.grid == Grid::alternating ? sums.of_all() : sums.of(group, index);
+}
+
 struct Centre {
   const std::vector<double>& weight;
+  const std::vector<unsigned char>& varied;
   std::span<const double> value;  // subtracted first: it cancels, and large sums do not round
   double factor = 1;
 };
@@ -94,11 +103,20 @@ void add_half_stack(WindowMoments& moments, const Groups& groups, const ImageSta
       moments.add(window, sums.of(group, i), inverse);
     });
   }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t e = i * extent.channels + channel;
+    values[i] = centre.weight[e] > 0 && centre.varied[e] > 0 ? 1 : 0;
+  }
+  sums.load(values);
+  for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+    if (total_of(sums, group, i) == 0) moments.did_not_vary(window);
+  });
   moments.finish_part(count, centre.factor);
 }
 
 // A reference's error is one for both halves, independent between elements, and has no degrees of
-// freedom to lose.
+// freedom to lose. A sum that did not vary stays without variance, untested: the error is not what
+// values never seen could add.
 void add_reference_error(WindowMoments& moments, const Groups& groups,
                          const ImageReference& reference, const std::array<Half, halves>& half,
                          std::size_t channel) {
@@ -112,8 +130,8 @@ void add_reference_error(WindowMoments& moments, const Groups& groups,
   }
   sums.load(values);
   for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-    moments.variance[window] +=
-        group.grid == Grid::alternating ? sums.of_all() : std::max(sums.of(group, i), 0.0);
+    if (moments.variance[window] == 0) return;
+    moments.variance[window] += std::max(total_of(sums, group, i), 0.0);
   });
 }
 
@@ -126,9 +144,9 @@ WindowMoments window_moments(const ImagePair<Real>& pair, const Groups& groups,
   const std::span<const double> value = pair.b != nullptr ? centre : pair.reference->value;
   for (std::size_t h = 0; h < halves; ++h) {
     const std::vector<double>& weight = half[1 - h].weight;
-    add_half_stack(moments, groups, pair.a, h, channel, {weight, value, 0.5});
+    add_half_stack(moments, groups, pair.a, h, channel, {weight, half[h].varied, value, 0.5});
     if (pair.b != nullptr) {
-      add_half_stack(moments, groups, *pair.b, h, channel, {weight, value, -0.5});
+      add_half_stack(moments, groups, *pair.b, h, channel, {weight, half[h].varied, value, -0.5});
     }
   }
   if (pair.reference != nullptr) {
@@ -164,7 +182,7 @@ void offer_windows(std::vector<Best>& best, const Groups& groups, const WindowMo
                    std::size_t channel) {
   for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
     const double variance = moments.variance[window];
-    // Equal constants alone have no variance; different ones were found before.
+    // Sums that did not vary have none; of two images, constants that differ were found before.
     if (!(variance > 0)) return;
     const StudentValue value{moments.effect[window] / std::sqrt(variance),
                              variance * variance / moments.reciprocal_degrees[window]};

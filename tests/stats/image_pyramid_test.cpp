@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -95,6 +96,37 @@ TEST(ImagePyramid, AReferencesErrorIsInTheTest) {
     for (double& v : value) v *= 0.3;
     return image_pyramid(a.view(), ImageReference{small, value, error}).log_p;
   });
+}
+
+// Normal elements, and among them a block of which a single replicate saw one element lit.
+OwnedStack rarely_lit(Philox& random) {
+  OwnedStack stack = normal_stack(random, 32);
+  for (std::size_t r = 0; r < 32; ++r) {
+    for (std::size_t e = 0; e < small.elements(); ++e) {
+      const bool in_block = e % small.width / 4 == 1 && e / small.width / 5 == 1;
+      if (in_block) stack.images[r][e] = r == 7 && e == 7 * small.width + 5 ? 1.0f : 0.0f;
+    }
+  }
+  return stack;
+}
+
+// Half of the replicates never saw the block vary. It has no weight there, whether a quadrature
+// left an error of 1e-17 in its reference or none: else that block alone would be the whole sum.
+TEST(ImagePyramid, AnErrorOfRoundingSizeGivesNoWeightToElementsThatDidNotVary) {
+  Philox random(826);
+  const OwnedStack stack = rarely_lit(random);
+  std::vector<double> value(small.elements());
+  value[7 * small.width + 5] = 1.0 / 32;
+  const std::vector<double> error(small.elements(), 1e-17);
+  const ImageFamily exact = image_pyramid(stack.view(), ImageReference{small, value});
+  const ImageFamily nearly = image_pyramid(stack.view(), ImageReference{small, value, error});
+  ASSERT_EQ(exact.groups.size(), nearly.groups.size());
+  for (std::size_t g = 0; g < exact.groups.size(); ++g) {
+    EXPECT_LT(std::abs(exact.groups[g].z), 5) << exact.groups[g].window.width;
+    if (exact.groups[g].window.width == 1) continue;  // elements: Welch's own
+    EXPECT_EQ(nearly.groups[g].window, exact.groups[g].window);
+    EXPECT_NEAR(nearly.groups[g].z, exact.groups[g].z, 1e-6);
+  }
 }
 
 // The best of the windows of many elements in skewed data: its own law, away from the shares.

@@ -1,0 +1,171 @@
+#include "harness/image_constants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "stats/constant_sample.h"
+#include "stats/moments.h"
+#include "stats/tails.h"
+
+namespace assay::harness {
+namespace {
+
+/// Least and greatest value of an element.
+struct Span {
+  double low;
+  double high;
+  bool constant(double rounding) const { return high - low <= 2 * rounding; }
+};
+
+Span span_of(const stats::ImageStack<double>& stack, std::size_t element) {
+  Span span{stack.images[0][element], stack.images[0][element]};
+  for (const std::span<const double> image : stack.images) {
+    span.low = std::min(span.low, image[element]);
+    span.high = std::max(span.high, image[element]);
+  }
+  return span;
+}
+
+/// Where one number is to stand in every image of a stack.
+struct Replacement {
+  std::size_t element;
+  double value;
+};
+
+/// The stack with these elements replaced; images that change are kept in `copies`.
+stats::ImageStack<double> replaced(const stats::ImageStack<double>& stack,
+                                   const std::vector<Replacement>& replacements,
+                                   std::vector<std::vector<double>>& copies) {
+  if (replacements.empty()) return stack;
+  stats::ImageStack<double> out{stack.extent, {}};
+  for (const std::span<const double> image : stack.images) {
+    std::vector<double>& copy = copies.emplace_back(image.begin(), image.end());
+    for (const Replacement& each : replacements) copy[each.element] = each.value;
+    out.images.emplace_back(copy);
+  }
+  return out;
+}
+
+std::vector<Channel> channels_of(const Subject& subject) {
+  const std::vector<Channel> all = subject.setup->channels();
+  std::vector<Channel> channels;
+  for (const std::size_t channel : subject.channels) channels.push_back(all[channel]);
+  return channels;
+}
+
+/// What a constant can have missed: its value, and the range of the law it is of.
+struct Missing {
+  double constant;
+  double low;
+  double high;
+  std::size_t count;
+
+  /// Held against a mean that is known, or estimated.
+  double log_p(const Constant& mean) const {
+    const stats::ConstantSample sample{.value = constant,
+                                       .low = std::min(low, constant),
+                                       .high = std::max(high, constant),
+                                       .count = count};
+    return stats::log_p_constant(sample, {mean.value, mean.standard_error});
+  }
+  double sign(const Constant& mean) const { return constant < mean.value ? -1 : 1; }
+  bool bounded(const Constant& mean) const {
+    return std::isfinite(mean.value < constant ? low : high);
+  }
+};
+
+Constant mean_of(const stats::ImageStack<double>& stack, std::size_t element) {
+  stats::Moments moments;
+  for (const std::span<const double> image : stack.images) moments.add(image[element]);
+  return {moments.mean, moments.standard_error()};
+}
+
+/// Of factor x + offset.
+Channel mapped(Channel channel, const Question& question) {
+  const double low = question.factor * channel.low + question.offset;
+  const double high = question.factor * channel.high + question.offset;
+  channel.low = std::min(low, high);
+  channel.high = std::max(low, high);
+  channel.rounding *= std::abs(question.factor);
+  return channel;
+}
+
+}  // namespace
+
+double z_of(const UnseenElement& unseen) {
+  if (unseen.log_p == std::numeric_limits<double>::lowest()) {
+    return unseen.sign * std::numeric_limits<double>::infinity();
+  }
+  return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
+}
+
+VaryingPart::VaryingPart(const Question& question, const ImagePair& pair)
+    : of_two_(pair.of_two()), first_(pair.first()) {
+  if (of_two_) {
+    second_ = pair.second();
+    settle_two(question);
+  } else {
+    settle_against_reference(question, pair);
+  }
+}
+
+void VaryingPart::settle_against_reference(const Question& question, const ImagePair& pair) {
+  const stats::ImageReference reference = pair.reference();
+  value_.assign(reference.value.begin(), reference.value.end());
+  error_.assign(reference.standard_error.begin(), reference.standard_error.end());
+  const std::vector<Channel> channels = channels_of(question.subjects[0]);
+  std::vector<Replacement> replacements;
+  for (std::size_t i = 0; i < value_.size(); ++i) {
+    const Span span = span_of(first_, i);
+    if (!span.constant(channels[i].rounding)) continue;
+    ++constants_;
+    const double constant = first_.images[0][i];
+    const Constant expected{value_[i], error_.empty() ? 0 : error_[i]};
+    if (std::abs(constant - expected.value) > channels[i].rounding) {
+      const Missing missing{constant, channels[i].low, channels[i].high, pair.replicates()};
+      unseen_.push_back({i, missing.sign(expected), missing.log_p(expected)});
+    }
+    if (span.low < span.high) replacements.push_back({i, constant});
+    value_[i] = constant;
+    if (!error_.empty()) error_[i] = 0;
+  }
+  if (std::ranges::all_of(error_, [](double error) { return error == 0; })) error_.clear();
+  first_ = replaced(first_, replacements, settled_);
+}
+
+void VaryingPart::settle_two(const Question& question) {
+  const std::vector<Channel> one = channels_of(question.subjects[0]);
+  std::vector<Channel> two = channels_of(question.subjects[1]);
+  for (Channel& channel : two) channel = mapped(channel, question);
+  std::vector<Replacement> of_first;
+  std::vector<Replacement> of_second;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    const bool first_constant = span_of(first_, i).constant(one[i].rounding);
+    const bool second_constant = span_of(second_, i).constant(two[i].rounding);
+    if (!first_constant && !second_constant) continue;
+    const double a = first_.images[0][i];
+    const double b = second_.images[0][i];
+    if (first_constant && second_constant) {
+      ++constants_;
+      const bool equal = std::abs(a - b) <= one[i].rounding + two[i].rounding;
+      of_first.push_back({i, a});
+      of_second.push_back({i, equal ? a : b});
+      continue;
+    }
+    const Channel& channel = first_constant ? one[i] : two[i];
+    const stats::ImageStack<double>& constant = first_constant ? first_ : second_;
+    const Constant mean = mean_of(first_constant ? second_ : first_, i);
+    const Missing missing{first_constant ? a : b, channel.low, channel.high,
+                          constant.images.size()};
+    if (!missing.bounded(mean)) continue;
+    const double sign = first_constant ? missing.sign(mean) : -missing.sign(mean);
+    unseen_.push_back({i, sign, missing.log_p(mean)});
+    of_first.push_back({i, missing.constant});
+    of_second.push_back({i, missing.constant});
+  }
+  first_ = replaced(first_, of_first, settled_);
+  second_ = replaced(second_, of_second, settled_);
+}
+
+}  // namespace assay::harness
