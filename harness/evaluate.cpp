@@ -73,23 +73,6 @@ bool density_is_proper(TestOutcome& outcome) {
   return false;
 }
 
-/// Ends of the effect's interval: what the channel's test, of one or of two tails, does not reject.
-reports::Effect effect_of(const Evidence& evidence, const Regions& regions,
-                          const ErrorShare& share) {
-  const bool two_tails = regions.two_sided() && !evidence.distance;
-  const double confidence = 1 - (two_tails ? share.alpha : 2 * share.alpha);
-  const stats::Interval interval = evidence.interval(confidence);
-  const auto number = [](double value) {
-    return std::isfinite(value) ? reports::Number(value) : reports::Number();
-  };
-  return {.quantity = evidence.ratio ? "ln(" + evidence.quantity + ")" : evidence.quantity,
-          .estimate = number(evidence.estimate),
-          .low = number(interval.low),
-          .high = number(interval.high),
-          .confidence = confidence,
-          .relative = evidence.relative};
-}
-
 ChannelOutcome channel_outcome(const TestWork& work, std::size_t channel,
                                std::span<const ChannelData> data) {
   const TestOutcome& outcome = work.outcome;
@@ -117,6 +100,8 @@ ChannelOutcome channel_outcome(const TestWork& work, std::size_t channel,
     result.reference = question.references[channel].value + question.offset;
   } else if (question.kind == QuestionKind::mean_of_two) {
     result.reference = question.factor * data[1].moments.mean + question.offset;
+  } else if (question.kind == QuestionKind::quantile && !question.of_two()) {
+    result.reference = question.references[channel].value;
   }
   return result;
 }
@@ -192,7 +177,7 @@ TestSize full_size(const TestOutcome& outcome) {
 void note_sizes(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   for (ChannelOutcome& channel : outcome.channels) {
-    channel.effect = effect_of(channel.evidence, channel.regions, outcome.share());
+    channel.effect = effect_of(outcome, channel);
     if (channel.image) {
       channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
       continue;
@@ -328,6 +313,26 @@ std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
 }
 
 }  // namespace
+
+reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const ErrorShare share = outcome.share();
+  const Evidence& evidence = channel.evidence;
+  const bool by_beta = outcome.verdict != Verdict::fail && channel.regions.has_forbidden();
+  const bool two_tails = channel.regions.two_sided() && !evidence.distance;
+  const double confidence = by_beta     ? 1 - 2 * share.beta
+                            : two_tails ? 1 - share.alpha
+                                        : 1 - 2 * share.alpha;
+  const stats::Interval interval = evidence.interval(confidence);
+  const auto number = [](double value) {
+    return std::isfinite(value) ? reports::Number(value) : reports::Number();
+  };
+  return {.quantity = evidence.ratio ? "ln(" + evidence.quantity + ")" : evidence.quantity,
+          .estimate = number(evidence.estimate),
+          .low = number(interval.low),
+          .high = number(interval.high),
+          .confidence = confidence,
+          .relative = evidence.relative};
+}
 
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
   std::vector<ChannelData> data;

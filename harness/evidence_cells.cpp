@@ -14,20 +14,6 @@ namespace {
 
 constexpr const char* quantity = "effect size w over the cells";
 
-/// Counts of one side; the last cell is that of draws without a point.
-std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
-                                     const ChannelData& data) {
-  std::vector<std::uint64_t> counts(cells.size() + 1);
-  const std::span<const double> first = data.all_values[0];
-  const bool plane = data.all_values.size() > 1;
-  const std::optional<double> none = no_point_of(side);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const bool point = first[i] != none;
-    ++counts[point ? cells.index({first[i], plane ? data.all_values[1][i] : 0}) : cells.size()];
-  }
-  return counts;
-}
-
 std::string range_text(const std::string& name, const std::vector<double>& borders,
                        std::size_t part) {
   if (borders.empty()) return "any " + name;
@@ -66,6 +52,19 @@ std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) 
 }
 
 }  // namespace
+
+std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
+                                     const ChannelData& data) {
+  std::vector<std::uint64_t> counts(cells.size() + 1);
+  const std::span<const double> first = data.all_values[0];
+  const bool plane = data.all_values.size() > 1;
+  const std::optional<double> none = no_point_of(side);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const bool point = first[i] != none;
+    ++counts[point ? cells.index({first[i], plane ? data.all_values[1][i] : 0}) : cells.size()];
+  }
+  return counts;
+}
 
 Evidence cells_against_density(const Question& question, const ChannelData& data) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);

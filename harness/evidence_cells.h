@@ -8,6 +8,10 @@
 
 namespace assay::harness {
 
+/// How many of one side's values lie in each cell; the last number is of draws without a point.
+std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
+                                     const ChannelData& data);
+
 /// A sampler's draws against the density that it declares.
 Evidence cells_against_density(const Question& question, const ChannelData& data);
 

@@ -41,6 +41,9 @@ void apply_holm(const std::vector<TestWork*>& suite, double alpha) {
     owners[i]->decision.rejected = true;
     if (verdict == Verdict::fail) continue;
     tests[i]->verdict = Verdict::fail;
+    for (ChannelOutcome& channel : tests[i]->channels) {
+      channel.effect = effect_of(*tests[i], channel);
+    }
     tests[i]->message = narrate_holm(*tests[i], *owners[i]);
   }
 }

@@ -206,8 +206,43 @@ void add_image(const TestWork& work, reports::Test& test) {
   add_maps(work, found, test);
 }
 
+namespace {
+
+/// Of the mean over an image whose pixels are independent. Those of a pixel's components may depend
+/// on each other in any way: the standard deviation of their sum is at most the sum of theirs, so
+/// that the interval is too wide rather than too narrow. Degrees of freedom by Satterthwaite
+/// (1946).
+reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, double mean,
+                             double confidence) {
+  reports::Estimate estimate{number(mean), {}, {}};
+  const std::uint64_t count = summary.channels[0].moments.count;
+  if (!shape.independent || count < 2) return estimate;
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t pixel = 0; pixel < shape.pixels(); ++pixel) {
+    double deviation = 0;
+    for (std::size_t c = 0; c < shape.components.size(); ++c) {
+      const std::size_t element = pixel * shape.components.size() + c;
+      deviation += std::sqrt(summary.channels[element].moments.variance());
+    }
+    sum += deviation * deviation;
+    squares += std::pow(deviation, 4);
+  }
+  if (!(sum > 0) || !std::isfinite(squares) || !(squares > 0)) return estimate;
+  const double degrees = sum * sum / squares * static_cast<double>(count - 1);
+  const double error =
+      std::sqrt(sum / static_cast<double>(count)) / static_cast<double>(shape.elements());
+  const double half = error * stats::student_t_quantile(
+                                  {stats::Tail::upper, std::log((1 - confidence) / 2)}, degrees);
+  estimate.low = number(mean - half);
+  estimate.high = number(mean + half);
+  return estimate;
+}
+
+}  // namespace
+
 reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary,
-                                        double per_primary) {
+                                        ImagePicture picture) {
   const ImageShape shape = *setup.image();
   const std::vector<Channel> channels = setup.channels();
   const double elements = static_cast<double>(shape.elements());
@@ -218,12 +253,12 @@ reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summa
   for (std::size_t i = 0; i < shape.elements(); ++i) {
     const stats::Moments& moments = summary.channels[i].moments;
     mean += moments.mean / elements;
-    if (moments.count > 1) variance += per_primary * moments.variance() / elements;
+    if (moments.count > 1) variance += picture.averaged * moments.variance() / elements;
     known = known && channels[i].mean.has_value();
     reference += channels[i].mean.value_or(0) / elements;
   }
   reports::EstimatorChannel row{.name = image_name(shape),
-                                .mean = {number(mean), {}, {}},
+                                .mean = image_mean(shape, summary, mean, picture.confidence),
                                 .variance = {number(variance), {}, {}}};
   if (known) row.reference = number(reference);
   return row;
@@ -242,7 +277,8 @@ void write_maps(reports::Record& record, const std::string& json_path) {
         map.file = (folder.filename() / name).string();
         layers.push_back({map.name, map.components, map.texels.values});
       }
-      write_map_file((folder / name).string(), {test.image->width, test.image->height}, layers);
+      write_map_file((folder / name).string(), {test.maps.front().width, test.maps.front().height},
+                     layers);
     }
   }
 }

@@ -14,9 +14,15 @@ reports::Sample image_sample(const TestWork& work, std::size_t subject);
 /// Fills in what the test found in its images, and the maps; nothing where it could not be tested.
 void add_image(const TestWork& work, reports::Test& test);
 
-/// One row for an image in the suite's picture: means over its elements.
+struct ImagePicture {
+  double averaged = 1;  ///< primaries that an observation averages
+  double confidence = 0;
+};
+
+/// One row for an image in the suite's picture: means over its elements. The mean has an interval
+/// where the pixels are independent.
 reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary,
-                                        double per_primary);
+                                        ImagePicture picture);
 
 /// Gives every map of the record the name of an EXR file in the folder `<stem>.maps` beside the
 /// JSON report, and writes these files. Throws std::runtime_error where one cannot be written.

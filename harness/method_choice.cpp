@@ -34,6 +34,14 @@ std::uint64_t whole(double count) {
   return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
 }
 
+/// The reason why a test is invalid, among its gates.
+void note_too_few(Plan& plan, std::uint64_t size, std::uint64_t needed) {
+  plan.gates.push_back({.name = "number of observations (limit: the fewest that keep the level)",
+                        .value = static_cast<double>(size),
+                        .limit = static_cast<double>(needed),
+                        .state = "red"});
+}
+
 // ---- Means
 
 /// Secondaries at which the worse tail of Student's t is right within a quarter.
@@ -184,6 +192,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   const bool t_is_red = red * static_cast<double>(for_t) > static_cast<double>(affordable);
   if (fixed && !has_rows(question) && plan.invalid.empty() && t_is_red &&
       for_corrected > affordable) {
+    note_too_few(plan, affordable, std::min(for_t, for_corrected));
     plan.invalid = fmt::format(
         "secondary estimates of this shape need about {} observations before any test of their "
         "mean "
@@ -258,6 +267,7 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
   if (plan.invalid.empty() && needed > (fixed ? size : std::max(size, most_for_a_variance))) {
+    note_too_few(plan, fixed ? size : std::max(size, most_for_a_variance), needed);
     plan.invalid = too_few(question, needed);
   }
   return std::min(needed, fixed ? size : most_for_a_variance);
@@ -286,7 +296,10 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const std::uint64_t affordable =
       question.test->secondaries || size == most ? size : most_for_a_variance;
-  if (plan.invalid.empty() && needed > affordable) plan.invalid = too_few(question, needed);
+  if (plan.invalid.empty() && needed > affordable) {
+    note_too_few(plan, affordable, needed);
+    plan.invalid = too_few(question, needed);
+  }
   return std::min(needed, affordable);
 }
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "reports/effect.h"
 #include "reports/number.h"
 #include "stats/tails.h"
 
@@ -17,20 +19,18 @@ std::string p_text(double log_p) {
   return "p = " + reports::p_text(std::exp(log_p), log_p / std::log(10.0));
 }
 
-/// "0.31 %" without a sign; a ratio as the factor it is.
-std::string size_text(double theta, const Evidence& evidence) {
-  if (evidence.relative) return fmt::format("{:.3g} %", 100 * std::abs(theta));
-  if (evidence.ratio) return fmt::format("a factor of {:.4g}", std::exp(std::abs(theta)));
-  return fmt::format("{:.3g}", std::abs(theta));
+/// Messages are read by programs too: their spaces are plain.
+std::string plain(std::string text) {
+  const std::string no_break = "\u00A0";
+  for (std::size_t at = text.find(no_break); at != std::string::npos; at = text.find(no_break, at))
+    text.replace(at, no_break.size(), " ");
+  return text;
 }
 
-std::string interval_text(const ChannelOutcome& channel, double confidence) {
-  const stats::Interval interval = channel.evidence.interval(confidence);
-  const std::string low = show_theta(interval.low, channel.evidence);
-  const std::string ends = std::isfinite(interval.high)
-                               ? low + ", " + show_theta(interval.high, channel.evidence)
-                               : "from " + low;
-  return fmt::format("[{}] at {}", ends, reports::confidence_text(confidence));
+/// "difference from the reference is +0.31 % [+0.12 %, +0.5 %] (99 % interval)".
+std::string finding(const ChannelOutcome& channel) {
+  return fmt::format("{} is {}", reports::effect_name(channel.effect),
+                     reports::named_effect_text(channel.effect));
 }
 
 std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -44,9 +44,18 @@ const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
                            });
 }
 
-/// The largest effect in the claim's forbidden direction that is not excluded at beta.
-double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const stats::Interval interval = channel.evidence.interval(1 - 2 * outcome.share().beta);
+/// Of two values of theta the one that is shown as the larger: of ratios near one, -14.3 % is less
+/// than +16.2 %, though its logarithm is as far from zero.
+double farther(double x, double y, const Evidence& evidence) {
+  constexpr double near = std::numbers::ln2;
+  const bool in_per_cent = evidence.ratio && std::abs(x) <= near && std::abs(y) <= near;
+  const auto size = [&](double theta) { return std::abs(in_per_cent ? std::expm1(theta) : theta); };
+  return size(x) > size(y) ? x : y;
+}
+
+/// The largest effect in the claim's forbidden direction that the interval holds.
+double excluded_beyond(const ChannelOutcome& channel) {
+  const stats::Interval interval = channel.evidence.interval(channel.effect.confidence);
   switch (channel.regions.relation) {
     case Relation::at_most:
     case Relation::less:
@@ -58,53 +67,46 @@ double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel
     case Relation::within:
       break;
   }
-  return std::max(std::abs(interval.low), std::abs(interval.high));
+  return farther(interval.low, interval.high, channel.evidence);
 }
 
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (!channel.regions.has_forbidden()) {
     std::string text = "no evidence against the claim";
     if (channel.detectable) {
-      text +=
-          fmt::format("; {} or more would have been found with probability {:g}",
-                      size_text(*channel.detectable, channel.evidence), 1 - outcome.share().beta);
+      text += fmt::format("; {} or more would have been found with probability {:g}",
+                          reports::margin_text(*channel.detectable, channel.effect),
+                          1 - outcome.share().beta);
     }
     return text;
   }
-  const double excluded = excluded_beyond(outcome, channel);
-  const std::string confidence = reports::confidence_text(1 - outcome.share().beta);
+  const double excluded = excluded_beyond(channel);
+  const std::string interval =
+      fmt::format("the {}{}", reports::interval_name(channel.effect), in_channel(outcome, channel));
   const bool one_sided = !channel.regions.two_sided();
   const double towards = channel.regions.relation == Relation::at_least ? -excluded : excluded;
   if (one_sided && towards <= 0) {
-    return fmt::format(
-        "no evidence against the claim, which holds with {} to spare at {} confidence",
-        size_text(excluded, channel.evidence), confidence);
+    return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
+                       reports::size_text(excluded, channel.effect), interval);
   }
-  return fmt::format("no evidence against the claim; {} or more is excluded at {} confidence",
-                     size_text(excluded, channel.evidence), confidence);
+  return fmt::format("no evidence against the claim; {} or more is excluded by {}",
+                     reports::size_text(excluded, channel.effect), interval);
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  return fmt::format("shown: {} is {} {} ({})", channel.evidence.quantity,
-                     show_theta(channel.evidence.estimate, channel.evidence),
-                     interval_text(channel, 1 - 2 * outcome.share().beta),
-                     p_text(channel.decision.log_p_forbidden) + " against the contrary");
+  return fmt::format("shown: {}{}, {} against the contrary", finding(channel),
+                     in_channel(outcome, channel), p_text(channel.decision.log_p_forbidden));
 }
 
 std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
     return fmt::format(
-        "differs most at {}, {}; {} is {} {}",
+        "differs most at {}, {}; {}",
         place_text(channel.image->family.winner, *outcome.question.subjects[0].image),
-        p_text(channel.decision.log_p_claimed), channel.evidence.quantity,
-        show_theta(channel.evidence.estimate, channel.evidence),
-        interval_text(channel, channel.effect.confidence));
+        p_text(channel.decision.log_p_claimed), finding(channel));
   }
-  return fmt::format("{} is {} {}{}, {}{}", channel.evidence.quantity,
-                     show_theta(channel.evidence.estimate, channel.evidence),
-                     interval_text(channel, channel.effect.confidence),
-                     in_channel(outcome, channel), p_text(channel.decision.log_p_claimed),
-                     channel.evidence.where);
+  return fmt::format("{}{}, {}{}", finding(channel), in_channel(outcome, channel),
+                     p_text(channel.decision.log_p_claimed), channel.evidence.where);
 }
 
 /// In an alarm any estimate decides once the room between the margins holds a standard error
@@ -189,31 +191,11 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
 }
 
 std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  return fmt::format("{} is {} {}{}: neither shown nor refuted; {}", channel.evidence.quantity,
-                     show_theta(channel.evidence.estimate, channel.evidence),
-                     interval_text(channel, 1 - 2 * outcome.share().beta),
+  return fmt::format("{}{}: neither shown nor refuted; {}", finding(channel),
                      in_channel(outcome, channel), what_would_decide(outcome, channel));
 }
 
-}  // namespace
-
-std::string show_theta(double theta, const Evidence& evidence) {
-  if (evidence.relative) return fmt::format("{:+.3g} %", 100 * theta);
-  if (evidence.ratio) return fmt::format("x {:.4g}", std::exp(theta));
-  return fmt::format("{:.4g}", theta);
-}
-
-std::string narrate_holm(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  return fmt::format(
-      "{} is {}{}, {} and after Holm {}: refuted by the share of alpha that the suite's other "
-      "refuted claims leave to it, not by its own, which the interval is for",
-      channel.evidence.quantity, show_theta(channel.evidence.estimate, channel.evidence),
-      in_channel(outcome, channel), p_text(channel.decision.log_p_claimed),
-      p_text(channel.log_p_adjusted));
-}
-
-std::string narrate(const TestOutcome& outcome) {
-  if (outcome.channels.empty()) return "";
+std::string told(const TestOutcome& outcome) {
   const ChannelOutcome& worst = outcome.channels.front();
   switch (outcome.verdict) {
     case Verdict::fail:
@@ -227,6 +209,20 @@ std::string narrate(const TestOutcome& outcome) {
   }
   const ChannelOutcome& least = least_excluded(outcome);
   return least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least);
+}
+
+}  // namespace
+
+std::string narrate_holm(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return plain(fmt::format(
+      "{}{}, {} and after Holm {}: refuted by the share of alpha that the suite's other "
+      "refuted claims leave to it, not by its own, which the interval is for",
+      finding(channel), in_channel(outcome, channel), p_text(channel.decision.log_p_claimed),
+      p_text(channel.log_p_adjusted)));
+}
+
+std::string narrate(const TestOutcome& outcome) {
+  return outcome.channels.empty() ? "" : plain(told(outcome));
 }
 
 }  // namespace assay::harness

@@ -13,7 +13,4 @@ std::string narrate(const TestOutcome& outcome);
 /// The same of a claim that only Holm's adjustment over the suite refutes, by this channel.
 std::string narrate_holm(const TestOutcome& outcome, const ChannelOutcome& channel);
 
-/// A value of theta as a reader sees it: per cent, a factor, or a number.
-std::string show_theta(double theta, const Evidence& evidence);
-
 }  // namespace assay::harness

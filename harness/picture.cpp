@@ -75,12 +75,15 @@ reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
                                 .defect = information.defect,
                                 .primaries = picture.pool->primaries(),
                                 .secondaries = picture.pool->largest_prefix(),
-                                .confidence = confidence};
+                                .confidence = confidence,
+                                .variance_of = information.averages ? "primary" : "secondary"};
   if (!picture.pool->trouble().empty()) return row;
   const Summary& summary = summary_of(picture);
   row.cost = cost_of(summary);
   if (picture.pool->setup()->image()) {
-    row.channels.push_back(image_channel(*picture.pool->setup(), summary, per_primary(picture)));
+    row.channels.push_back(
+        image_channel(*picture.pool->setup(), summary,
+                      {.averaged = per_primary(picture), .confidence = confidence}));
     return row;
   }
   const std::vector<Channel> channels = picture.pool->setup()->channels();

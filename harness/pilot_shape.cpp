@@ -15,10 +15,12 @@ namespace {
 
 using stats::GateState;
 
-/// One tail's gate, from the values signed so that it is the right one.
-stats::Gate right_tail_gate(std::vector<double> values, stats::TailClaim claim) {
-  std::sort(values.begin(), values.end());
+/// One tail's gate, from the values signed so that it is the right one; puts them in another order.
+stats::Gate right_tail_gate(std::vector<double>& values, stats::TailClaim claim) {
   const std::size_t tail = stats::pareto_tail_size(values.size()) + 1;
+  const auto first = values.end() - static_cast<std::ptrdiff_t>(tail);
+  std::nth_element(values.begin(), first, values.end());
+  std::sort(first, values.end());
   return stats::pareto_gate(std::span<const double>(values).last(tail), values.size(), claim);
 }
 

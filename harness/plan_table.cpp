@@ -280,7 +280,8 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(
       "primaries: of one secondary estimate. first, last: secondaries of each source at these "
-      "looks. "
+      "looks. in all, rays, CPU time: primaries of all sources up to the last look, and what they "
+      "cost. "
       "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
       "beta. if true: the share of the last look that is drawn on average if theta = 0, at most.");
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/cell_record.h"
 #include "harness/image_record.h"
 #include "harness/law_picture.h"
 #include "harness/picture.h"
@@ -62,6 +63,11 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
                          .channel = side.setup->channels()[index].name,
                          .primaries = work.outcome.plan.primaries[subject],
                          .secondaries = count};
+  sample.nonzero = moments.nonzero;
+  sample.nonfinite = kept.nonfinite;
+  sample.cost = cost_of(summary);
+  // The number of a cell is a name: it has no mean.
+  if (!kept.cells.empty()) return sample;
   if (moments.count > 0) {
     sample.mean = number(moments.mean);
     sample.minimum = number(moments.minimum);
@@ -72,14 +78,11 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
     sample.skewness = number(moments.skewness());
     sample.kurtosis = number(moments.kurtosis());
   }
-  sample.nonzero = moments.nonzero;
-  sample.nonfinite = kept.nonfinite;
   sample.histogram = histogram_of(kept.histogram);
-  if (spread && kept.cells.empty()) {
+  if (spread) {
     sample.quantiles =
         quantile_points(work.pools[subject]->values(index, std::min(count, plotted_values)));
   }
-  sample.cost = cost_of(summary);
   return sample;
 }
 
@@ -225,6 +228,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   }
   if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
   add_image(work, test);
+  add_cells(work, test);
   test.looks = looks_of(outcome, regions);
   test.message = outcome.message;
   return test;

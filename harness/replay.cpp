@@ -15,6 +15,7 @@
 #include "harness/pools.h"
 #include "harness/progress_terminal.h"
 #include "harness/record_of.h"
+#include "harness/sampler_setup.h"
 #include "harness/shell.h"
 #include "harness/suite_entries.h"
 #include "harness/yaml.h"
@@ -225,7 +226,7 @@ std::string shown(const reports::Number& value) {
 
 bool same_line(const char* what, const reports::Number& now, const reports::Number& then) {
   const bool same = now == then;
-  fmt::print("  {:<10} {}{}\n", what, shown(now),
+  fmt::print("  {:<27} {}{}\n", what, shown(now),
              same ? "" : fmt::format("   (recorded: {})", shown(then)));
   return same;
 }
@@ -235,11 +236,18 @@ bool same_line(const char* what, const reports::Number& now, const reports::Numb
 bool print_comparison(const reports::Test& now, const reports::Test& then, bool timed) {
   bool same = true;
   fmt::print("{}\n{}\n", then.id, then.claim);
+  if (then.verdict == reports::Verdict::invalid || then.verdict == reports::Verdict::error) {
+    fmt::print("{}, so the numbers below decide nothing: {}\n", reports::to_string(then.verdict),
+               then.message);
+  }
   for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
     fmt::print("{}.{}: {} secondaries of {} primaries\n", now.samples[i].estimator,
                now.samples[i].channel, now.samples[i].secondaries, now.samples[i].primaries);
+    // The number of a cell has neither mean nor variance.
+    if (now.samples[i].channel == cell_channel) continue;
     same &= same_line("mean", now.samples[i].mean, then.samples[i].mean);
-    same &= same_line("variance", now.samples[i].variance, then.samples[i].variance);
+    same &=
+        same_line("variance of an observation", now.samples[i].variance, then.samples[i].variance);
   }
   for (std::size_t i = 0; i < now.channels.size() && i < then.channels.size(); ++i) {
     fmt::print("test {} on {}\n", now.method, now.channels[i].name);

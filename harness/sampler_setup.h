@@ -53,6 +53,8 @@ class SamplerSetup : public Setup {
   const stats::TabulatedLaw& marginal_law(const std::string& marginal) const;
   const Sampler& sampler() const { return *named_.sampler; }
   const std::string& name() const { return named_.name; }
+  /// Of a domain of two coordinates the cells of one lobe.
+  const stats::PlaneGrid& grid() const { return grid_; }
   std::vector<Marginal> marginals() const;
 
   /// Number of the cell of a draw. Throws std::domain_error for a point outside the domain and a

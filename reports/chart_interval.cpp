@@ -185,12 +185,12 @@ std::string interval_chart(const Test& test) {
 }
 
 std::string interval_sketch(const Test& test) {
-  if (test.channels.empty() || !test.channels.front().effect.estimate) return {};
+  if (test.channels.empty() || !deciding_channel(test).effect.estimate) return {};
   constexpr Size size = {130, 20};
-  const Scale scale = scale_of(test, 1, {6, size.width - 6});
-  Svg svg(size, "effect against none and detect");
+  const Scale scale = scale_of(test, test.channels.size(), {6, size.width - 6});
+  Svg svg(size, "the effect; solid line: no effect, dashed: detect");
   draw_margins(svg, test, {scale, {1, size.height - 1}});
-  draw_effect(svg, test.channels.front().effect, scale, size.height / 2);
+  draw_effect(svg, deciding_channel(test).effect, scale, size.height / 2);
   return svg.finish();
 }
 

@@ -220,10 +220,10 @@ class Screen {
     if (const std::string alarm = alarm_count(record); !alarm.empty()) {
       line("Not ok: " + alarm, colour_of(Outcome::failed));
     }
-    paragraph(tally_sentence(counts) + took + (verdicts.empty() ? "." : ": " + verdicts + "."));
+    paragraph(tally_sentence(counts) + took + "." +
+              (verdicts.empty() ? "" : " Verdicts: " + verdicts + "."));
     paragraph(error_rates(record));
-    if (counts.inconclusive > 0)
-      line(fmt::format("{} inconclusive (counted as skipped below)", counts.inconclusive));
+    paragraph(last_line_note(record));
     out_ += fmt::format("{} passed, {} failed, {} skipped\n", counts.passed, counts.failed,
                         counts.skipped + counts.inconclusive);
   }

@@ -69,7 +69,7 @@ std::vector<std::string> row_lines(const TestRow& row, const RowLayout& layout) 
 std::string common_confidence(const Suite& suite) {
   std::map<std::string, int> counts;
   for (const Test& test : suite.tests) {
-    const Effect effect = worst_channel(test).effect;
+    const Effect effect = deciding_channel(test).effect;
     if (is_evidence(test) && effect.estimate && !interval_text(effect).empty())
       ++counts[confidence_text(effect.confidence)];
   }
@@ -80,7 +80,7 @@ std::string common_confidence(const Suite& suite) {
 }
 
 TestRow row_of(const Test& test, const std::string& common) {
-  const Effect effect = worst_channel(test).effect;
+  const Effect effect = deciding_channel(test).effect;
   std::string number = is_evidence(test) ? effect_text(effect) : std::string();
   if (!is_evidence(test)) {
     // What was computed rests on an assumption that does not hold: the record has it.

@@ -32,7 +32,7 @@ const char* detect_words(const Test& test) {
 }
 
 std::string margins_fact(const Test& test) {
-  const Effect effect = worst_channel(test).effect;
+  const Effect effect = deciding_channel(test).effect;
   std::string text;
   const auto add = [&](const char* words, Number margin) {
     if (!margin) return;
@@ -50,10 +50,12 @@ std::string margins_fact(const Test& test) {
 
 std::string channels_fact(const Test& test) {
   if (test.channels.size() < 2) return {};
+  const std::string deciding = deciding_channel(test).name;
   std::string text =
-      fmt::format("{} tested, the worst is {}", test.channels.size(), test.channels.front().name);
-  for (std::size_t i = 1; i < test.channels.size() && i < 4; ++i) {
-    const Channel& channel = test.channels[i];
+      fmt::format("{} tested, the verdict rests on {}", test.channels.size(), deciding);
+  int named = 0;
+  for (const Channel& channel : test.channels) {
+    if (channel.name == deciding || ++named > 3) continue;
     text += fmt::format("; {} {} (p = {})", channel.name, effect_text(channel.effect),
                         p_text(channel.p_value, channel.log10_p));
   }
@@ -116,7 +118,7 @@ bool is_evidence(const Test& test) {
 
 std::string key_number(const Test& test) {
   if (!is_evidence(test)) return {};
-  const std::string text = named_effect_text(worst_channel(test).effect);
+  const std::string text = named_effect_text(deciding_channel(test).effect);
   return text.empty() ? headline_p(test).text() : text;
 }
 
@@ -170,7 +172,7 @@ std::vector<Fact> facts(const Test& test) {
   const auto add = [&result](const char* label, std::string sentence) {
     if (!sentence.empty()) result.emplace_back(label, std::move(sentence));
   };
-  const Channel channel = worst_channel(test);
+  const Channel channel = deciding_channel(test);
   add("expected", expectation_fact(test));
   add("message", test.message);
   add("claim", test.claim);

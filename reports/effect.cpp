@@ -72,8 +72,15 @@ std::string named_effect_text(const Effect& effect) {
 }
 
 std::string margin_text(double margin, const Effect& effect) {
-  return is_ratio(effect) && std::isfinite(margin) ? "a factor of " + factor(std::abs(margin))
-                                                   : magnitude(margin, effect.relative);
+  return size_text(std::abs(margin), effect);
+}
+
+std::string size_text(double theta, const Effect& effect) {
+  if (!is_ratio(effect) || !std::isfinite(theta))
+    return magnitude(std::abs(theta), effect.relative);
+  if (near_one(effect) && std::abs(theta) <= std::numbers::ln2)
+    return percent(std::abs(std::expm1(theta)));
+  return "a factor of " + factor(std::abs(theta));
 }
 
 }  // namespace assay::reports

@@ -31,7 +31,11 @@ std::string effect_text(const Effect&);
 /// effect_text() with the confidence of its interval: "+0.31 % [+0.12 %, +0.5 %] (99 % interval)".
 std::string named_effect_text(const Effect&);
 
-/// A margin on the effect: "0.5 %", "a factor of 1.2".
+/// How far a value of theta lies from none, in the form of theta_text() without a sign: "0.31 %";
+/// of a ratio "10.9 %", or "a factor of 2.4" where the effect is shown as a factor or this is one.
+std::string size_text(double theta, const Effect&);
+
+/// A margin on the effect, upwards: "0.5 %", "a factor of 2.4".
 std::string margin_text(double margin, const Effect&);
 
 }  // namespace assay::reports

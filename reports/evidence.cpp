@@ -86,6 +86,11 @@ std::string about_the_contrary(const Test& test) {
 
 }  // namespace
 
+Channel deciding_channel(const Test& test) {
+  const Channel* least = test.verdict == Verdict::fail ? nullptr : least_excluded(test);
+  return least != nullptr ? *least : worst_channel(test);
+}
+
 std::string relation_of(const std::string& claim) {
   const std::string_view text = find_relation(claim).text;
   return text == " within " ? "within" : std::string(text);

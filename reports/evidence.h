@@ -27,6 +27,10 @@ struct NamedP {
   std::string text() const;  ///< "p(contrary) = 1.5e-303"; empty where there is none
 };
 
+/// The channel that the verdict rests on: of a fail, or of a claim with nothing to exclude, the one
+/// that speaks most against the claim; else the one whose forbidden region is excluded least.
+Channel deciding_channel(const Test&);
+
 /// The p-value that the verdict rests on: of the claim; in a proof that did not fail, of its
 /// contrary, the largest over the channels.
 NamedP headline_p(const Test&);

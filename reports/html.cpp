@@ -23,6 +23,18 @@ std::string fact(const char* label, const std::string& value) {
   return fmt::format("<span>{} <b>{}</b></span>\n", label, escape_xml(one_line(value)));
 }
 
+bool traced_rays(const Record& record) {
+  for (const Suite& suite : record.suites) {
+    for (const EstimatorSummary& estimator : suite.estimators) {
+      if (rays(estimator.cost) > 0) return true;
+    }
+    for (const Test& test : suite.tests) {
+      if (rays(total_cost(test)) > 0) return true;
+    }
+  }
+  return false;
+}
+
 std::string about_the_run(const Record& record) {
   double alpha = 0;
   for (const Suite& suite : record.suites) alpha += suite.alpha;
@@ -35,7 +47,7 @@ std::string about_the_run(const Record& record) {
   out += fact("started", record.started);
   out += fact("took", duration(record.seconds));
   out += fact("threads", fmt::format("{}", where.threads));
-  out += fact("rays traced with", where.isa);
+  if (traced_rays(record)) out += fact("rays traced with", where.isa);
   out += fact("processor", where.cpu);
   out += fact("compiler", where.compiler);
   out += "</div>\n";
@@ -53,7 +65,9 @@ constexpr const char* reading_help =
 <dt>error</dt><dd>The claim could not be tested: a value that is not finite, a crash, a time-out.</dd>
 <dt>as expected</dt><dd>A mutant is a deliberately broken estimator: its claim is expected to fail, and the test is ok when it does.</dd>
 <dt>effect</dt><dd>How far the estimator is from its claim. Ratios are shown as per cent near one, else as factors (×0.07).</dd>
-<dt>interval</dt><dd>Holds the true effect with the confidence printed beside it. In a test that is one minus the share of alpha of the test, or of its look, so an interval that leaves out the claimed value is evidence against the claim. A sentence such as "shown: …" or "… is excluded" rests on the narrower interval at 1 - 2 beta, since passing is decided at beta.</dd>
+<dt>interval</dt><dd>Holds the true effect with the confidence printed beside it. The interval shown is the one that the verdict rests on. A fail: at one minus the test's share of alpha, and it leaves out everything that is claimed or allowed. A pass with "detect", or of a proof (&lt;, &gt;, within): at one minus twice the test's share of beta, and it leaves out everything that must not pass. Where sampling went in looks, the shares are those of the look that decided.</dd>
+<dt>assumption</dt><dd>What the test takes for granted about the data, as measured. Green: it holds. Amber: it does not hold by itself, and the method chosen allows for it. Red: the test is invalid. A level factor says how much more often than its level one tail of the test errs because the data are skewed; 1 is exact.</dd>
+<dt>look</dt><dd>Sampling stops as soon as a claim is decided. Each look at the data may spend its part of the test's alpha and beta, so that all looks together keep them.</dd>
 <dt>p</dt><dd>Of the claim, unless another name stands below it. The claims with &lt;, &gt; and within are proofs: their verdict rests on p(contrary), the p-value of the contrary of the claim.</dd>
 </dl></details>
 )html";

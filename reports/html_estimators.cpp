@@ -32,12 +32,29 @@ std::string confidence_of(const Suite& suite) {
                                   : confidence_text(suite.estimators.front().confidence);
 }
 
+bool lacks_interval(const Estimate& estimate) {
+  return estimate.value && !estimate.low && !estimate.high;
+}
+
+bool has_bare_bars(const Suite& suite) {
+  for (const EstimatorSummary& estimator : suite.estimators) {
+    for (const EstimatorChannel& channel : estimator.channels) {
+      if (lacks_interval(channel.mean) || lacks_interval(channel.variance)) return true;
+    }
+  }
+  return false;
+}
+
 std::string bars_legend(const Suite& suite) {
-  return fmt::format(
+  const std::string text = fmt::format(
       "Bars from zero with {} intervals; dashed lines are exact values where known. Names in "
       "italics are mutants. Estimators share a chart where a claim names them together, where "
       "they estimate one exact value, or where one is a mutant of the other.",
       confidence_of(suite));
+  if (!has_bare_bars(suite)) return text;
+  return text +
+         " Of an image the bars are means over its pixels; a variance has no interval there, nor a "
+         "mean whose pixels depend on each other.";
 }
 
 std::string pairs_legend(const Suite& suite) {

@@ -70,8 +70,7 @@ struct Shown {
   const ImageFinding* found;  ///< to outline, or null
 };
 
-std::string preview(const Shown& shown) {
-  const ColourScale scale = scale_of(shown.map);
+std::string preview(const Shown& shown, const ColourScale& scale) {
   const Size size = shown_size(shown.map);
   const double width = std::max(size.width, 180.0);
   const double bar = margin + size.height + 8;
@@ -118,6 +117,11 @@ std::size_t index_of(const Map& map, const std::string& component) {
 
 }  // namespace
 
+std::string map_picture(const Map& map, std::size_t component, const ColourScale& scale,
+                        const ImageFinding* found) {
+  return preview({map, component, found}, scale);
+}
+
 std::string image_section(const Test& test) {
   if (!test.image || test.maps.empty()) return {};
   const ImageFinding& winner = test.image->winner;
@@ -130,7 +134,7 @@ std::string image_section(const Test& test) {
       if (map.name != "z" && c != worst) continue;
       const bool outlined = map.name == "z" && c == worst && winner.width > 0;
       const Shown shown{map, c, outlined ? &winner : nullptr};
-      out += figure(preview(shown), caption(shown));
+      out += figure(preview(shown, scale_of(map)), caption(shown));
     }
   }
   out += "</div>\n";

@@ -31,8 +31,8 @@ std::string ledger_section(const Ledger& ledger) {
   HtmlTable table({{"ledger"},
                    {"test"},
                    {"nights", true},
-                   {"E", true},
-                   {"alarm at", true},
+                   {"E, their e-value", true},
+                   {"E that alarms", true},
                    {"what the nights say together"}},
                   "cards");
   for (const LedgerSeries& series : ledger.series) {
@@ -41,8 +41,12 @@ std::string ledger_section(const Ledger& ledger) {
   for (const LedgerSeries& series : ledger.series) {
     if (!series.alarm) add(table, ledger, series);
   }
-  return fmt::format("<h2 id=\"ledger\">{}</h2>\n{}", escape_xml(one_line(ledger_title(ledger))),
-                     table.finish());
+  return fmt::format(
+      "<h2 id=\"ledger\">{}</h2>\n<p class=\"muted\">{}</p>\n{}",
+      escape_xml(one_line(ledger_title(ledger))),
+      "The e-value E of all nights together is the evidence against a claim: while the claim is "
+      "true, the probability that E ever reaches a number A, on any night, is 1 / A at most.",
+      table.finish());
 }
 
 }  // namespace assay::reports

@@ -33,6 +33,7 @@ std::string name_markup(const Test& test, TestPlace place) {
 }
 
 std::string p_markup(const Test& test) {
+  if (!is_evidence(test)) return {};
   const NamedP p = headline_p(test);
   if (!p.exists()) return {};
   const std::string value = escape_xml(p_text(p.p, p.log10_p));
@@ -41,8 +42,10 @@ std::string p_markup(const Test& test) {
                                      escape_xml(p.name));
 }
 
+// What was computed where an assumption does not hold is in the record, and is no effect.
 std::string effect_markup(const Test& test) {
-  const Effect effect = worst_channel(test).effect;
+  if (!is_evidence(test)) return {};
+  const Effect effect = deciding_channel(test).effect;
   const std::string text = effect_text(effect);
   if (text.empty()) return {};
   return fmt::format(
@@ -53,8 +56,8 @@ std::string effect_markup(const Test& test) {
 void add(HtmlTable& table, const Test& test, TestPlace place) {
   table.row({{badge(test), "verdict"},
              {name_markup(test, place), "name"},
-             {effect_markup(test), "", effect_name(worst_channel(test).effect)},
-             {interval_sketch(test)},
+             {effect_markup(test), "", effect_name(deciding_channel(test).effect)},
+             {is_evidence(test) ? interval_sketch(test) : std::string()},
              {p_markup(test)},
              {count_text(observations(test)), "", grouped(observations(test))},
              cost_cell(total_cost(test))},
@@ -102,7 +105,7 @@ std::string overview(const Record& record) {
   HtmlTable table({{"verdict"},
                    {"test and claim"},
                    {"effect [interval]"},
-                   {"against none, detect"},
+                   {"no effect (solid), detect (dashed)"},
                    {"p", true},
                    {"observations", true},
                    {"cost, CPU time", true}},

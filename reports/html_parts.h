@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/colour_scale.h"
 #include "reports/html_table.h"
 #include "reports/record.h"
 
@@ -52,6 +53,14 @@ std::string estimator_pictures(const Suite&);
 
 /// What the nights of the ledger say, alarms first; empty where none is kept.
 std::string ledger_section(const Ledger&);
+
+/// One component of a map in colours with its scale below, a rectangle of it outlined if there is
+/// one.
+std::string map_picture(const Map&, std::size_t component, const ColourScale&,
+                        const ImageFinding* found);
+
+/// The cells of a sampler's domain: drawn, expected and the difference; empty where there are none.
+std::string cells_section(const Test&);
 
 /// The maps of an image in colours, the cell outlined where it differs most; empty where there is
 /// no image.

@@ -88,7 +88,7 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
   table.cards tr { padding: 8px 0; border-bottom: 1px solid var(--edge); }
   table.cards td { display: grid; grid-template-columns: 11em minmax(0, 1fr); gap: 8px; border: 0; padding: 2px 0; text-align: left; overflow-wrap: anywhere; }
   table.cards td.empty { display: none; }
-  table.cards td::before { content: attr(data-label); color: var(--muted); } }
+  table.cards td::before { content: attr(data-label); color: var(--muted); white-space: normal; } }
 @media screen and (max-width: 480px) { table.cards td { grid-template-columns: 8em minmax(0, 1fr); } }
 @media (max-width: 620px) { body { padding: 16px 12px 40px; } dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: 6px; } }
 @media print { body { max-width: none; padding: 0; font-size: 11px; } .tools { display: none; }

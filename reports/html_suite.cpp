@@ -12,9 +12,10 @@ std::string suite_section(const Record& record, std::size_t index) {
   std::string out =
       fmt::format("<h2 id=\"s{}\">{}</h2>\n", index, escape_xml(one_line(suite.name)));
   if (!suite.about.empty()) out += fmt::format("<p>{}</p>\n", escape_xml(suite.about));
-  out += fmt::format("<div class=\"facts\"><span>{}</span><span>{}</span><span>{}</span></div>\n",
-                     escape_xml(one_line(suite.file)), escape_xml(levels_text(suite)),
-                     tally_sentence(tally(suite)));
+  const std::string file =
+      suite.file.empty() ? "" : fmt::format("<span>{}</span>", escape_xml(one_line(suite.file)));
+  out += fmt::format("<div class=\"facts\">{}<span>{}</span><span>{}</span></div>\n", file,
+                     escape_xml(levels_text(suite)), tally_sentence(tally(suite)));
   out += estimator_pictures(suite);
   if (!suite.tests.empty()) out += "<h3>Tests</h3>\n";
   for (const std::size_t t : by_urgency(suite)) out += test_section(suite.tests[t], {index, t});

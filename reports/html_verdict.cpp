@@ -15,6 +15,11 @@
 namespace assay::reports {
 namespace {
 
+bool needs_a_look(const Test& test) {
+  const Outcome result = outcome(test);
+  return result == Outcome::failed || result == Outcome::inconclusive;
+}
+
 std::string definition(const std::string& label, const std::string& sentence) {
   if (sentence.empty()) return {};
   return fmt::format("<dt>{}</dt><dd>{}</dd>\n", label, escape_xml(sentence));
@@ -22,7 +27,10 @@ std::string definition(const std::string& label, const std::string& sentence) {
 
 std::string definitions(const Test& test) {
   std::string out = "<dl>\n";
-  for (const auto& [label, sentence] : facts(test)) out += definition(label, sentence);
+  // The summary above has the message of what is not ok.
+  for (const auto& [label, sentence] : facts(test)) {
+    if (label != "message" || !needs_a_look(test)) out += definition(label, sentence);
+  }
   out += definition("cost", cost_text(total_cost(test)));
   out += definition("where", place(test));
   std::string tags;
@@ -37,7 +45,7 @@ std::vector<const Sample*> drawn_samples(const Test& test) {
 }
 
 std::string interval_caption(const Test& test) {
-  const Effect effect = worst_channel(test).effect;
+  const Effect effect = deciding_channel(test).effect;
   const std::string interval = interval_name(effect);
   std::string text = interval.empty() ? "The effect" : "The effect with its " + interval;
   text +=
@@ -77,14 +85,19 @@ std::string law_caption(const Test& test) {
 
 std::string pictures(const Test& test) {
   const std::vector<const Sample*> samples = drawn_samples(test);
-  std::string out = "<div class=\"figures\">\n";
-  out += figure(interval_chart(test), interval_caption(test));
+  std::string out;
+  // As wide as the page: beside it the others would stand one by one.
+  if (is_evidence(test)) out += figure(interval_chart(test), interval_caption(test));
+  out += "<div class=\"figures\">\n";
   out += figure(histogram_chart({samples, worst_channel(test).reference}),
                 histogram_caption(test, samples));
   out += figure(law_chart(worst_channel(test)), law_caption(test));
-  for (const Sample* sample : samples)
+  // A claim about a law is not about normality.
+  for (const Sample* sample : samples) {
+    if (!worst_channel(test).laws.empty()) break;
     out +=
         figure(quantile_chart(*sample), "Normal quantile plot: on the dashed line where normal.");
+  }
   return out + "</div>\n";
 }
 
@@ -94,10 +107,19 @@ const char* state_style(const std::string& state) {
   return state == "amber" ? "amber" : "green";
 }
 
+// The gates of an invalid test may all be green: those on its pilot, where its plan was refused.
+bool is_red_elsewhere(const Test& test) {
+  return test.verdict == Verdict::invalid &&
+         std::none_of(test.gates.begin(), test.gates.end(),
+                      [](const Gate& gate) { return gate.state == "red"; });
+}
+
 std::string gates(const Test& test) {
-  if (test.gates.empty()) return {};
+  if (test.gates.empty() && !is_red_elsewhere(test)) return {};
   HtmlTable table({{"assumption checked"}, {"value", true}, {"limit", true}, {"state"}},
                   "small cards");
+  if (is_red_elsewhere(test))
+    table.row({{"what the message says"}, {""}, {""}, {"red", state_style("red")}});
   for (const Gate& gate : test.gates)
     table.row({{escape_xml(one_line(gate.name))},
                {human(gate.value)},
@@ -107,11 +129,11 @@ std::string gates(const Test& test) {
 }
 
 std::string looks(const Test& test) {
-  if (test.looks.empty()) return {};
+  if (test.looks.empty() || !is_evidence(test)) return {};
   HtmlTable table(
       {{"look", true},
        {"observations", true},
-       {"its share", true},
+       {"share of alpha and beta", true},
        {"p of the claim", true},
        {is_proof(test) ? "p of the contrary" : "p of an effect that must not pass", true}},
       "small cards");
@@ -178,22 +200,16 @@ std::string replay(const Test& test) {
 
 std::string test_section(const Test& test, TestPlace place) {
   const Outcome result = outcome(test);
-  const bool open = result == Outcome::failed || result == Outcome::inconclusive;
-  // Folded, a row that is not ok still says why.
-  const std::string reason = result == Outcome::failed || result == Outcome::inconclusive
-                                 ? one_line(headline(test))
-                                 : std::string();
-  const std::string number = key_number(test);
-  const std::string key = reason.empty() || reason == number ? number
-                          : number.empty()                   ? reason
-                                                             : number + ": " + reason;
+  const bool open = needs_a_look(test);
+  // Folded, a row that is not ok still says why; the reason has the numbers in it.
+  const std::string key = open ? one_line(headline(test)) : key_number(test);
   std::string out = fmt::format(
       "<details class=\"test {}\" id=\"{}\"{}>\n<summary>{} <b>{}</b> <span "
       "class=\"key\">{}</span></summary>\n<div>\n",
       outcome_style(result), anchor(place), open ? " open=\"open\"" : "", badge(test),
       escape_xml(one_line(test.name)), escape_xml(key));
-  out += definitions(test) + image_section(test) + pictures(test) + gates(test) + looks(test) +
-         sample_table(test);
+  out += definitions(test) + image_section(test) + cells_section(test) + pictures(test) +
+         gates(test) + looks(test) + sample_table(test);
   return out + replay(test) + "</div>\n</details>\n";
 }
 

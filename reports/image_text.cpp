@@ -47,8 +47,11 @@ std::string map_title(const Map& map) {
   if (map.name == "z") return "signed z";
   if (map.name == "p_adjusted") return "p of each pixel, adjusted for all pixels";
   if (map.name == "reference") return "reference";
+  if (map.name == "cells_observed") return "Draws in each cell";
+  if (map.name == "cells_expected") return "Draws expected";
+  if (map.name == "cells_z") return "Drawn - expected, in standard deviations";
   const bool variance = map.name == "variance" || map.name == "other_variance";
-  return fmt::format("{} of {}", variance ? "variance" : "mean", map.source);
+  return fmt::format("{} of {}", variance ? "variance of one image" : "mean", map.source);
 }
 
 }  // namespace assay::reports

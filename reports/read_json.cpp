@@ -111,7 +111,9 @@ void leaf(const Json& node, const std::string& place, Texels& value) {
 void leaf(const Json& node, const std::string& place, std::optional<Image>& value) {
   value.reset();
   if (node.is_null()) return;
-  read(node, place, value.emplace());
+  Image image;
+  read(node, place, image);
+  value = std::move(image);
 }
 
 void leaf(const Json& node, const std::string& place, bool& value) {

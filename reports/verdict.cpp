@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "reports/number.h"
 
@@ -68,27 +69,34 @@ std::string tally_sentence(const Tally& tally) {
   if (total == 0) return "No test ran";
   if (tally.failed > 0) return of_tests(tally.failed, total) + " not ok";
   if (tally.inconclusive > 0)
-    return fmt::format("No test failed, {} inconclusive", of_tests(tally.inconclusive, total));
-  if (total == 1) return tally.skipped > 0 ? "The test was skipped" : "The test is ok";
-  if (tally.skipped == total) return fmt::format("All {} tests skipped", total);
+    return of_tests(tally.inconclusive, total) + " undecided, none not ok";
+  if (total == 1) return tally.skipped > 0 ? "The test was not run" : "The test is ok";
+  if (tally.skipped == total) return fmt::format("None of {} tests was run", total);
   if (tally.skipped > 0)
-    return fmt::format("{} ok, {} skipped", of_tests(tally.passed, total), tally.skipped);
+    return fmt::format("{} ok, {} not run", of_tests(tally.passed, total), tally.skipped);
   return fmt::format("All {} tests ok", total);
 }
 
-std::string verdict_counts(const Record& record) {
-  std::map<std::string, std::pair<int, int>> counts;  // text: urgency negated, number
+std::string last_line_note(const Record& record) {
+  bool needed = false;
   for_each_test(record, [&](const Test& test) {
-    auto& [order, number] = counts[verdict_text(test)];
-    order = -urgency(test);
-    ++number;
+    const bool as_named = test.verdict == Verdict::skipped ||
+                          (test.ok ? test.verdict == Verdict::pass : test.verdict == Verdict::fail);
+    needed = needed || !as_named;
   });
-  std::vector<std::pair<std::pair<int, int>, std::string>> sorted;
-  for (const auto& [text, count] : counts) sorted.push_back({count, text});
-  std::sort(sorted.begin(), sorted.end());
+  return needed ? "Counted below: ok as passed, not ok as failed, undecided and not run as skipped."
+                : "";
+}
+
+std::string verdict_counts(const Record& record) {
+  // By urgency, the plain pass before what was expected to fail, then by their words.
+  std::map<std::tuple<int, bool, std::string>, int> counts;
+  for_each_test(record, [&](const Test& test) {
+    ++counts[{urgency(test), test.verdict != Verdict::pass, verdict_text(test)}];
+  });
   std::string out;
-  for (const auto& [count, text] : sorted)
-    out += fmt::format("{}{}\u00A0{}", out.empty() ? "" : "; ", count.second, text);
+  for (const auto& [key, count] : counts)
+    out += fmt::format("{}{}\u00A0{}", out.empty() ? "" : "; ", count, std::get<2>(key));
   return out;
 }
 
@@ -123,7 +131,7 @@ int urgency(const Test& test) {
     case Outcome::passed:
       break;
   }
-  return test.verdict == Verdict::pass ? 4 : 3;
+  return 3;
 }
 
 }  // namespace assay::reports

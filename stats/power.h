@@ -106,7 +106,8 @@ std::optional<std::uint64_t> log_variance_sample_size(const LogVariancePlan& pla
 // ---- Distances between laws: Kolmogorov-Smirnov
 // Lower bound of the power: P(D < d_alpha) <=
 // exp(-2 n (distance - allow - d_alpha)^2) (Hoeffding at the point of largest difference), d_alpha
-// from the exact law. Two samples of n each: `two_samples`. Always one-tailed: rates.two_sided is
+// from the exact law; the sample size of one sample takes Massart's bound of d_alpha, a few in a
+// thousand above it. Two samples of n each: `two_samples`. Always one-tailed: rates.two_sided is
 // ignored.
 struct DistancePlan {
   bool two_samples = false;

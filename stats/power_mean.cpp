@@ -77,6 +77,12 @@ double z_sum(const ErrorRates& rates) {
   return normal_quantile(critical_tail(rates)) + z_upper(rates.beta);
 }
 
+// What t needs beyond the normal formula: z_alpha^2 / 2 (Guenther 1981), nearly exact.
+double beyond_normal(const ErrorRates& rates) {
+  const double z = normal_quantile(critical_tail(rates));
+  return z * z / 2;
+}
+
 }  // namespace
 
 double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRates rates) {
@@ -112,7 +118,7 @@ std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double 
   const auto enough = [&](double n) {
     return power_of(scale_of(plan, n), plan.rates, {plan.allow, detect}) >= 1 - plan.rates.beta;
   };
-  return planning::smallest_sample(enough, guess, 2);
+  return planning::smallest_sample(enough, guess + beyond_normal(plan.rates), 2);
 }
 
 double welch_power(const TwoMeansPlan& plan, double n_x, double effect) {

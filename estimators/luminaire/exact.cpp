@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <numbers>
 #include <span>
+
+#include "render/gauss_legendre.h"
 
 namespace assay::luminaire {
 
@@ -25,12 +26,24 @@ Polygon clipped(Polygon polygon, const Cone& cone) {
   return polygon;
 }
 
-// What the functional gives for the part of a convex polygon that lies in none of the cones.
-double outside(const Polygon& polygon, std::span<const Cone> cones, const Functional& functional) {
-  if (polygon.empty()) return 0;
-  if (cones.empty()) return functional(polygon);
+// Adds the part of a convex polygon that lies in none of the cones, by inclusion and exclusion.
+void add_outside(std::vector<SignedPolygon>& parts, const SignedPolygon& whole,
+                 std::span<const Cone> cones) {
+  if (whole.polygon.empty()) return;
+  if (cones.empty()) {
+    parts.push_back(whole);
+    return;
+  }
   const std::span<const Cone> rest = cones.subspan(1);
-  return outside(polygon, rest, functional) - outside(clipped(polygon, cones[0]), rest, functional);
+  add_outside(parts, whole, rest);
+  add_outside(parts, {clipped(whole.polygon, cones[0]), -whole.sign}, rest);
+}
+
+// What an additive functional gives for the sum of parts.
+double sum(std::span<const SignedPolygon> parts, const Functional& functional) {
+  double total = 0;
+  for (const SignedPolygon& part : parts) total += part.sign * functional(part.polygon);
+  return total;
 }
 
 // The pyramid from the origin through a convex polygon; no half spaces where it is seen edge on.
@@ -67,34 +80,6 @@ std::optional<std::vector<Cone>> shadows(const Setting& setting) {
     if (!cone.empty()) cones.push_back(cone);
   }
   return cones;
-}
-
-struct Node {
-  double place;
-  double weight;
-};
-
-// Gauss-Legendre nodes on [0, 1]: roots of the Legendre polynomial by Newton's method.
-template <std::size_t N>
-std::array<Node, N> gauss_legendre() {
-  std::array<Node, N> nodes{};
-  for (std::size_t i = 0; i < N; ++i) {
-    double x = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (N + 0.5));
-    double slope = 0;
-    for (int step = 0; step < 8; ++step) {
-      double previous = 1;
-      double value = x;
-      for (std::size_t k = 2; k <= N; ++k) {
-        const double degree = static_cast<double>(k);
-        const double next = ((2 * degree - 1) * x * value - (degree - 1) * previous) / degree;
-        previous = std::exchange(value, next);
-      }
-      slope = N * (x * value - previous) / (x * x - 1);
-      x -= value / slope;
-    }
-    nodes[i] = {(1 - x) / 2, 1 / ((1 - x * x) * slope * slope)};
-  }
-  return nodes;
 }
 
 // The integral of (z h / r^4)^2 over triangles at distance h from the origin, subdivided until
@@ -135,10 +120,10 @@ class SquaredGeometry {
 
   // Duffy's map of the square to the triangle, whose area element is u.
   double quadrature(const Corners& t) const {
-    static const auto nodes = gauss_legendre<16>();
+    static const auto nodes = render::gauss_legendre<16>();
     double sum = 0;
-    for (const Node& u : nodes) {
-      for (const Node& v : nodes) {
+    for (const render::Node& u : nodes) {
+      for (const render::Node& v : nodes) {
         const Vector3 p = t[0] + u.place * ((t[1] - t[0]) + v.place * (t[2] - t[1]));
         const double r2 = squared_length(p);
         const double term = p.z * h_ / (r2 * r2);
@@ -162,22 +147,29 @@ double whole_solid_angle(const Setting& setting) {
 
 }  // namespace
 
-std::optional<ExactIntegrals> exact_integrals(const Setting& setting) {
+std::optional<std::vector<SignedPolygon>> visible_parts(const Setting& setting) {
   if (!setting.planar()) return {};
   const auto cones = shadows(setting);
   if (!cones) return {};
+  std::vector<SignedPolygon> parts;
+  if (!setting.triangles()[0].emits) return parts;
+  add_outside(parts, {render::clipped(setting.polygon(), {up, 0}), 1}, *cones);
+  return parts;
+}
+
+std::optional<ExactIntegrals> exact_integrals(const Setting& setting) {
+  const auto parts = visible_parts(setting);
+  if (!parts) return {};
   const LightTriangle& light = setting.triangles()[0];
   if (!light.emits) return ExactIntegrals{.area = setting.area(), .squared_geometry = 0};
-  const Polygon above = render::clipped(setting.polygon(), {up, 0});
   SquaredGeometry geometry(light.plane_distance);
   ExactIntegrals exact;
-  exact.irradiance =
-      outside(above, *cones, [](const Polygon& p) { return render::lambert(p, up); });
+  exact.irradiance = sum(*parts, [](const Polygon& p) { return render::lambert(p, up); });
   exact.squared_cosine =
-      outside(above, *cones, [](const Polygon& p) { return render::squared_cosine(p, up); });
+      sum(*parts, [](const Polygon& p) { return render::squared_cosine(p, up); });
   exact.solid_angle = whole_solid_angle(setting);
   exact.area = setting.area();
-  const double squared = outside(above, *cones, [&](const Polygon& p) { return geometry.of(p); });
+  const double squared = sum(*parts, [&](const Polygon& p) { return geometry.of(p); });
   if (geometry.converged()) exact.squared_geometry = squared;
   return exact;
 }

@@ -3,6 +3,7 @@
 // What is known of a luminaire scene without sampling it.
 
 #include <optional>
+#include <vector>
 
 #include "luminaire/setting.h"
 
@@ -20,10 +21,22 @@ struct ExactIntegrals {
   std::optional<double> squared_geometry;
 };
 
-/// The integrals of a planar luminaire without occluders or with at most eight, all convex
-/// polygons; none otherwise, or when an occluder is so near to the receiver that rays do not see
-/// it. The part of the luminaire behind a convex polygon is the luminaire clipped to the pyramid
-/// from the receiver through the polygon; several occluders are taken by inclusion and exclusion.
+/// A convex polygon that counts once, or once less.
+struct SignedPolygon {
+  render::Polygon polygon;
+  double sign = 1;
+};
+
+/// The part of a planar luminaire that the receiver sees and that lies above its horizon, as a sum
+/// of signed polygons in the luminaire's plane, in the receiver's frame. None for a mesh, for
+/// occluders that are more than eight or not convex polygons, or when an occluder is so near to the
+/// receiver that rays do not see it. The part of the luminaire behind a convex polygon is the
+/// luminaire clipped to the pyramid from the receiver through the polygon; several occluders are
+/// taken by inclusion and exclusion. No polygon where the luminaire's back is seen.
+std::optional<std::vector<SignedPolygon>> visible_parts(const Setting& setting);
+
+/// The integrals of a planar luminaire over its visible_parts(); none where there are none to be
+/// had.
 std::optional<ExactIntegrals> exact_integrals(const Setting& setting);
 
 /// E = L lambert(polygon) of the whole polygon as it stands, without clipping at the horizon: right

@@ -96,11 +96,18 @@ class Setting {
     return render::RoundedRay({.origin = {}, .direction = direction, .near = near_});
   }
 
-  /// Whether a ray from the receiver first hits a side of the luminaire that emits.
-  bool sees_light(const render::RoundedRay& ray, Cost& cost) const {
+  /// The triangle of the luminaire that a ray from the receiver hits first, from either side; none
+  /// where it hits something else or nothing.
+  const LightTriangle* first_hit(const render::RoundedRay& ray, Cost& cost) const {
     ++cost.closest_hit_rays;
     const render::Hit hit = scene_.closest_hit(ray);
-    return hit.shape == 0 && triangles_[hit.primitive].emits;
+    return hit.shape == 0 ? &triangles_[hit.primitive] : nullptr;
+  }
+
+  /// Whether a ray from the receiver first hits a side of the luminaire that emits.
+  bool sees_light(const render::RoundedRay& ray, Cost& cost) const {
+    const LightTriangle* const triangle = first_hit(ray, cost);
+    return triangle && triangle->emits;
   }
 
   /// What a light sample brings: its value, or 0 where a shadow ray is blocked. Where the value is

@@ -223,6 +223,21 @@ TEST(ImageClaims, WhatHasNoMethodIsRefusedBeforeSampling) {
   EXPECT_NE(of("mean(a) == 0\n    detect: 1%").find("zero in every pixel"), std::string::npos);
 }
 
+// Pixels are independent: the variance of their mean is the mean of theirs over their number. The
+// quantile of nearly as many degrees of freedom as the image has numbers is the normal's.
+TEST(ImageClaims, TheMeanOfAnImageHasAnIntervalInTheSuitesPicture) {
+  const reports::Record record = run_text(floor_suite(
+      std::string(floor_16) + ", primaries: 32", "claim: mean(a) == analytic, secondaries: 32"));
+  const reports::EstimatorSummary& summary = record.suites[0].estimators[0];
+  const reports::Estimate& mean = summary.channels[0].mean;
+  ASSERT_TRUE(mean.low && mean.high);
+  EXPECT_NEAR(*mean.low + *mean.high, 2 * *mean.value, 1e-12);
+  const double per_pixel = *summary.channels[0].variance.value / 32;  // of one observation
+  const double error = std::sqrt(per_pixel / (256.0 * static_cast<double>(summary.secondaries)));
+  EXPECT_NEAR((*mean.high - *mean.low) / 2 / error, 2.576, 0.02);
+  EXPECT_EQ(summary.variance_of, "primary");
+}
+
 // Against a constant that is wrong nearly everywhere, and against another image at twice the scale.
 TEST(ImageClaims, ConstantsAndFactorsAreMetPixelByPixel) {
   const std::string text =

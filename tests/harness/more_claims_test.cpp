@@ -124,6 +124,12 @@ TEST(EfficiencyClaim, OfABiasedEstimatorTakesTheMeanSquaredError) {
             Verdict::fail);
 }
 
+// The number that the quantile is held against stands among the observations.
+TEST(QuantileClaim, MarksItsNumberInTheHistogram) {
+  const reports::Test test = tested("{claim: \"quantile(normal, 0.5) == 2\", detect: 0.2}");
+  EXPECT_EQ(test.channels[0].reference, 2);
+}
+
 TEST(QuantileClaim, IsExactOfOneAndOfTwo) {
   EXPECT_EQ(verdict_of("{claim: \"quantile(normal, 0.5) == 2\", detect: 0.2}"), Verdict::pass);
   EXPECT_EQ(verdict_of("{claim: \"quantile(normal, 0.5) == 2.3\", detect: 5%}"), Verdict::fail);

@@ -1,8 +1,11 @@
 #include "harness/narrate.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "normal_evidence.h"
+#include <cmath>
+
+#include "reports/effect.h"
 #include "running.h"
 
 namespace assay::harness {
@@ -15,6 +18,7 @@ reports::Test told(const std::string& test) {
 estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
   other: {plugin: analytic/normal, mean: 2.01, primaries: 1}
+  unit: {plugin: analytic/normal, mean: 2, deviation: 0.1, primaries: 1}
 tests:
   - {name: test, )" + test + "}\n"),
                     "test");
@@ -47,7 +51,7 @@ TEST(Narrate, OneSidedPassSaysHowMuchThereIsToSpare) {
   expect_said(told("claim: mean(normal) >= 1, detect: 10%, secondaries: 1000"), Verdict::pass,
               "no evidence against the claim, which holds with 9");
   expect_said(told("claim: mean(normal) >= 1, detect: 10%, secondaries: 1000"), Verdict::pass,
-              " % to spare at ");
+              " % to spare by the ");
 }
 
 // Five per cent on the wrong side, three standard errors, of which ten are allowed.
@@ -55,7 +59,7 @@ TEST(Narrate, OneSidedPassNearItsBoundSaysWhatIsExcluded) {
   for (const char* side : {"<= 1.9", ">= 2.1"}) {
     const reports::Test test = told(std::string("claim: mean(normal) ") + side +
                                     ", allow: 10%, detect: 20%, secondaries: 1000");
-    expect_said(test, Verdict::pass, " % or more is excluded at ");
+    expect_said(test, Verdict::pass, " % or more is excluded by the ");
     EXPECT_EQ(test.message.find("-"), std::string::npos) << test.message;
   }
 }
@@ -80,14 +84,62 @@ TEST(Narrate, InconclusiveSaysWhenNoNumberWouldDecide) {
               Verdict::inconclusive, "the reference's own error");
 }
 
-TEST(Narrate, ShowsThetaInItsUnit) {
-  Evidence evidence = normal_evidence(0, 1);
-  EXPECT_EQ(show_theta(0.25, evidence), "0.25");
-  evidence.relative = true;
-  EXPECT_EQ(show_theta(0.25, evidence), "+25 %");
-  evidence.relative = false;
-  evidence.ratio = true;
-  EXPECT_EQ(show_theta(0, evidence), "x 1");
+// The words "12.3 % or more is excluded by the 98 % interval" beside that interval.
+TEST(Narrate, TheIntervalOfAPassIsTheOneThatExcludes) {
+  const reports::Test test = told("claim: mean(normal) == 2, detect: 10%, secondaries: 10000");
+  const reports::Effect& effect = test.channels[0].effect;
+  EXPECT_EQ(test.verdict, Verdict::pass);
+  EXPECT_DOUBLE_EQ(effect.confidence, 1 - 2 * *test.beta);
+  EXPECT_LT(*effect.high, 0.1);
+  EXPECT_GT(*effect.low, -0.1);
+  expect_said(test, Verdict::pass, " % or more is excluded by the 98 % interval");
+}
+
+// The larger of the ends as they are shown: upwards a ratio has more per cent than downwards.
+TEST(Narrate, WhatIsExcludedOfARatioIsAnEndOfItsInterval) {
+  for (const char* side : {"== 0.01", "<= 0.01"}) {
+    const reports::Test test =
+        told(std::string("claim: variance(unit) ") + side + ", detect: 40%, secondaries: 1000");
+    const reports::Effect& effect = test.channels[0].effect;
+    const double high = std::abs(std::expm1(*effect.high));
+    const double low = std::abs(std::expm1(*effect.low));
+    const bool upper = std::string(side).starts_with("<") || high > low;
+    expect_said(test, Verdict::pass,
+                fmt::format("{:.3g} % or more is excluded", 100 * (upper ? high : low)));
+  }
+}
+
+TEST(Narrate, TheIntervalOfAFailIsTheOneThatRefutes) {
+  const reports::Test test = told("claim: mean(normal) == 2.5, detect: 10%, secondaries: 10000");
+  EXPECT_EQ(test.verdict, Verdict::fail);
+  EXPECT_DOUBLE_EQ(test.channels[0].effect.confidence, 1 - *test.alpha);
+  EXPECT_LT(*test.channels[0].effect.high, 0);
+}
+
+// A pass that excludes nothing rests on the test at alpha.
+TEST(Narrate, TheIntervalOfAClassicalPassIsAtAlpha) {
+  const reports::Test test = told("claim: mean(normal) == 2");
+  EXPECT_DOUBLE_EQ(test.channels[0].effect.confidence, 1 - *test.alpha);
+}
+
+TEST(Narrate, TheIntervalOfAProofLiesInsideItsMargin) {
+  const reports::Test test = told("claim: mean(normal) within 10% of 2, secondaries: 10000");
+  const reports::Effect& effect = test.channels[0].effect;
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_DOUBLE_EQ(effect.confidence, 1 - 2 * *test.beta);
+  EXPECT_LT(*effect.high, 0.1);
+  EXPECT_GT(*effect.low, -0.1);
+}
+
+// In words and in the columns of the reports.
+TEST(Narrate, ShowsANumberInTheFormThatReportsShowItIn) {
+  const reports::Test factor = told("claim: variance(other) == 0.01");
+  const std::string shown =
+      reports::theta_text(*factor.channels[0].effect.estimate, factor.channels[0].effect);
+  EXPECT_TRUE(shown.starts_with("×")) << shown;
+  expect_said(factor, Verdict::fail, "is " + shown + " [");
+  const reports::Test large = told("claim: mean(normal) == 0.15");
+  EXPECT_EQ(large.message.find("e+"), std::string::npos) << large.message;
 }
 
 }  // namespace

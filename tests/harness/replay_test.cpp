@@ -171,5 +171,27 @@ tests:
   EXPECT_EQ(said({.record = file, .test = "one"}).code, 0);
 }
 
+TEST(Replay, SaysThatTheNumbersOfAnInvalidTestDecideNothing) {
+  const Workplace place;
+  std::string rows;
+  for (int i = 0; i < 200; ++i) rows += fmt::format("{}\n", (i * 37 % 101) * (i * 53 % 103) % 211);
+  place.write("rows.txt", rows);
+  const std::string file = place.write("few.yaml", R"(suite: few
+estimators:
+  rows: {plugin: recorded, file: rows.txt}
+tests:
+  - {name: few, claim: variance(rows) == 1, detect: 5%}
+)");
+  const reports::Record record = run_files({file}, {});
+  const reports::Test& test = record.suites[0].tests[0];
+  ASSERT_EQ(test.verdict, reports::Verdict::invalid) << test.message;
+  const Said now =
+      said({.record = place.write("run.json", reports::json(record)), .test = test.id});
+  EXPECT_NE(now.text.find("invalid, so the numbers below decide nothing: " + test.message),
+            std::string::npos)
+      << now.text;
+  EXPECT_NE(now.text.find("variance of an observation"), std::string::npos) << now.text;
+}
+
 }  // namespace
 }  // namespace assay::harness

@@ -23,8 +23,21 @@ std::vector<std::string> lines(const std::string& text) {
 TEST(Console, TheLastLineCounts) {
   const auto all = lines(console(example_record()));
   EXPECT_EQ(all.back(), "4 passed, 5 failed, 3 skipped");
-  EXPECT_EQ(all[all.size() - 2], "2 inconclusive (counted as skipped below)");
+  EXPECT_EQ(all[all.size() - 2],
+            "Counted below: ok as passed, not ok as failed, undecided and not run as skipped.");
   EXPECT_EQ(lines(console(Record{})).back(), "0 passed, 0 failed, 0 skipped");
+}
+
+// Verdicts that are counted under their own names need no word.
+TEST(Console, TheLastLineIsExplainedOnlyWhereItsWordsAreNoVerdicts) {
+  Record record = example_record();
+  record.suites.resize(1);
+  std::vector<reports::Test>& tests = record.suites[0].tests;
+  tests = {tests[0], tests[2]};
+  ASSERT_EQ(tests[1].verdict, Verdict::fail);
+  EXPECT_EQ(console(record).find("Counted below"), std::string::npos);
+  tests[1].verdict = Verdict::invalid;
+  EXPECT_NE(console(record).find("Counted below"), std::string::npos);
 }
 
 TEST(Console, WhatIsNotOkIsExplainedAndWhatIsOkIsNot) {
@@ -75,8 +88,10 @@ TEST(Console, NoTwoLinesInARowAreEmpty) {
 
 TEST(Console, TheSummarySaysInWordsWhatTheRunConcluded) {
   const std::string text = console(example_record());
-  EXPECT_NE(text.find("5 of 12 tests not ok in 1 min 23 s: 3 pass; 1 fail (as expected);"),
-            std::string::npos);
+  EXPECT_NE(
+      text.find(
+          "5 of 12 tests not ok in 1 min 23 s. Verdicts: 1 pass, but fail expected; 1 error;"),
+      std::string::npos);
   EXPECT_NE(text.find("some test would fail by chance with probability 0.015 at most"),
             std::string::npos);
 }

@@ -41,6 +41,13 @@ TEST(Effects, AnIntervalIsNamedByItsConfidence) {
   EXPECT_EQ(named_effect_text({"difference", 2.0, {}, {}, 0.99, false}), "+2");
 }
 
+TEST(Effects, TheSizeOfAnEndIsThatOfItsInterval) {
+  const Effect effect = ratio(0.97, 0.857, 1.109);
+  EXPECT_EQ(interval_text(effect), "[-14.3\u00A0%, +10.9\u00A0%]");
+  EXPECT_EQ(size_text(*effect.low, effect), "14.3\u00A0%");
+  EXPECT_EQ(size_text(*effect.high, effect), "10.9\u00A0%");
+}
+
 TEST(Effects, AnOpenEndIsNotShownAsANumber) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(interval_text({"ln(ratio of variances)", -1.38, -infinity, -1.32, 0.99, false}),
@@ -48,8 +55,11 @@ TEST(Effects, AnOpenEndIsNotShownAsANumber) {
   EXPECT_EQ(interval_text({"difference", 1.0, {}, {}, 0.99, false}), "");
 }
 
-TEST(Effects, AMarginOnALogarithmIsAFactor) {
-  EXPECT_EQ(margin_text(std::log(1.2), ratio(1, 1, 1)), "a factor of 1.2");
+// As it is written in a suite: detect: 20% of a ratio is ln 1.2.
+TEST(Effects, AMarginIsShownInTheFormOfItsEffect) {
+  EXPECT_EQ(margin_text(std::log(1.2), ratio(1, 1, 1)), "20\u00A0%");
+  EXPECT_EQ(margin_text(std::log(1.2), ratio(3, 2, 4)), "a factor of 1.2");
+  EXPECT_EQ(margin_text(std::log(3), ratio(1, 1, 1)), "a factor of 3");
   EXPECT_EQ(margin_text(0.005, {"difference", {}, {}, {}, 0.99, true}), "0.5\u00A0%");
 }
 

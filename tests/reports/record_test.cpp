@@ -37,7 +37,7 @@ TEST(Tally, CountsEveryTestOnce) {
   EXPECT_EQ(tally_sentence({}), "No test ran");
   EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 tests ok");
   EXPECT_EQ(tally_sentence({.passed = 3, .inconclusive = 1}),
-            "No test failed, 1 of 4\u00A0tests inconclusive");
+            "1 of 4\u00A0tests undecided, none not ok");
 }
 
 TEST(Cost, CountsAnEstimatorOnceHoweverManyChannelsItHas) {

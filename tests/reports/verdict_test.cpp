@@ -33,9 +33,8 @@ TEST(Verdicts, AnExpectedVerdictThatIsNotOkSaysSo) {
 
 TEST(Verdicts, ARunIsSummedUpInWords) {
   EXPECT_EQ(verdict_counts(example_record()),
-            "3\u00A0pass; 1\u00A0fail (as expected); 1\u00A0skipped; 2\u00A0inconclusive; "
-            "1\u00A0error; 1\u00A0invalid; "
-            "1\u00A0pass, but fail expected; 2\u00A0fail");
+            "1\u00A0pass, but fail expected; 1\u00A0error; 2\u00A0fail; 1\u00A0invalid; "
+            "2\u00A0inconclusive; 1\u00A0skipped; 3\u00A0pass; 1\u00A0fail (as expected)");
   EXPECT_EQ(verdict_counts(Record{}), "");
 }
 
@@ -43,7 +42,10 @@ TEST(Verdicts, ATallyAgreesWithItsNumber) {
   EXPECT_EQ(tally_sentence({.failed = 1}), "1 of 1\u00A0test not ok");
   EXPECT_EQ(tally_sentence({.passed = 1}), "The test is ok");
   EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 tests ok");
-  EXPECT_EQ(tally_sentence({.passed = 1, .skipped = 2}), "1 of 3\u00A0tests ok, 2 skipped");
+  EXPECT_EQ(tally_sentence({.passed = 1, .skipped = 2}), "1 of 3\u00A0tests ok, 2 not run");
+  EXPECT_EQ(tally_sentence({.passed = 1, .inconclusive = 2}),
+            "2 of 3\u00A0tests undecided, none not ok");
+  EXPECT_EQ(tally_sentence({.skipped = 2}), "None of 2 tests was run");
   EXPECT_EQ(tally_sentence({}), "No test ran");
 }
 

@@ -1,0 +1,97 @@
+#pragma once
+
+// Multiple importance sampling of the two techniques: the multi-sample and the one-sample model
+// (Veach 1997, sections 9.2.1 and 9.2.4).
+
+#include <cstdint>
+#include <utility>
+
+#include "direct_light/techniques.h"
+
+namespace assay::direct_light {
+
+/// A Combination weighs a draw of either technique by light(p) and brdf(p), p the densities of both
+/// there. This one is a heuristic on the densities times numbers of samples or probabilities.
+class WeightedByHeuristic {
+ public:
+  WeightedByHeuristic(Heuristic heuristic, Pair shares) : heuristic_(heuristic), shares_(shares) {}
+
+  double light(const Pair& p) const { return weights(p).light; }
+  double brdf(const Pair& p) const { return weights(p).brdf; }
+  Pair weights(const Pair& p) const {
+    return heuristic_({shares_.light * p.light, shares_.brdf * p.brdf});
+  }
+
+ private:
+  Heuristic heuristic_;
+  Pair shares_;
+};
+
+/// What a draw of a technique adds: its weight times integrand / density.
+template <class Combination>
+double from_light(const Combination& combination, const Draw& draw) {
+  if (draw.integrand == 0) return 0;
+  return combination.light(draw.density) * draw.integrand / draw.density.light;
+}
+template <class Combination>
+double from_brdf(const Combination& combination, const Draw& draw) {
+  if (draw.integrand == 0) return 0;
+  return combination.brdf(draw.density) * draw.integrand / draw.density.brdf;
+}
+
+/// Numbers of samples in one primary.
+struct Counts {
+  std::uint64_t light = 1;
+  std::uint64_t brdf = 1;
+
+  Pair shares() const { return {static_cast<double>(light), static_cast<double>(brdf)}; }
+};
+
+/// X = sum over techniques of 1 / n_i times the sum over its n_i draws of w_i f / p_i (eq. 9.4).
+template <class Combination = WeightedByHeuristic>
+class MultiSamplePrimary {
+ public:
+  MultiSamplePrimary(SharedTechniques techniques, Counts counts, Combination combination)
+      : techniques_(std::move(techniques)), counts_(counts), combination_(combination) {}
+
+  double operator()(Stream& random, Cost& cost) const {
+    double light = 0;
+    double brdf = 0;
+    for (std::uint64_t i = 0; i < counts_.light; ++i) {
+      light += from_light(combination_, techniques_->light(random, cost));
+    }
+    for (std::uint64_t i = 0; i < counts_.brdf; ++i) {
+      brdf += from_brdf(combination_, techniques_->brdf(random, cost));
+    }
+    return light / static_cast<double>(counts_.light) + brdf / static_cast<double>(counts_.brdf);
+  }
+
+ private:
+  SharedTechniques techniques_;
+  Counts counts_;
+  Combination combination_;
+};
+
+/// X = w_i f / (c_i p_i) with the technique i drawn with the probability c_i (eq. 9.15).
+template <class Combination = WeightedByHeuristic>
+class OneSamplePrimary {
+ public:
+  OneSamplePrimary(SharedTechniques techniques, Pair probabilities, Combination combination)
+      : techniques_(std::move(techniques)),
+        probabilities_(probabilities),
+        combination_(combination) {}
+
+  double operator()(Stream& random, Cost& cost) const {
+    if (random.uniform() < probabilities_.light) {
+      return from_light(combination_, techniques_->light(random, cost)) / probabilities_.light;
+    }
+    return from_brdf(combination_, techniques_->brdf(random, cost)) / probabilities_.brdf;
+  }
+
+ private:
+  SharedTechniques techniques_;
+  Pair probabilities_;
+  Combination combination_;
+};
+
+}  // namespace assay::direct_light

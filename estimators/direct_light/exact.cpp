@@ -1,0 +1,120 @@
+#include "direct_light/exact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "luminaire/exact.h"
+#include "render/gauss_legendre.h"
+
+namespace assay::direct_light {
+
+namespace {
+
+using render::Polygon;
+using render::Vector3;
+
+// Quarterings that leave triangles about as large as the lobe.
+int first_quarterings(const Polygon& polygon, double width) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    nearest =
+        std::min(nearest, render::distance_to_triangle(polygon[0], polygon[i], polygon[i + 1]));
+  }
+  const double lobe = 2 * nearest * width;
+  return std::clamp(static_cast<int>(std::ceil(std::log2(render::diameter(polygon) / lobe))), 0, 5);
+}
+
+template <std::size_t N>
+using Groups = std::array<std::size_t, N>;
+
+// The integral over a polygon of f(w) with respect to solid angle.
+template <std::size_t N, class F>
+render::Integrals<N> over_polygon(const Techniques& techniques, const Polygon& polygon, const F& f,
+                                  const Groups<N>& groups) {
+  const double height = techniques.setting().triangles()[0].plane_distance;
+  const auto by_area = [&](const Vector3& p) {
+    const double distance = length(p);
+    std::array<double, N> y = f(p / distance);
+    for (double& component : y) component *= height / (distance * distance * distance);
+    return y;
+  };
+  render::TriangleQuadrature<N, decltype(by_area)> quadrature(by_area, {.group = groups});
+  const int first = first_quarterings(polygon, techniques.reflectance().width());
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    quadrature.add({polygon[0], polygon[i], polygon[i + 1]}, first);
+  }
+  return quadrature.refined();
+}
+
+template <std::size_t N, class F>
+std::optional<render::Integrals<N>> over_visible(const Techniques& techniques, const F& f,
+                                                 const Groups<N>& groups) {
+  const auto parts = luminaire::visible_parts(techniques.setting());
+  if (!parts) return {};
+  render::Integrals<N> total;
+  for (const luminaire::SignedPolygon& part : *parts) {
+    render::Integrals<N> integrals = over_polygon<N>(techniques, part.polygon, f, groups);
+    for (double& value : integrals.value) value *= part.sign;
+    total += integrals;
+  }
+  return total;
+}
+
+}  // namespace
+
+Known Moments::multi_sample_variance(const Counts& counts) const {
+  const auto& [value, error] = integrals_;
+  const Pair n = counts.shares();
+  return {(value[1] - value[3] * value[3]) / n.light + (value[2] - value[4] * value[4]) / n.brdf,
+          (error[1] + 2 * value[3] * error[3]) / n.light +
+              (error[2] + 2 * value[4] * error[4]) / n.brdf};
+}
+
+Known Moments::one_sample_variance(const Pair& probabilities) const {
+  const auto& [value, error] = integrals_;
+  Known variance{-value[0] * value[0], 2 * value[0] * error[0]};
+  const auto add = [&](std::size_t i, double probability) {
+    if (probability == 0) return;
+    variance.value += value[i] / probability;
+    variance.error += error[i] / probability;
+  };
+  add(1, probabilities.light);
+  add(2, probabilities.brdf);
+  return variance;
+}
+
+std::optional<Moments> moments(const Techniques& techniques,
+                               const WeightedByHeuristic& combination) {
+  const auto integrands = [&](const Vector3& w) -> std::array<double, 5> {
+    const double f = techniques.integrand(w);
+    if (f == 0) return {};
+    const Pair p = techniques.density(techniques.setting().triangles()[0], w);
+    const Pair weight = combination.weights(p);
+    const Pair part{weight.light * f, weight.brdf * f};
+    // Where the density of the BRDF underflows, so does f: their ratio is bounded.
+    const double of_brdf = p.brdf > 0 ? part.brdf * part.brdf / p.brdf : 0;
+    return {f, part.light * part.light / p.light, of_brdf, part.light, part.brdf};
+  };
+  const auto total = over_visible<5>(techniques, integrands, Groups<5>{0, 1, 1, 0, 0});
+  if (!total) return {};
+  return Moments(*total);
+}
+
+std::optional<Known> radiance(const Techniques& techniques) {
+  const double l = techniques.setting().radiance();
+  if (const auto constant = techniques.reflectance().constant()) {
+    const auto exact = luminaire::exact_integrals(techniques.setting());
+    if (!exact) return {};
+    return Known{*constant * l * exact->irradiance, 0};
+  }
+  const auto integrand = [&](const Vector3& w) {
+    return std::array<double, 1>{techniques.integrand(w)};
+  };
+  const auto total = over_visible<1>(techniques, integrand, Groups<1>{});
+  if (!total) return {};
+  return Known{total->value[0], total->error[0]};
+}
+
+}  // namespace assay::direct_light

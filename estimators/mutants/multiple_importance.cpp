@@ -1,0 +1,250 @@
+// Mutants of multiple importance sampling of light and BRDF: weights, densities or techniques with
+// one thing wrong.
+//
+// I is the radiance, I_l and I_b the integrals of w_l f and w_b f, its parts. Whatever makes both
+// techniques' weights wrong alike, so that they still sum to 1, leaves no bias and shows in the
+// variance alone. Numbers are for a square light of side 0.6 at the distance 2 in the mirror
+// direction, Ashikhmin-Shirley exponents 1000 and 100, a sample of each, the balance heuristic,
+// unless said otherwise.
+
+#include <utility>
+
+#include "direct_light/family.h"
+#include "direct_light/samplers.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace direct_light;
+
+// Replacements for the weights. They hold the sound ones and what else they need.
+
+struct Sound {
+  WeightedByHeuristic combination;
+  WeightedByHeuristic without_counts;
+  double area_density;  ///< per area
+  Pair probabilities;   ///< of the one-sample model
+
+  double light(const Pair& p) const { return combination.light(p); }
+  double brdf(const Pair& p) const { return combination.brdf(p); }
+};
+
+struct Unnormalised : Sound {
+  double light(const Pair& p) const { return Sound::light(p) * Sound::light(p); }
+  double brdf(const Pair& p) const { return Sound::brdf(p) * Sound::brdf(p); }
+};
+
+struct UnweightedBrdf : Sound {
+  double brdf(const Pair&) const { return 1; }
+};
+
+struct ExchangedForBrdf : Sound {
+  double brdf(const Pair& p) const { return Sound::light(p); }
+};
+
+struct Exchanged : ExchangedForBrdf {
+  double light(const Pair& p) const { return Sound::brdf(p); }
+};
+
+struct AreaDensityForBrdf : Sound {
+  double brdf(const Pair& p) const { return Sound::brdf({area_density, p.brdf}); }
+};
+
+struct AreaDensityInWeights : AreaDensityForBrdf {
+  double light(const Pair& p) const { return Sound::light({area_density, p.brdf}); }
+};
+
+struct NoCountsForBrdf : Sound {
+  double brdf(const Pair& p) const { return without_counts.brdf(p); }
+};
+
+struct NoCounts : NoCountsForBrdf {
+  double light(const Pair& p) const { return without_counts.light(p); }
+};
+
+struct LightDensityForBrdf : Sound {
+  double brdf(const Pair& p) const { return Sound::brdf(p) * p.brdf / p.light; }
+};
+
+struct NoSelection : Sound {
+  double light(const Pair& p) const { return Sound::light(p) * probabilities.light; }
+  double brdf(const Pair& p) const { return Sound::brdf(p) * probabilities.brdf; }
+};
+
+// Replacements for the techniques.
+
+struct AreaDensity final : Techniques {
+  using Techniques::Techniques;
+  Draw light(Stream& random, Cost& cost) const override {
+    Draw draw = Techniques::light(random, cost);
+    draw.density.light = 1 / setting().area();
+    return draw;
+  }
+};
+
+struct BackSideSeen final : Techniques {
+  using Techniques::Techniques;
+  Draw brdf(Stream& random, Cost& cost) const override {
+    const render::Vector3 w = reflectance().sample(random);
+    if (w.z <= 0) return {};
+    const auto* const triangle = setting().first_hit(setting().ray(w), cost);
+    if (!triangle) return {};
+    if (triangle->emits) return {integrand(w), density(*triangle, w)};
+    return {integrand(w), {0, reflectance().density(w)}};
+  }
+};
+
+/// The samples of the BRDF are averaged over those that hit the light.
+class MissesNotCounted {
+ public:
+  MissesNotCounted(SharedTechniques techniques, Counts counts, Sound combination)
+      : techniques_(std::move(techniques)), counts_(counts), combination_(combination) {}
+
+  double operator()(Stream& random, Cost& cost) const {
+    double light = 0;
+    for (std::uint64_t i = 0; i < counts_.light; ++i) {
+      light += from_light(combination_, techniques_->light(random, cost));
+    }
+    double brdf = 0;
+    double hits = 0;
+    for (std::uint64_t i = 0; i < counts_.brdf; ++i) {
+      const Draw draw = techniques_->brdf(random, cost);
+      brdf += from_brdf(combination_, draw);
+      hits += draw.integrand > 0 ? 1 : 0;
+    }
+    return light / static_cast<double>(counts_.light) + (hits > 0 ? brdf / hits : 0);
+  }
+
+ private:
+  SharedTechniques techniques_;
+  Counts counts_;
+  Sound combination_;
+};
+
+// Set-ups. The channel keeps the original's mean, the reference to be missed.
+
+Sound sound(const Techniques& techniques, Heuristic heuristic, const Pair& shares) {
+  return {.combination = WeightedByHeuristic(heuristic, shares),
+          .without_counts = WeightedByHeuristic(heuristic, {1, 1}),
+          .area_density = 1 / techniques.setting().area(),
+          .probabilities = shares};
+}
+
+template <class Mutant = Techniques>
+std::shared_ptr<const Mutant> techniques(Parameters& given) {
+  const Parts parts = read_parts(given);
+  return std::make_shared<const Mutant>(parts.setting, parts.reflectance, parts.light_sampling);
+}
+
+/// Primary<Combination> of the multi-sample model with `OfTechniques`.
+template <class Combination, class OfTechniques = Techniques,
+          class Primary = MultiSamplePrimary<Combination>>
+std::shared_ptr<const Setup> multi_sample(Parameters& given) {
+  const auto of = techniques<OfTechniques>(given);
+  const Counts counts = read_counts(given);
+  const Combination combination{sound(*of, read_heuristic(given), counts.shares())};
+  return averaging(mean_channel(*of), Primary(of, counts, combination));
+}
+
+template <class Combination>
+std::shared_ptr<const Setup> one_sample(Parameters& given) {
+  const auto of = techniques(given);
+  const Pair probabilities = read_probabilities(given);
+  const Combination combination{sound(*of, read_heuristic(given), probabilities)};
+  return averaging(mean_channel(*of),
+                   OneSamplePrimary<Combination>(of, probabilities, combination));
+}
+
+struct Described {
+  std::string name;
+  std::string defect;
+};
+
+using Prepare = std::shared_ptr<const Setup> (*)(Parameters&);
+
+Entry mutant(const std::string& original, std::vector<ParameterInformation> more,
+             const Described& described, Prepare prepare) {
+  more.push_back(heuristic_parameter());
+  return {{.name = "mutants/" + described.name,
+           .summary = original + " that " + described.defect,
+           .description = "The estimator " + original + " with one defect: " + described.defect,
+           .parameters = parameters_with(std::move(more)),
+           .original = original,
+           .defect = described.defect},
+          prepare};
+}
+
+Entry of_multi_sample(const Described& described, Prepare prepare) {
+  return mutant("direct_light/multi_sample", count_parameters(), described, prepare);
+}
+
+Entry of_one_sample(const Described& described, Prepare prepare) {
+  return mutant("direct_light/one_sample", {probability_parameter()}, described, prepare);
+}
+
+}  // namespace
+
+std::vector<Entry> mutants_multiple_importance() {
+  return {
+      of_multi_sample({"weights_squared",
+                       "squares the weights, which then do not sum to 1: minus twice the integral "
+                       "of w_l w_b f, -46.9 %."},
+                      multi_sample<Unnormalised>),
+      of_multi_sample({"brdf_unweighted",
+                       "takes samples of the BRDF that hit the light with the weight 1, so that "
+                       "what both techniques find counts twice: I_l too much, +52.4 %."},
+                      multi_sample<UnweightedBrdf>),
+      of_multi_sample({"brdf_weight_of_light",
+                       "gives samples of the BRDF the weight of the light: I_l - I_b, +4.7 %; -80 "
+                       "% where the BRDF is much the better technique."},
+                      multi_sample<ExchangedForBrdf>),
+      of_multi_sample({"weights_exchanged",
+                       "gives each technique the weight of the other: they sum to 1, no bias, but "
+                       "each technique counts where it is the worse one: 1.7 times the variance, "
+                       "190 times under the large light of `suites/direct-light.yaml`."},
+                      multi_sample<Exchanged>),
+      of_multi_sample({"brdf_weight_by_area",
+                       "weighs samples of the BRDF against the density of light samples per area "
+                       "instead of per solid angle, without cos / r^2: +29.5 %, and another bias "
+                       "in another unit of length."},
+                      multi_sample<AreaDensityForBrdf>),
+      of_multi_sample({"weights_by_area",
+                       "takes the light's density per area in the weights of both techniques: they "
+                       "sum to 1, no bias, but the variance depends on the unit of length: 13 "
+                       "times as much on the rough surface of `suites/direct-light.yaml`."},
+                      multi_sample<AreaDensityInWeights>),
+      of_multi_sample({"light_density_by_area",
+                       "takes the density of light samples per area for that per solid angle, in "
+                       "the weight and in the quotient: +41.1 %."},
+                      multi_sample<Sound, AreaDensity>),
+      of_multi_sample({"brdf_divided_by_light_density",
+                       "divides samples of the BRDF by the density of the light's samples: I_l + "
+                       "the integral of w_b f p_b / p_l, +4.6 %."},
+                      multi_sample<LightDensityForBrdf>),
+      of_multi_sample(
+          {"brdf_weight_without_counts",
+           "leaves the numbers of samples out of the weights of the BRDF: -24.0 % with one sample "
+           "of the light and three of the BRDF, nothing where the numbers are equal."},
+          multi_sample<NoCountsForBrdf>),
+      of_multi_sample({"weights_without_counts",
+                       "leaves the numbers of samples out of all weights: they sum to 1, no bias, "
+                       "but more variance where the numbers differ: 5.2 times under the large "
+                       "light of `suites/direct-light.yaml` with one and three."},
+                      multi_sample<NoCounts>),
+      of_multi_sample({"light_from_behind",
+                       "lets rays of the BRDF see the back of the light: a light that faces away "
+                       "shines, nothing where the front is seen."},
+                      multi_sample<Sound, BackSideSeen>),
+      of_multi_sample({"misses_not_counted",
+                       "averages samples of the BRDF over those that hit the light: +31.3 % with "
+                       "four of them, nothing with one."},
+                      multi_sample<Sound, Techniques, MissesNotCounted>),
+      of_one_sample({"no_selection_probability",
+                     "does not divide by the probability of the technique: -50 % where that is "
+                     "0.5, (c_l - 1) I_l + (c_b - 1) I_b."},
+                    one_sample<NoSelection>),
+  };
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,130 @@
+#include "harness/cell_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/evidence_cells.h"
+#include "harness/sampler_setup.h"
+
+namespace assay::harness {
+namespace {
+
+/// Counts in rows of cells of two coordinates.
+struct Cells {
+  std::string axes;  ///< what rows and columns are
+  std::size_t width = 0, height = 0;
+  std::vector<double> observed = {}, expected = {};
+  double variance = 1;  ///< of a count, over what is expected
+};
+
+std::string axis(const Marginal& marginal, const std::vector<double>& borders) {
+  return fmt::format("{} {:.4g} to {:.4g}", marginal.name, borders.front(), borders.back());
+}
+
+/// Of the fixed cells of a domain, which have the same measure.
+std::string axes_of(const SamplerSetup& draws) {
+  std::vector<Marginal> coordinates = draws.marginals();
+  // Of a triangle the second coordinate of a cell is a share of what the first leaves.
+  if (draws.sampler().domain() == Domain::triangle) coordinates[1].name = "v / (1 - u)";
+  return fmt::format("{} from top to bottom, {} from left to right",
+                     axis(coordinates[0], draws.grid().x_borders),
+                     axis(coordinates[1], draws.grid().y_borders));
+}
+
+/// Summed over the lobes, whose cells follow one another; what comes behind them has no place.
+Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
+  const std::size_t each = draws.grid().size();
+  const std::size_t all = each * static_cast<std::size_t>(draws.sampler().lobes());
+  const auto total = static_cast<double>(data.moments.count);
+  Cells cells{.axes = axes_of(draws),
+              .width = draws.grid().y_borders.size() - 1,
+              .height = draws.grid().x_borders.size() - 1,
+              .observed = std::vector<double>(each),
+              .expected = std::vector<double>(each)};
+  for (std::size_t i = 0; i < all; ++i) {
+    cells.observed[i % each] += static_cast<double>(data.cells[i]);
+    cells.expected[i % each] += total * draws.cells().grid.probability[i];
+  }
+  return cells;
+}
+
+bool are_a_rectangle(const stats::SampledCells& cells) {
+  const std::size_t cuts = cells.cut_borders.front().size();
+  return cuts > 0 && std::all_of(cells.cut_borders.begin(), cells.cut_borders.end(),
+                                 [&](const auto& borders) { return borders.size() == cuts; });
+}
+
+/// The first sample, against its part of both together.
+Cells of_two(const Question& question, const stats::SampledCells& sampled,
+             std::span<const ChannelData> data) {
+  const Subject& first = question.subjects[0];
+  const std::vector<Channel> channels = first.setup->channels();
+  const std::vector<std::uint64_t> x = counts_in(sampled, first, data[0]);
+  const std::vector<std::uint64_t> y = counts_in(sampled, question.subjects[1], data[1]);
+  const auto n = static_cast<double>(data[0].all_values[0].size());
+  const auto m = static_cast<double>(data[1].all_values[0].size());
+  Cells cells{.axes = fmt::format("of {}, parts of equal probability: of {} from top to bottom, of "
+                                  "{} within each from left to right; expected as of both samples",
+                                  first.estimator->listed, channels[first.channels[0]].name,
+                                  channels[first.channels[1]].name),
+              .width = sampled.cut_borders.front().size() + 1,
+              .height = sampled.cut_borders.size(),
+              .variance = m / (n + m)};
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    cells.observed.push_back(static_cast<double>(x[i]));
+    cells.expected.push_back(static_cast<double>(x[i] + y[i]) * n / (n + m));
+  }
+  return cells;
+}
+
+Cells cells_of(const TestWork& work) {
+  const TestOutcome& outcome = work.outcome;
+  const Question& question = outcome.question;
+  const std::vector<ChannelData> data = data_of(work, outcome.channels[0].index);
+  if (question.kind == QuestionKind::fit_to_density && outcome.plan.method.keeps == Keeps::cells) {
+    const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+    if (draws.sampler().domain() != Domain::interval) return of_density(draws, data[0]);
+  }
+  const auto& sampled = outcome.plan.method.frozen.cells;
+  const bool plane = question.subjects[0].channels.size() > 1;
+  if (question.kind == QuestionKind::same_cells && plane && sampled && are_a_rectangle(*sampled)) {
+    return of_two(question, *sampled, data);
+  }
+  return {};
+}
+
+/// A draw where none is expected is beyond any scale.
+double residual(const Cells& cells, std::size_t i) {
+  const double difference = cells.observed[i] - cells.expected[i];
+  if (cells.expected[i] > 0) return difference / std::sqrt(cells.expected[i] * cells.variance);
+  return difference > 0 ? std::numeric_limits<double>::infinity() : 0;
+}
+
+}  // namespace
+
+void add_cells(const TestWork& work, reports::Test& test) {
+  if (work.outcome.channels.empty()) return;
+  const Cells cells = cells_of(work);
+  if (cells.observed.empty()) return;
+  const auto add = [&](const char* name, auto value) {
+    reports::Map map{.name = name,
+                     .source = cells.axes,
+                     .file = "",
+                     .width = cells.width,
+                     .height = cells.height,
+                     .components = {"draws"},
+                     .texels = {}};
+    for (std::size_t i = 0; i < cells.observed.size(); ++i) {
+      map.texels.values.push_back(static_cast<float>(value(i)));
+    }
+    test.maps.push_back(std::move(map));
+  };
+  add("cells_observed", [&](std::size_t i) { return cells.observed[i]; });
+  add("cells_expected", [&](std::size_t i) { return cells.expected[i]; });
+  add("cells_z", [&](std::size_t i) { return residual(cells, i); });
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,236 @@
+// Direct lighting against closed forms, quadrature from elsewhere and theorems.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "tests/estimators/direct_light/scenes.h"
+#include "tests/estimators/draws.h"
+#include "tests/estimators/table.h"
+
+namespace assay {
+namespace {
+
+using namespace assay::draws;
+using direct_light_scenes::large;
+using direct_light_scenes::parameters;
+using direct_light_scenes::scene;
+using direct_light_scenes::small;
+using std::numbers::pi;
+using ::testing::HasSubstr;
+
+Channel channel(const std::string& plugin, const std::string& given) {
+  return prepare("direct_light/" + plugin, given).setup->channels()[0];
+}
+
+struct Strategy {
+  const char* plugin;
+  const char* more;
+};
+
+// In the order of the table's columns, from `light` on.
+const std::vector<Strategy> tabulated{
+    {"light", ""},        {"light", "light_sampling: area"},    {"brdf", ""},
+    {"multi_sample", ""}, {"multi_sample", "heuristic: power"}, {"multi_sample", "brdf_samples: 3"},
+    {"one_sample", ""},   {"one_sample", "heuristic: power"}};
+
+// The table is by the midpoint rule with 2000^2 nodes, good to 1e-7.
+TEST(DirectLight, MeansAndVariancesAgreeWithTheTable) {
+  int variances = 0;
+  for (const auto& row : tests::table("direct_light.csv")) {
+    for (std::size_t i = 0; i < tabulated.size(); ++i) {
+      const auto& [plugin, more] = tabulated[i];
+      const Channel known = channel(plugin, parameters(row[0], row[1], more));
+      const double mean = std::stod(row[2]);
+      EXPECT_NEAR(*known.mean, mean, 1e-6 * mean) << row[0] << row[1] << plugin << more;
+      EXPECT_LT(known.mean_error, 1e-8 * mean);
+      if (!known.variance) continue;
+      ++variances;
+      const double variance = std::stod(row[4 + i]);
+      EXPECT_NEAR(*known.variance, variance, 1e-6 * variance) << row[0] << row[1] << plugin << more;
+    }
+  }
+  EXPECT_EQ(variances, 24);
+}
+
+// False-alarm rate 1e-6 each.
+TEST(DirectLight, SampledMeansAndVariancesAreExact) {
+  for (const auto& [plugin, more] : tabulated) {
+    const auto prepared =
+        prepare(std::string("direct_light/") + plugin, parameters("small", "glossy", more));
+    const Channel known = prepared.setup->channels()[0];
+    const Sample sample = observe(prepared, 100000)[0];
+    EXPECT_NEAR(sample.mean(), *known.mean, five * sample.mean_error()) << plugin << more;
+    EXPECT_NEAR(sample.variance(), *known.variance, five * sample.variance_error())
+        << plugin << more;
+    EXPECT_LE(*std::ranges::max_element(sample.values), known.high);
+    EXPECT_GE(*std::ranges::min_element(sample.values), known.low);
+  }
+}
+
+TEST(DirectLight, HeuristicsThatJumpStateTheMeanAlone) {
+  for (const char* heuristic : {"heuristic: maximum", "heuristic: {cutoff: 0.1}"}) {
+    const Channel known = channel("multi_sample", parameters("small", "rough", heuristic));
+    EXPECT_TRUE(known.mean.has_value());
+    EXPECT_FALSE(known.variance.has_value());
+  }
+}
+
+TEST(DirectLight, ADiffuseSurfaceReflectsLambertsFormula) {
+  const Channel known = channel("light", "{scene: triangle, brdf: {lambert: {albedo: 0.5}}}");
+  EXPECT_NEAR(*known.mean, .5 / pi * .4810469073159319, 1e-15);
+  // The cosine cancels in f cos / p: Bernoulli of value albedo.
+  const Channel by_brdf = channel("brdf", "{scene: triangle, brdf: {lambert: {albedo: 0.5}}}");
+  EXPECT_NEAR(*by_brdf.variance, *known.mean * (.5 - *known.mean), 1e-10);
+}
+
+TEST(DirectLight, WhatTwoScreensHideIsHiddenByOneWhole) {
+  const auto screened = [](const std::string& screens) {
+    return channel("light", "{" + scene(small, ", occluders: [" + screens + "]") +
+                                direct_light_scenes::brdf("glossy") + "}");
+  };
+  const std::string above = "{polygon: [[.5, 0, .1], [.5, 3, .1], [.5, 3, 3], [.5, 0, 3]]}";
+  const std::string below = "{polygon: [[.5, -3, .1], [.5, 0, .1], [.5, 0, 3], [.5, -3, 3]]}";
+  const double whole = *channel("light", parameters("small", "glossy")).mean;
+  EXPECT_NEAR(*screened(above).mean + *screened(below).mean, whole, 1e-9 * whole);
+  const Channel hidden = screened(above + ", " + below);
+  EXPECT_NEAR(*hidden.mean, 0, hidden.mean_error);
+  EXPECT_LT(hidden.mean_error, 1e-9 * whole);
+}
+
+// Theorem 9.2 of Veach (1997), for heuristics and either technique alone as other weights.
+TEST(DirectLight, TheBalanceHeuristicIsWithinItsBound) {
+  for (const auto& [square, surface] :
+       {std::array{"large", "smooth"}, {"small", "glossy"}, {"small", "rough"}}) {
+    const Channel light = channel("light", parameters(square, surface));
+    const Channel brdf = channel("brdf", parameters(square, surface));
+    for (const auto& [n_l, n_b] : {std::array{1, 1}, {1, 3}, {3, 1}, {4, 2}}) {
+      const std::string counts =
+          "light_samples: " + std::to_string(n_l) + ", brdf_samples: " + std::to_string(n_b);
+      const Channel balance = channel("multi_sample", parameters(square, surface, counts));
+      const Channel power =
+          channel("multi_sample", parameters(square, surface, counts + ", heuristic: power"));
+      const double mean = *balance.mean;
+      const double bound = (1.0 / std::min(n_l, n_b) - 1.0 / (n_l + n_b)) * mean * mean;
+      for (const double other :
+           {*light.variance / n_l, *brdf.variance / n_b, power.variance.value()}) {
+        EXPECT_LE(*balance.variance, other + bound) << square << surface << counts;
+      }
+    }
+  }
+}
+
+// Section 9.2.4: as importance sampling of the mixture.
+TEST(DirectLight, InTheOneSampleModelTheBalanceHeuristicIsBest) {
+  for (const auto& [surface, probability] :
+       {std::array{"rough", "0.2"}, {"rough", "0.9"}, {"glossy", "0.5"}}) {
+    const std::string c = std::string("light_probability: ") + probability;
+    const double balance = *channel("one_sample", parameters("small", surface, c)).variance;
+    for (const char* other : {"power", "{power: 1.2}", "{power: 5}"}) {
+      const std::string more = c + ", heuristic: " + other;
+      EXPECT_LT(balance, *channel("one_sample", parameters("small", surface, more)).variance);
+    }
+  }
+}
+
+TEST(DirectLight, EitherTechniqueAloneIsALimitOfTheOneSampleModel) {
+  const double light = *channel("light", parameters("small", "rough")).variance;
+  const Channel nearly =
+      channel("one_sample", parameters("small", "rough", "light_probability: 0.9999999"));
+  EXPECT_NEAR(*nearly.variance, light, 1e-3 * light);
+}
+
+TEST(DirectLight, DensitiesOfDrawsAreThoseOfTheirDirections) {
+  for (const auto& [plugin, sampler, more] :
+       {std::array{"light", "light", ""},
+        {"light", "light", "light_sampling: area"},
+        {"one_sample", "mixture", "light_sampling: area, light_probability: 0.3"},
+        {"multi_sample", "brdf", ""}}) {
+    const auto prepared =
+        prepare(std::string("direct_light/") + plugin, parameters("large", "rough", more));
+    const auto samplers = prepared.setup->samplers();
+    const auto named = std::ranges::find(samplers, sampler, &NamedSampler::name);
+    ASSERT_NE(named, samplers.end());
+    int valid = 0;
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+      Stream random(prepared.key, i);
+      const SamplerDraw draw = named->sampler->sample(random);
+      if (!draw.valid) continue;
+      ++valid;
+      const double density = named->sampler->density(draw.point);
+      EXPECT_NEAR(draw.density, density, 1e-9 * density) << plugin << sampler;
+      EXPECT_NEAR(draw.weight * density, named->sampler->evaluate(draw.point), 1e-9 * density);
+    }
+    EXPECT_GT(valid, 1000);
+  }
+}
+
+TEST(DirectLight, LobesOfTheMixtureMakeItsDensity) {
+  const auto prepared =
+      prepare("direct_light/one_sample", parameters("small", "glossy", "light_probability: 0.25"));
+  const auto mixture = prepared.setup->samplers()[0].sampler;
+  const auto light =
+      prepare("direct_light/light", parameters("small", "glossy")).setup->samplers()[0].sampler;
+  const Point inside{1.4347 / 2, 0, 1.3934 / 2};
+  EXPECT_EQ(mixture->lobes(), 2);
+  EXPECT_NEAR(mixture->lobe_density(0, inside), .25 * light->density(inside), 1e-12);
+  EXPECT_NEAR(mixture->density(inside),
+              mixture->lobe_density(0, inside) + mixture->lobe_density(1, inside), 1e-12);
+  EXPECT_EQ(mixture->lobe_density(0, {0, 0, 1}), 0);
+}
+
+// False-alarm rate 1e-6 each. The albedos are those of brdf_test.cpp.
+TEST(DirectLight, UnderLightFromEverywhereASurfaceReflectsItsAlbedo) {
+  const std::string dome =
+      "scene: {" + direct_light_scenes::receiver + ", light: {obj: dome.obj, radiance: 1}}";
+  for (const auto& [brdf, albedo] :
+       {std::pair{", brdf: {ward: {alpha_x: 0.15, alpha_y: 0.4}}", .564185},
+        {", brdf: {ashikhmin_shirley: {}}", .373217}}) {
+    for (const char* more : {"", ", light_sampling: area", ", heuristic: {power: 3}"}) {
+      const auto prepared = prepare("direct_light/multi_sample", "{" + dome + brdf + more + "}",
+                                    ASSAY_SOURCE_DIR "/suites/data");
+      EXPECT_FALSE(prepared.setup->channels()[0].mean.has_value());
+      const Sample sample = observe(prepared, 50000)[0];
+      EXPECT_NEAR(sample.mean(), albedo, five * sample.mean_error() + 1e-6) << brdf << more;
+    }
+  }
+}
+
+TEST(DirectLight, FromBehindALightIsDark) {
+  const std::string away = "{scene: {" + direct_light_scenes::receiver +
+                           ", light: {polygon: " + small +
+                           ", normal: [0.7173561, 0, 0.6967067], radiance: 1}}}";
+  for (const char* plugin : {"light", "brdf", "multi_sample", "one_sample"}) {
+    const auto prepared = prepare(std::string("direct_light/") + plugin, away);
+    EXPECT_EQ(prepared.setup->channels()[0].mean, 0);
+    const Sample sample = observe(prepared, 200)[0];
+    for (const double x : sample.values) EXPECT_EQ(x, 0);
+  }
+}
+
+std::string refusal(const std::string& given) {
+  try {
+    prepare("direct_light/one_sample", "{" + given + "}");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(DirectLight, RefusesWhatItCannotSample) {
+  EXPECT_EQ(refusal("brdf: {lambert: {albedo: 1}}"), "");
+  EXPECT_THAT(refusal("brdf: {lambert: {albedo: 1.5}}"), HasSubstr("`albedo`"));
+  EXPECT_THAT(refusal("brdf: {lambert: {}}"), HasSubstr("needs the parameter `albedo`"));
+  EXPECT_THAT(refusal("brdf: {wart: {alpha_x: 1}}"), HasSubstr("did you mean `ward`?"));
+  EXPECT_THAT(refusal("brdf: {ward: {alpha: 1}}"), HasSubstr("no parameter `alpha`"));
+  EXPECT_THAT(refusal("brdf: {ward: {alpha_x: 0}}"), HasSubstr("`alpha_x`"));
+  EXPECT_THAT(refusal("brdf: {ward: {}, lambert: {albedo: 0.5}}"), HasSubstr("one of the keys"));
+  EXPECT_THAT(refusal("brdf: ward"), HasSubstr("must be a map"));
+  EXPECT_THAT(refusal("light_probability: 1"), HasSubstr("nothing to combine"));
+  EXPECT_THAT(refusal("light_sampling: solid"), HasSubstr("must be one of solid_angle, area"));
+}
+
+}  // namespace
+}  // namespace assay

@@ -1,0 +1,85 @@
+#include "direct_light/heuristic.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/estimators/draws.h"
+
+namespace assay {
+namespace {
+
+using direct_light::Heuristic;
+using direct_light::Pair;
+using ::testing::HasSubstr;
+
+const std::vector<Heuristic> all{Heuristic::balance(), Heuristic::power(2), Heuristic::power(3.5),
+                                 Heuristic::cutoff(.2), Heuristic::maximum()};
+
+TEST(Heuristic, WeightsSumToOneAndDoNotDependOnTheUnit) {
+  for (const Heuristic& heuristic : all) {
+    for (const double light : {0.0, 1e-12, .1, 1.0, 7.0, 1e12}) {
+      for (const double brdf : {1e-9, .3, 1.0, 50.0}) {
+        const Pair w = heuristic({light, brdf});
+        EXPECT_NEAR(w.light + w.brdf, 1, 1e-15);
+        EXPECT_GE(w.light, 0);
+        EXPECT_GE(w.brdf, 0);
+        const Pair scaled = heuristic({1024 * light, 1024 * brdf});
+        EXPECT_EQ(w.light, scaled.light);
+      }
+    }
+  }
+}
+
+TEST(Heuristic, WeightsAreVeachs) {
+  const auto light = [](const Heuristic& heuristic, double q) { return heuristic({q, 3}).light; };
+  EXPECT_DOUBLE_EQ(light(Heuristic::balance(), 1), 1 / 4.0);
+  EXPECT_DOUBLE_EQ(light(Heuristic::power(2), 1), 1 / 10.0);
+  EXPECT_DOUBLE_EQ(light(Heuristic::power(3), 1), 1 / 28.0);
+  EXPECT_DOUBLE_EQ(light(Heuristic::cutoff(.3), 1), 1 / 4.0);
+  EXPECT_DOUBLE_EQ(light(Heuristic::cutoff(.4), 1), 0);
+  EXPECT_DOUBLE_EQ(light(Heuristic::cutoff(.4), 9), 1);
+  EXPECT_DOUBLE_EQ(light(Heuristic::maximum(), 1), 0);
+  EXPECT_DOUBLE_EQ(light(Heuristic::maximum(), 4), 1);
+}
+
+TEST(Heuristic, EqualDensitiesAreWeighedOnceInAll) {
+  for (const Heuristic& heuristic : all) {
+    const Pair w = heuristic({2, 2});
+    EXPECT_DOUBLE_EQ(w.light + w.brdf, 1);
+  }
+  EXPECT_DOUBLE_EQ(Heuristic::maximum()({2, 2}).light, 1);
+  EXPECT_DOUBLE_EQ(Heuristic::power(7)({2, 2}).light, .5);
+}
+
+TEST(Heuristic, ATechniqueThatCannotDrawThereWeighsNothing) {
+  for (const Heuristic& heuristic : all) {
+    EXPECT_EQ(heuristic({0, 3}).light, 0);
+    EXPECT_EQ(heuristic({3, 0}).brdf, 0);
+  }
+}
+
+std::string refusal(const std::string& heuristic) {
+  try {
+    draws::prepare("direct_light/multi_sample", "{heuristic: " + heuristic + "}");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Heuristic, RefusesWhatIsNone) {
+  EXPECT_EQ(refusal("{power: 1.5}"), "");
+  EXPECT_EQ(refusal("{cutoff: 0}"), "");
+  EXPECT_EQ(refusal("maximum"), "");
+  EXPECT_THAT(refusal("ballance"), HasSubstr("none of balance, power, maximum"));
+  EXPECT_THAT(refusal("{powr: 2}"), HasSubstr("did you mean `power`?"));
+  EXPECT_THAT(refusal("{power: 0.5}"), HasSubstr("1 or more"));
+  EXPECT_THAT(refusal("{cutoff: 2}"), HasSubstr("in [0, 1]"));
+  EXPECT_THAT(refusal("{power: 2, cutoff: 0.1}"), HasSubstr("one of the keys"));
+  EXPECT_THAT(refusal("[2]"), HasSubstr("must be a map"));
+}
+
+}  // namespace
+}  // namespace assay

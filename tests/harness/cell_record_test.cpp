@@ -1,0 +1,99 @@
+#include "harness/cell_record.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "running.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr const char* suite = R"(suite: s
+estimators:
+  ward: {plugin: brdf/ward}
+  quadrant: {plugin: mutants/ashikhmin_shirley_single_quadrant}
+  disk: {plugin: luminaire/area, scene: triangle}
+  normal: {plugin: analytic/exponential_importance}
+tests:
+  - {claim: )";
+
+reports::Test tested(const std::string& claim) {
+  return run_test(suite + claim + ", secondaries: 20000}\n");
+}
+
+double sum(const reports::Map& map) {
+  return std::accumulate(map.texels.values.begin(), map.texels.values.end(), 0.0);
+}
+
+TEST(CellRecord, HasWhatWasDrawnExpectedAndTheDifferenceInEveryCell) {
+  const reports::Test test = tested("distribution(ward.direction) == density");
+  ASSERT_EQ(test.maps.size(), 3u);
+  for (const reports::Map& map : test.maps) {
+    EXPECT_EQ(map.width, 32u);
+    EXPECT_EQ(map.height, 16u);
+    EXPECT_EQ(map.source, "theta 0 to 1.571 from top to bottom, phi 0 to 6.283 from left to right");
+    EXPECT_EQ(map.texels.values.size(), 512u);
+  }
+  // Draws without a point have no cell; five standard errors of how many there are.
+  EXPECT_LE(sum(test.maps[0]), 20000);
+  EXPECT_NEAR(sum(test.maps[0]), sum(test.maps[1]), 5 * std::sqrt(20000 * 0.25));
+  for (std::size_t i = 0; i < 512; ++i) {
+    const double expected = test.maps[1].texels.values[i];
+    if (!(expected > 0)) continue;
+    EXPECT_NEAR(test.maps[2].texels.values[i],
+                (test.maps[0].texels.values[i] - expected) / std::sqrt(expected),
+                1e-4 * (1 + std::abs(test.maps[2].texels.values[i])));
+  }
+}
+
+// Half vectors of one quadrant are drawn, of all four declared.
+TEST(CellRecord, ShowsWhereASamplerIsWrong) {
+  const reports::Test test = tested("distribution(quadrant.direction) == density");
+  EXPECT_EQ(test.verdict, reports::Verdict::fail);
+  ASSERT_EQ(test.maps.size(), 3u);
+  const std::vector<float>& z = test.maps[2].texels.values;
+  EXPECT_GT(*std::max_element(z.begin(), z.end()), 15);
+  EXPECT_LT(*std::min_element(z.begin(), z.end()), -5);
+}
+
+TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
+  const reports::Test test = tested("distribution(disk.point) == density");
+  ASSERT_EQ(test.maps.size(), 3u) << test.message;
+  EXPECT_EQ(test.maps[0].source,
+            "u 0 to 1 from top to bottom, v / (1 - u) 0 to 1 from left to right");
+}
+
+// Of both samples together each cell has its part, so what is expected of the first sums to what it
+// has, and where nothing differs the differences are of one standard deviation: their mean square
+// over 256 cells is 1 within five of its own standard deviations, sqrt(2 / 256).
+TEST(CellRecord, OfTwoSamplesTheFirstIsHeldAgainstBothTogether) {
+  const reports::Test test = tested(
+      "distribution(ward.direction) == distribution(ward.direction), test: "
+      "chi-square-two-sample");
+  ASSERT_EQ(test.maps.size(), 3u) << test.message;
+  EXPECT_NE(test.maps[0].source.find("of theta from top to bottom"), std::string::npos);
+  EXPECT_EQ(test.maps[0].width * test.maps[0].height, 256u);
+  EXPECT_NEAR(sum(test.maps[0]), sum(test.maps[1]), 5 * std::sqrt(20000 * 0.25));
+  double square = 0;
+  for (const float z : test.maps[2].texels.values) square += z * z / 256.0;
+  EXPECT_NEAR(square, 1, 5 * std::sqrt(2 / 256.0));
+}
+
+TEST(CellRecord, OfAnIntervalOrAMarginalThereIsNone) {
+  EXPECT_TRUE(tested("distribution(normal.x) == density").maps.empty());
+  EXPECT_TRUE(tested("distribution(ward.direction.theta) == density").maps.empty());
+}
+
+TEST(CellRecord, TheNumberOfACellHasNoMoments) {
+  const reports::Test test = tested("distribution(ward.direction) == density");
+  ASSERT_EQ(test.samples.size(), 1u);
+  EXPECT_FALSE(test.samples[0].mean || test.samples[0].variance || test.samples[0].maximum);
+  EXPECT_TRUE(test.samples[0].histogram.counts.empty());
+  EXPECT_EQ(test.samples[0].cost.samples, 20000u);
+}
+
+}  // namespace
+}  // namespace assay::harness
