@@ -36,9 +36,11 @@ reports::Verdict expected_verdict(Expectation expect) {
     case Expectation::fail:
       return reports::Verdict::fail;
     case Expectation::invalid:
+      return reports::Verdict::invalid;
+    case Expectation::error:
       break;
   }
-  return reports::Verdict::invalid;
+  return reports::Verdict::error;
 }
 
 reports::Histogram histogram_of(const Histogram& histogram) {

@@ -12,7 +12,7 @@
 
 namespace assay::harness {
 
-enum class Expectation { pass, fail, invalid };
+enum class Expectation { pass, fail, invalid, error };
 
 /// An entry of `estimators:`.
 struct EstimatorEntry {

@@ -21,6 +21,10 @@ std::string variance_bars(const Suite& suite, const std::string& channel);
 std::string pair_matrix(const Suite& suite, const std::string& channel);
 inline constexpr std::size_t most_in_matrix = 40;
 
+/// Mutants against methods (reports/kill_matrix.h): cells shaded by the samples that killed the
+/// mutant, a step a decade, each with its text; empty where no mutant was tested by two methods.
+std::string kill_chart(const Suite& suite);
+
 /// A test's effect against none, `allow` and `detect`: one interval a channel, the first 40. A
 /// logarithm of a ratio is drawn as the ratio.
 std::string interval_chart(const Test&);

@@ -7,6 +7,8 @@
 #include "reports/columns.h"
 #include "reports/console_rows.h"
 #include "reports/describe.h"
+#include "reports/kill_matrix.h"
+#include "reports/kill_text.h"
 #include "reports/ledger.h"
 #include "reports/number.h"
 #include "reports/text.h"
@@ -120,6 +122,7 @@ class Screen {
     for (std::size_t i = 0; i < rows.size(); ++i) write(suite.tests[i], row_lines(rows[i], layout));
     blank();
     if (layout.cost == 0 && !rows.empty()) cost_of(suite);
+    kills(suite);
   }
 
   void write(const Test& test, const std::vector<std::string>& lines) {
@@ -127,6 +130,17 @@ class Screen {
     for (const std::string& part : lines) line(plain_spaces(part), colour_of(result));
     if (result == Outcome::failed || result == Outcome::inconclusive || options_.verbose)
       explain(test);
+  }
+
+  // Which method sees which defect.
+  void kills(const Suite& suite) {
+    const KillMatrix matrix = kill_matrix(suite);
+    if (!is_worth_showing(matrix)) return;
+    for (const std::string& text : kill_lines(suite, matrix, options_.width)) line(plain(text));
+    blank();
+    paragraph(kill_totals(suite, matrix));
+    paragraph(kill_matrix_legend);
+    blank();
   }
 
   // The table had no room for what each test cost.

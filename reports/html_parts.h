@@ -51,6 +51,10 @@ std::string overview(const Record&);
 /// The estimators of a suite as bars, in numbers, and in pairs.
 std::string estimator_pictures(const Suite&);
 
+/// Which method sees which defect, as a picture and in words; empty where a suite has no mutant
+/// that was tested by two methods.
+std::string kill_section(const Record& record, std::size_t suite);
+
 /// What the nights of the ledger say, alarms first; empty where none is kept.
 std::string ledger_section(const Ledger&);
 

@@ -71,6 +71,8 @@ figure { margin: 12px 0; } figcaption { font-size: 13px; max-width: 90ch; }
 .chart .cell { fill: none; stroke: var(--edge); stroke-width: 1; } .chart .diagonal { fill: var(--edge); }
 .chart .agree { fill: var(--agree); } .chart .differ { fill: var(--differ); } .chart .unclear { fill: var(--paper); }
 .chart .smaller { fill: var(--smaller); } .chart .larger { fill: var(--larger); }
+.chart .kill { fill: var(--variance); stroke: var(--edge); stroke-width: 1; } .chart .k0 { fill-opacity: .6; } .chart .k1 { fill-opacity: .47; }
+.chart .k2 { fill-opacity: .36; } .chart .k3 { fill-opacity: .26; } .chart .k4 { fill-opacity: .17; } .chart .k5 { fill-opacity: .09; }
 .chart .allowed { fill: var(--band); } .chart .zero { stroke: var(--ink); stroke-width: 1.2; }
 .chart .detect { stroke: var(--mean); stroke-width: 1.6; stroke-dasharray: 6 3; }
 .chart .interval { fill: none; stroke: var(--variance); stroke-width: 2; } .chart .estimate { fill: var(--variance); }

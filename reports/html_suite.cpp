@@ -16,6 +16,7 @@ std::string suite_section(const Record& record, std::size_t index) {
       suite.file.empty() ? "" : fmt::format("<span>{}</span>", escape_xml(one_line(suite.file)));
   out += fmt::format("<div class=\"facts\">{}<span>{}</span><span>{}</span></div>\n", file,
                      escape_xml(levels_text(suite)), tally_sentence(tally(suite)));
+  out += kill_section(record, index);
   out += estimator_pictures(suite);
   if (!suite.tests.empty()) out += "<h3>Tests</h3>\n";
   for (const std::size_t t : by_urgency(suite)) out += test_section(suite.tests[t], {index, t});

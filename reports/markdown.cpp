@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "reports/describe.h"
+#include "reports/kill_matrix.h"
 #include "reports/ledger.h"
 #include "reports/number.h"
 #include "reports/text.h"
@@ -54,6 +55,28 @@ std::string suite_heading(const Suite& suite) {
   if (!suite.about.empty()) out += cell(suite.about, paragraph_limit) + "\n\n";
   return out + cell(levels_text(suite)) + "\n\n" +
          "| verdict | test | effect [interval] | cost | CPU time |\n|---|---|---|---|---|\n";
+}
+
+// Which method sees which defect.
+std::string kill_section(const Suite& suite) {
+  const KillMatrix matrix = kill_matrix(suite);
+  if (!is_worth_showing(matrix)) return {};
+  std::string out = fmt::format("### Which method sees which defect\n\n{}\n\n{}\n\n| mutant |",
+                                cell(kill_totals(suite, matrix), paragraph_limit),
+                                cell(kill_matrix_legend, paragraph_limit));
+  std::string rule = "|---|";
+  for (const std::string& method : matrix.methods) {
+    out += fmt::format(" {} |", cell(method));
+    rule += "---|";
+  }
+  out += "\n" + rule + "\n";
+  for (const KillRow& row : matrix.rows) {
+    out += fmt::format("| {} |", cell(suite.estimators[row.mutant].name));
+    for (const auto& one : row.cells)
+      out += fmt::format(" {} |", one ? cell(short_text(suite, *one)) : "");
+    out += "\n";
+  }
+  return out + "\n";
 }
 
 // Pieces up to a limit that leaves room for the note on what is missing.
@@ -122,6 +145,7 @@ int add_table(const Suite& suite, Page& page) {
     if (!page.add(row(test))) ++missing;
   }
   page.add("\n");
+  if (const std::string text = kill_section(suite); !page.add(text)) ++missing;
   return missing;
 }
 

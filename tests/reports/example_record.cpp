@@ -243,6 +243,22 @@ Test caught_mutant() {
   return t;
 }
 
+// The same mutant under another method, which is blind to it.
+Test unseen_mutant() {
+  Test t = base("variance(no_cosine) == variance(area)", 23);
+  t.name = "its variance does not show it";
+  t.method = "log-variance";
+  t.null_hypothesis = "variance(no_cosine) == variance(area)";
+  t.verdict = Verdict::pass;
+  t.ok = true;
+  t.detect = 0.0953101798043249;
+  t.detectable = 0.09;
+  t.samples = {sample("no_cosine", {0.68, 0.05, 0.02}), sample("area", {0.4812, 0.031, 0.01})};
+  t.channels = {channel("value", ratio_effect(0.01, 0.05))};
+  t.message = "no evidence against the claim; a factor of 1.1 or more is excluded";
+  return t;
+}
+
 Test surviving_mutant() {
   Test t = base("mean(shared_seed) == analytic", 25);
   t.name = "sharing a seed is caught";
@@ -396,7 +412,7 @@ Suite triangle() {
   s.estimators[2].channels[0].reference_variance = 0.0119;
   compare_all(s);
   s.tests = {passing(),   proof(),   failing(), caught_mutant(), surviving_mutant(),
-             undecided(), invalid(), broken(),  not_run()};
+             undecided(), invalid(), broken(),  not_run(),       unseen_mutant()};
   return s;
 }
 

@@ -76,7 +76,7 @@ TEST(Html, EveryLinkInsideThePageHasATarget) {
   int links = 0;
   for (std::sregex_iterator i(page.begin(), page.end(), link), end; i != end; ++i, ++links)
     EXPECT_NE(page.find("id=\"" + (*i)[1].str() + "\""), std::string::npos) << (*i)[1];
-  EXPECT_EQ(links, 14);
+  EXPECT_EQ(links, 17);
 }
 
 TEST(Html, ForeignTextCannotBecomeMarkup) {
@@ -201,7 +201,7 @@ TEST(Html, EveryIntervalOfTheOverviewIsNamed) {
   const auto count = [&](const std::regex& pattern) {
     return std::distance(std::sregex_iterator(table.begin(), table.end(), pattern), {});
   };
-  EXPECT_EQ(count(interval), 9);
+  EXPECT_EQ(count(interval), 10);
   EXPECT_EQ(count(named), count(interval));
 }
 

@@ -34,7 +34,7 @@ TEST(Verdicts, AnExpectedVerdictThatIsNotOkSaysSo) {
 TEST(Verdicts, ARunIsSummedUpInWords) {
   EXPECT_EQ(verdict_counts(example_record()),
             "1\u00A0pass, but fail expected; 1\u00A0error; 2\u00A0fail; 1\u00A0invalid; "
-            "2\u00A0inconclusive; 1\u00A0skipped; 3\u00A0pass; 1\u00A0fail (as expected)");
+            "2\u00A0inconclusive; 1\u00A0skipped; 4\u00A0pass; 1\u00A0fail (as expected)");
   EXPECT_EQ(verdict_counts(Record{}), "");
 }
 

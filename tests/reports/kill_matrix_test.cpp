@@ -1,0 +1,222 @@
+#include "reports/kill_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include "reports/charts.h"
+#include "reports/columns.h"
+#include "reports/console.h"
+#include "reports/html.h"
+#include "reports/kill_text.h"
+#include "reports/markdown.h"
+
+namespace assay::reports {
+namespace {
+
+struct Case {
+  std::string claim;
+  std::string method;
+  Verdict verdict = Verdict::fail;
+  std::uint64_t secondaries = 100;
+  Number detectable = {};
+};
+
+Sample sample_of(const std::string& estimator, std::uint64_t secondaries) {
+  Sample sample;
+  sample.estimator = estimator;
+  sample.channel = "value";
+  sample.primaries = 64;
+  sample.secondaries = secondaries;
+  return sample;
+}
+
+Test test_of(const Case& what, const std::vector<std::string>& sources) {
+  Test test;
+  test.claim = what.claim;
+  test.method = what.method;
+  test.verdict = what.verdict;
+  test.detectable = what.detectable;
+  test.channels.resize(1);
+  test.channels[0].name = "value";
+  test.channels[0].effect.quantity = "relative difference of means";
+  test.channels[0].effect.relative = true;
+  for (const std::string& source : sources)
+    test.samples.push_back(sample_of(source, what.secondaries));
+  return test;
+}
+
+/// A sound estimator and two mutants of it.
+Suite zoo() {
+  Suite suite;
+  suite.name = "zoo";
+  for (const char* name : {"sound", "one", "two"}) {
+    EstimatorSummary estimator;
+    estimator.name = name;
+    estimator.plugin = std::string("mutants/") + name;
+    if (suite.estimators.size() > 0) estimator.original = "family/sound";
+    suite.estimators.push_back(estimator);
+  }
+  return suite;
+}
+
+const KillCell& only_cell(const KillMatrix& matrix) { return *matrix.rows.at(0).cells.at(0); }
+
+TEST(KillMatrix, ColumnsAreTheTextbooksTestsOfTheClaims) {
+  Suite suite = zoo();
+  suite.tests = {
+      test_of({"slope(bias(one)) within 0.1 of -1", "slope"}, {"one"}),
+      test_of({"distribution(one.s) == density", "chi-square-fit"}, {"one"}),
+      test_of({"distribution(one) == distribution(sound)", "two-part-ks"}, {"one", "sound"}),
+      test_of({"variance(one) == variance(sound)", "log-variance"}, {"one", "sound"}),
+      test_of({"variance(one) <= 2", "log-variance"}, {"one"}),
+      test_of({"mean(one) == mean(sound)", "skewness-corrected-t"}, {"one", "sound"}),
+      test_of({"mean(one) within 1% of analytic", "tost"}, {"one"}),
+      test_of({"mean(two) == analytic", "image"}, {"two"})};
+  const KillMatrix matrix = kill_matrix(suite);
+  EXPECT_EQ(matrix.methods, (std::vector<std::string>{"t", "Welch", "chi-square", "F", "KS", "fit",
+                                                      "image", "slope"}));
+  ASSERT_EQ(matrix.rows.size(), 2u);
+  EXPECT_EQ(matrix.rows[0].mutant, 1u);
+  EXPECT_EQ(matrix.rows[0].cells[0]->test, 6u);
+  EXPECT_FALSE(matrix.rows[0].cells[6]);
+  EXPECT_FALSE(matrix.rows[1].cells[0]);
+  EXPECT_EQ(matrix.rows[1].cells[6]->test, 7u);
+}
+
+TEST(KillMatrix, SoundEstimatorsSkippedTestsAndTestsWithoutASampleHaveNoRow) {
+  Suite suite = zoo();
+  suite.tests = {test_of({"mean(sound) == analytic", "t", Verdict::pass}, {"sound"}),
+                 test_of({"mean(one) == analytic", "t", Verdict::skipped}, {"one"}),
+                 test_of({"mean(two) == analytic", "t"}, {})};
+  EXPECT_TRUE(kill_matrix(suite).rows.empty());
+  EXPECT_FALSE(is_worth_showing(kill_matrix(suite)));
+}
+
+TEST(KillMatrix, SamplesArePrimariesOfTheMutantAlone) {
+  Suite suite = zoo();
+  suite.tests = {
+      test_of({.claim = "mean(sound) == mean(one)", .method = "welch"}, {"sound", "one"})};
+  suite.tests[0].samples[0].secondaries = 7;
+  suite.tests[0].samples[1].secondaries = 50;
+  EXPECT_EQ(only_cell(kill_matrix(suite)).samples, 64u * 50);
+  EXPECT_EQ(short_text(suite, only_cell(kill_matrix(suite))), "3200");
+}
+
+TEST(KillMatrix, TheKillOfFewestSamplesStandsForAMethod) {
+  Suite suite = zoo();
+  suite.tests = {test_of({"mean(one) == 1", "t", Verdict::pass, 10, 0.1}, {"one"}),
+                 test_of({"mean(one) == 1", "t", Verdict::fail, 5000}, {"one"}),
+                 test_of({"mean(one) == 1", "t", Verdict::fail, 40}, {"one"}),
+                 test_of({"mean(one) == 1", "t", Verdict::error, 5}, {"one"})};
+  EXPECT_EQ(only_cell(kill_matrix(suite)).test, 2u);
+}
+
+TEST(KillMatrix, OfSurvivalsTheOneThatWouldHaveFoundLeastStandsForAMethod) {
+  Suite suite = zoo();
+  suite.tests = {test_of({"mean(one) == 1", "t", Verdict::inconclusive, 5}, {"one"}),
+                 test_of({"mean(one) == 1", "t", Verdict::pass, 500}, {"one"}),
+                 test_of({"mean(one) == 1", "t", Verdict::pass, 100, 0.05}, {"one"}),
+                 test_of({"mean(one) == 1", "t", Verdict::pass, 200, 0.01}, {"one"})};
+  EXPECT_EQ(only_cell(kill_matrix(suite)).test, 3u);
+  EXPECT_EQ(short_text(suite, only_cell(kill_matrix(suite))), "< 1\u00A0%");
+  EXPECT_EQ(sentence(suite, only_cell(kill_matrix(suite))),
+            "survives 12.8\u00A0k\u00A0samples: an effect of 1\u00A0% or more would have been found");
+}
+
+TEST(KillMatrix, EveryVerdictHasItsWords) {
+  Suite suite = zoo();
+  const auto words = [&](const Case& what) {
+    suite.tests = {test_of(what, {"one"})};
+    const KillMatrix matrix = kill_matrix(suite);
+    return short_text(suite, only_cell(matrix)) + "; " + sentence(suite, only_cell(matrix));
+  };
+  EXPECT_EQ(words({"mean(one) == 1", "t", Verdict::fail}), "6400; killed by 6400\u00A0samples");
+  EXPECT_EQ(words({"mean(one) == 1", "t", Verdict::pass}), "survives; survives 6400\u00A0samples");
+  EXPECT_EQ(words({"mean(one) == 1", "t", Verdict::error}),
+            "not finite; not finite among 6400\u00A0samples");
+  EXPECT_EQ(words({"mean(one) == 1", "t", Verdict::inconclusive}),
+            "undecided; inconclusive after 6400\u00A0samples");
+  EXPECT_EQ(words({"mean(one) == 1", "t", Verdict::invalid}),
+            "invalid; invalid after 6400\u00A0samples");
+}
+
+TEST(KillMatrix, ALogarithmOfARatioIsShownAsTheRatio) {
+  Suite suite = zoo();
+  suite.tests = {
+      test_of({"variance(one) <= 1", "chi-square", Verdict::pass, 100, 0.0953101798}, {"one"})};
+  suite.tests[0].channels[0].effect.quantity = "ln(variance over the reference)";
+  EXPECT_EQ(short_text(suite, only_cell(kill_matrix(suite))), "< ×1.1");
+}
+
+TEST(KillMatrix, TotalsCountPluginsOnceAndRowsByMethod) {
+  Suite suite = zoo();
+  suite.estimators[2].plugin = suite.estimators[1].plugin;
+  suite.tests = {test_of({"mean(one) == 1", "t", Verdict::pass, 10}, {"one"}),
+                 test_of({"mean(two) == 1", "t", Verdict::fail, 10}, {"two"}),
+                 test_of({"variance(two) <= 1", "chi-square", Verdict::pass, 10}, {"two"})};
+  EXPECT_EQ(kill_totals(suite, kill_matrix(suite)),
+            "1 of 1 mutants are killed. Rows that each method kills: t 1 of 2, chi-square 0 of 1.");
+}
+
+Record record_of(const Suite& suite) {
+  Record record;
+  record.suites = {suite};
+  return record;
+}
+
+Suite two_methods() {
+  Suite suite = zoo();
+  suite.tests = {test_of({"mean(one) == 1", "t", Verdict::fail, 20000}, {"one"}),
+                 test_of({"variance(one) <= 1", "chi-square", Verdict::pass, 10, 0.5}, {"one"})};
+  return suite;
+}
+
+TEST(KillMatrix, ReportsShowItOnlyWhereAMutantWasTestedByTwoMethods) {
+  const Suite shown = two_methods();
+  Suite not_shown = shown;
+  not_shown.tests.pop_back();
+  constexpr const char* heading = "Which method sees which defect";
+  EXPECT_NE(html(record_of(shown)).find(heading), std::string::npos);
+  EXPECT_NE(markdown(record_of(shown)).find("| one | 1.28\u00A0M | "), std::string::npos);
+  EXPECT_NE(console(record_of(shown)).find("1 of 1 mutants are killed."), std::string::npos);
+  EXPECT_EQ(html(record_of(not_shown)).find(heading), std::string::npos);
+  EXPECT_EQ(markdown(record_of(not_shown)).find(heading), std::string::npos);
+  EXPECT_EQ(console(record_of(not_shown)).find("mutants are killed"), std::string::npos);
+  EXPECT_TRUE(kill_chart(not_shown).empty());
+}
+
+TEST(KillMatrix, ThePictureIsPalerWhereMoreSamplesWereNeeded) {
+  Suite suite = two_methods();
+  const auto style = [&](std::uint64_t secondaries) {
+    suite.tests[0].samples[0].secondaries = secondaries;
+    const std::string chart = kill_chart(suite);
+    return chart.substr(chart.find("<rect class=\"") + 13, 7);
+  };
+  EXPECT_EQ(style(15), "kill k0");     // 960
+  EXPECT_EQ(style(16), "kill k1");     // 1024
+  EXPECT_EQ(style(15625), "kill k4");  // a million
+  EXPECT_EQ(style(UINT64_MAX / 64), "kill k5");
+}
+
+TEST(KillMatrix, NoLineOfTheConsoleIsWiderThanAskedForAndNoNumberIsCut) {
+  Suite suite = two_methods();
+  suite.estimators[1].name = std::string(90, 'w') + "光線追跡";
+  for (auto& test : suite.tests) test.samples[0].estimator = suite.estimators[1].name;
+  for (const char* claim : {"a(x)", "b(x)", "cost(x)", "efficiency(x)", "inconsistency(x)"}) {
+    suite.tests.push_back(test_of({claim, "x", Verdict::fail, 123}, {suite.estimators[1].name}));
+  }
+  const KillMatrix matrix = kill_matrix(suite);
+  for (const int width : {60, 100}) {
+    std::string all;
+    for (const std::string& line : kill_lines(suite, matrix, width)) {
+      EXPECT_LE(columns(line), width) << line;
+      all += line + "\n";
+    }
+    for (const KillRow& row : matrix.rows) {
+      for (const auto& cell : row.cells)
+        EXPECT_NE(all.find(short_text(suite, *cell)), std::string::npos) << all;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace assay::reports
