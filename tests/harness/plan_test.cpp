@@ -32,7 +32,7 @@ estimators:
   heavier-single: {plugin: analytic/heavy_tail, index: 2.2, primaries: 1}
   hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
   dart: {plugin: analytic/dart_throwing, primaries: 1}
-  spike: {plugin: analytic/rare_spike, probability: 0.001, height: 10, noise: 0.1, primaries: 1}
+  spike: {plugin: analytic/rare_spike, probability: 0.0001, height: 10, noise: 0.1, primaries: 1}
 tests:
 )" + tests)};
   planned.place = places(planned.asked->suite, planned.asked->questions);
@@ -55,18 +55,13 @@ TEST(Plan, WithoutDetectIsClassical) {
   EXPECT_EQ(planned.plans[0].method.name, "t");
 }
 
-// Values in [0.4, 10.6] of deviation 0.32: to put the mean within 0.051 by the normal law takes
-// some 900, by Hoeffding's bound ln(1 / .01) (10.2 / .051)^2 / 2 = 92000; by their own deviation
-// they need fewer, with the range's part 7 ln(2 / .01) 10.2 / (3 n) (Maurer and Pontil) below
-// 0.051: some 2500 at the least.
+// Values in [0.4, 10.6]: whatever their deviation, the empirical bound is at least 7 ln(2 / .01)
+// 10.2 / (3 (n - 1)) wide (Maurer and Pontil 2009), below 0.5 from n = 253 on.
 TEST(Plan, AMarginIsPlannedByTheMethodThatDecides) {
-  const Planned planned = plan_text(
-      "  - {claim: mean(spike) within 10% of analytic}\n"
-      "  - {claim: mean(dart) within 2% of analytic}\n");
+  const Planned planned = plan_text("  - {claim: mean(spike) within 0.5 of analytic}\n");
   EXPECT_EQ(planned.plans[0].method.name, "bounded");
-  EXPECT_GT(planned.plans[0].most_secondaries(), 2500);
-  EXPECT_LT(planned.plans[0].most_secondaries(), 92000 * 2);
-  EXPECT_EQ(planned.plans[1].method.name, "binomial");
+  EXPECT_GE(planned.plans[0].most_secondaries(), 253);
+  EXPECT_LT(planned.plans[0].most_secondaries(), 2530);
 }
 
 TEST(Plan, ObeysFixedSecondaries) {
