@@ -147,6 +147,8 @@ ComparedPair compare(const Picture& first, const Picture& second, std::size_t ch
   pair.log_variance_p = stats::log_p_two_sided(stats::log_variance_ratio(x, y, null));
   pair.row.mean_p = std::exp(pair.log_mean_p);
   pair.row.variance_p = std::exp(pair.log_variance_p);
+  pair.row.log10_mean_p = pair.log_mean_p / std::log(10.0);
+  pair.row.log10_variance_p = pair.log_variance_p / std::log(10.0);
   pair.row.variance_ratio = number(x.variance() / y.variance() / null);
   return pair;
 }

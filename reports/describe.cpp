@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 #include <string_view>
+#include <tuple>
 
 #include "reports/effect.h"
 #include "reports/evidence.h"
@@ -85,8 +87,11 @@ int nesting(char c) { return (c == '{' || c == '[') - (c == '}' || c == ']'); }
 
 std::string observations_fact(const Test& test) {
   std::string text;
+  // Where several channels are counted together each has a sample of the same observations.
+  std::set<std::tuple<std::string, std::uint64_t, std::uint64_t>> said;
   for (const Sample* sample : worst_samples(test)) {
     if (text.size() > 1000) break;
+    if (!said.insert({sample->estimator, sample->primaries, sample->nonfinite}).second) continue;
     if (!text.empty()) text += "; ";
     text += fmt::format("{} of {} with {} each", count_text(sample->secondaries), sample->estimator,
                         counted(sample->primaries, "primary", "primaries"));

@@ -110,10 +110,12 @@ struct UpperIntegrand {
   }
 };
 
-// Near enough for where to begin: a tenth of what the chi law varies over.
+// Near enough for where to begin: within a tenth of what the chi law varies over. The integrand is
+// log-concave, and its maximum may lie beyond `high` where it still rises there.
 double maximise(const UpperIntegrand& f, double low, double high) {
   constexpr double golden = 0.38196601125010515;
   const double near = 0.1 / std::sqrt(f.parameters.degrees);
+  while (f(high) > f(high - near)) high += high - low;
   double left = low + golden * (high - low);
   double right = high - golden * (high - low);
   double at_left = f(left);

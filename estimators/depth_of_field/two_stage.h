@@ -2,7 +2,11 @@
 
 // Lens integration at one pixel with a number of lens samples that a pilot decides.
 
+#include <algorithm>
+#include <cmath>
+
 #include "depth_of_field/family.h"
+#include "estimators/running_moments.h"
 
 namespace assay::depth_of_field {
 
@@ -19,30 +23,14 @@ struct StageRule {
   }
 };
 
-/// Sums of lens samples.
-struct Tally {
-  double count = 0;
-  double sum = 0;
-  double squares = 0;
-
-  void add(double x) {
-    ++count;
-    sum += x;
-    squares += x * x;
-  }
-  double mean() const { return sum / count; }
-  /// Of a sample, n - 1 in the denominator; never below 0.
-  double variance() const { return std::max(0.0, (squares - sum * sum / count) / (count - 1)); }
-};
-
 /// The pilot is thrown away: the number of samples is independent of those that are averaged.
 struct FreshSamples {
   template <class Draw>
   double operator()(const StageRule& rule, const Draw& draw) const {
-    Tally pilot;
+    RunningMoments pilot;
     for (std::uint64_t i = 0; i < rule.pilot; ++i) pilot.add(draw());
-    Tally main;
-    for (const double n = rule.count(pilot.variance()); main.count < n;) main.add(draw());
+    RunningMoments main;
+    for (const double n = rule.count(pilot.variance()); main.count() < n;) main.add(draw());
     return main.mean();
   }
 };

@@ -52,9 +52,9 @@ std::shared_ptr<const Setup> blur_by_depth(Parameters& given) {
 struct PilotReused {
   template <class Draw>
   double operator()(const StageRule& rule, const Draw& draw) const {
-    Tally all;
+    RunningMoments all;
     for (std::uint64_t i = 0; i < rule.pilot; ++i) all.add(draw());
-    for (const double n = rule.count(all.variance()); all.count < n;) all.add(draw());
+    for (const double n = rule.count(all.variance()); all.count() < n;) all.add(draw());
     return all.mean();
   }
 };
@@ -63,9 +63,9 @@ struct PilotReused {
 struct StoppedByItsError {
   template <class Draw>
   double operator()(const StageRule& rule, const Draw& draw) const {
-    Tally all;
+    RunningMoments all;
     for (std::uint64_t i = 0; i < rule.pilot; ++i) all.add(draw());
-    while (all.count < rule.count(all.variance())) all.add(draw());
+    while (all.count() < rule.count(all.variance())) all.add(draw());
     return all.mean();
   }
 };

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "refusal.h"
 #include "reports/json.h"
 #include "running.h"
@@ -279,6 +281,21 @@ TEST(Run, InconclusiveIsJudgedAsAsked) {
   const reports::Test undecided = outcome_of(Verdict::inconclusive);
   EXPECT_EQ(code({undecided}, InconclusivePolicy::fail), 1);
   EXPECT_EQ(code({undecided}, InconclusivePolicy::pass), 0);
+}
+
+// The p-value of such variances is no double any more.
+TEST(Run, ComparesEstimatorsByLogarithmsThatDoNotUnderflow) {
+  const reports::Record record = run_text(R"(suite: s
+estimators:
+  narrow: {plugin: analytic/normal, primaries: 1}
+  wide: {plugin: analytic/normal, deviation: 1000000, primaries: 1}
+tests:
+  - {claim: mean(narrow) == mean(wide), secondaries: 10000}
+)");
+  ASSERT_EQ(record.suites[0].comparisons.size(), 1u);
+  const reports::Comparison& pair = record.suites[0].comparisons[0];
+  EXPECT_LT(*pair.log10_variance_p, -400);
+  EXPECT_NEAR(*pair.log10_mean_p, std::log10(*pair.mean_p), 1e-9);
 }
 
 TEST(Run, GlobsMatchTheWholeId) {

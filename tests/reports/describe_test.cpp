@@ -32,6 +32,19 @@ TEST(Describe, OneIsSingular) {
             std::string::npos);
 }
 
+// A claim on two coordinates together has a channel of neither's name.
+TEST(Describe, ObservationsOfSeveralChannelsAreCountedOnce) {
+  reports::Test test = example_record().suites[0].tests[0];
+  test.samples.push_back(test.samples[0]);
+  test.samples[0].channel = "theta";
+  test.samples[1].channel = "phi";
+  test.channels[0].name = "theta, phi";
+  EXPECT_NE(
+      plain_text(test).find("observations: 16.4\u00A0k of area with 64\u00A0primaries each\n"),
+      std::string::npos)
+      << plain_text(test);
+}
+
 TEST(Describe, AProofIsExplainedByItsContrary) {
   const std::string text = plain_text(example_record().suites[0].tests[1]);
   EXPECT_NE(text.find("contrary: variance(area) >= variance(hemisphere)\n"), std::string::npos);

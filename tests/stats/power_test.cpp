@@ -71,9 +71,6 @@ TEST(Power, SampleSizesAreTheSmallestThatReachTheirPower) {
   const auto n4 = static_cast<double>(chi_square_variance_sample_size(below, .5).value());
   EXPECT_GE(chi_square_variance_power(below, n4, .5), .95);
   EXPECT_LT(chi_square_variance_power(below, n4 - 1, .5), .95);
-  const auto n5 = static_cast<double>(ks_sample_size({.rates = rates}, .05).value());
-  EXPECT_GE(ks_power_bound({.rates = rates}, n5, .05), .95);
-  EXPECT_LT(ks_power_bound({.rates = rates}, 0.995 * n5, .05), .95);  // Massart's bound of d_alpha
   const FitPlan fit{.degrees_of_freedom = 63, .allow = .02, .rates = rates};
   const auto n6 = static_cast<double>(chi_square_fit_sample_size(fit, .1).value());
   EXPECT_GE(chi_square_fit_power(fit, n6, .1), .95);
@@ -82,6 +79,18 @@ TEST(Power, SampleSizesAreTheSmallestThatReachTheirPower) {
   const auto n7 = static_cast<double>(equivalence_sample_size(tost, .05).value());
   EXPECT_GE(equivalence_power(tost, n7, .05), .95);
   EXPECT_LT(equivalence_power(tost, n7 - 1, .05), .95);
+}
+
+// Massart's bound lies above the exact critical distance, by a share that falls like 1 / sqrt(n).
+TEST(Power, DistanceSampleSizesByMassartAreEnoughAndNearlyTheSmallest) {
+  for (const double detect : {.2, .05, .01}) {
+    const DistancePlan plan{.rates = {.01, .05, true}};
+    const auto n = static_cast<double>(ks_sample_size(plan, detect).value());
+    const double root = std::sqrt(std::log(200.0) / 2) + std::sqrt(std::log(20.0) / 2);
+    EXPECT_EQ(n, std::ceil(root * root / (detect * detect)));
+    EXPECT_GE(ks_power_bound(plan, n, detect), .95);
+    EXPECT_LT(ks_power_bound(plan, n * (1 - 1 / std::sqrt(n)), detect), .95);
+  }
 }
 
 TEST(Power, DetectableEffectsReachTheirPower) {

@@ -223,8 +223,10 @@ def noncentral_chi_rows():
 
 def noncentral_t_rows():
     mp.mp.dps = 30
-    for nu, delta in [(3, 1), (19, 2.2360679774997896), (999, 4), (20000, -3), (19, 30)]:
-        for t in [-40, -5, -1, 0.5, 2.5, 6, 15, 60]:
+    usual = [-40, -5, -1, 0.5, 2.5, 6, 15, 60]
+    for nu, delta, places in [(3, 1, usual), (19, 2.2360679774997896, usual), (999, 4, usual),
+                              (20000, -3, usual), (19, 30, usual), (14824, 487.2, [132.6, 300])]:
+        for t in places:
             n = mp.mpf(nu)
 
             def term(u, side):
@@ -236,7 +238,8 @@ def noncentral_t_rows():
             side = 1 if t >= delta else -1
             # Trapezoid in ln s: spectral; 4000 points over all that matters.
             grid = np.linspace(-30 if nu < 10 else -12 / math.sqrt(nu) * 6, 2.5 if nu < 10 else
-                               12 / math.sqrt(nu) * 3, 1500)
+                               max(12 / math.sqrt(nu) * 3,
+                                   math.log(delta / t) if delta / t > 1 else 0), 1500)
             values = [term(mp.mpf(float(u)), side) for u in grid]
             peak = max(range(len(values)), key=lambda i: values[i])
             # Second pass, centred on where the integrand lives.
