@@ -312,16 +312,21 @@ std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
   return replicates;
 }
 
+/// That of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
+double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const ErrorShare share = outcome.share();
+  if (outcome.verdict != Verdict::fail && channel.regions.has_forbidden()) {
+    return 1 - 2 * share.beta;
+  }
+  const bool two_tails = channel.regions.two_sided() && !channel.evidence.distance;
+  return 1 - (two_tails ? 1 : 2) * share.alpha;
+}
+
 }  // namespace
 
 reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const ErrorShare share = outcome.share();
   const Evidence& evidence = channel.evidence;
-  const bool by_beta = outcome.verdict != Verdict::fail && channel.regions.has_forbidden();
-  const bool two_tails = channel.regions.two_sided() && !evidence.distance;
-  const double confidence = by_beta     ? 1 - 2 * share.beta
-                            : two_tails ? 1 - share.alpha
-                                        : 1 - 2 * share.alpha;
+  const double confidence = deciding_confidence(outcome, channel);
   const stats::Interval interval = evidence.interval(confidence);
   const auto number = [](double value) {
     return std::isfinite(value) ? reports::Number(value) : reports::Number();

@@ -201,7 +201,8 @@ std::size_t SamplerSetup::cell_count() const {
   const int lobes = sampler().lobes();
   std::size_t count =
       static_cast<std::size_t>(lobes) * (on_interval(sampler()) ? interval_cells : grid_.size());
-  for (int lobe = 0; lobe < lobes; ++lobe) if (sampler().point_mass(lobe) != 0) ++count;
+  for (int lobe = 0; lobe < lobes; ++lobe)
+    if (sampler().point_mass(lobe) != 0) ++count;
   return count + 1;
 }
 

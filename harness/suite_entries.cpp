@@ -290,7 +290,8 @@ TestEntry read_test(const Document& document, const Value& value) {
   if (const Value* v = keys.find("allow")) test.allow = read_margin(*v, "`allow`");
   if (const Value* v = keys.find("weight")) test.weight = positive_number(*v, "`weight`");
   if (const Value* v = keys.find("expect")) {
-    test.expect = static_cast<Expectation>(choice(*v, "`expect`", {"pass", "fail", "invalid", "error"}));
+    test.expect =
+        static_cast<Expectation>(choice(*v, "`expect`", {"pass", "fail", "invalid", "error"}));
   }
   if (const Value* v = keys.find("tags")) test.tags = read_tags(*v);
   read_sampling(document, keys, test);

@@ -120,9 +120,9 @@ std::string markdown(const Calibration& calibration) {
       for (std::size_t i = 0; i < table_columns().size(); ++i) out += "---|";
       out += "\n";
     }
-    out += fmt::format("| {}{} | {} | {} |", mark_of(calibration, cell),
-                       escape_markdown(cell.method), escape_markdown(cell.question),
-                       escape_markdown(cell.law));
+    out +=
+        fmt::format("| {}{} | {} | {} |", mark_of(calibration, cell), escape_markdown(cell.method),
+                    escape_markdown(cell.question), escape_markdown(cell.law));
     for (const Column& column : table_columns()) out += fmt::format(" {} |", column.text(cell));
     out += "\n";
   }

@@ -7,8 +7,8 @@
 namespace assay::stats {
 
 // Natural logarithms of the two tails at x: ln P(X <= x) and ln P(X >= x). The smaller one is
-// computed as a tail; as one minus the other only where it is above .02. Where the probability is above 1e-300 it
-// is accurate to 1e-10 relative; below, ln p is (and goes on beyond -1e6). Always finite.
+// computed as a tail; as one minus the other only where it is above .02. Where the probability is
+// above 1e-300 it is right to 1e-10 relative; below, ln p is, and beyond -1e6 too. Always finite.
 struct LogTails {
   double lower = 0;
   double upper = 0;

@@ -12,7 +12,7 @@ namespace assay::recorded {
 /// Rows of numbers, one a line of the file, with a name to each column.
 struct Table {
   std::vector<std::string> columns;
-  std::vector<double> values;  ///< row after row
+  std::vector<double> values;                ///< row after row
   std::optional<std::uint64_t> stream = {};  ///< what `# stream: HEX` says the rows were drawn from
 
   std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/question.h"
+#include "harness/sampler_setup.h"
 #include "running.h"
 
 namespace assay::harness {
@@ -34,6 +35,15 @@ inline std::unique_ptr<Asked> ask_text(const std::string& text) {
     asked->questions.push_back(ask(test, asked->estimators, 1));
   }
   return asked;
+}
+
+/// The set-up behind the sampler of a plugin with these parameters.
+inline std::shared_ptr<const SamplerSetup> setup_of(const std::string& plugin,
+                                                    const std::string& part) {
+  const auto asked =
+      ask_text("suite: one\nestimators: {e: " + plugin +
+               "}\ntests: [{name: t, claim: distribution(e." + part + ") == density}]\n");
+  return std::dynamic_pointer_cast<const SamplerSetup>(asked->question("t").subjects[0].setup);
 }
 
 }  // namespace assay::harness

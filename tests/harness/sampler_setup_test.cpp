@@ -20,14 +20,6 @@ std::shared_ptr<const SamplerSetup> setup_of(const Sampler& sampler) {
       NamedSampler{"test", std::shared_ptr<const Sampler>(std::shared_ptr<void>(), &sampler)});
 }
 
-/// The set-up behind the sampler of a plugin with these parameters.
-std::shared_ptr<const SamplerSetup> setup_of(const std::string& plugin, const std::string& part) {
-  const auto asked =
-      ask_text("suite: one\nestimators: {e: " + plugin +
-               "}\ntests: [{name: t, claim: distribution(e." + part + ") == density}]\n");
-  return std::dynamic_pointer_cast<const SamplerSetup>(asked->question("t").subjects[0].setup);
-}
-
 // With the incident direction along the normal the half vector's angle is theta / 2 and
 // P(theta <= t) = 1 - exp(-tan^2(t / 2) / alpha^2), over its value at the horizon (Walter 2005).
 TEST(SamplerSetup, PolarAngleOfANarrowLobeFollowsItsClosedForm) {

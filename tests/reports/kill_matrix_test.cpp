@@ -118,8 +118,9 @@ TEST(KillMatrix, OfSurvivalsTheOneThatWouldHaveFoundLeastStandsForAMethod) {
                  test_of({"mean(one) == 1", "t", Verdict::pass, 200, 0.01}, {"one"})};
   EXPECT_EQ(only_cell(kill_matrix(suite)).test, 3u);
   EXPECT_EQ(short_text(suite, only_cell(kill_matrix(suite))), "< 1\u00A0%");
-  EXPECT_EQ(sentence(suite, only_cell(kill_matrix(suite))),
-            "survives 12.8\u00A0k\u00A0samples: an effect of 1\u00A0% or more would have been found");
+  EXPECT_EQ(
+      sentence(suite, only_cell(kill_matrix(suite))),
+      "survives 12.8\u00A0k\u00A0samples: an effect of 1\u00A0% or more would have been found");
 }
 
 TEST(KillMatrix, EveryVerdictHasItsWords) {
