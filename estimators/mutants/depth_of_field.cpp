@@ -109,8 +109,7 @@ std::shared_ptr<const Setup> fronts_ignored(Parameters& given) {
 double signed_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens) {
   double highest = 0;
   for (const CameraFrequency& w : waves) {
-    if (lens.radius * std::abs(w.lens) >= first_zero_of_disc_response) continue;
-    highest = std::max(highest, -w.image);
+    if (passes(w, lens)) highest = std::max(highest, -w.image);
   }
   return highest;
 }
