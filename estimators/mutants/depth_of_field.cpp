@@ -140,7 +140,7 @@ std::vector<Entry> mutants_depth_of_field() {
   return {
       mutant("lens_crowded", pixel_information(),
              "draws lens points with a radius in proportion to a random number, not to its root: "
-             "too many near the middle; +8 % where a segment of the disc is lit at d / r = 1/2, "
+             "too many near the middle; +9 % where a segment of the disc is lit at d / r = 1/2, "
              "and its sampler shows it.",
              prepare_pixel<CrowdedDisc>),
       mutant(

@@ -10,6 +10,7 @@
 
 #include "tests/estimators/depth_of_field/plans.h"
 #include "tests/estimators/draws.h"
+#include "tests/estimators/table.h"
 
 namespace assay {
 namespace {
@@ -41,6 +42,29 @@ TEST(Reconstruction, ItsBiasIsThatOfLinearInterpolation) {
     const auto mean = [&](std::size_t pixel) { return sinusoid(plan.grid.pixel(pixel).x); };
     const double between = (1 - t) * mean(left) + t * mean(std::min<std::size_t>(left + 4, 32));
     EXPECT_NEAR(bias[i], between - mean(i), 1e-12) << i;
+  }
+}
+
+// Of the densities that the prediction chooses for the suites, and of every eighth pixel.
+TEST(Reconstruction, ItsBiasIsThatOfAnIndependentInterpolation) {
+  for (const auto& row : tests::table("reconstruction.csv")) {
+    const std::string parameters = "{scene: sinusoid, height: 1, width: " + row[0] +
+                                   ", size: " + row[1] + ", spacing: " + row[2] + "}";
+    const auto plan = reconstruction_plan(parameters);
+    const auto channels = prepare("depth_of_field/reconstruction", parameters).setup->channels();
+    EXPECT_NEAR(*channels.back().mean, std::stod(row[5]), 1e-10);
+    const std::vector<double> bias = plan.bias();
+    double off = 0;
+    double all = 0;
+    for (std::size_t i = 0; i < bias.size(); ++i) {
+      off += bias[i] * bias[i];
+      all += plan.exact[i].mean * plan.exact[i].mean;
+    }
+    const std::size_t worst = std::stoul(row[4]);
+    EXPECT_NEAR(std::sqrt(off / all), std::stod(row[3]), 1e-10);
+    EXPECT_NEAR(plan.exact[worst].mean, std::stod(row[5]), 1e-10);
+    EXPECT_NEAR(plan.exact[worst].mean + bias[worst], std::stod(row[6]), 1e-10);
+    EXPECT_NEAR(largest(bias), std::abs(bias[worst]), 1e-12);
   }
 }
 
