@@ -76,6 +76,28 @@ std::optional<std::uint64_t> exact_secondaries(const Question& question, const P
   return most;
 }
 
+std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& question,
+                                                           const Plan& plan,
+                                                           const PlannedChannel& channel,
+                                                           const ErrorShare& share) {
+  // At each margin theta = 0 is the effect to be found, with half of the misses.
+  const stats::ErrorRates rates{.alpha = share.beta, .beta = share.beta / 2, .two_sided = false};
+  PlannedChannel at_margin = channel;
+  at_margin.regions.detect = channel.regions.within;
+  at_margin.regions.allow = 0;
+  if (question.of_two()) return exact_secondaries(question, plan, at_margin, rates);
+  const double margin = channel.regions.within * channel.unit;
+  std::uint64_t most = 0;
+  for (const int side : {1, -1}) {
+    at_margin.null_value = channel.null_value + side * margin;
+    const auto count =
+        stats::exact_sample_size(method_of(plan), plan_of(at_margin, rates), -side * margin);
+    if (!count) return std::nullopt;
+    most = std::max(most, *count);
+  }
+  return most;
+}
+
 std::optional<double> exact_detectable_effect(const Question& question, const TestSize& size,
                                               const Plan& plan, const PlannedChannel& channel,
                                               const stats::ErrorRates& rates) {

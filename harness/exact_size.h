@@ -19,6 +19,13 @@ std::optional<std::uint64_t> exact_secondaries(const Question& question, const P
                                                const PlannedChannel& channel,
                                                const stats::ErrorRates& rates);
 
+/// Secondaries at which both one-sided tests at share.beta show that theta lies within the margin,
+/// with probability 1 - share.beta together, where it is 0; nullopt where no number would do.
+std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& question,
+                                                           const Plan& plan,
+                                                           const PlannedChannel& channel,
+                                                           const ErrorShare& share);
+
 /// The least theta found with probability 1 - beta, the larger of both sides; nullopt where there
 /// is none to quote: within a margin, of two samples, without a range.
 std::optional<double> exact_detectable_effect(const Question& question, const TestSize& size,

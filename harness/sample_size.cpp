@@ -195,10 +195,11 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
   std::optional<std::uint64_t> count;
   if (question.on_log_scale()) {
     count = for_variances(share, *channel);
+  } else if (plan.method.name == "binomial" || plan.method.name == "bounded") {
+    count = equivalence ? exact_equivalence_secondaries(question, plan, *channel, share)
+                        : exact_secondaries(question, plan, *channel, rates_of(share, regions));
   } else if (equivalence) {
     count = for_equivalence(share, *channel);
-  } else if (plan.method.name == "binomial" || plan.method.name == "bounded") {
-    count = exact_secondaries(question, plan, *channel, rates_of(share, regions));
   } else {
     count = for_means(question, rates_of(share, regions), regions, *channel);
   }

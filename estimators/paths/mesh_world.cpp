@@ -36,13 +36,6 @@ class Fit {
   double scale_ = 1;
 };
 
-std::vector<std::array<Vector3, 3>> fitted_corners(const TriangleMesh& mesh) {
-  const TriangleMesh fitted = Fit(mesh)(mesh);
-  std::vector<std::array<Vector3, 3>> all;
-  for (std::size_t i = 0; i < fitted.triangles.size(); ++i) all.push_back(fitted.corners(i));
-  return all;
-}
-
 }  // namespace
 
 MeshWorld::Triangle MeshWorld::triangle(const std::array<Vector3, 3>& corners) {
@@ -71,14 +64,17 @@ luminaire::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& trian
 MeshWorld::MeshWorld(const MeshScene& scene, const Camera& camera)
     : surfaces_(scene.surfaces),
       surface_of_(scene.surface_of),
+      mesh_(Fit(scene.mesh)(scene.mesh)),
       triangles_([&] {
         std::vector<Triangle> all;
-        for (const auto& corners : fitted_corners(scene.mesh)) all.push_back(triangle(corners));
+        for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+          all.push_back(triangle(mesh_.corners(i)));
+        }
         return all;
       }()),
       light_(light_shares(triangles_, scene)),
       camera_{Fit(scene.mesh)(camera.position), camera.direction},
-      scene_({Fit(scene.mesh)(scene.mesh)}) {
+      scene_({mesh_}) {
   if (scene.furnace) furnace_ = {{{1, surfaces_[0]}}, 0};
 }
 

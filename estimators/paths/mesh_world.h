@@ -37,11 +37,9 @@ class MeshWorld {
   const Surface& surface(std::size_t patch) const { return surfaces_[surface_of_[patch / 2]]; }
   bool has_light() const { return light_.total() > 0; }
   double patch_area(std::size_t patch) const { return triangles_[patch / 2].area; }
-  /// In the units of the fitted scene, as all positions are: its longest side is 1.
-  std::array<render::Vector3, 3> corners(std::size_t triangle) const {
-    const Triangle& t = triangles_[triangle];
-    return {t.corner, t.corner + t.first_edge, t.corner + t.second_edge};
-  }
+  /// Moved and scaled until the longest side is 1, as all positions are. Vertices that are at the
+  /// same place in the description are so here.
+  const render::TriangleMesh& mesh() const { return mesh_; }
   /// Whether nothing stands between two vertices. One shadow ray; what lies within 2^-12 of the way
   /// to the second is that point itself.
   bool sees(const Vertex& from, const Vertex& to, Cost& cost) const {
@@ -120,6 +118,7 @@ class MeshWorld {
 
   std::vector<Surface> surfaces_;
   std::vector<std::uint32_t> surface_of_;
+  render::TriangleMesh mesh_;
   std::vector<Triangle> triangles_;
   luminaire::ShareTable light_;
   Camera camera_;

@@ -1,5 +1,6 @@
 #include "virtual_lights/enclosure.h"
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -14,7 +15,17 @@ using render::Vector3;
 
 namespace {
 
-constexpr double flat = 1e-9;
+constexpr double flat = 1e-9;  // of the longest side
+
+double longest_side(const TriangleMesh& mesh) {
+  Vector3 low = mesh.vertices.front();
+  Vector3 high = low;
+  for (const Vector3& v : mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
 
 TriangleMesh welded(const TriangleMesh& mesh) {
   std::map<std::tuple<double, double, double>, std::uint32_t> index;
@@ -78,16 +89,17 @@ void find_walls(const TriangleMesh& mesh, Enclosure& room) {
   Sets walls(mesh.triangles.size());
   Sets connected(mesh.triangles.size());
   const auto all = sides(mesh);
+  const double tolerance = flat * longest_side(mesh);
   for (const auto& [edge, side] : all) {
     const Side& other = all.at({edge.second, edge.first});
     connected.join(side.triangle, other.triangle);
     const double out = height(mesh, side.triangle, mesh.vertices[other.opposite]);
     const double inwards = room.counter_clockwise ? out : -out;
-    if (inwards < -flat) {
+    if (inwards < -tolerance) {
       room.why_not_convex = "its walls turn outwards at an edge";
       return;
     }
-    if (inwards <= flat) walls.join(side.triangle, other.triangle);
+    if (inwards <= tolerance) walls.join(side.triangle, other.triangle);
   }
   if (!connected.all_one()) {
     room.why_not_convex = "its walls are not connected";

@@ -23,10 +23,10 @@ struct Enclosure {
   std::vector<std::uint32_t> wall_of;
 };
 
-/// Vertices at the same position are one. Walls are planes to 1e-9 of the scene's longest side,
-/// which must be 1. Closed: every edge runs once each way, and the surface winds about the point
-/// once. Convex: connected, and convex at every edge, which makes it convex as a whole (Tietze
-/// 1928, Nakajima 1928).
+/// Vertices at the same position, bit by bit, are one. Walls are planes to 1e-9 of the longest side
+/// of the mesh along an axis. Closed: every edge runs once each way, and the surface winds about
+/// the point once. Convex: connected, and convex at every edge, which makes it convex as a whole
+/// (Tietze 1928, Nakajima 1928).
 Enclosure enclosure(const render::TriangleMesh& mesh, const render::Vector3& point);
 
 }  // namespace assay::virtual_lights

@@ -17,15 +17,6 @@ Vertex seen_by_camera(const MeshWorld& world) {
   return world.camera(counted_by_the_set_up);
 }
 
-render::TriangleMesh mesh_of(const MeshWorld& world) {
-  render::TriangleMesh mesh;
-  for (std::uint32_t i = 0; i < world.patches() / 2; ++i) {
-    for (const Vector3& corner : world.corners(i)) mesh.vertices.push_back(corner);
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return mesh;
-}
-
 std::vector<std::uint32_t> emitting_sides(const MeshWorld& world, const Enclosure& room) {
   std::vector<std::uint32_t> sides;
   for (std::uint32_t i = 0; i < world.patches(); ++i) {
@@ -55,7 +46,7 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& sides)
 Room::Room(paths::SharedMesh world)
     : world_(std::move(world)),
       receiver_(seen_by_camera(*world_)),
-      enclosure_(enclosure(mesh_of(*world_), receiver_.position)),
+      enclosure_(enclosure(world_->mesh(), receiver_.position)),
       sides_(emitting_sides(*world_, enclosure_)),
       lamps_(triangles_of(sides_)),
       shares_(powers(*world_, sides_)),
@@ -107,9 +98,9 @@ double Room::conditional_density(const LightPath& path) {
 
 double Room::form_factor(const Vertex& from, std::size_t triangle) const {
   // Back on the plane that the vertex was lifted off, so that walls end where its horizon does.
-  const auto wall = world_->corners(from.patch / 2);
+  const auto wall = world_->mesh().corners(from.patch / 2);
   const Vector3 origin = from.position - dot(from.position - wall[0], from.normal) * from.normal;
-  std::array<Vector3, 3> seen = world_->corners(triangle);
+  std::array<Vector3, 3> seen = world_->mesh().corners(triangle);
   for (Vector3& v : seen) v = v - origin;
   return render::lambert(seen, from.normal) / pi;
 }

@@ -85,7 +85,9 @@ TEST(Describe, OffersThePartsThatClaimsCanName) {
       continue;
     }
     for (const NamedSampler& named : setup->samplers()) {
-      const std::string line = text.substr(text.find("\n  " + named.name + ": "));
+      const std::size_t samplers = text.find("\nsamplers\n");
+      ASSERT_NE(samplers, text.npos) << entry.information.name;
+      const std::string line = text.substr(text.find("\n  " + named.name + ": ", samplers));
       const bool offered = line.substr(0, line.find('\n', 1)).find("marginals") != line.npos;
       EXPECT_EQ(offered, refusal([&] { sampler_setup(named, {}); }) == "(nothing was refused)")
           << entry.information.name << "." << named.name;

@@ -32,6 +32,7 @@ estimators:
   heavier-single: {plugin: analytic/heavy_tail, index: 2.2, primaries: 1}
   hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
   dart: {plugin: analytic/dart_throwing, primaries: 1}
+  spike: {plugin: analytic/rare_spike, probability: 0.0001, height: 10, noise: 0.1, primaries: 1}
 tests:
 )" + tests)};
   planned.place = places(planned.asked->suite, planned.asked->questions);
@@ -52,6 +53,15 @@ TEST(Plan, WithoutDetectIsClassical) {
   const Planned planned = plan_text("  - {claim: mean(normal) == 2}\n");
   EXPECT_EQ(planned.plans[0].most_secondaries(), 1000);
   EXPECT_EQ(planned.plans[0].method.name, "t");
+}
+
+// Values in [0.4, 10.6]: whatever their deviation, the empirical bound is at least 7 ln(2 / .01)
+// 10.2 / (3 (n - 1)) wide (Maurer and Pontil 2009), below 0.5 from n = 253 on.
+TEST(Plan, AMarginIsPlannedByTheMethodThatDecides) {
+  const Planned planned = plan_text("  - {claim: mean(spike) within 0.5 of analytic}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "bounded");
+  EXPECT_GE(planned.plans[0].most_secondaries(), 253);
+  EXPECT_LT(planned.plans[0].most_secondaries(), 2530);
 }
 
 TEST(Plan, ObeysFixedSecondaries) {
@@ -156,7 +166,8 @@ TEST(Plan, MovesToLogVarianceWhereSecondariesAreNotNormal) {
   EXPECT_EQ(planned.plans[0].method.name, "chi-square") << "primaries are chosen so";
   const Planned skewed = plan_text("  - {claim: variance(heavier-single) <= 100}\n");
   EXPECT_EQ(skewed.plans[0].method.name, "log-variance");
-  EXPECT_FALSE(skewed.plans[0].invalid.empty()) << "a Pareto law of index 2.2 has no kurtosis at all";
+  EXPECT_FALSE(skewed.plans[0].invalid.empty())
+      << "a Pareto law of index 2.2 has no kurtosis at all";
   EXPECT_NE(skewed.plans[0].invalid.find("tail is too heavy"), std::string::npos);
 }
 

@@ -51,6 +51,22 @@ TEST(Enclosure, ACubeHasSixWallsWhicheverWayItIsWritten) {
   }
 }
 
+TEST(Enclosure, WallsAreToldApartInAnyUnit) {
+  for (const double unit : {1e-12, 1e-3, 1e3, 1e12}) {
+    const Enclosure room = enclosure(cube(0, unit), unit * middle);
+    EXPECT_EQ(room.why_not_convex, "") << unit;
+    EXPECT_EQ(std::set(room.wall_of.begin(), room.wall_of.end()).size(), 6u) << unit;
+    // A floor that is raised by a 1000th of the room in its middle is not flat.
+    TriangleMesh bent = cube(0, unit);
+    bent.vertices.push_back({0.5 * unit, 0.5 * unit, 0.001 * unit});
+    const auto top = static_cast<std::uint32_t>(bent.vertices.size() - 1);
+    bent.triangles.erase(bent.triangles.begin(), bent.triangles.begin() + 2);
+    for (std::uint32_t i = 0; i < 4; ++i) bent.triangles.push_back({i, (i + 1) % 4, top});
+    EXPECT_EQ(enclosure(bent, unit * middle).why_open, "") << unit;
+    EXPECT_NE(enclosure(bent, unit * middle).why_not_convex, "") << unit;
+  }
+}
+
 TEST(Enclosure, AMissingTriangleOpensIt) {
   TriangleMesh mesh = cube();
   mesh.triangles.pop_back();
