@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 
 #include "harness/calibration_runs.h"
 #include "harness/interrupt.h"
@@ -103,6 +104,16 @@ void group(std::vector<Measured>& all, const std::vector<double>& alphas) {
                    [&](const Measured& a, const Measured& b) { return rank(a) < rank(b); });
 }
 
+/// A level or a law given twice would be measured twice.
+template <class T>
+void refuse_twice(const char* option, const std::vector<T>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(values.begin(), end, values[i]) == end) continue;
+    throw InputError({}, fmt::format("{} {} is given twice", option, values[i]));
+  }
+}
+
 std::string written(const reports::Calibration& calibration, const std::string& kind) {
   if (kind == "json") return reports::json(calibration);
   if (kind == "html") return reports::html(calibration);
@@ -121,6 +132,10 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
                               .started = utc_now()};
   std::vector<std::string> laws;
   for (const std::string& law : arguments.laws) laws.push_back(calibration_law(law));
+  std::vector<std::string> without_blanks = laws;
+  for (std::string& law : without_blanks) std::erase(law, ' ');
+  refuse_twice("--law", without_blanks);
+  refuse_twice("--alpha", arguments.alphas);
   if (laws.empty()) laws = calibration_laws();
   const CalibrationRuns options{
       .alphas = arguments.alphas.empty() ? std::vector{0.05, 0.01, 0.001} : arguments.alphas,

@@ -10,6 +10,7 @@
 #include "harness/cli_options.h"
 #include "harness/cli_values.h"
 #include "harness/shell.h"
+#include "harness/suite_entries.h"
 #include "harness/suite_keys.h"
 #include "harness/version.h"
 
@@ -284,6 +285,26 @@ std::string help(CLI::App& app) {
   return wrapped_options(sub.help("assay"));
 }
 
+/// `assay help` is `assay --help`, `assay help run` is `assay run --help`.
+Texts without_help_command(const Texts& arguments, const CLI::App& app) {
+  if (arguments.empty() || arguments.front() != "help") return arguments;
+  if (arguments.size() == 1) return {"--help"};
+  Texts asked(arguments.begin() + 1, arguments.end());
+  const Texts names = subcommand_names(app);
+  // Of a command that there is not: the words alone, so that they are refused.
+  if (std::find(names.begin(), names.end(), asked.front()) != names.end()) {
+    asked.emplace_back("--help");
+  }
+  return asked;
+}
+
+/// What CLI11 refuses, with the methods where one was to be named.
+std::string in_words(const CLI::ParseError& error) {
+  std::string text = error.what();
+  if (text.starts_with("--test:")) text += "; METHOD is one of " + joined(method_names());
+  return text;
+}
+
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
@@ -295,12 +316,13 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   app.add_flag("--version", version_asked);
   define_options(app, given);
   try {
+    const Texts words = without_help_command(arguments, app);
     // CLI11 takes the words from the back.
-    app.parse(Texts(arguments.rbegin(), arguments.rend()));
+    app.parse(Texts(words.rbegin(), words.rend()));
   } catch (const CLI::CallForHelp&) {
     return TextCommand{help(app)};
   } catch (const CLI::ParseError& e) {
-    usage_error(e.what());
+    usage_error(in_words(e));
   }
   if (version_asked) return TextCommand{fmt::format("assay {} ({})\n", version(), commit())};
   const CLI::App& sub = chosen(app);

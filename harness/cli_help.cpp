@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
 
 namespace assay::harness {
 
@@ -24,6 +23,7 @@ Commands (each has its own --help, with examples and defaults):
   describe  print the manual of a plugin
   replay    draw the numbers of a recorded test again
   report    make reports from a saved run
+  help      this text, or that of a command: `assay help run`
 
 Options:
   -h, --help   this text
@@ -117,21 +117,16 @@ std::string wrapped_options(const std::string& help) {
   const std::size_t options = help.find("\nOptions:\n");
   if (options == std::string::npos) return help;
   std::string out = help.substr(0, options);
-  std::string_view rest = std::string_view(help).substr(options);
+  std::string rest = help.substr(options);
   while (!rest.empty()) {
-    std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
     const std::size_t blank = rest.substr(0, width + 1).rfind(' ');
-    if (end <= width || blank <= indent || blank == std::string_view::npos) {
-      end = std::min(end + 1, rest.size());
-      out += rest.substr(0, end);
-      rest.remove_prefix(end);
+    if (end <= width || blank < indent || blank == std::string::npos) {
+      out += rest.substr(0, end + 1);
+      rest.erase(0, end + 1);
     } else {
-      out += std::string(rest.substr(0, blank)) + "\n";
-      rest.remove_prefix(blank + 1);
-      const std::string line =
-          std::string(indent, ' ') + std::string(rest.substr(0, rest.find('\n')));
-      out += line + "\n";
-      rest.remove_prefix(std::min(rest.find('\n') + 1, rest.size()));
+      out += rest.substr(0, blank) + "\n";
+      rest.replace(0, blank + 1, std::string(indent, ' '));
     }
   }
   return out;

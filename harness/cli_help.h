@@ -10,8 +10,7 @@ std::string general_help();
 /// What stands before the options in `assay SUBCOMMAND --help`: a sentence and examples.
 std::string help_of(const std::string& subcommand);
 
-/// CLI11's help with its list of options at most 100 columns wide. Nothing there needs a third
-/// line.
+/// CLI11's help with its list of options at most 100 columns wide.
 std::string wrapped_options(const std::string& help);
 
 }  // namespace assay::harness

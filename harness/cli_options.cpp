@@ -1,6 +1,8 @@
 #include "harness/cli_options.h"
 
 #include "harness/cli_help.h"
+#include "harness/suite_entries.h"
+#include "harness/suite_keys.h"
 
 namespace assay::harness {
 
@@ -16,14 +18,16 @@ void many(CLI::App* sub, const char* name, Texts& values, const char* kind, cons
   sub->add_option(name, values, about)->type_name(kind)->allow_extra_args(false)->take_all();
 }
 
-void one(CLI::App* sub, const char* name, std::string& value, const char* kind, const char* about) {
+void one(CLI::App* sub, const char* name, std::string& value, const char* kind,
+         const std::string& about) {
   sub->add_option(name, value, about)->type_name(kind);
 }
 
 void add_output(CLI::App* sub, Given& given) {
   many(sub, "--report", given.reports, "KIND=PATH",
        "console, json, junit, markdown or html to a file, - is standard output; repeatable; "
-       "default console=-");
+       "default console=-, which goes to standard error where another report has standard output; "
+       "console=/dev/null silences it");
   one(sub, "--color", given.colour, "WHEN",
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
 }
@@ -100,7 +104,7 @@ void define_check(CLI::App& app, Given& given) {
   one(sub, "--allow", given.allow, "X",
       "the effect that may be there, as 0.5% or 0.002; default 0");
   one(sub, "--test", given.method, "METHOD",
-      "force a method, such as welch; default chosen from the pilot");
+      "force a method, one of " + joined(method_names()) + "; default chosen from the pilot");
   one(sub, "--over", given.over, "SWEEP",
       "of a slope: a parameter and its values, as '{primaries: [8, 16, 32]}'; default none");
   one(sub, "--reference", given.reference, "R",
@@ -141,7 +145,8 @@ void define_others(CLI::App& app, Given& given) {
   calibrate->add_flag("--quiet", given.quiet, "no progress on standard error; default shown");
   many(calibrate, "--report", given.reports, "KIND=PATH",
        "console, json, markdown or html to a file, - is standard output; repeatable; default "
-       "console=-");
+       "console=-, which goes to standard error where another report has standard output; "
+       "console=/dev/null silences it");
 
   CLI::App* list = subcommand(app, "list");
   list->add_option("WHAT", given.what, "plugins or tests")->type_name("");

@@ -59,8 +59,11 @@ const char* type_name(ParameterType type) {
   return "";
 }
 
-const char* bias_text(BiasClass bias) {
-  switch (bias) {
+const char* bias_text(const Information& information) {
+  // A mutant's bias is its defect's; the class is that of the estimator it was made from.
+  if (!information.original.empty()) return "that of its defect";
+  if (information.name == "recorded") return "unknown: the observations were made elsewhere";
+  switch (information.bias) {
     case BiasClass::unbiased:
       return "unbiased";
     case BiasClass::inverse_primaries:
@@ -214,9 +217,7 @@ std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
   if (!information.description.empty()) {
     out += "\n" + wrapped(information.description, page_width, 0);
   }
-  // A mutant's bias is its defect's; the class is that of the estimator it was made from.
-  const bool mutant = !information.original.empty();
-  out += "\n" + field("bias", mutant ? "that of its defect" : bias_text(information.bias));
+  out += "\n" + field("bias", bias_text(information));
   out += field("primaries", information.averages
                                 ? "averaged: a secondary estimate is the mean of its primaries"
                                 : "not averaged; 1 unless given");

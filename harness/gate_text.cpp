@@ -101,15 +101,25 @@ std::string in_words(const std::exception& error) {
 
 std::string what_would_help(const TestOutcome& outcome) {
   bool says_it_all = true;
+  bool heavy = false;
   double factor = 1;
   for (const reports::Gate& gate : outcome.gates) {
     if (is_red(gate, "count")) return "";
     if (gate.state != "red") continue;
     says_it_all = says_it_all && is_red(gate, "rounding");
+    heavy = heavy || is_red(gate, "excess kurtosis") || is_red(gate, "largest deviation");
     factor = std::max(factor, wanted(gate));
   }
   if (says_it_all) return "";
   const bool rows = has_rows(outcome.question);
+  // Where the tail's moment does not exist, more observations make the gate only redder.
+  if (heavy) {
+    return fmt::format(
+        "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim "
+        "something of "
+        "their distribution, such as a quantile",
+        rows ? "" : "clamp the estimator or take another, declare its range, or ");
+  }
   const std::string more =
       factor > 1 && std::isfinite(factor)
           ? "about " + reports::human(factor * static_cast<double>(outcome.secondaries()), 2)

@@ -17,7 +17,8 @@ std::string red_gates(const std::vector<reports::Gate>& gates);
 std::string in_words(const std::exception& error);
 
 /// What would turn the outcome's red gates green: rows of a file, or primaries and secondaries of
-/// an estimator. "" where the gates say it themselves.
+/// an estimator; of heavy tails a claim that does not rest on their moments, or tails that end. ""
+/// where the gates say it themselves.
 std::string what_would_help(const TestOutcome& outcome);
 
 }  // namespace assay::harness

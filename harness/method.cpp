@@ -235,8 +235,11 @@ Method find_method(const Question& question, const std::string& name) {
     }
     known += (known.empty() ? "`" : ", `") + method.name + "`";
   }
-  throw InputError(question.test->where,
-                   fmt::format("`test: {}` does not answer this claim; there is {}", name, known));
+  const std::string why = "does not answer this claim; there is " + known;
+  const Location& where = question.test->where;
+  // A claim of the command line has its method from an option.
+  if (where.file == "claim") throw InputError({"--test " + name, 0, 0}, why);
+  throw InputError(where, fmt::format("`test: {}` {}", name, why));
 }
 
 std::string null_hypothesis(const Method&, const Question& question, std::size_t channel) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 #include "harness/critical.h"
 #include "harness/frozen.h"
@@ -204,15 +206,24 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
 
 // ---- Variances
 
+/// The shape of a secondary by the pilot's finite values: of the others the test's own observations
+/// tell, whose verdict is `error`. Nothing of fewer than two.
+std::optional<stats::SixthOrderShape> secondary_shape(const Known& known) {
+  std::vector<double> finite;
+  std::copy_if(known.pilot.values.begin(), known.pilot.values.end(), std::back_inserter(finite),
+               [](double value) { return std::isfinite(value); });
+  if (finite.size() < 2) return {};
+  return stats::averaged(stats::sixth_order_shape(finite), whole(known.averaged));
+}
+
 std::uint64_t enough_for_log_variance(const Question& question, const std::vector<Known>& channels,
                                       double critical) {
   std::uint64_t needed = log_variance_secondaries;
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     std::vector<stats::SixthOrderShape> shapes;
     for (const Known& known : channels) {
-      if (known.channel != channel || known.pilot.values.empty()) continue;
-      shapes.push_back(
-          stats::averaged(stats::sixth_order_shape(known.pilot.values), whole(known.averaged)));
+      if (known.channel != channel) continue;
+      if (const auto shape = secondary_shape(known)) shapes.push_back(*shape);
     }
     if (shapes.empty()) continue;
     needed = std::max(needed, shapes.size() == 1
@@ -238,7 +249,8 @@ std::string too_few(const Question& question, std::uint64_t needed) {
   }
   return fmt::format(
       "secondary estimates of this shape need about {} observations before any test of their "
-      "variance keeps its level; a larger `primaries` brings them nearer to normal",
+      "variance keeps its level; a larger `primaries` brings them nearer to normal unless the tail "
+      "is heavy; of a heavy tail claim something of the distribution",
       need);
 }
 
@@ -288,10 +300,8 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   plan.invalid = heavy;
   std::uint64_t needed = log_variance_secondaries;
   for (const Known& known : channels) {
-    if (known.pilot.values.empty()) continue;
-    const stats::SixthOrderShape shape =
-        stats::averaged(stats::sixth_order_shape(known.pilot.values), whole(known.averaged));
-    needed = std::max(needed, stats::values_for_log_variance(shape, x));
+    const auto shape = secondary_shape(known);
+    if (shape) needed = std::max(needed, stats::values_for_log_variance(*shape, x));
   }
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const std::uint64_t affordable =

@@ -67,16 +67,18 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
 
 reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
   const Information& information = picture.estimator->entry->information;
-  reports::EstimatorSummary row{.name = picture.estimator->name,
-                                .plugin = information.name,
-                                .parameters = picture.estimator->parameters,
-                                .bias = bias_name(information.bias),
-                                .original = information.original,
-                                .defect = information.defect,
-                                .primaries = picture.pool->primaries(),
-                                .secondaries = picture.pool->largest_prefix(),
-                                .confidence = confidence,
-                                .variance_of = information.averages ? "primary" : "secondary"};
+  reports::EstimatorSummary row{
+      .name = picture.estimator->name,
+      .plugin = information.name,
+      .parameters = picture.estimator->parameters,
+      // Of rows that were made elsewhere nothing is known.
+      .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(information.bias),
+      .original = information.original,
+      .defect = information.defect,
+      .primaries = picture.pool->primaries(),
+      .secondaries = picture.pool->largest_prefix(),
+      .confidence = confidence,
+      .variance_of = information.averages ? "primary" : "secondary"};
   if (!picture.pool->trouble().empty()) return row;
   const Summary& summary = summary_of(picture);
   row.cost = cost_of(summary);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "harness/pools.h"
 #include "harness/progress_terminal.h"
 #include "harness/record_of.h"
+#include "harness/recorded_test.h"
 #include "harness/sampler_setup.h"
 #include "harness/shell.h"
 #include "harness/suite_entries.h"
@@ -23,30 +25,6 @@
 
 namespace assay::harness {
 namespace {
-
-/// A recorded test found in its record.
-struct Recorded {
-  const reports::Suite& suite;
-  const reports::Test& test;
-  std::uint64_t seed;
-};
-
-Recorded find_test(const reports::Record& record, const ReplayArguments& arguments) {
-  std::vector<std::string> ids;
-  for (const reports::Suite& suite : record.suites) {
-    for (const reports::Test& test : suite.tests) {
-      if (test.id == arguments.test || test.name == arguments.test) {
-        return {suite, test, suite.seed};
-      }
-      ids.push_back(test.id);
-    }
-  }
-  const std::string near = nearest(arguments.test, ids);
-  throw InputError({.file = arguments.record},
-                   fmt::format("no test `{}` in this run{}", arguments.test,
-                               near.empty() ? "; `assay report RUN.json` shows them all"
-                                            : "; did you mean `" + near + "`?"));
-}
 
 /// Canonical parameters ("name=value,…") as a suite would give them. Text parameters are written
 /// with a colon before them; null and a text's fallback stand for what was not given.
@@ -87,12 +65,21 @@ bool has_relative_effect(const Claim& claim) {
          claim.left.name == QuantityName::quantile;
 }
 
+/// Where the files lie that the suite names: in the folder of its file, seen from here or else
+/// from the record. Absolute, so that an error about a file says where it was looked for.
+std::string folder_of(const std::string& suite, const std::string& record) {
+  namespace fs = std::filesystem;
+  if (suite.empty()) return fs::current_path().string();  // a claim of the command line
+  const fs::path beside = fs::absolute(record).parent_path() / suite;
+  const fs::path file = fs::exists(suite) || !fs::exists(beside) ? fs::absolute(suite) : beside;
+  return file.parent_path().string();
+}
+
 /// The suite of this one test, rebuilt from the record alone.
-Suite suite_of(const Recorded& recorded) {
-  const std::filesystem::path folder = std::filesystem::path(recorded.suite.file).parent_path();
+Suite suite_of(const Recorded& recorded, const std::string& record) {
   Suite suite{.name = recorded.suite.name,
               .file = recorded.suite.file,
-              .folder = folder.empty() ? "." : folder.string(),
+              .folder = folder_of(recorded.suite.file, record),
               .alpha = recorded.suite.alpha,
               .beta = recorded.suite.beta};
   for (const reports::Sample& sample : recorded.test.samples) {
@@ -180,9 +167,9 @@ Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t
   return run_pilots(all, {.seed = seed, .threads = 0, .draws = piloted_draws(question)}, *progress);
 }
 
-std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded) {
+std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& record) {
   auto rebuilt = std::make_unique<Rebuilt>();
-  rebuilt->suite = suite_of(recorded);
+  rebuilt->suite = suite_of(recorded, record);
   rebuilt->estimators = prepare_all(rebuilt->suite);
   Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
   Plan plan = recorded_plan(question, recorded.test);
@@ -203,32 +190,94 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded) {
   return rebuilt;
 }
 
-void print_observation(const TestWork& work, std::uint64_t index) {
+/// What the record holds of the observations of a subject's channel; null where it holds nothing.
+const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
+                                   std::size_t subject, std::size_t channel) {
+  const Subject& side = question.subjects[subject];
+  const auto& tested = side.channels;
+  if (std::find(tested.begin(), tested.end(), channel) == tested.end()) return nullptr;
+  // Of two subjects that are one estimator the samples stand in the subjects' order.
+  std::size_t earlier = 0;
+  for (std::size_t i = 0; i < subject; ++i) {
+    earlier += question.subjects[i].estimator->listed == side.estimator->listed ? 1U : 0U;
+  }
+  const std::string name = side.setup->channels()[channel].name;
+  for (const reports::Sample& sample : test.samples) {
+    const bool is_its = sample.estimator == side.estimator->listed &&
+                        (side.image.has_value() || sample.channel == name);
+    if (is_its && earlier-- == 0) return &sample;
+  }
+  return nullptr;
+}
+
+/// Says whether the value can be one of those recorded: they lie in a known range, and so many of
+/// them are not finite.
+bool print_against(const reports::Sample& sample, double value) {
+  if (!std::isfinite(value)) {
+    const bool same = sample.nonfinite > 0;
+    fmt::print("  {}\n",
+               same ? fmt::format("not finite, as {} of the {} recorded", sample.nonfinite,
+                                  sample.secondaries)
+                    : fmt::format("NOT as recorded: all {} were finite", sample.secondaries));
+    return same;
+  }
+  if (!sample.minimum || !sample.maximum) return true;
+  const bool same = *sample.minimum <= value && value <= *sample.maximum;
+  fmt::print("  {} [{}, {}], the range of the {} recorded\n",
+             same ? "lies in" : "NOT as recorded: lies outside", *sample.minimum, *sample.maximum,
+             sample.secondaries);
+  return same;
+}
+
+/// Whether nothing in the record contradicts the observation.
+bool print_observation(const TestWork& work, const reports::Test& recorded, std::uint64_t index) {
+  const Question& question = work.outcome.question;
   if (index >= work.outcome.plan.most_secondaries()) {
     throw InputError({}, fmt::format("observation {} was not drawn: the test used 0 to {}", index,
                                      work.outcome.plan.most_secondaries() - 1));
   }
+  bool same = true;
   for (std::size_t i = 0; i < work.pools.size(); ++i) {
     const Pool& pool = *work.pools[i];
     const std::vector<double> values =
         draw_observation(*pool.setup(), pool.key(), pool.primaries(), index);
     const std::vector<Channel> channels = pool.setup()->channels();
     for (std::size_t c = 0; c < values.size(); ++c) {
-      fmt::print("{}.{}  observation {}: {}\n", work.outcome.question.subjects[i].estimator->name,
+      fmt::print("{}.{}  observation {}: {}\n", question.subjects[i].estimator->name,
                  channels[c].name, index, values[c]);
+      const reports::Sample* sample = recorded_of(recorded, question, i, c);
+      if (sample == nullptr || index >= sample->secondaries) continue;
+      same &= print_against(*sample, values[c]);
     }
   }
+  return same;
 }
 
 std::string shown(const reports::Number& value) {
   return value ? fmt::format("{}", *value) : "none";
 }
 
-bool same_line(const char* what, const reports::Number& now, const reports::Number& then) {
+bool same_line(const char* what, const reports::Number& now, const reports::Number& then,
+               const std::string& note = "") {
   const bool same = now == then;
-  fmt::print("  {:<27} {}{}\n", what, shown(now),
+  fmt::print("  {:<27} {}{}{}\n", what, shown(now), note,
              same ? "" : fmt::format("   (recorded: {})", shown(then)));
   return same;
+}
+
+/// Observations that are not finite, where there are any, now or in the record.
+bool same_nonfinite(const reports::Sample& now, const reports::Sample& then) {
+  const bool same = now.nonfinite == then.nonfinite;
+  if (same && now.nonfinite == 0) return true;
+  fmt::print("  {:<27} {}{}; mean and variance are of the others\n", "not finite", now.nonfinite,
+             same ? "" : fmt::format("   (recorded: {})", then.nonfinite));
+  return same;
+}
+
+/// The p-value itself beside its logarithm, where a double holds it.
+std::string as_probability(const reports::Number& log10_p) {
+  if (!log10_p || *log10_p < -300) return "";
+  return fmt::format("   (p = {:.3g})", std::pow(10, *log10_p));
 }
 
 /// Prints the numbers drawn now; whether they are the recorded ones to the last bit, but for what
@@ -243,6 +292,7 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
   for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
     fmt::print("{}.{}: {} secondaries of {} primaries\n", now.samples[i].estimator,
                now.samples[i].channel, now.samples[i].secondaries, now.samples[i].primaries);
+    same &= same_nonfinite(now.samples[i], then.samples[i]);
     // The number of a cell has neither mean nor variance.
     if (now.samples[i].channel == cell_channel) continue;
     same &= same_line("mean", now.samples[i].mean, then.samples[i].mean);
@@ -253,7 +303,9 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
     fmt::print("test {} on {}\n", now.method, now.channels[i].name);
     const bool statistic =
         same_line("statistic", now.channels[i].statistic, then.channels[i].statistic);
-    const bool p = same_line("log10 p", now.channels[i].log10_p, then.channels[i].log10_p);
+    const reports::Number& log10_p = now.channels[i].log10_p;
+    const bool p = same_line(then.looks.size() > 1 ? "log10 p over the looks" : "log10 p", log10_p,
+                             then.channels[i].log10_p, as_probability(log10_p));
     same &= timed || (statistic && p);
   }
   same &= now.channels.size() == then.channels.size() && now.samples.size() == then.samples.size();
@@ -286,10 +338,9 @@ int replay(const ReplayArguments& arguments) {
         {.file = arguments.record},
         fmt::format("test `{}` recorded no samples: {}", recorded.test.id, recorded.test.message));
   }
-  const std::unique_ptr<Rebuilt> rebuilt = rebuild(recorded);
+  const std::unique_ptr<Rebuilt> rebuilt = rebuild(recorded, arguments.record);
   if (arguments.observation) {
-    print_observation(rebuilt->work, *arguments.observation);
-    return 0;
+    return print_observation(rebuilt->work, recorded.test, *arguments.observation) ? 0 : 1;
   }
   const std::unique_ptr<Progress> progress = make_progress(false);
   sample_in_looks({&rebuilt->work}, rebuilt->pools.all(), 0, *progress);

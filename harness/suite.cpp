@@ -138,6 +138,7 @@ std::string excerpt(const Location& where) {
   if (where.line < 1 || where.file.empty()) return "";
   try {
     const std::string text = read_text_file(where.file);
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos) return "";  // nothing to point at
     const std::vector<std::string_view> lines = lines_of(text);
     const auto index = static_cast<std::size_t>(where.line) - 1;
     // A file that ends too early is blamed on the line after its last.

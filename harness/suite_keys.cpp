@@ -7,12 +7,16 @@
 
 namespace assay::harness {
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
   const std::string near = nearest(name, candidates);
   if (!near.empty()) return fmt::format("; did you mean `{}`?", near);
-  std::string all;
-  for (const std::string& candidate : candidates) all += (all.empty() ? "" : ", ") + candidate;
-  return all.empty() ? "; there is none" : "; there is: " + all;
+  return candidates.empty() ? "; there is none" : "; there is: " + joined(candidates);
 }
 
 namespace {

@@ -224,7 +224,9 @@ Suite suite_of_claim(const CheckArguments& arguments) {
         method_names()[choice(Value::scalar(*arguments.method), "--test", method_names())];
   }
   read_keys(arguments, test);
-  check_test(test, [&](std::string_view key) { return key == "claim" ? where : Location{}; });
+  check_test(test, [&](std::string_view key) {
+    return key == "claim" ? where : Location{"--" + std::string(key), 0, 0};
+  });
   Suite suite;
   suite.name = "check";
   suite.stem = "check";

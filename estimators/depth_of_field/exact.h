@@ -10,8 +10,10 @@ namespace assay::depth_of_field {
 struct Moments {
   double mean = 0;
   double square = 0;
-  double error = 0;  ///< bound of the quadrature's error in either
+  double error = 0;  ///< estimate of the quadrature's error in either, its last change; 0 of forms
   double variance() const { return square - mean * mean; }
+  /// The error of variance() where both moments are off by `error`.
+  double variance_error() const { return (1 + 2 * mean) * error; }
 };
 
 /// The part of a disc of radius 1 inside a half-plane whose edge is at the signed distance d from
@@ -34,7 +36,9 @@ Moments sinusoid_moments(const Texture& texture, const Footprint& seen);
 Moments exact_moments(const SceneDescription& scene, const PlanePoint& pixel);
 
 /// Across the lens in closed form along u between the edges, along v by quadrature between the
-/// places where the picture changes, to 1e-12 of the value.
+/// places where the picture changes: refined until it changes by 1e-12 of the value or less, at
+/// most nine times (render/quadrature.h); `error` says what it came to. An edge before a wave of a
+/// thousand radians in the radius of the lens is beyond it: 3e-6.
 Moments quadrature_moments(const SceneDescription& scene, const PlanePoint& pixel);
 
 }  // namespace assay::depth_of_field

@@ -44,8 +44,9 @@ Channel radiance_channel(const SceneDescription& scene, const Moments& moments, 
                   .low = range.low,
                   .high = range.high,
                   .rounding = range.high * 0x1p-40};
-  // Moments are good to 1e-12 or better.
-  if (moments.variance() > 1e-4 * moments.square) channel.variance = moments.variance() / samples;
+  // What rounding leaves of the difference: 32 halves of a last place of the largest square.
+  const double off = moments.variance_error() + 0x1p-48 * range.high * range.high;
+  if (off <= 1e-8 * moments.variance()) channel.variance = moments.variance() / samples;
   return channel;
 }
 

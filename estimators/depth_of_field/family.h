@@ -16,8 +16,9 @@ SharedSetting read_setting(Parameters&);
 ParameterInformation pixel_parameter();
 PlanePoint read_pixel(Parameters&);
 
-/// Average radiance over the lens at one pixel: mean and range; the variance of one lens sample
-/// divided by `samples` where the subtraction in it leaves nine digits.
+/// Average radiance over the lens at one pixel: mean, with its error, and range; the variance of
+/// one lens sample divided by `samples` where quadrature and rounding leave it eight digits, no
+/// variance elsewhere.
 Channel radiance_channel(const SceneDescription& scene, const Moments& moments, double samples = 1);
 
 /// One lens sample at one pixel: the radiance along the ray from a point of the lens.

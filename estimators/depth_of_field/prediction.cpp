@@ -22,11 +22,13 @@ struct Edge {
   bool front_is_below = false;  ///< the front lies on the side of smaller coordinates
 };
 
-std::vector<CameraFrequency> texture_waves(const Plane& plane, const Lens& lens) {
+Frequency texture_wave(const Plane& plane) {
   const Texture& t = plane.texture;
-  return Spectrum({{t.frequency, 0, t.amplitude * t.amplitude / 2}})
-      .travel(plane.depth)
-      .at_camera(lens);
+  return {t.frequency, 0, t.amplitude * t.amplitude / 2};
+}
+
+std::vector<CameraFrequency> texture_waves(const Plane& plane, const Lens& lens) {
+  return Spectrum({texture_wave(plane)}).travel(plane.depth).at_camera(lens);
 }
 
 double by_waves(const Plane& plane, const Lens& lens) {
@@ -40,15 +42,26 @@ double by_covariance(const Plane& plane, const Lens& lens) {
       .lens_variance(lens);
 }
 
-/// What an edge sends to the camera: the waves of a step, a few an octave up to `highest` on the
-/// occluder, upon the constant that the surface behind is.
+/// The waves of a step: a few an octave from `highest` down. It has waves of every length; how much
+/// of each is not asked for.
+std::vector<MaskWave> step_waves(double highest) {
+  std::vector<MaskWave> out;
+  for (double k = highest; k > highest / 4096; k *= 0.84) out.push_back({k, 1});
+  return out;
+}
+
+/// What an edge sends to the camera: the constant and the wave of the surface behind, carried to
+/// the occluder, and those of the occluder itself, each times the waves of a step up to `highest`.
 std::vector<CameraFrequency> edge_waves(const Edge& edge, const Lens& lens, double highest) {
-  std::vector<MaskWave> step;
-  for (double k = highest; k > highest / 4096; k *= 0.84) step.push_back({k, 1 / (k * k)});
-  const double behind = edge.back ? edge.back->depth - edge.front->depth : 0;
-  return Spectrum({{0, 0, 1}})
-      .travel(behind)
-      .occlude(step)
+  std::vector<Frequency> waves;
+  if (edge.back) {
+    waves =
+        Spectrum({texture_wave(*edge.back)}).travel(edge.back->depth - edge.front->depth).waves();
+  }
+  waves.push_back(texture_wave(*edge.front));
+  waves.push_back({0, 0, 1});
+  return Spectrum(std::move(waves))
+      .occlude(step_waves(highest))
       .travel(edge.front->depth)
       .at_camera(lens);
 }

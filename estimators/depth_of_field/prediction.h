@@ -5,11 +5,23 @@
 // A ray through the middle of the lens finds the surface of each pixel, and bisection between
 // neighbours of different surfaces finds the edges of occluders. The waves of a surface's texture
 // travel to the lens (spectrum.h); their power off the axis of no variation is the variance of the
-// radiance over the lens. An edge of an occluder within reach of the lens hides a part c of it (the
-// coverage of S = 1 - (acos t - t sqrt(1 - t^2)) / pi, exact.h), and by the law of total variance
+// radiance over the lens. An edge of an occluder hides a part c = half_plane_coverage(t) of the
+// lens (exact.h), t the distance from the pixel to the edge, positive where the occluder covers the
+// middle of the lens, over the radius of confusion on the occluder. By the law of total variance
 //   V = (1 - c) V_back + c V_front + c (1 - c) (mean_back - mean_front)^2;
-// of several edges the one of the largest V counts. No random numbers, and no lens sample that is
-// averaged later: counts that depend on a prediction alone leave averages unbiased.
+// of several edges the one of the largest V counts.
+//
+// The bandwidth is the highest frequency across the image that the lens lets through, of the waves
+// of the pixel's surface and of the edges within reach. A step times a wave is a sum of waves: the
+// wave behind travels to the occluder, every frequency k of a step is added and taken away, and all
+// travels to the lens. A wave k_front of the step (the image's Nyquist frequency at the most) and
+// one k_back behind have across the lens the frequency
+//   k_front (1 - d_front / focus) +- k_back (1 - d_back / focus)
+// and across the image k_front d_front / focus +- k_back d_back / focus. Of power only whether
+// there is any is asked: a step has waves of every length.
+//
+// No random numbers, and no lens sample that is averaged later: counts that depend on a prediction
+// alone leave averages unbiased.
 
 #include <functional>
 #include <span>
@@ -52,6 +64,7 @@ struct Prediction {
   Cost cost;
 };
 
+/// Traces the pass. Frequencies of edges are a few an octave, 16 % apart.
 Prediction predict(const Setting& setting, const Grid& grid, const PredictionRules& rules);
 
 }  // namespace assay::depth_of_field

@@ -33,6 +33,9 @@ struct ReconstructionRules {
   Splats (*weights)(Splats) = normalised;
 };
 
+/// Reads the parameters of depth_of_field/reconstruction.
+ReconstructionPlan read_reconstruction_plan(Parameters&, const ReconstructionRules& = {});
+
 std::shared_ptr<const Setup> prepare_reconstruction(Parameters&, const ReconstructionRules& = {});
 
 }  // namespace assay::depth_of_field

@@ -81,7 +81,9 @@ class ReconstructionSetup final : public Setup {
   std::size_t worst_;
 };
 
-ReconstructionPlan read_plan(Parameters& given, const ReconstructionRules& rules) {
+}  // namespace
+
+ReconstructionPlan read_reconstruction_plan(Parameters& given, const ReconstructionRules& rules) {
   const std::uint64_t spacing = given.count("spacing");
   if (spacing > tile_side || (spacing & (spacing - 1)) != 0) {
     given.refuse("spacing", "must be 0 (by the predicted bandwidth), 1, 2, 4 or 8 pixels");
@@ -101,8 +103,6 @@ ReconstructionPlan read_plan(Parameters& given, const ReconstructionRules& rules
   return plan;
 }
 
-}  // namespace
-
 std::vector<double> ReconstructionPlan::bias() const {
   std::vector<double> out;
   for (std::size_t p = 0; p < splats.size(); ++p) {
@@ -117,7 +117,7 @@ std::vector<double> ReconstructionPlan::bias() const {
 
 std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
                                                     const ReconstructionRules& rules) {
-  return std::make_shared<const ReconstructionSetup>(read_plan(given, rules));
+  return std::make_shared<const ReconstructionSetup>(read_reconstruction_plan(given, rules));
 }
 
 }  // namespace assay::depth_of_field

@@ -54,11 +54,14 @@ double lens_variance(std::span<const CameraFrequency> waves, const Lens& lens) {
   return sum;
 }
 
+bool passes(const CameraFrequency& wave, const Lens& lens) {
+  return wave.power > 0 && lens.radius * std::abs(wave.lens) < first_zero_of_disc_response;
+}
+
 double image_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens) {
   double highest = 0;
   for (const CameraFrequency& w : waves) {
-    if (lens.radius * std::abs(w.lens) >= first_zero_of_disc_response) continue;
-    highest = std::max(highest, std::abs(w.image));
+    if (passes(w, lens)) highest = std::max(highest, std::abs(w.image));
   }
   return highest;
 }

@@ -69,8 +69,12 @@ class Spectrum {
 /// with j the disc's transform.
 double lens_variance(std::span<const CameraFrequency> waves, const Lens& lens);
 
-/// The highest frequency across the image, in size, that the lens lets through: of waves with
-/// radius W below the first zero of the disc's transform.
+/// Whether the lens lets a wave through: one that has power, with radius |W| below the first zero
+/// of the disc's transform. Beyond, less than 0.133 of an amplitude is left, and is neglected.
+bool passes(const CameraFrequency& wave, const Lens& lens);
+
+/// The highest frequency across the image, in size, of the waves that the lens lets through; 0 of
+/// none.
 double image_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens);
 
 }  // namespace assay::depth_of_field

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "luminaire/exact.h"
 #include "render/gauss_legendre.h"
@@ -12,27 +12,50 @@ namespace assay::direct_light {
 
 namespace {
 
+using render::Corners;
 using render::Polygon;
 using render::Vector3;
 
-// Quarterings that leave triangles about as large as the lobe.
-int first_quarterings(const Polygon& polygon, double width) {
-  double nearest = std::numeric_limits<double>::infinity();
+// More than a second's work to integrate over.
+constexpr std::size_t most_parts = 20000;
+
+// Whether a triangle is seen within two widths of the lobe about its middle, at distances that
+// differ threefold at most: nodes are then at most 0.6 widths apart, which is less than the lobe's
+// standard deviation, and its quarters' half of that.
+bool small_enough(const Corners& t, double width) {
+  const Vector3 middle = normalised(t[0] + t[1] + t[2]);
+  const auto within = [&](const Vector3& p) { return length(normalised(p) - middle) <= 2 * width; };
+  return std::ranges::all_of(t, within) &&
+         render::diameter({t[0], t[1], t[2]}) <= 2 * render::distance_to_triangle(t[0], t[1], t[2]);
+}
+
+// The fan of a polygon, quartered until all parts are small enough; appended to `parts`, whose
+// number ends beyond most_parts where that takes too many.
+void split(const Polygon& polygon, double width, std::vector<Corners>& parts) {
+  std::vector<Corners> left;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    nearest =
-        std::min(nearest, render::distance_to_triangle(polygon[0], polygon[i], polygon[i + 1]));
+    left.push_back({polygon[0], polygon[i], polygon[i + 1]});
   }
-  const double lobe = 2 * nearest * width;
-  return std::clamp(static_cast<int>(std::ceil(std::log2(render::diameter(polygon) / lobe))), 0, 5);
+  while (!left.empty() && parts.size() <= most_parts) {
+    const Corners triangle = left.back();
+    left.pop_back();
+    if (small_enough(triangle, width)) {
+      parts.push_back(triangle);
+    } else {
+      for (const Corners& part : render::quartered(triangle)) left.push_back(part);
+    }
+  }
 }
 
 template <std::size_t N>
 using Groups = std::array<std::size_t, N>;
 
-// The integral over a polygon of f(w) with respect to solid angle.
+// The integral over a polygon of f(w) with respect to solid angle; none where the lobe is too
+// narrow to be looked for everywhere.
 template <std::size_t N, class F>
-render::Integrals<N> over_polygon(const Techniques& techniques, const Polygon& polygon, const F& f,
-                                  const Groups<N>& groups) {
+std::optional<render::Integrals<N>> over_polygon(const Techniques& techniques,
+                                                 const Polygon& polygon, const F& f,
+                                                 const Groups<N>& groups) {
   const double height = techniques.setting().triangles()[0].plane_distance;
   const auto by_area = [&](const Vector3& p) {
     const double distance = length(p);
@@ -40,11 +63,12 @@ render::Integrals<N> over_polygon(const Techniques& techniques, const Polygon& p
     for (double& component : y) component *= height / (distance * distance * distance);
     return y;
   };
-  render::TriangleQuadrature<N, decltype(by_area)> quadrature(by_area, {.group = groups});
-  const int first = first_quarterings(polygon, techniques.reflectance().width());
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    quadrature.add({polygon[0], polygon[i], polygon[i + 1]}, first);
-  }
+  std::vector<Corners> parts;
+  split(polygon, techniques.reflectance().width(), parts);
+  if (parts.size() > most_parts) return {};
+  render::TriangleQuadrature<N, decltype(by_area)> quadrature(
+      by_area, {.most = 10000 + 4 * parts.size(), .group = groups});
+  for (const Corners& part : parts) quadrature.add(part);
   return quadrature.refined();
 }
 
@@ -55,9 +79,10 @@ std::optional<render::Integrals<N>> over_visible(const Techniques& techniques, c
   if (!parts) return {};
   render::Integrals<N> total;
   for (const luminaire::SignedPolygon& part : *parts) {
-    render::Integrals<N> integrals = over_polygon<N>(techniques, part.polygon, f, groups);
-    for (double& value : integrals.value) value *= part.sign;
-    total += integrals;
+    auto integrals = over_polygon<N>(techniques, part.polygon, f, groups);
+    if (!integrals) return {};
+    for (double& value : integrals->value) value *= part.sign;
+    total += *integrals;
   }
   return total;
 }

@@ -9,7 +9,7 @@
 
 namespace assay::direct_light {
 
-/// A number and a bound of its error.
+/// A number and an estimate of its error.
 struct Known {
   double value = 0;
   double error = 0;
@@ -32,11 +32,17 @@ class Moments {
   render::Integrals<5> integrals_;
 };
 
-/// By adaptive quadrature over a planar luminaire's luminaire::visible_parts(); none where there
-/// are none. Where the combination's weights jump, so do the integrands, and the errors say so.
+/// By quadrature over a planar luminaire's luminaire::visible_parts(): triangles of which each is
+/// seen within two widths of the BRDF's lobe, so that the lobe is not missed, then adapted until
+/// the changes of the last refinements are below 1e-12 of the whole; their sum is the error. None
+/// where there are no parts, or where a part takes more than 20000 triangles, as a lobe of width
+/// 0.02 does below a ceiling without end. Where the combination's weights jump, so do the
+/// integrands, and the errors say so. In units of the luminaire's radiance, variances in its square
+/// (Veach 1997, equations 9.4 and 9.15).
 std::optional<Moments> moments(const Techniques&, const WeightedByHeuristic&);
 
-/// The radiance alone: in closed form, f times Lambert's formula, of a constant BRDF.
+/// The radiance alone, by the same quadrature; of a constant BRDF in closed form, f times Lambert's
+/// formula, whatever the sizes.
 std::optional<Known> radiance(const Techniques&);
 
 }  // namespace assay::direct_light

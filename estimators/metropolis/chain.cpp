@@ -56,7 +56,11 @@ class ChainEstimator final : public Estimator {
   void step(Walker& walker, double normaliser) {
     const bool large = walker.random.uniform() < recipe_->p_large;
     const Contribution proposed = walker.propose(large);
-    const double a = recipe_->rules->acceptance(proposed.importance, walker.current.importance);
+    // Even from a black point, from which all else is accepted.
+    const double a =
+        walker.coordinates.inside()
+            ? recipe_->rules->acceptance(proposed.importance, walker.current.importance)
+            : 0;
     const bool accepted = walker.random.uniform() < a;
     recipe_->rules->record({.current = walker.current,
                             .proposed = proposed,

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 namespace assay::metropolis {
@@ -43,6 +44,22 @@ std::vector<Spectrum> row_of_colours(std::size_t width, bool coloured) {
   return colours;
 }
 
+std::vector<Product> checked(std::vector<Product> sum) {
+  if (sum.empty() || sum.size() > most_terms) {
+    throw std::invalid_argument("ProductTarget: there must be from 1 to 32 products");
+  }
+  const std::size_t dimensions = sum.front().factors.size();
+  if (dimensions == 0 || dimensions > most_terms) {
+    throw std::invalid_argument("ProductTarget: there must be from 1 to 32 factors");
+  }
+  for (const Product& product : sum) {
+    if (product.factors.size() != dimensions) {
+      throw std::invalid_argument("ProductTarget: all products must have as many factors");
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 double value(const Factor& factor, double u) {
@@ -54,7 +71,7 @@ double integral(const Factor& factor, double low, double high) {
 }
 
 ProductTarget::ProductTarget(std::vector<Product> sum, std::size_t width, bool coloured)
-    : sum_(std::move(sum)),
+    : sum_(checked(std::move(sum))),
       dimensions_(sum_.front().factors.size()),
       colours_(row_of_colours(width, coloured)),
       coloured_(coloured) {}
@@ -66,8 +83,7 @@ ImageShape ProductTarget::shape() const {
 }
 
 Contribution ProductTarget::at(Coordinates& point, Cost&) const {
-  constexpr std::size_t most = 32;
-  std::array<double, most> products;
+  std::array<double, most_terms> products;
   for (std::size_t k = 0; k < sum_.size(); ++k) products[k] = sum_[k].height;
   std::size_t pixel = 0;
   for (std::size_t d = 0; d < dimensions_; ++d) {

@@ -33,14 +33,19 @@ double value(const Factor& factor, double u);
 /// Over [low, high].
 double integral(const Factor& factor, double low, double high);
 
+/// The most products of a sum, and the most factors of a product.
+inline constexpr std::size_t most_terms = 32;
+
 /// height x the product of the factors of all coordinates.
 struct Product {
   double height;
   std::vector<Factor> factors;
 };
 
-/// F = sum of products, all of as many factors. The first coordinate runs along a row of pixels;
-/// with `coloured` pixel p of n has the colour (1 - 0.8 t, 0.5, 0.2 + 0.8 t), t = p / (n - 1).
+/// F = sum of products, all of as many factors; std::invalid_argument for none, more than
+/// most_terms of either, and products of different numbers of factors. No units. The first
+/// coordinate runs along a row of pixels; with `coloured` pixel p of n has the colour (1 - 0.8 t,
+/// 0.5, 0.2 + 0.8 t), t = p / (n - 1).
 class ProductTarget final : public Target {
  public:
   ProductTarget(std::vector<Product> sum, std::size_t width, bool coloured);

@@ -15,8 +15,6 @@ namespace {
 using luminaire::require_keys;
 using luminaire::required_key;
 
-constexpr std::size_t most = 32;  // coordinates, products
-
 double finite(const Value& value, const std::string& what) {
   const double number = value.number(what);
   if (!std::isfinite(number)) throw InputError(value.where(), what + " must be finite");
@@ -37,7 +35,7 @@ double above_zero(const Value& value, const std::string& what) {
 
 std::size_t dimensions_of(const Value& value) {
   const std::uint64_t count = value.count("`dimensions`");
-  if (count < 1 || count > most) {
+  if (count < 1 || count > most_terms) {
     throw InputError(value.where(), "`dimensions` must be from 1 to 32");
   }
   return count;
@@ -72,7 +70,7 @@ SharedTarget mixture_of(const Value& value, std::size_t pixels) {
   const std::size_t dimensions = dimensions_of(required_key(value, "the mixture", "dimensions"));
   const Value& base = required_key(value, "the mixture", "base");
   const Value& lobes = required_key(value, "the mixture", "lobes");
-  if (lobes.kind() != Value::Kind::list || lobes.items().size() >= most) {
+  if (lobes.kind() != Value::Kind::list || lobes.items().size() >= most_terms) {
     throw InputError(lobes.where(), "`lobes` must be a list of fewer than 32");
   }
   std::vector<Product> sum = {

@@ -109,8 +109,7 @@ std::shared_ptr<const Setup> fronts_ignored(Parameters& given) {
 double signed_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens) {
   double highest = 0;
   for (const CameraFrequency& w : waves) {
-    if (lens.radius * std::abs(w.lens) >= first_zero_of_disc_response) continue;
-    highest = std::max(highest, -w.image);
+    if (passes(w, lens)) highest = std::max(highest, -w.image);
   }
   return highest;
 }
@@ -141,7 +140,7 @@ std::vector<Entry> mutants_depth_of_field() {
   return {
       mutant("lens_crowded", pixel_information(),
              "draws lens points with a radius in proportion to a random number, not to its root: "
-             "too many near the middle; +8 % where a segment of the disc is lit at d / r = 1/2, "
+             "too many near the middle; +9 % where a segment of the disc is lit at d / r = 1/2, "
              "and its sampler shows it.",
              prepare_pixel<CrowdedDisc>),
       mutant(

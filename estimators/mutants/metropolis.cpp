@@ -1,6 +1,8 @@
 // Mutants of Metropolis light transport: a step, a decision, a weight, a start or the bookkeeping
 // of lazy coordinates with one thing wrong. Biases are of the brightest pixel of `peak`, x2y0, and
-// of the darkest, x0y0, after 500 steps from the default bootstrap, unless said otherwise.
+// of the darkest, x0y0, after 500 steps from the default bootstrap, unless said otherwise. Most are
+// simulated: no closed form is known; tests/tables/make_metropolis.py simulates the same mutants by
+// other code.
 
 #include <algorithm>
 #include <utility>

@@ -47,6 +47,13 @@ std::array<Node, N> gauss_legendre() {
 
 using Corners = std::array<Vector3, 3>;
 
+inline std::array<Corners, 4> quartered(const Corners& t) {
+  const Vector3 ab = 0.5 * (t[0] + t[1]);
+  const Vector3 bc = 0.5 * (t[1] + t[2]);
+  const Vector3 ca = 0.5 * (t[2] + t[0]);
+  return {{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
+}
+
 namespace detail {
 
 /// N integrals over a triangle with respect to area by 8 x 8 nodes, through Duffy's map of the
@@ -66,13 +73,6 @@ std::array<double, N> over_triangle(const F& f, const Corners& t) {
   return sum;
 }
 
-inline std::array<Corners, 4> quartered(const Corners& t) {
-  const Vector3 ab = 0.5 * (t[0] + t[1]);
-  const Vector3 bc = 0.5 * (t[1] + t[2]);
-  const Vector3 ca = 0.5 * (t[2] + t[0]);
-  return {{{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
-}
-
 /// A triangle with its integrals, the change that its last refinement made, and how much that is
 /// of the whole.
 template <std::size_t N>
@@ -90,8 +90,8 @@ struct Patch {
 /// Triangles are quartered, those first whose refinement changed some integral the most, until the
 /// changes that are left make less than `tolerance` of every integral's scale, or there are `most`
 /// triangles; the sums of these changes are the errors. The scale of an integral is the sum of
-/// those of its group. add() quarters `first` times in any case: a lobe must not fall between the
-/// nodes.
+/// those of its group. Changes are no bound: a lobe that falls between the nodes of the triangles
+/// that are added makes none.
 template <std::size_t N, class F>
 class TriangleQuadrature {
  public:
@@ -103,11 +103,7 @@ class TriangleQuadrature {
 
   TriangleQuadrature(const F& f, const Plan& plan) : f_(f), plan_(plan) {}
 
-  void add(const Corners& triangle, int first) {
-    if (first > 0) {
-      for (const Corners& part : detail::quartered(triangle)) add(part, first - 1);
-      return;
-    }
+  void add(const Corners& triangle) {
     push({triangle, {detail::over_triangle<N>(f_, triangle), {}}, 0});
   }
 
@@ -144,7 +140,7 @@ class TriangleQuadrature {
   // The change that quartering makes is shared by the four.
   void split(const Patch& patch) {
     std::array<Patch, 4> parts;
-    const auto corners = detail::quartered(patch.corners);
+    const auto corners = quartered(patch.corners);
     std::array<double, N> change{};
     for (std::size_t k = 0; k < 4; ++k) {
       parts[k] = {corners[k], {detail::over_triangle<N>(f_, corners[k]), {}}, 0};

@@ -243,6 +243,23 @@ test_replay_gives_the_same_numbers() {
   contains err 'good/wrong'
 }
 
+test_replay_finds_the_suites_files_from_elsewhere() {
+  mkdir -p there/suites elsewhere
+  "$assay" sample analytic/normal --secondaries 200 >there/suites/data.txt
+  printf '%s\n' 'suite: data' 'estimators:' '  rows: {plugin: recorded, file: data.txt}' 'tests:' \
+    '  - {name: rows, claim: mean(rows) == 0}' >there/suites/data.yaml
+  (cd there && "$assay" run suites/data.yaml --quiet --report json=run.json >../out 2>../err)
+  cd elsewhere
+  local code=0
+  "$assay" replay ../there/run.json data/rows >../out 2>../err || code=$?
+  [ "$code" -eq 0 ] || fail "replay from elsewhere ended with $code"
+  rm ../there/suites/data.txt
+  code=0
+  "$assay" replay ../there/run.json data/rows >../out 2>../err || code=$?
+  [ "$code" -eq 2 ] || fail "replay without the file ended with $code"
+  contains ../err "$work/there/suites/data.txt"
+}
+
 test_replay_line_of_the_report_gives_the_same_numbers() {
   write_suite good.yaml "$good" "$wrong"
   expect 1 run good.yaml --report json=run.json
@@ -349,8 +366,32 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
   contains err 'student_t(5)'
   expect 2 calibrate --report junit=c.xml
   contains err 'no junit report'
+  expect 2 calibrate t --alpha 0.01 --alpha 1e-2
+  contains err '--alpha 0.01 is given twice'
+  expect 2 calibrate t --law normal --law 'normal(0,1)'
+  contains err '--law normal(0,1) is given twice'
   expect 2 calibrate --runs 0
   contains err '--runs'
+}
+
+test_check_points_at_the_option_that_is_wrong() {
+  expect 2 check 'mean(analytic/dart_throwing) == analytic' --test F
+  contains err 'assay: --test F: does not answer this claim; there is `t`'
+  lacks err '^'
+  expect 2 check 'mean(analytic/dart_throwing) == analytic' --detect 0
+  contains err 'assay: --detect: `detect` must be above 0'
+  : >empty.yaml
+  expect 2 run empty.yaml
+  [ "$(cat err)" = 'assay: empty.yaml:1:1: the file is empty' ] || fail 'more than the place'
+}
+
+test_help_is_a_command() {
+  expect 0 help
+  contains out 'Exit codes:'
+  expect 0 help run
+  contains out 'assay run ['
+  expect 2 help rnu
+  contains err 'did you mean `run`?'
 }
 
 test_lists_are_one_id_a_line() {

@@ -140,6 +140,23 @@ TEST(CommandLine, HelpLeadsWithExamples) {
   EXPECT_THAT(parsed<TextCommand>({"-h"}).text, HasSubstr("Exit codes:"));
 }
 
+TEST(CommandLine, HelpIsACommandToo) {
+  EXPECT_EQ(parsed<TextCommand>({"help"}).text, parsed<TextCommand>({"--help"}).text);
+  EXPECT_EQ(parsed<TextCommand>({"help", "--help"}).text, parsed<TextCommand>({"--help"}).text);
+  EXPECT_EQ(parsed<TextCommand>({"help", "run"}).text, parsed<TextCommand>({"run", "--help"}).text);
+  EXPECT_EQ(refused({"help", "rnu"}), "unknown command `rnu`; did you mean `run`?");
+  // Not the first word: an argument as any other.
+  EXPECT_EQ(parsed<ListCommand>({"list", "tests", "help"}).suites.at(0), "help");
+}
+
+TEST(CommandLine, HelpNamesTheMethodsAndHowToSilenceTheConsole) {
+  const std::string check = parsed<TextCommand>({"check", "--help"}).text;
+  EXPECT_THAT(check, HasSubstr("welch"));
+  EXPECT_THAT(check, HasSubstr("log-total-variance"));
+  EXPECT_THAT(check, HasSubstr("console=/dev/null"));
+  EXPECT_THAT(refused({"check", "mean(a) == 1", "--test"}), HasSubstr("one of t, welch, "));
+}
+
 TEST(CommandLine, TellsItsVersionAndCommit) {
   EXPECT_EQ(parsed<TextCommand>({"--version"}).text,
             "assay " + version() + " (" + commit() + ")\n");
@@ -255,7 +272,7 @@ TEST(CommandLine, NamesTheOptionAndWhatItTakes) {
 
 TEST(CommandLine, HelpTellsEveryDefaultInAHundredColumns) {
   for (const char* name :
-       {"run", "plan", "check", "sample", "list", "describe", "replay", "report"}) {
+       {"run", "plan", "check", "calibrate", "sample", "list", "describe", "replay", "report"}) {
     const std::string help = parsed<TextCommand>({name, "--help"}).text;
     std::string option;
     const auto finish = [&] {

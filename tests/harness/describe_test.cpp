@@ -58,6 +58,10 @@ TEST(Describe, CallsNoMutantUnbiased) {
   }
 }
 
+TEST(Describe, SaysOfRecordedRowsThatTheirBiasIsUnknown) {
+  EXPECT_THAT(manual_of("recorded"), HasSubstr("bias        unknown"));
+}
+
 TEST(Describe, SaysOfRecordedRowsThatTheyAreOne) {
   EXPECT_THAT(manual_of("recorded"), HasSubstr("primaries   not averaged; 1 unless given\n"));
 }

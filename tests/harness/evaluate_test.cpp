@@ -215,6 +215,16 @@ TEST(Evaluate, NotANumberIsAnErrorWithItsPlace) {
   EXPECT_FALSE(test.ok);
 }
 
+// The plan rests on sixth powers of what the pilot saw, values that are not numbers apart.
+TEST(Evaluate, NotANumberInThePilotIsAnErrorToo) {
+  const reports::Test test =
+      judged_text("{plugin: mutants/rare_nan, probability: 0.05, primaries: 1}",
+                  "claim: efficiency(it) >= 0.1, cost: samples");
+  EXPECT_EQ(test.verdict, Verdict::error) << test.message;
+  EXPECT_NE(test.message.find("not finite, the first is observation"), std::string::npos)
+      << test.message;
+}
+
 TEST(Evaluate, MutantThatIsCaughtIsOk) {
   const reports::Test test = judged_text("{plugin: mutants/scaled, factor: 1.1}",
                                          "claim: mean(it) == analytic, detect: 5%, expect: fail");

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "harness/suite.h"
 
 namespace assay::harness {
@@ -33,6 +36,15 @@ TEST(Failure, IsOneLineWithoutAPlace) {
   EXPECT_EQ(failure_text(InputError({}, "--seed is wrong"), "mean(x) == 1"), "--seed is wrong\n");
   EXPECT_EQ(failure_text(InputError({"/not/there.yaml", 3, 1}, "odd"), ""),
             "/not/there.yaml:3:1: odd\n");
+}
+
+TEST(Failure, PointsAtNothingInAnEmptyFile) {
+  const std::string file = testing::TempDir() + "empty-of-failure-test.yaml";
+  for (const char* text : {"", "\n \n"}) {
+    std::ofstream(file, std::ios::trunc) << text;
+    EXPECT_EQ(failure_of(file), file + ":1:1: the file is empty\n");
+  }
+  std::filesystem::remove(file);
 }
 
 }  // namespace

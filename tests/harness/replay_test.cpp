@@ -128,6 +128,57 @@ TEST(Replay, DrawsTheVeryObservationThatIsNotANumber) {
   const std::uint64_t index = std::stoull(message.substr(at + before.size()));
   const Said now = said({.record = file, .test = "spoilt", .observation = index});
   EXPECT_NE(now.text.find(": nan"), std::string::npos) << now.text;
+  EXPECT_NE(now.text.find("  not finite, as "), std::string::npos) << now.text;
+  EXPECT_EQ(now.code, 0);
+}
+
+TEST(Replay, SaysHowManyObservationsAreNotFinite) {
+  const Workplace place;
+  reports::Record record = read_record(recorded(place));
+  const reports::Test test = test_named(record, "spoilt");
+  const std::string line = fmt::format("{:<27} {};", "not finite", test.samples[0].nonfinite);
+  const std::string file = place.write("run.json", reports::json(record));
+  const Said now = said({.record = file, .test = "spoilt"});
+  EXPECT_EQ(now.code, 0) << now.text;
+  EXPECT_NE(now.text.find("error, so the numbers below decide nothing"), std::string::npos);
+  EXPECT_NE(now.text.find(line), std::string::npos) << now.text;
+  for (reports::Test& each : record.suites[0].tests) {
+    if (each.name == "spoilt") each.samples[0].nonfinite = 1;
+  }
+  const std::string tampered = place.write("tampered.json", reports::json(record));
+  const Said then = said({.record = tampered, .test = "spoilt"});
+  EXPECT_EQ(then.code, 1);
+  EXPECT_NE(then.text.find("(recorded: 1)"), std::string::npos) << then.text;
+}
+
+TEST(Replay, HoldsOneObservationAgainstTheRecordedRange) {
+  const Workplace place;
+  reports::Record record = read_record(recorded(place));
+  const std::string file = place.write("run.json", reports::json(record));
+  const Said now = said({.record = file, .test = "mean", .observation = 17});
+  EXPECT_EQ(now.code, 0);
+  EXPECT_NE(now.text.find("  lies in ["), std::string::npos) << now.text;
+  record.suites[0].tests[0].samples[0].minimum = 1e6;
+  record.suites[0].tests[0].samples[0].maximum = 2e6;
+  const std::string tampered = place.write("tampered.json", reports::json(record));
+  const Said then = said({.record = tampered, .test = "mean", .observation = 17});
+  EXPECT_EQ(then.code, 1);
+  EXPECT_NE(then.text.find("NOT as recorded: lies outside [1"), std::string::npos) << then.text;
+}
+
+TEST(Replay, OfOneObservationKnowsTheTwoSidesOfOneEstimatorApart) {
+  const Workplace place;
+  const std::string suite = place.write("twice.yaml", R"(suite: twice
+estimators:
+  one: {plugin: analytic/normal, primaries: 1}
+tests:
+  - {name: same, claim: mean(one) == mean(one), secondaries: 2}
+)");
+  const std::string file = place.write("run.json", reports::json(run_files({suite})));
+  for (const std::uint64_t index : {0U, 1U}) {
+    const Said now = said({.record = file, .test = "same", .observation = index});
+    EXPECT_EQ(now.code, 0) << now.text;
+  }
 }
 
 TEST(Replay, NoticesARecordThatWasTamperedWith) {
@@ -145,6 +196,29 @@ TEST(Replay, SuggestsTheTestThatWasMeant) {
   const std::string file = recorded(place);
   const std::string text = refusal([&] { replay({.record = file, .test = "suite/meen"}); });
   EXPECT_NE(text.find("did you mean `suite/mean`?"), std::string::npos) << text;
+}
+
+TEST(Replay, NamesTestsWhereNoneIsNear) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const auto refused = [&](const std::string& test) {
+    return refusal([&] { replay({.record = file, .test = test}); });
+  };
+  EXPECT_EQ(refused("stream"), "no test `stream` in this run; did you mean `suite/one stream`?");
+  EXPECT_EQ(refused("one straem"),
+            "no test `one straem` in this run; did you mean `suite/one stream`?");
+  EXPECT_EQ(refused("XX"),
+            "no test `XX` in this run; there is: `suite/mean`, `suite/absolute`, `suite/allowed`, "
+            "`suite/means`, `suite/one stream`, …");
+}
+
+TEST(Replay, AsksWhichOfTwoTestsOfOneNameIsMeant) {
+  const Workplace place;
+  const std::string one = place.write("one.yaml", suite);
+  const std::string two = place.write("two.yaml", suite);
+  const std::string file = place.write("run.json", reports::json(run_files({one, two})));
+  EXPECT_EQ(refusal([&] { replay({.record = file, .test = "mean"}); }),
+            "2 tests have the name `mean`; give the id of one: `one/mean`, `two/mean`");
 }
 
 TEST(Replay, RefusesAnObservationThatWasNotDrawn) {

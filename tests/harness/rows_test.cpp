@@ -56,6 +56,27 @@ TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
   EXPECT_EQ(judged(rows, "claim: mean(rows) == 0, test: t").verdict, Verdict::pass);
 }
 
+// Claims whose plan rests on sixth powers of what the pilot saw.
+TEST(Rows, ThatAreNotFiniteAreAnErrorWithTheFirstOfThem) {
+  std::vector<double> rows = rows_of(3000, 3, normal);
+  rows[17] = std::nan("");
+  const reports::Test test = judged(rows, "claim: variance(rows) == 1");
+  EXPECT_EQ(test.verdict, Verdict::error) << test.message;
+  EXPECT_THAT(test.message, HasSubstr("the first is observation 17;"));
+}
+
+TEST(Rows, AreOfUnknownBias) {
+  const Workplace place;
+  place.write("rows.txt", file_of(rows_of(60, 1, normal)));
+  const reports::Record record = run_files({place.write(
+      "suite.yaml",
+      "suite: rows\nestimators:\n  rows: {plugin: recorded, file: rows.txt}\n"
+      "  drawn: {plugin: analytic/normal}\ntests:\n  - {claim: mean(rows) == mean(drawn)}\n")});
+  for (const reports::EstimatorSummary& row : record.suites[0].estimators) {
+    EXPECT_EQ(row.bias, row.name == "rows" ? "unknown" : "unbiased");
+  }
+}
+
 TEST(Rows, OfANormalLawAreTestedByStudentsT) {
   const reports::Test test = judged(rows_of(150, 2, normal), "claim: mean(rows) == 0");
   EXPECT_EQ(test.verdict, Verdict::pass);

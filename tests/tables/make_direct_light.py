@@ -3,6 +3,7 @@
 
 moments: the radiance reflected and the variances of a primary of combinations of light and BRDF
 sampling. mutants: what broken combinations tend to.
+ceiling: the mean and the variance of a primary of BRDF sampling where all directions are lit.
 """
 import sys
 
@@ -124,6 +125,24 @@ def mutants():
     }
 
 
+def under_a_ceiling(alpha):
+    """The mean and the variance of f cos / p of Ward's half vectors, where light comes from everywhere:
+    over t = tan theta_h / alpha, whose density is 2 t exp(-t^2), by Gauss and Legendre's rule, and over
+    the angle around by the trapezoidal rule."""
+    nodes, weights = np.polynomial.legendre.leggauss(1500)
+    angle = 2 * np.pi * np.arange(1500) / 1500
+    t, phi = np.meshgrid(3.5 * (nodes + 1), angle, indexing="ij")
+    mass = 3.5 * weights[:, None] * 2 * t * np.exp(-t * t) / 1500
+    tangent = alpha * t
+    hz = 1 / np.sqrt(1 + tangent**2)
+    hx, hy = tangent * hz * np.cos(phi), tangent * hz * np.sin(phi)
+    h_dot_i = hx * VIEWER[0] + hy * VIEWER[1] + hz * VIEWER[2]
+    z = np.maximum(0, 2 * h_dot_i * hz - VIEWER[2])
+    weight = np.sqrt(z / VIEWER[2]) * h_dot_i * hz**3
+    mean = np.sum(mass * weight)
+    return mean, np.sum(mass * (weight - mean) ** 2)
+
+
 what = sys.argv[1]
 print("# /usr/bin/python3 tests/tables/make_direct_light.py %s" % what)
 if what == "moments":
@@ -131,6 +150,10 @@ if what == "moments":
           "one_sample_power")
     for square, brdf in (("large", "smooth"), ("small", "glossy"), ("small", "rough")):
         print(",".join([square, brdf] + ["%.12g" % x for x in moments(square, brdf)]))
+elif what == "ceiling":
+    print("alpha,radiance,brdf")
+    for alpha in (0.02, 0.05, 0.3):
+        print("%g,%.9g,%.6g" % (alpha, *under_a_ceiling(alpha)))
 else:
     print("mutant,relative_bias")
     mean, limits = mutants()

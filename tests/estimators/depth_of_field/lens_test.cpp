@@ -51,6 +51,43 @@ TEST(DepthOfField, QuadratureAgreesWithTheClosedForms) {
   }
 }
 
+/// An edge before a wave of this length.
+std::string cut_wave(const char* wavelength) {
+  return std::string(
+             "{scene: {lens: {radius: .2, focus: 2}, planes: [{depth: 1, x: [.003, 100], y: "
+             "[-100, 100], radiance: 0}, {depth: 4, x: [-100, 100], y: [-100, 100], "
+             "radiance: .5, amplitude: .5, wavelength: ") +
+         wavelength + "}]}, pixel: [.0012, .07]}";
+}
+
+// Waves of 126 and of 1257 radians in the radius: quadrature resolves the one, not the other.
+TEST(DepthOfField, AVarianceIsStatedOnlyWhereItsErrorIsSmall) {
+  const Channel coarse = prepare("depth_of_field/pixel", cut_wave("1e-2")).setup->channels()[0];
+  EXPECT_LT(coarse.mean_error, 1e-13);
+  EXPECT_TRUE(coarse.variance);
+  const Channel fine = prepare("depth_of_field/pixel", cut_wave("1e-3")).setup->channels()[0];
+  EXPECT_GT(fine.mean_error, 1e-8);
+  EXPECT_FALSE(fine.variance);
+}
+
+// At 1e-7 from the rim V is 2e-10 of the square, and rounding may take 4e-15 of that.
+TEST(DepthOfField, AVarianceThatRoundingLeftIsNotStated) {
+  const auto variance = [](const char* x) {
+    return prepare("depth_of_field/pixel", std::string("{scene: edge, pixel: [") + x + ", 0]}")
+        .setup->channels()[0]
+        .variance;
+  };
+  EXPECT_TRUE(variance("-.199"));
+  EXPECT_FALSE(variance("-.1999999"));
+  EXPECT_FALSE(variance("-.21"));
+}
+
+TEST(DepthOfField, TheErrorOfAVarianceIsThatOfBothMoments) {
+  const Moments moments{.mean = 3, .square = 10, .error = 1e-3};
+  const Moments off{.mean = 3 - 1e-3, .square = 10 + 1e-3};
+  EXPECT_NEAR(off.variance() - moments.variance(), moments.variance_error(), 2e-6);
+}
+
 // By Parseval the power off the axis is the variance over the lens, whose phases are averaged.
 TEST(DepthOfField, ThePowerOffTheAxisIsTheVarianceOverTheLens) {
   const Lens lens{.2, 2};

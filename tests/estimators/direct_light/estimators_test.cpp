@@ -55,6 +55,43 @@ TEST(DirectLight, MeansAndVariancesAgreeWithTheTable) {
   EXPECT_EQ(variances, 24);
 }
 
+// The table is of light from everywhere and good to 1e-8 and six digits. Beyond a border at 500 the
+// lobe of roughness 0.3 has about 3e-5 of its light (below 0.004 above the horizon), the others
+// none.
+TEST(DirectLight, TheLobeIsFoundUnderACeilingOfAnySize) {
+  for (const auto& row : tests::table("direct_light_ceiling.csv")) {
+    for (const char* size : {"500", "2000", "30000"}) {
+      const std::string r = size;
+      const std::string square = "[[-" + r + ", -" + r + ", 2], [-" + r + ", " + r + ", 2], [" + r +
+                                 ", " + r + ", 2], [" + r + ", -" + r + ", 2]]";
+      const std::string given = "{" + direct_light_scenes::scene(square) +
+                                ", brdf: {ward: {alpha_x: " + row[0] + ", alpha_y: " + row[0] +
+                                ", theta_i: 0.8, phi_i: 3.1416}}}";
+      const Channel known = channel("brdf", given);
+      const double mean = std::stod(row[1]);
+      const double beyond = row[0] == "0.3" ? 3e-5 * mean : 0;
+      EXPECT_NEAR(known.mean.value(), mean, 1e-7 * mean + beyond) << row[0] << " " << size;
+      EXPECT_LT(known.mean_error, 1e-8 * mean) << row[0] << " " << size;
+      const double variance = std::stod(row[2]);
+      EXPECT_NEAR(known.variance.value(), variance, 1e-5 * variance + 2 * mean * beyond)
+          << row[0] << " " << size;
+    }
+  }
+}
+
+TEST(DirectLight, WhereALobeCannotBeLookedForEverywhereNoMeanIsStated) {
+  const auto stated = [](const char* plugin, const char* exponent) {
+    const std::string square = "[[-1e6, -1e6, 1], [-1e6, 1e6, 1], [1e6, 1e6, 1], [1e6, -1e6, 1]]";
+    return channel(plugin, "{" + direct_light_scenes::scene(square) +
+                               ", brdf: {ashikhmin_shirley: {nu: " + exponent + "}}}")
+        .mean.has_value();
+  };
+  EXPECT_TRUE(stated("brdf", "100"));
+  for (const char* plugin : {"light", "brdf", "multi_sample", "one_sample"}) {
+    EXPECT_FALSE(stated(plugin, "10000")) << plugin;
+  }
+}
+
 // False-alarm rate 1e-6 each.
 TEST(DirectLight, SampledMeansAndVariancesAreExact) {
   for (const auto& [plugin, more] : tabulated) {
