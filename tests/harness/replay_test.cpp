@@ -168,13 +168,13 @@ TEST(Replay, HoldsOneObservationAgainstTheRecordedRange) {
 
 TEST(Replay, OfOneObservationKnowsTheTwoSidesOfOneEstimatorApart) {
   const Workplace place;
-  const std::string suite = place.write("twice.yaml", R"(suite: twice
+  const std::string twice = place.write("twice.yaml", R"(suite: twice
 estimators:
   one: {plugin: analytic/normal, primaries: 1}
 tests:
   - {name: same, claim: mean(one) == mean(one), secondaries: 2}
 )");
-  const std::string file = place.write("run.json", reports::json(run_files({suite})));
+  const std::string file = place.write("run.json", reports::json(run_files({twice})));
   for (const std::uint64_t index : {0U, 1U}) {
     const Said now = said({.record = file, .test = "same", .observation = index});
     EXPECT_EQ(now.code, 0) << now.text;
