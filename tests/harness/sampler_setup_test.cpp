@@ -15,7 +15,7 @@ using reports::Verdict;
 
 constexpr double pi = std::numbers::pi;
 
-std::shared_ptr<const SamplerSetup> setup_of(const Sampler& sampler) {
+std::shared_ptr<const SamplerSetup> setup_around(const Sampler& sampler) {
   return std::make_shared<const SamplerSetup>(
       NamedSampler{"test", std::shared_ptr<const Sampler>(std::shared_ptr<void>(), &sampler)});
 }
@@ -102,7 +102,7 @@ TEST(SamplerSetup, CellsOfEveryDomainHaveEqualMeasure) {
   for (const Domain domain :
        {Domain::interval, Domain::square, Domain::triangle, Domain::hemisphere, Domain::sphere}) {
     const Uniform uniform(domain);
-    const auto setup = setup_of(uniform);
+    const auto setup = setup_around(uniform);
     const stats::CellProbabilities& cells = setup->cells().grid;
     for (const double p : cells.probability) {
       ASSERT_NEAR(p * static_cast<double>(cells.probability.size()), 1, 1e-9);
@@ -114,7 +114,7 @@ TEST(SamplerSetup, CellsOfEveryDomainHaveEqualMeasure) {
 // In a triangle of area 1/2 both barycentric coordinates have P(u <= x) = 1 - (1 - x)^2.
 TEST(SamplerSetup, MarginalsOfATriangleAreThoseOfItsCoordinates) {
   const Uniform uniform(Domain::triangle);
-  const auto setup = setup_of(uniform);
+  const auto setup = setup_around(uniform);
   for (const char* marginal : {"u", "v"}) {
     const stats::TabulatedLaw& law = setup->marginal_law(marginal);
     for (const double x : {.01, .3, .77, .999}) {
@@ -125,7 +125,7 @@ TEST(SamplerSetup, MarginalsOfATriangleAreThoseOfItsCoordinates) {
 
 TEST(SamplerSetup, MarginalsOfASphereAreItsAngles) {
   const Uniform uniform(Domain::sphere);
-  const auto setup = setup_of(uniform);
+  const auto setup = setup_around(uniform);
   EXPECT_NEAR(setup->marginal_law("theta")(2), (1 - std::cos(2.0)) / 2, 1e-5);
   EXPECT_NEAR(setup->marginal_law("phi")(2), 1 / pi, 1e-5);
 }
@@ -145,7 +145,7 @@ class Lobes final : public Uniform {
 
 TEST(SamplerSetup, LobesAndPointMassesAreCellsOfTheirOwn) {
   const Lobes sampler;
-  const auto setup = setup_of(sampler);
+  const auto setup = setup_around(sampler);
   const auto p = [&](const SamplerDraw& draw) {
     return setup->cells().grid.probability[setup->cell(draw)];
   };
