@@ -81,7 +81,7 @@ std::optional<double> flipped_energy(const VaryingPart& varying, const ImageTest
 
 stats::ImageFamily family_of(const VaryingPart& varying, const ImageTest& test,
                              ImageOutcome& outcome) {
-  stats::PyramidOptions options{.energy_log_p = {}, .single_elements = test.single_elements};
+  stats::PyramidOptions options{.energy_log_p = {}, .smallest = test.smallest_cell};
   if (!test.independent) {
     const std::optional<double> log_p = flipped_energy(varying, test);
     outcome.by_sign_flips = true;
@@ -237,7 +237,7 @@ ImageEvidence evidence_of_images(const Question& question, const ImageTest& test
   ImageEvidence result;
   result.outcome.unseen = varying.unseen();
   result.outcome.replicates = pair.replicates();
-  result.outcome.single_elements = test.single_elements;
+  result.outcome.smallest_cell = test.smallest_cell;
   result.outcome.family = family_of(varying, test, result.outcome);
   add_unseen(pair, result.outcome);
   result.outcome.uniform_error = uniform_error(pair, relative);

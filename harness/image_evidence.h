@@ -16,17 +16,17 @@ namespace assay::harness {
 
 /// How the family is tested; frozen by the plan, but for the share of the level.
 struct ImageTest {
-  ErrorShare share = {};        ///< of this look
-  bool single_elements = true;  ///< whether the pilot lets single elements keep their level
-  bool independent = true;      ///< whether an image's elements are; else signs are flipped
-  StreamKey flips = {};         ///< of the signs, where there are too many to enumerate
+  ErrorShare share = {};            ///< of this look
+  std::uint32_t smallest_cell = 1;  ///< that the pilot lets keep its level
+  bool independent = true;          ///< whether an image's elements are; else signs are flipped
+  StreamKey flips = {};             ///< of the signs, where there are too many to enumerate
 };
 
 struct ImageOutcome {
   stats::ImageFamily family = {};
   std::vector<UnseenElement> unseen = {};
   std::size_t replicates = 0;
-  bool single_elements = true;
+  std::uint32_t smallest_cell = 1;
   bool by_sign_flips = false;
   bool enough_for_flips = true;  ///< so many replicates that a sum of squares could be rejected
   double wanted = 0;             ///< replicates that would decide, as far as can be told; 0: none

@@ -12,7 +12,7 @@ ImageTest image_test(const TestWork& work) {
   const TestOutcome& outcome = work.outcome;
   const std::vector<Subject>& subjects = outcome.question.subjects;
   return {.share = outcome.share(),
-          .single_elements = outcome.plan.single_elements,
+          .smallest_cell = outcome.plan.smallest_cell,
           .independent = std::all_of(subjects.begin(), subjects.end(),
                                      [](const Subject& s) { return s.image->independent; }),
           .flips = work.pools[0]->key()};

@@ -7,12 +7,14 @@
 
 #include "harness/critical.h"
 #include "harness/sample_size.h"
+#include "stats/image_cell_skewness.h"
 #include "stats/image_equivalence.h"
-#include "stats/image_pyramid.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
 namespace {
+
+using Images = std::vector<std::vector<double>>;
 
 constexpr double level_factor = 1.25;
 // Of one replicate's pixels, against an exact reference: false alarms at .01 were .007 at a
@@ -22,6 +24,10 @@ constexpr double most_skewed = 1.5;
 double averaged(const Question& question, const Plan& plan, std::size_t subject) {
   const Subject& side = question.subjects[subject];
   return side.averages ? static_cast<double>(plan.primaries[subject]) : 1;
+}
+
+double factor_of(const Question& question, std::size_t subject) {
+  return subject == 0 ? 1 : -question.factor;
 }
 
 const Pilot& pilot_at(const Question& question, std::size_t subject, const Pilots& pilots) {
@@ -35,70 +41,123 @@ bool all_piloted(const Question& question, const Pilots& pilots) {
   });
 }
 
-// ---- Single elements
+// ---- Skewness
 
 struct Cumulants {
   double variance = 0;
   double third = 0;
 };
 
-/// Of one element's mean over `count` primaries, times the factor.
-Cumulants cumulants_of(const stats::Moments& pilot, double count, double factor) {
+/// Of one element of one replicate, times the factor.
+Cumulants cumulants_of(const stats::Moments& pilot, double primaries, double factor) {
   if (pilot.count < 3 || !(pilot.m2 > 0)) return {};
   const double variance = pilot.variance();
   const double third = pilot.skewness() * std::pow(variance, 1.5);
-  return {factor * factor * variance / count, factor * factor * factor * third / (count * count)};
+  return {factor * factor * variance / primaries,
+          factor * factor * factor * third / (primaries * primaries)};
 }
 
-/// What the pilot shows of single elements.
-struct ElementShape {
-  double factor = 1;    ///< by which their tails depart from nominal
-  double skewness = 0;  ///< mean over them of |that of one replicate's difference|
-};
-
-/// The factor by which both tails of Welch's T at x together depart from nominal:
-/// cosh(g x^3 / 3), g the skewness of the numerator (stats/assumption_gates.h). The mean over the
-/// elements, since their false alarms add up.
-ElementShape element_shape(const Question& question, const Plan& plan, const Pilots& pilots,
-                           std::uint64_t replicates, double x) {
+/// Mean over the elements of |skewness of one replicate's difference|.
+double mean_skewness(const Question& question, const Plan& plan, const Pilots& pilots) {
   const std::size_t elements = question.subjects[0].channels.size();
-  ElementShape shape{.factor = 0};
+  double sum = 0;
   for (std::size_t i = 0; i < elements; ++i) {
     Cumulants total;
     for (std::size_t s = 0; s < question.subjects.size(); ++s) {
       const Subject& side = question.subjects[s];
-      const double count = static_cast<double>(replicates) * averaged(question, plan, s);
       const Cumulants part = cumulants_of(pilot_at(question, s, pilots).channels[side.channels[i]],
-                                          count, s == 0 ? 1 : -question.factor);
+                                          averaged(question, plan, s), factor_of(question, s));
       total.variance += part.variance;
       total.third += part.third;
     }
-    const double skewness = total.variance > 0 ? total.third / std::pow(total.variance, 1.5) : 0;
-    const double part = 1 / static_cast<double>(elements);
-    shape.factor += part * std::cosh(skewness * x * x * x / 3);
-    shape.skewness += part * std::abs(skewness) * std::sqrt(static_cast<double>(replicates));
+    if (total.variance > 0) sum += std::abs(total.third) / std::pow(total.variance, 1.5);
   }
-  return shape;
+  return sum / static_cast<double>(elements);
 }
 
-/// Where one element must be to be found, at the smallest level of a look.
-double element_critical(const Question& question, const FamilyPlace& place) {
-  const double elements = static_cast<double>(question.subjects[0].channels.size());
-  const double share = stats::whole_image_share(extent_of(*question.subjects[0].image)) / 2;
-  return critical_value(smallest_level(question, place) * share / elements, true);
+void judge_skewness(const Question& question, const Pilots& pilots, Plan& plan) {
+  const double skewness = mean_skewness(question, plan, pilots);
+  const bool too_skewed = skewness > most_skewed;
+  plan.gates.push_back({.name = "skewness of an image's pixels, pilot",
+                        .value = skewness,
+                        .limit = most_skewed,
+                        .state = too_skewed ? "red" : "green"});
+  if (!too_skewed || question.test->method) return;
+  plan.invalid = fmt::format(
+      "the pixels of one image are too skewed ({:.2g} on average, limit {:g}) for sums over them "
+      "to keep their level; take {:.2g} times as many `primaries`, with fewer `secondaries` if "
+      "need be",
+      skewness, most_skewed, std::ceil(std::pow(skewness / most_skewed, 2) + 1));
 }
 
-// ---- Sizes
+// ---- Cells
 
 /// The images of a pilot, the subject's elements of each.
-std::vector<std::vector<double>> images_of(const Subject& subject, const Pilot& pilot) {
-  std::vector<std::vector<double>> images;
+Images images_of(const Subject& subject, const Pilot& pilot) {
+  Images images;
   for (const std::vector<double>& whole : pilot.images) {
     std::vector<double>& image = images.emplace_back();
     for (const std::size_t channel : subject.channels) image.push_back(whole[channel]);
   }
   return images;
 }
+
+std::string cells_text(std::uint32_t size, const ImageShape& shape) {
+  if (size == 1) return "single pixels";
+  if (size >= std::max(shape.width, shape.height)) return "the whole image";
+  return fmt::format("cells of {0} x {0} pixels", size);
+}
+
+/// The smallest cells that keep their level, and all larger ones do. Notes each size's gate up to
+/// theirs; smaller ones are answered by leaving them out.
+std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const ImageShape& shape,
+                            Plan& plan) {
+  std::size_t kept = tails.size() - 1;
+  while (kept > 0 && tails[kept - 1].factor <= level_factor) --kept;
+  for (std::size_t i = 0; i <= kept; ++i) {
+    const double factor = tails[i].factor;
+    const bool good = factor <= level_factor;
+    plan.gates.push_back(
+        {.name = fmt::format("skewness of {}, pilot", cells_text(tails[i].size, shape)),
+         .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
+         .limit = level_factor,
+         .state = good       ? "green"
+                  : i < kept ? "amber"
+                             : "red"});
+  }
+  return tails[kept].size;
+}
+
+/// What the pilot shows of cells in tests of so many replicates.
+std::vector<stats::CellTails> tails_of(const Question& question, const Plan& plan,
+                                       const Pilots& pilots, std::uint64_t replicates,
+                                       double level) {
+  std::vector<Images> images;
+  std::vector<stats::CellPilot> sides;
+  for (std::size_t s = 0; s < question.subjects.size(); ++s) {
+    const Subject& subject = question.subjects[s];
+    images.push_back(images_of(subject, pilot_at(question, s, pilots)));
+    stats::CellPilot& side = sides.emplace_back(stats::CellPilot{
+        .stack = {extent_of(*subject.image), {}},
+        .factor = factor_of(question, s),
+        .replicates = static_cast<double>(replicates) * averaged(question, plan, s)});
+    for (const std::vector<double>& image : images.back()) side.stack.images.emplace_back(image);
+  }
+  return stats::cell_tails(sides, level);
+}
+
+void choose_cells(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                  std::uint64_t replicates, Plan& plan) {
+  const std::vector<stats::CellTails> tails =
+      tails_of(question, plan, pilots, replicates, smallest_level(question, place));
+  plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
+  if (tails.back().factor <= level_factor || question.test->method || !plan.invalid.empty()) return;
+  plan.invalid =
+      "even sums over the whole image are too skewed for tests to keep their level; take more "
+      "`primaries`, or more `secondaries`";
+}
+
+// ---- Replicates
 
 /// Noise and brightness of an image at one primary an element.
 struct PilotImage {
@@ -109,7 +168,7 @@ struct PilotImage {
 /// The two halves of a pilot have one law: their squared bias is noise alone, of the covariance
 /// C (2 / R + 2 / R) in all.
 PilotImage pilot_image(const Subject& subject, const Pilot& pilot) {
-  const std::vector<std::vector<double>> images = images_of(subject, pilot);
+  const Images images = images_of(subject, pilot);
   const stats::ImageExtent extent = extent_of(*subject.image);
   stats::ImageStack<double> halves[2] = {{extent, {}}, {extent, {}}};
   for (std::size_t r = 0; r < images.size() / 2 * 2; ++r) halves[r % 2].images.push_back(images[r]);
@@ -141,28 +200,8 @@ std::uint64_t choose_for_image(const Question& question, const FamilyPlace& plac
   const bool planned = question.test->detect || question.test->claim.relation == Relation::within;
   std::uint64_t size = planned ? stats::least_replicates : classical_replicates;
   size = std::min(question.test->secondaries.value_or(size), most);
-  const double x = element_critical(question, place);
-  const ElementShape shape = element_shape(question, plan, pilots, size, x);
-  const double factor = shape.factor;
-  plan.single_elements = factor <= level_factor;
-  const bool too_skewed = shape.skewness > most_skewed;
-  plan.gates.push_back({.name = "skewness of an image's pixels, pilot",
-                        .value = shape.skewness,
-                        .limit = most_skewed,
-                        .state = too_skewed ? "red" : "green"});
-  if (too_skewed && !question.test->method) {
-    plan.invalid = fmt::format(
-        "the pixels of one image are too skewed ({:.2g} on average, limit {:g}) for sums over them "
-        "to keep their level; take {:.2g} times as many `primaries`, with fewer `secondaries` if "
-        "need be",
-        shape.skewness, most_skewed, std::ceil(std::pow(shape.skewness / most_skewed, 2) + 1));
-  }
-  plan.gates.push_back(
-      {.name = "skewness of single pixels, pilot",
-       .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
-       .limit = level_factor,
-       // Answered by leaving them out.
-       .state = plan.single_elements ? "green" : "amber"});
+  judge_skewness(question, pilots, plan);
+  choose_cells(question, place, pilots, size, plan);
   return stats::least_replicates;
 }
 
@@ -176,7 +215,7 @@ std::optional<std::uint64_t> image_secondaries(const Question& question, const E
   PilotImage last;
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
     last = pilot_image(question.subjects[s], pilot_at(question, s, pilots));
-    const double factor = s == 0 ? 1 : question.factor;
+    const double factor = factor_of(question, s);
     noise += factor * factor * last.noise / averaged(question, plan, s);
   }
   const double unit = squared_unit(question, last);

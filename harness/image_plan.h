@@ -13,9 +13,9 @@ namespace assay::harness {
 /// Replicates of a claim on images without `detect`.
 inline constexpr std::uint64_t classical_replicates = 64;
 
-/// Whether single elements take part: not where the pilot's skewness would raise their share of
-/// false alarms by more than a quarter (mean over the elements), which no sum thins out. Notes the
-/// gate. Returns the fewest replicates that any method takes.
+/// Which cells take part: none so small that the pilot's skewness would raise their share of false
+/// alarms by more than a quarter (mean over the cells of a size). Notes the gates. Returns the
+/// fewest replicates that any method takes.
 std::uint64_t choose_for_image(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, std::uint64_t most, Plan& plan);
 

@@ -57,7 +57,7 @@ reports::Image image_of(const ImageOutcome& outcome, const ImageShape& shape) {
                        .tested = family.tested,
                        .constant = family.equal_constants - outcome.unseen.size(),
                        .unseen = outcome.unseen.size(),
-                       .single_pixels = outcome.single_elements,
+                       .smallest_cell = outcome.smallest_cell,
                        .sign_flips = outcome.by_sign_flips,
                        .winner = {},
                        .groups = {}};

@@ -24,7 +24,7 @@ struct Plan {
   stats::LookSchedule looks = {};             ///< sizes are secondaries of each subject
   std::vector<Regions> regions = {};          ///< of each channel
   std::vector<reports::Gate> gates = {};      ///< of the pilot
-  bool single_elements = true;                ///< of an image: whether they keep their level
+  std::uint32_t smallest_cell = 1;            ///< of an image: smaller ones do not keep their level
   std::string invalid = "";                   ///< why no method is valid, if none is
 
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }

@@ -127,7 +127,7 @@ stats::LookSchedule recorded_looks(const reports::Test& test) {
 Plan recorded_plan(const Question& question, const reports::Test& test) {
   Plan plan{.method = find_method(question, test.method),
             .looks = recorded_looks(test),
-            .single_elements = !test.image || test.image->single_pixels};
+            .smallest_cell = test.image ? test.image->smallest_cell : 1};
   // Of each channel the subjects in order.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const bool drawn = i < test.samples.size() &&

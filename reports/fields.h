@@ -168,7 +168,7 @@ void fields(Archive& a, T& image) {
   a("tested", image.tested);
   a("constant", image.constant);
   a("unseen", image.unseen);
-  a("single_pixels", image.single_pixels);
+  a("smallest_cell", image.smallest_cell);
   a("sign_flips", image.sign_flips);
   a("winner", image.winner);
   a("groups", image.groups);

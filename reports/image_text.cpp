@@ -17,7 +17,12 @@ std::string components_text(const Image& image) {
 
 std::string left_out(const Image& image) {
   std::string text;
-  if (!image.single_pixels) text += "; single pixels are left out: their skewness is too large";
+  if (image.smallest_cell == 2) {
+    text += "; single pixels are left out: their skewness is too large";
+  } else if (image.smallest_cell > 2) {
+    text += fmt::format("; cells below {0} x {0} pixels are left out: their skewness is too large",
+                        image.smallest_cell);
+  }
   if (image.sign_flips) text += "; its pixels depend on each other: signs of whole images flipped";
   if (image.constant > 0) text += fmt::format("; constant elements: {}", image.constant);
   if (image.unseen > 0) {

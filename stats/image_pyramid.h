@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -43,12 +44,13 @@ ImageFamily image_pyramid(const ZMap& map);
 //
 // Asymptotic: Welch's law.
 // Throws std::domain_error as welch_z does, and for a positive energy_log_p.
-// `single_elements = false` leaves single elements out of the family (their share stays unspent;
-// different constants still are certain): no sum thins out their skewness, and with 16 skewed
-// replicates of unlike variance their part of the level is exceeded sevenfold.
+// Cells smaller than `smallest` are left out of the family (their share stays unspent; different
+// constants still are certain): large sums thin out their elements' skewness, small ones do not, and
+// with 16 skewed replicates of unlike variance the level's part of single elements is exceeded
+// sevenfold. cell_tails of image_cell_skewness.h says of a pilot which sizes keep theirs.
 struct PyramidOptions {
   std::optional<double> energy_log_p = {};
-  bool single_elements = true;
+  std::uint32_t smallest = 1;  // 1: single elements too
 };
 // The share of the level that the sum over the whole image has: what a difference that is the same
 // everywhere is found by.

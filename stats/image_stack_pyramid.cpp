@@ -248,7 +248,7 @@ void add_elements(ImageFamily& family, const ImagePair<Real>& pair, const Pyrami
   family.tested = counts.tested;
   family.equal_constants = counts.equal_constants;
   family.different_constants = counts.different_constants;
-  const bool wanted = options.single_elements && counts.tested > 0;
+  const bool wanted = options.smallest <= 1 && counts.tested > 0;
   if (!wanted && counts.different_constants == 0) return;
   const std::size_t element = largest(z);
   ImageFinding finding = certain_finding(pair.a.extent, element, z[element]);
@@ -260,9 +260,10 @@ void add_elements(ImageFamily& family, const ImagePair<Real>& pair, const Pyrami
   family.groups.push_back(finding);
 }
 
-void add_best_windows(ImageFamily& family, const std::vector<Best>& best, const Groups& groups) {
+void add_best_windows(ImageFamily& family, const std::vector<Best>& best, const Groups& groups,
+                      std::uint32_t smallest) {
   for (std::size_t g = 1; g < groups.size(); ++g) {
-    if (best[g].windows == 0) continue;
+    if (best[g].windows == 0 || groups[g].size < smallest) continue;
     ImageFinding finding = best[g].finding;
     finding.log_p = two_sided(tails_of(best[g].value));
     finding.adjusted_log_p = adjusted(finding.log_p, {best[g].windows, groups[g].share});
@@ -305,7 +306,7 @@ ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options
       offer_windows(best, groups, window_moments(pair, groups, half, c), c);
       if (!options.energy_log_p) offer_energy(energy, extent, half, c, pair.reference);
     }
-    add_best_windows(family, best, groups);
+    add_best_windows(family, best, groups, options.smallest);
     add_best_energy(family, energy);
     if (options.energy_log_p) add_given_energy(family, extent, *options.energy_log_p);
   }

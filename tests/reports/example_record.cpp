@@ -198,7 +198,7 @@ void add_image(Test& t) {
                   .tested = 21,
                   .constant = 2,
                   .unseen = 1,
-                  .single_pixels = true,
+                  .smallest_cell = 1,
                   .sign_flips = true,
                   .winner = finding("window", "columns 2-3, rows 1-2 of green, z = -14.2", -14.2),
                   .groups = {}};

@@ -268,17 +268,18 @@ TEST(ImagePyramid, OneDifferentConstantIsCertainAndPlaced) {
   EXPECT_LT(different.winner.z, 0);
 }
 
-TEST(ImagePyramid, WithoutSingleElementsOnlyDifferentConstantsAreOne) {
+TEST(ImagePyramid, BelowTheSmallestCellOnlyDifferentConstantsAreFound) {
   Philox random(843);
   OwnedStack a = normal_stack(random, 16);
   OwnedStack b = normal_stack(random, 16);
   for (auto& image : a.images) image[27] += 30;
-  const PyramidOptions options{.single_elements = false};
   EXPECT_EQ(image_pyramid(a.view(), b.view()).winner.size, 1);
-  EXPECT_EQ(image_pyramid(a.view(), b.view(), options).groups[0].size, 2);
+  for (const std::uint32_t smallest : {2u, 4u}) {
+    EXPECT_EQ(image_pyramid(a.view(), b.view(), {.smallest = smallest}).groups[0].size, smallest);
+  }
   for (auto& image : a.images) image[27] = 1;
   for (auto& image : b.images) image[27] = 2;
-  EXPECT_EQ(image_pyramid(a.view(), b.view(), options).winner.size, 1);
+  EXPECT_EQ(image_pyramid(a.view(), b.view(), {.smallest = 4}).winner.size, 1);
 }
 
 TEST(ImagePyramid, EqualConstantsEverywhereAreNoEvidence) {

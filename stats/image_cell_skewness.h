@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stats/image.h"
+
+namespace assay::stats {
+
+// How far skewness moves the tails of the sums over cells that image_pyramid.h looks at, as a pilot
+// shows it.
+//
+// One side of the comparison: pilot replicates, and the mean over later ones that is to be tested.
+struct CellPilot {
+  ImageStack<double> stack;
+  double factor = 1;      // the difference is the sum over the sides of factor * mean
+  double replicates = 1;  // of the pilot's kind in that mean
+};
+
+struct CellTails {
+  std::uint32_t size = 1;  // side of the cells; the longer side of the image at last
+  double factor = 1;
+};
+
+// For each size of aligned cell, fine to coarse: the mean over its cells of cosh(g x^3 / 3), the
+// factor by which both tails of a studentised sum at x together depart from nominal, g the skewness
+// of its numerator (assumption_gates.h). The mean, since false alarms add up; x is where one cell
+// must be to be found at `level`, by the share of its size (image_windows.h). A cell's sum has
+// weights 1 / sqrt(variance) as in the test; cells that never varied do not count.
+//
+// The pilot's own scatter is divided out: a sample skewness has variance 6 / n at the normal law,
+// and E cosh(c (g + error)) = cosh(c g) exp(c^2 var / 2). At least 1.
+// Throws std::domain_error as image_stack does, for different extents, and for a level outside
+// (0, 1).
+std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level);
+
+}  // namespace assay::stats

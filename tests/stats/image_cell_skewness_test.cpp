@@ -1,0 +1,140 @@
+#include "stats/image_cell_skewness.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "stats/image_family.h"
+#include "stats/image_windows.h"
+#include "stats/tails.h"
+#include "tests/philox.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::Philox;
+using Images = std::vector<std::vector<double>>;
+
+constexpr ImageExtent eight{8, 8, 1};
+constexpr double level = 0.001;
+
+Images draw(Philox& random, const ImageExtent& extent, std::size_t replicates,
+            const std::function<double(Philox&, std::size_t)>& element) {
+  Images images(replicates, std::vector<double>(extent.elements()));
+  for (auto& image : images) {
+    for (std::size_t e = 0; e < image.size(); ++e) image[e] = element(random, e);
+  }
+  return images;
+}
+
+CellPilot side_of(const ImageExtent& extent, const Images& images, double replicates,
+                  double factor = 1) {
+  CellPilot side{.stack = {extent, {}}, .factor = factor, .replicates = replicates};
+  for (const auto& image : images) side.stack.images.emplace_back(image);
+  return side;
+}
+
+double exponential(Philox& random, std::size_t) { return -std::log1p(-random.uniform()); }
+
+// cosh(g x^3 / 3) at the x of aligned cells of this size.
+double closed_form(const ImageExtent& extent, std::uint32_t size, double skewness) {
+  for (const WindowGroup& group : window_groups(extent, 1 - energy_share)) {
+    if (group.size != size || group.grid != Grid::aligned) continue;
+    const double cells = static_cast<double>(group.windows.size());
+    const double x = normal_quantile({Tail::upper, std::log(level * group.share / cells / 2)});
+    return std::cosh(skewness * x * x * x / 3);
+  }
+  throw std::logic_error("no such size");
+}
+
+// Each estimate scatters by less than 3 %: beyond 15 % with probability below 1e-5.
+TEST(CellTails, SkewnessFallsWithTheSideOfCellsOfIndependentElements) {
+  Philox random(860);
+  const Images images = draw(random, eight, 8192, exponential);
+  const CellPilot side = side_of(eight, images, 900);
+  const std::vector<CellTails> tails = cell_tails({&side, 1}, level);
+  ASSERT_EQ(tails.size(), 4);
+  for (const CellTails& cell : tails) {
+    const double expected = closed_form(eight, cell.size, 2 / (30.0 * cell.size));
+    EXPECT_NEAR(cell.factor / expected, 1, 0.15) << cell.size;
+  }
+  EXPECT_GT(tails[0].factor, 3);
+  EXPECT_LT(tails[3].factor, 1.25);
+}
+
+TEST(CellTails, ElementsThatDependOnEachOtherThinNothingOut) {
+  Philox random(861);
+  Images images = draw(random, eight, 2048, exponential);
+  for (auto& image : images) image.assign(image.size(), image[0]);
+  const CellPilot side = side_of(eight, images, 900);
+  for (const CellTails& cell : cell_tails({&side, 1}, level)) EXPECT_GT(cell.factor, 2);
+}
+
+// Without dividing the scatter out the mean over single elements would be 1.7.
+TEST(CellTails, ScatterOfANormalPilotIsNotTakenForSkewness) {
+  Philox random(862);
+  constexpr ImageExtent large{64, 64, 1};
+  const Images images = draw(random, large, 128, [](Philox& r, std::size_t) { return r.normal(); });
+  const CellPilot side = side_of(large, images, 64);
+  for (const CellTails& cell : cell_tails({&side, 1}, level)) {
+    EXPECT_GE(cell.factor, 1);
+    EXPECT_LT(cell.factor, 1.25) << cell.size;
+  }
+}
+
+TEST(CellTails, ARareLightInAQuietPlaceCondemnsSmallCellsAlone) {
+  Philox random(863);
+  constexpr ImageExtent large{32, 32, 1};
+  const Images images = draw(random, large, 512, [](Philox& r, std::size_t e) {
+    const bool lit = e % 37 == 0 && r.uniform() < 0.04;
+    return r.normal() + (lit ? 40 : 0);
+  });
+  const CellPilot side = side_of(large, images, 64);
+  const std::vector<CellTails> tails = cell_tails({&side, 1}, level);
+  EXPECT_GT(tails[0].factor, 1000);
+  EXPECT_GT(tails[1].factor, 1.25);
+  EXPECT_LT(tails.back().factor, 1.25);
+}
+
+TEST(CellTails, TwoSidesOfOneLawCancel) {
+  Philox random(864);
+  const Images a = draw(random, eight, 4096, exponential);
+  const Images b = draw(random, eight, 4096, exponential);
+  const CellPilot sides[] = {side_of(eight, a, 400), side_of(eight, b, 400, -1)};
+  EXPECT_LT(cell_tails(sides, level)[0].factor, 1.25);
+  const CellPilot unequal[] = {side_of(eight, a, 400), side_of(eight, b, 4000, -1)};
+  EXPECT_GT(cell_tails(unequal, level)[0].factor, 2);
+}
+
+TEST(CellTails, ConstantElementsDoNotCount) {
+  Philox random(865);
+  const Images half = draw(random, eight, 1024, [](Philox& r, std::size_t e) {
+    return e % 8 < 4 ? exponential(r, e) : 0.1;
+  });
+  const CellPilot many = side_of(eight, half, 1e9);
+  const CellPilot never = side_of(eight, Images(32, std::vector<double>(64, 0.1)), 1e9);
+  EXPECT_NEAR(cell_tails({&many, 1}, level)[0].factor, 1, 1e-3);
+  for (const CellTails& cell : cell_tails({&never, 1}, level)) EXPECT_EQ(cell.factor, 1);
+  // The mean is over the half that varies: were the others counted as 1, it would fall.
+  const CellPilot few = side_of(eight, half, 400);
+  const double expected = closed_form(eight, 1, 0.1);
+  EXPECT_NEAR(cell_tails({&few, 1}, level)[0].factor / expected, 1, 0.25);
+}
+
+TEST(CellTails, BadArgumentsAreRefused) {
+  const Images images(32, std::vector<double>(64, 0.1));
+  const CellPilot side = side_of(eight, images, 64);
+  EXPECT_THROW(cell_tails({&side, 1}, 0), std::domain_error);
+  EXPECT_THROW(cell_tails({&side, 1}, 1), std::domain_error);
+  const CellPilot few = side_of(eight, Images(15, std::vector<double>(64)), 64);
+  EXPECT_THROW(cell_tails({&few, 1}, level), std::domain_error);
+  const CellPilot sides[] = {side, side_of({4, 16, 1}, images, 64)};
+  EXPECT_THROW(cell_tails(sides, level), std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats
