@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/image_plan.h"
 #include "harness/law_evidence.h"
 #include "harness/rows.h"
 
@@ -112,7 +113,7 @@ void note(const Question& question, const std::vector<std::optional<Atom>>& atom
 }  // namespace
 
 bool takes_from_pilot(const Method& method) {
-  return method.name == "two-part-ks" || method.name == two_sample_cells;
+  return method.name == "two-part-ks" || method.name == two_sample_cells || method.name == "image";
 }
 
 std::vector<const Subject*> piloted_draws(const Question& question) {
@@ -142,6 +143,8 @@ std::vector<std::optional<Atom>> atoms_of(const Question& question, const Pilots
 void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
   if (plan.method.name == two_sample_cells) {
     freeze_cells(question, pilots, plan);
+  } else if (plan.method.name == "image") {
+    plan.method.frozen.weights = image_weights(question, pilots, plan);
   } else if (plan.method.name == "two-part-ks") {
     plan.method.frozen.atoms = atoms_of(question, pilots, plan);
     if (has_any(plan.method.frozen.atoms)) return;

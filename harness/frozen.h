@@ -1,6 +1,7 @@
 #pragma once
 
-// What tests of two laws take from the pilots: values that come again and again, and cells.
+// What tests take from the pilots: of two laws values that come again and again, and cells; of
+// images the weights of their elements.
 
 #include <vector>
 

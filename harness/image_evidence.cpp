@@ -81,7 +81,8 @@ std::optional<double> flipped_energy(const VaryingPart& varying, const ImageTest
 
 stats::ImageFamily family_of(const VaryingPart& varying, const ImageTest& test,
                              ImageOutcome& outcome) {
-  stats::PyramidOptions options{.energy_log_p = {}, .smallest = test.smallest_cell};
+  stats::PyramidOptions options{
+      .energy_log_p = {}, .smallest = test.smallest_cell, .weights = test.weights};
   if (!test.independent) {
     const std::optional<double> log_p = flipped_energy(varying, test);
     outcome.by_sign_flips = true;

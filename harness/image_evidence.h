@@ -16,10 +16,11 @@ namespace assay::harness {
 
 /// How the family is tested; frozen by the plan, but for the share of the level.
 struct ImageTest {
-  ErrorShare share = {};            ///< of this look
-  std::uint32_t smallest_cell = 1;  ///< that the pilot lets keep its level
-  bool independent = true;          ///< whether an image's elements are; else signs are flipped
-  StreamKey flips = {};             ///< of the signs, where there are too many to enumerate
+  ErrorShare share = {};                 ///< of this look
+  std::uint32_t smallest_cell = 1;       ///< that the pilot lets keep its level
+  std::span<const double> weights = {};  ///< of the elements, from the pilot
+  bool independent = true;  ///< whether an image's elements are; else signs are flipped
+  StreamKey flips = {};     ///< of the signs, where there are too many to enumerate
 };
 
 struct ImageOutcome {

@@ -13,6 +13,7 @@ ImageTest image_test(const TestWork& work) {
   const std::vector<Subject>& subjects = outcome.question.subjects;
   return {.share = outcome.share(),
           .smallest_cell = outcome.plan.smallest_cell,
+          .weights = outcome.plan.method.frozen.weights,
           .independent = std::all_of(subjects.begin(), subjects.end(),
                                      [](const Subject& s) { return s.image->independent; }),
           .flips = work.pools[0]->key()};

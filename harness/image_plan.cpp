@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "harness/critical.h"
+#include "harness/frozen.h"
+#include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "stats/image_cell_skewness.h"
 #include "stats/image_equivalence.h"
@@ -128,28 +130,37 @@ std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const Im
   return tails[kept].size;
 }
 
-/// What the pilot shows of cells in tests of so many replicates.
-std::vector<stats::CellTails> tails_of(const Question& question, const Plan& plan,
-                                       const Pilots& pilots, std::uint64_t replicates,
-                                       double level) {
-  std::vector<Images> images;
-  std::vector<stats::CellPilot> sides;
-  for (std::size_t s = 0; s < question.subjects.size(); ++s) {
-    const Subject& subject = question.subjects[s];
-    images.push_back(images_of(subject, pilot_at(question, s, pilots)));
-    stats::CellPilot& side = sides.emplace_back(stats::CellPilot{
-        .stack = {extent_of(*subject.image), {}},
-        .factor = factor_of(question, s),
-        .replicates = static_cast<double>(replicates) * averaged(question, plan, s)});
-    for (const std::vector<double>& image : images.back()) side.stack.images.emplace_back(image);
+/// The pilots as sides of a comparison of so many replicates.
+class PilotSides {
+ public:
+  PilotSides(const Question& question, const Plan& plan, const Pilots& pilots,
+             std::uint64_t replicates) {
+    for (std::size_t s = 0; s < question.subjects.size(); ++s) {
+      const Subject& subject = question.subjects[s];
+      images_.push_back(images_of(subject, pilot_at(question, s, pilots)));
+      const double count = static_cast<double>(replicates) * averaged(question, plan, s);
+      stats::CellPilot side{.stack = {extent_of(*subject.image), {}},
+                            .factor = factor_of(question, s),
+                            .replicates = count};
+      for (const std::vector<double>& image : images_.back()) side.stack.images.emplace_back(image);
+      sides_.push_back(std::move(side));
+    }
   }
-  return stats::cell_tails(sides, level);
-}
+  PilotSides(const PilotSides&) = delete;  // spans point inside
+  PilotSides& operator=(const PilotSides&) = delete;
+
+  std::span<const stats::CellPilot> sides() const { return sides_; }
+
+ private:
+  std::vector<Images> images_;
+  std::vector<stats::CellPilot> sides_;
+};
 
 void choose_cells(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                   std::uint64_t replicates, Plan& plan) {
+  const PilotSides pilot(question, plan, pilots, replicates);
   const std::vector<stats::CellTails> tails =
-      tails_of(question, plan, pilots, replicates, smallest_level(question, place));
+      stats::cell_tails(pilot.sides(), smallest_level(question, place), plan.method.frozen.weights);
   plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
   if (tails.back().factor <= level_factor || question.test->method || !plan.invalid.empty()) return;
   plan.invalid =
@@ -194,12 +205,20 @@ double squared_unit(const Question& question, const PilotImage& last) {
 
 }  // namespace
 
+std::vector<double> image_weights(const Question& question, const Pilots& pilots,
+                                  const Plan& plan) {
+  if (has_rows(question) || !all_piloted(question, pilots)) return {};
+  // Replicates are as many on both sides: their number is a common factor.
+  return stats::cell_weights(PilotSides(question, plan, pilots, 1).sides());
+}
+
 std::uint64_t choose_for_image(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
   if (!all_piloted(question, pilots)) return stats::least_replicates;
   const bool planned = question.test->detect || question.test->claim.relation == Relation::within;
   std::uint64_t size = planned ? stats::least_replicates : classical_replicates;
   size = std::min(question.test->secondaries.value_or(size), most);
+  freeze(question, pilots, plan);
   judge_skewness(question, pilots, plan);
   choose_cells(question, place, pilots, size, plan);
   return stats::least_replicates;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "harness/outcome.h"
 #include "harness/pilot.h"
@@ -12,6 +13,10 @@ namespace assay::harness {
 
 /// Replicates of a claim on images without `detect`.
 inline constexpr std::uint64_t classical_replicates = 64;
+
+/// Weights of the elements in sums over cells: from the pilot, whose images are more than a test's
+/// and not its own. Empty where they are its own, rows of a file: there halves weigh each other.
+std::vector<double> image_weights(const Question& question, const Pilots& pilots, const Plan& plan);
 
 /// Which cells take part: none so small that the pilot's skewness would raise their share of false
 /// alarms by more than a quarter (mean over the cells of a size). Notes the gates. Returns the

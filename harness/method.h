@@ -53,6 +53,7 @@ struct Atom {
 struct Frozen {
   std::vector<std::optional<Atom>> atoms = {};                 ///< of each channel: two-part-ks
   std::shared_ptr<const stats::SampledCells> cells = nullptr;  ///< chi-square-two-sample
+  std::vector<double> weights = {};                            ///< of an image's elements
 };
 
 struct Method {

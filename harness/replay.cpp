@@ -125,9 +125,10 @@ stats::LookSchedule recorded_looks(const reports::Test& test) {
 
 /// The plan as it was: nothing is chosen anew, so no pilot is drawn.
 Plan recorded_plan(const Question& question, const reports::Test& test) {
-  Plan plan{.method = find_method(question, test.method),
-            .looks = recorded_looks(test),
-            .smallest_cell = test.image ? test.image->smallest_cell : 1};
+  Plan plan{
+      .method = find_method(question, test.method),
+      .looks = recorded_looks(test),
+      .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U};
   // Of each channel the subjects in order.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const bool drawn = i < test.samples.size() &&

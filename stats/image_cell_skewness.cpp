@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "stats/check.h"
 #include "stats/image_family.h"
+#include "stats/image_halves.h"
 #include "stats/image_moments.h"
 #include "stats/image_windows.h"
 #include "stats/moments.h"
@@ -16,6 +18,15 @@ namespace {
 constexpr const char* function_name = "cell_tails";
 
 using Groups = std::vector<WindowGroup>;
+
+// Choices of weights that are looked at, where the pilot has so many.
+constexpr std::size_t most_choices = 8;
+
+std::size_t count_of(const Groups& groups) {
+  std::size_t windows = 0;
+  for (const WindowGroup& group : groups) windows += group.windows.size();
+  return windows;
+}
 
 // Of the numerator of a studentised sum.
 struct Cumulants {
@@ -36,35 +47,59 @@ void add_side(std::vector<Cumulants>& cells, const std::vector<Moments>& pilot,
   }
 }
 
-// Of every element, 0 where nothing varied.
-std::vector<double> weights_of(std::span<const CellPilot> sides) {
+// Weights come from every `step`-th image of a side's pilot, from `first` on, the rest of it is
+// what they are given to: as a test's halves do.
+std::size_t step_of(const CellPilot& side) {
+  const double half = std::max(side.replicates / halves, 1.0);
+  const double steps = static_cast<double>(side.stack.images.size()) / half;
+  return static_cast<std::size_t>(std::max(steps, static_cast<double>(halves)));
+}
+
+// Of every `step`-th image from `first` on.
+std::vector<double> weights_of(std::span<const CellPilot> sides,
+                               const std::vector<EveryImage>& which) {
   const ImageExtent& extent = sides[0].stack.extent;
   std::vector<double> variance(extent.elements());
-  for (const CellPilot& side : sides) {
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    const CellPilot& side = sides[s];
     std::vector<double> mean(extent.elements());
     std::vector<double> m2(extent.elements());
-    moments_of_range(side.stack, 0, {mean, m2}, {});
-    const double scale = side.factor * side.factor / side.replicates /
-                         static_cast<double>(side.stack.images.size() - 1);
+    moments_of_range(side.stack, 0, {mean, m2}, which[s]);
+    const std::size_t step = which[s].step;
+    const std::size_t count = (side.stack.images.size() + step - 1 - which[s].start) / step;
+    const double scale =
+        side.factor * side.factor / side.replicates / static_cast<double>(count - 1);
     for (std::size_t i = 0; i < m2.size(); ++i) variance[i] += scale * m2[i];
   }
-  for (double& value : variance) value = value > 0 ? 1 / std::sqrt(value) : 0;
-  return variance;
+  std::vector<double> weight = steadied(extent, variance);
+  for (double& value : weight) value = value > 0 ? 1 / std::sqrt(value) : 0;
+  return weight;
 }
+
+std::vector<double> weights_of_choice(std::span<const CellPilot> sides, std::size_t first) {
+  std::vector<EveryImage> which;
+  for (const CellPilot& side : sides) which.push_back({first, step_of(side)});
+  return weights_of(sides, which);
+}
+
+struct Weights {
+  std::span<const double> value;
+  std::optional<std::size_t> choice;  // of the images they come from; none: from elsewhere
+};
 
 // Windows of all groups in a row, of one channel and one side.
 std::vector<Moments> window_moments(const CellPilot& side, const Groups& groups,
-                                    std::span<const double> weight, std::size_t channel) {
+                                    const Weights& weights, std::size_t channel) {
   const ImageExtent& extent = side.stack.extent;
-  std::size_t windows = 0;
-  for (const WindowGroup& group : groups) windows += group.windows.size();
-  std::vector<Moments> moments(windows);
+  const std::size_t step = step_of(side);
+  std::vector<Moments> moments(count_of(groups));
   WindowSums sums(extent);
   std::vector<double> values(extent.width * extent.height);
-  for (const std::span<const double> image : side.stack.images) {
+  for (std::size_t r = 0; r < side.stack.images.size(); ++r) {
+    if (r % step == weights.choice) continue;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const std::size_t e = i * extent.channels + channel;
-      values[i] = weight[e] * (image[e] - side.stack.images[0][e]);
+      values[i] = weights.value[e] * (side.stack.images[r][e] - side.stack.images[0][e]);
     }
     sums.load(values);
     std::size_t window = 0;
@@ -99,6 +134,7 @@ class FactorMean {
   explicit FactorMean(double x) : scale_(x * x * x / 3) {}
 
   void add(const Cumulants& cell) {
+    if (!(cell.variance > 0)) return;  // the rest of the pilot did not vary there
     const double unit = scale_ / std::pow(cell.variance, 1.5);
     const double scatter = unit * unit * cell.third_variance;
     ++count_;
@@ -119,45 +155,83 @@ Groups aligned_groups(const ImageExtent& extent) {
   return groups;
 }
 
-std::vector<FactorMean> empty_means(const Groups& groups, std::size_t channels, double level) {
-  std::vector<FactorMean> means;
-  for (const WindowGroup& group : groups) {
-    const double cells = static_cast<double>(group.windows.size() * channels);
-    const double tail = level * group.share / cells / 2;
-    means.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
+// Of every size of cell.
+class FactorMeans {
+ public:
+  FactorMeans(const ImageExtent& extent, double level)
+      : extent_(extent), groups_(aligned_groups(extent)) {
+    for (const WindowGroup& group : groups_) {
+      const double cells = static_cast<double>(group.windows.size() * extent.channels);
+      const double tail = level * group.share / cells / 2;
+      means_.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
+    }
   }
-  return means;
+
+  void add(std::span<const CellPilot> sides, const Weights& weights) {
+    for (std::size_t c = 0; c < extent_.channels; ++c) add_channel(sides, weights, c);
+  }
+
+  std::vector<CellTails> tails() const {
+    std::vector<CellTails> tails;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      tails.push_back({groups_[g].size, means_[g].value()});
+    }
+    return tails;
+  }
+
+ private:
+  void add_channel(std::span<const CellPilot> sides, const Weights& weights, std::size_t channel) {
+    const std::vector<bool> varied = varied_windows(extent_, groups_, weights.value, channel);
+    std::vector<Cumulants> cells(varied.size());
+    for (const CellPilot& side : sides) {
+      add_side(cells, window_moments(side, groups_, weights, channel), side);
+    }
+    std::size_t window = 0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      for (std::size_t i = 0; i < groups_[g].windows.size(); ++i, ++window) {
+        if (varied[window]) means_[g].add(cells[window]);
+      }
+    }
+  }
+
+  ImageExtent extent_;
+  Groups groups_;
+  std::vector<FactorMean> means_;
+};
+
+void check_sides(const char* function, std::span<const CellPilot> sides) {
+  for (const CellPilot& side : sides) {
+    check::image_stack(function, side.stack);
+    check::same_extent(function, side.stack.extent, sides[0].stack.extent);
+  }
 }
 
 }  // namespace
 
-std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level) {
+std::vector<double> cell_weights(std::span<const CellPilot> sides) {
+  check_sides("cell_weights", sides);
+  return weights_of(sides, std::vector<EveryImage>(sides.size()));
+}
+
+std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
+                                  std::span<const double> weights) {
   check::inside_unit({function_name, "level"}, level);
-  for (const CellPilot& side : sides) {
-    check::image_stack(function_name, side.stack);
-    check::same_extent(function_name, side.stack.extent, sides[0].stack.extent);
-  }
+  check_sides(function_name, sides);
   const ImageExtent& extent = sides[0].stack.extent;
-  const Groups groups = aligned_groups(extent);
-  const std::vector<double> weight = weights_of(sides);
-  std::vector<FactorMean> means = empty_means(groups, extent.channels, level);
-  for (std::size_t c = 0; c < extent.channels; ++c) {
-    const std::vector<bool> varied = varied_windows(extent, groups, weight, c);
-    std::vector<Cumulants> cells(varied.size());
-    for (const CellPilot& side : sides)
-      add_side(cells, window_moments(side, groups, weight, c), side);
-    std::size_t window = 0;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      for (std::size_t i = 0; i < groups[g].windows.size(); ++i, ++window) {
-        if (varied[window]) means[g].add(cells[window]);
-      }
+  if (!weights.empty() && weights.size() != extent.elements()) {
+    check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
+  }
+  FactorMeans means(extent, level);
+  if (!weights.empty()) {
+    means.add(sides, {weights, {}});
+  } else {
+    std::size_t choices = most_choices;
+    for (const CellPilot& side : sides) choices = std::min(choices, step_of(side));
+    for (std::size_t choice = 0; choice < choices; ++choice) {
+      means.add(sides, {weights_of_choice(sides, choice), choice});
     }
   }
-  std::vector<CellTails> tails;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    tails.push_back({groups[g].size, means[g].value()});
-  }
-  return tails;
+  return means.tails();
 }
 
 }  // namespace assay::stats

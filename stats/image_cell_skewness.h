@@ -26,13 +26,22 @@ struct CellTails {
 // For each size of aligned cell, fine to coarse: the mean over its cells of cosh(g x^3 / 3), the
 // factor by which both tails of a studentised sum at x together depart from nominal, g the skewness
 // of its numerator (assumption_gates.h). The mean, since false alarms add up; x is where one cell
-// must be to be found at `level`, by the share of its size (image_windows.h). A cell's sum has
-// weights 1 / sqrt(variance) as in the test; cells that never varied do not count.
+// must be to be found at `level`, by the share of its size (image_windows.h). Cells that never
+// varied do not count.
+//
+// A cell's sum is weighted as in the test: by `weights` (those of cell_weights, if the test has
+// them), or, where they are empty, as each half of the replicates weighs the other: as many images
+// of the pilot as half a test has give the rest their weights, up to eight such choices averaged.
 //
 // The pilot's own scatter is divided out: a sample skewness has variance 6 / n at the normal law,
 // and E cosh(c (g + error)) = cosh(c g) exp(c^2 var / 2). At least 1.
 // Throws std::domain_error as image_stack does, for different extents, and for a level outside
-// (0, 1).
-std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level);
+// (0, 1), or weights of another number than the elements.
+std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
+                                  std::span<const double> weights = {});
+
+// Weights for image_pyramid.h: 1 / sqrt of the difference's variance at each element, steadied by
+// its 3 x 3 neighbours; 0 where nothing varied. Throws std::domain_error as cell_tails does.
+std::vector<double> cell_weights(std::span<const CellPilot> sides);
 
 }  // namespace assay::stats

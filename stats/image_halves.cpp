@@ -63,13 +63,6 @@ std::vector<double> smoothed(const ImageExtent& extent, std::vector<double> valu
   return values;
 }
 
-// The mean of each element's own variance and that of its neighbourhood.
-std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance) {
-  std::vector<double> steady = smoothed(extent, variance);
-  for (std::size_t i = 0; i < steady.size(); ++i) steady[i] = std::midpoint(steady[i], variance[i]);
-  return steady;
-}
-
 // The reference leaves the difference, and its error joins the variance. It joins that of the
 // weight only where something varied: alone, an error of 1e-17 would weigh 1e17.
 void add_reference(const ImageReference& reference, Half& half) {
@@ -105,6 +98,12 @@ Half half_of(const ImagePair<Real>& pair, std::size_t half) {
 }
 
 }  // namespace
+
+std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance) {
+  std::vector<double> steady = smoothed(extent, variance);
+  for (std::size_t i = 0; i < steady.size(); ++i) steady[i] = std::midpoint(steady[i], variance[i]);
+  return steady;
+}
 
 template <class Real>
 std::array<Half, halves> halves_of(const ImagePair<Real>& pair) {

@@ -22,6 +22,9 @@ struct Half {
   std::vector<double> weight;
 };
 
+// The mean of each element's variance and that of its 3 x 3 neighbourhood in the channel.
+std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance);
+
 // A stack and what it is held against, a second stack or a reference: exactly one is not null.
 template <class Real>
 struct ImagePair {

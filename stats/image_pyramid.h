@@ -43,14 +43,20 @@ ImageFamily image_pyramid(const ZMap& map);
 // shared points) give the p-value of a sign flip (image_sign_flip.h) as `energy_log_p`.
 //
 // Asymptotic: Welch's law.
-// Throws std::domain_error as welch_z does, and for a positive energy_log_p.
+// Throws std::domain_error as welch_z does, for a positive energy_log_p, and for weights of another
+// number than the elements, negative or not finite.
 // Cells smaller than `smallest` are left out of the family (their share stays unspent; different
-// constants still are certain): large sums thin out their elements' skewness, small ones do not, and
-// with 16 skewed replicates of unlike variance the level's part of single elements is exceeded
+// constants still are certain): large sums thin out their elements' skewness, small ones do not,
+// and with 16 skewed replicates of unlike variance the level's part of single elements is exceeded
 // sevenfold. cell_tails of image_cell_skewness.h says of a pilot which sizes keep theirs.
+//
+// `weights` of the elements in cells and energy, where they are known from other data (a pilot):
+// both halves then take them. A rare light that half the replicates did not see is weighted like a
+// quiet element by them, and sums of any size are skewed; a larger pilot has seen it.
 struct PyramidOptions {
   std::optional<double> energy_log_p = {};
   std::uint32_t smallest = 1;  // 1: single elements too
+  std::span<const double> weights = {};
 };
 // The share of the level that the sum over the whole image has: what a difference that is the same
 // everywhere is found by.

@@ -289,17 +289,28 @@ void add_given_energy(ImageFamily& family, const ImageExtent& extent, double log
   family.groups.push_back(finding);
 }
 
+void check_weights(std::span<const double> weights, const ImageExtent& extent) {
+  if (!weights.empty() && weights.size() != extent.elements()) {
+    check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
+  }
+  for (const double weight : weights) check::non_negative({function_name, "weights"}, weight);
+}
+
 template <class Real>
 ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options) {
   if (options.energy_log_p) {
     check::log_probability({function_name, "energy_log_p"}, *options.energy_log_p);
   }
   const ImageExtent& extent = pair.a.extent;
+  check_weights(options.weights, extent);
   const Groups groups = window_groups(extent, 1 - energy_share);
   ImageFamily family;
   add_elements(family, pair, options, groups[0].share);
   if (family.different_constants == 0) {
-    const auto half = halves_of(pair);
+    auto half = halves_of(pair);
+    if (!options.weights.empty()) {
+      for (Half& each : half) each.weight.assign(options.weights.begin(), options.weights.end());
+    }
     std::vector<Best> best(groups.size());
     Best energy;
     for (std::size_t c = 0; c < extent.channels; ++c) {

@@ -282,6 +282,24 @@ TEST(ImagePyramid, BelowTheSmallestCellOnlyDifferentConstantsAreFound) {
   EXPECT_EQ(image_pyramid(a.view(), b.view(), {.smallest = 4}).winner.size, 1);
 }
 
+// One alarm in 1e5. The weights are far from the best ones, and of no matter for the level.
+TEST(ImagePyramid, GivenWeightsKeepTheLevelAndMoveWhatIsSeen) {
+  std::vector<double> weights;
+  for (std::size_t e = 0; e < small.elements(); ++e) weights.push_back(e % 3 == 0 ? 5 : 0.1);
+  expect_calibrated({844, 2000, Shape::at_most_uniform}, [&](Philox& random) {
+    const OwnedStack a = normal_stack(random, 16);
+    return image_pyramid(a.view(), normal_stack(random, 16).view(), {.weights = weights}).log_p;
+  });
+  Philox random(845);
+  OwnedStack a = normal_stack(random, 64);
+  const OwnedStack b = normal_stack(random, 64);
+  for (auto& image : a.images) {
+    for (std::size_t e = 0; e < image.size(); e += 3) image[e] += 0.25F;
+  }
+  const double own = image_pyramid(a.view(), b.view()).winner.z;
+  EXPECT_GT(image_pyramid(a.view(), b.view(), {.weights = weights}).winner.z, own);
+}
+
 TEST(ImagePyramid, EqualConstantsEverywhereAreNoEvidence) {
   const OwnedStack a = draw_stack(small, 16, [](std::size_t e) { return static_cast<double>(e); });
   const ImageFamily family = image_pyramid(a.view(), a.view());
@@ -324,6 +342,10 @@ TEST(ImagePyramid, BadArgumentsAreRefused) {
   const OwnedStack few = normal_stack(random, 15);
   EXPECT_THROW(image_pyramid(a.view(), few.view()), std::domain_error);
   EXPECT_THROW(image_pyramid(a.view(), a.view(), {.energy_log_p = 0.1}), std::domain_error);
+  std::vector<double> weights(small.elements() - 1, 1);
+  EXPECT_THROW(image_pyramid(a.view(), a.view(), {.weights = weights}), std::domain_error);
+  weights.push_back(-1);
+  EXPECT_THROW(image_pyramid(a.view(), a.view(), {.weights = weights}), std::domain_error);
 }
 
 }  // namespace
