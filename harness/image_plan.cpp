@@ -110,19 +110,24 @@ std::string cells_text(std::uint32_t size, const ImageShape& shape) {
   return fmt::format("cells of {0} x {0} pixels", size);
 }
 
+/// As far as the pilot tells: beyond its own scatter nothing is held against them.
+bool keeps_level(const stats::CellTails& tails) {
+  return tails.factor <= level_factor + tails.scatter;
+}
+
 /// The smallest cells that keep their level, and all larger ones do. Notes each size's gate up to
 /// theirs; smaller ones are answered by leaving them out.
 std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const ImageShape& shape,
                             Plan& plan) {
   std::size_t kept = tails.size() - 1;
-  while (kept > 0 && tails[kept - 1].factor <= level_factor) --kept;
+  while (kept > 0 && keeps_level(tails[kept - 1])) --kept;
   for (std::size_t i = 0; i <= kept; ++i) {
     const double factor = tails[i].factor;
-    const bool good = factor <= level_factor;
+    const bool good = keeps_level(tails[i]);
     plan.gates.push_back(
         {.name = fmt::format("skewness of {}, pilot", cells_text(tails[i].size, shape)),
          .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
-         .limit = level_factor,
+         .limit = level_factor + tails[i].scatter,
          .state = good       ? "green"
                   : i < kept ? "amber"
                              : "red"});
@@ -162,7 +167,7 @@ void choose_cells(const Question& question, const FamilyPlace& place, const Pilo
   const std::vector<stats::CellTails> tails =
       stats::cell_tails(pilot.sides(), smallest_level(question, place), plan.method.frozen.weights);
   plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
-  if (tails.back().factor <= level_factor || question.test->method || !plan.invalid.empty()) return;
+  if (keeps_level(tails.back()) || question.test->method || !plan.invalid.empty()) return;
   plan.invalid =
       "even sums over the whole image are too skewed for tests to keep their level; take more "
       "`primaries`, or more `secondaries`";

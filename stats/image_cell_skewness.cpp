@@ -128,24 +128,37 @@ std::vector<bool> varied_windows(const ImageExtent& extent, const Groups& groups
   return varied;
 }
 
+// Two-sided normal, of probability 1e-4.
+constexpr double scatter_quantile = 3.9;
+
 // The mean of one size's factors.
 class FactorMean {
  public:
-  explicit FactorMean(double x) : scale_(x * x * x / 3) {}
+  FactorMean(double x, std::size_t windows)
+      : scale_(x * x * x / 3), windows_(static_cast<double>(windows)) {}
 
   void add(const Cumulants& cell) {
     if (!(cell.variance > 0)) return;  // the rest of the pilot did not vary there
     const double unit = scale_ / std::pow(cell.variance, 1.5);
     const double scatter = unit * unit * cell.third_variance;
+    const double centred = std::exp(-scatter / 2);
     ++count_;
-    sum_ += std::cosh(unit * cell.third) * std::exp(-scatter / 2);
+    sum_ += std::cosh(unit * cell.third) * centred;
+    excess_ += std::cosh(scatter_quantile * std::sqrt(scatter)) * centred - 1;
   }
 
-  double value() const { return count_ > 0 ? std::max(1.0, sum_ / count_) : 1; }
+  CellTails of_size(std::uint32_t size) const {
+    if (count_ == 0) return {.size = size};
+    // Channels may depend on each other, cells count.
+    return {
+        .size = size, .factor = sum_ / count_, .scatter = excess_ / count_ / std::sqrt(windows_)};
+  }
 
  private:
   double scale_;
+  double windows_;
   double sum_ = 0;
+  double excess_ = 0;
   double count_ = 0;
 };
 
@@ -163,7 +176,7 @@ class FactorMeans {
     for (const WindowGroup& group : groups_) {
       const double cells = static_cast<double>(group.windows.size() * extent.channels);
       const double tail = level * group.share / cells / 2;
-      means_.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
+      means_.emplace_back(normal_quantile({Tail::upper, std::log(tail)}), group.windows.size());
     }
   }
 
@@ -174,7 +187,7 @@ class FactorMeans {
   std::vector<CellTails> tails() const {
     std::vector<CellTails> tails;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      tails.push_back({groups_[g].size, means_[g].value()});
+      tails.push_back(means_[g].of_size(groups_[g].size));
     }
     return tails;
   }

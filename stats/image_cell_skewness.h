@@ -21,6 +21,7 @@ struct CellPilot {
 struct CellTails {
   std::uint32_t size = 1;  // side of the cells; the longer side of the image at last
   double factor = 1;
+  double scatter = 0;  // by so much the factor of a normal pilot exceeds 1 with probability 1e-4
 };
 
 // For each size of aligned cell, fine to coarse: the mean over its cells of cosh(g x^3 / 3), the
@@ -34,7 +35,8 @@ struct CellTails {
 // of the pilot as half a test has give the rest their weights, up to eight such choices averaged.
 //
 // The pilot's own scatter is divided out: a sample skewness has variance 6 / n at the normal law,
-// and E cosh(c (g + error)) = cosh(c g) exp(c^2 var / 2). At least 1.
+// and E cosh(c (g + error)) = cosh(c g) exp(c^2 var / 2). What is left of it is `scatter`, for one
+// cell cosh(3.9 c sd) exp(-c^2 var / 2) - 1, a 1 / sqrt(cells) of it for their mean.
 // Throws std::domain_error as image_stack does, for different extents, and for a level outside
 // (0, 1), or weights of another number than the elements.
 std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
