@@ -13,6 +13,7 @@
 #include "harness/pools.h"
 #include "harness/quantiles.h"
 #include "harness/question_image.h"
+#include "harness/shard_record.h"
 #include "harness/shell.h"
 
 namespace assay::harness {
@@ -21,13 +22,6 @@ namespace {
 using reports::Number;
 
 Number number(double value) { return std::isfinite(value) ? Number(value) : Number(); }
-
-/// The probability of a natural logarithm; the least double stands for what underflows.
-Number probability(double log_p) {
-  return std::max(std::exp(log_p), std::numeric_limits<double>::denorm_min());
-}
-
-Number log10_of(double log_p) { return log_p / std::log(10.0); }
 
 reports::Verdict expected_verdict(Expectation expect) {
   switch (expect) {
@@ -195,6 +189,12 @@ std::string id_filter(const std::string& id) { return " --filter " + shell_quote
 
 }  // namespace
 
+Number probability(double log_p) {
+  return std::max(std::exp(log_p), std::numeric_limits<double>::denorm_min());
+}
+
+Number log10_of(double log_p) { return log_p / std::log(10.0); }
+
 reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm) {
   const TestOutcome& outcome = work.outcome;
   const TestEntry& entry = *outcome.question.test;
@@ -261,11 +261,8 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
     add_pictures(*run, suite);
     record.suites.push_back(std::move(suite));
   }
-  if (!whole) {
-    record.note =
-        "not every test of the suites ran: verdicts rest on each test's fixed share of "
-        "alpha, without Holm's adjustment";
-  }
+  if (!whole) record.note = partial_note;
+  if (options.shard) add_shard(runs, options, record);
   return record;
 }
 
