@@ -62,6 +62,16 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
   sample.nonzero = moments.nonzero;
   sample.nonfinite = kept.nonfinite;
   sample.cost = cost_of(summary);
+  // Another test on the same observations may have kept them: a record must not tell.
+  const bool costs = work.outcome.plan.method.keeps == Keeps::costs;
+  for (std::size_t i = 0; costs && i < kept.with_cost.size(); ++i) {
+    const stats::JointMoments& joint = kept.with_cost[i];
+    sample.with_cost.push_back({.kind = i == rays_cost ? "rays" : "samples",
+                                .mean = joint.cost.mean,
+                                .m2 = joint.cost.m2,
+                                .m11 = joint.m11,
+                                .m21 = joint.m21});
+  }
   // The number of a cell is a name: it has no mean.
   if (!kept.cells.empty()) return sample;
   if (moments.count > 0) {

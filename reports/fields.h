@@ -52,6 +52,15 @@ void fields(Archive& a, T& point) {
   a("observed", point.observed);
 }
 
+template <class Archive, maybe_const<CostMoments> T>
+void fields(Archive& a, T& moments) {
+  a("kind", moments.kind);
+  a("mean", moments.mean);
+  a("m2", moments.m2);
+  a("m11", moments.m11);
+  a("m21", moments.m21);
+}
+
 template <class Archive, maybe_const<Sample> T>
 void fields(Archive& a, T& sample) {
   a("estimator", sample.estimator);
@@ -71,6 +80,7 @@ void fields(Archive& a, T& sample) {
   a("histogram", sample.histogram);
   a("quantiles", sample.quantiles);
   a("cost", sample.cost);
+  a("with_cost", sample.with_cost);
 }
 
 template <class Archive, maybe_const<Estimate> T>

@@ -61,6 +61,14 @@ struct QuantilePoint {
   bool operator==(const QuantilePoint&) const = default;
 };
 
+/// How the cost of an observation varies with its value: m2, m11 and m21 are sums over the
+/// observations of (c - mean c)^2, (x - mean x)(c - mean c) and (x - mean x)^2 (c - mean c).
+struct CostMoments {
+  std::string kind;  ///< rays, samples
+  double mean = 0, m2 = 0, m11 = 0, m21 = 0;
+  bool operator==(const CostMoments&) const = default;
+};
+
 /// Observations of one channel of one estimator, as one test saw them.
 struct Sample {
   std::string estimator;  ///< its name in the suite
@@ -75,6 +83,7 @@ struct Sample {
   Histogram histogram;
   std::vector<QuantilePoint> quantiles;
   Cost cost;
+  std::vector<CostMoments> with_cost;  ///< where a claim on a cost or an efficiency kept them
   bool operator==(const Sample&) const = default;
 };
 
