@@ -58,7 +58,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
                          .parameters = side.estimator->parameters,
                          .channel = side.setup->channels()[index].name,
                          .primaries = work.outcome.plan.primaries[subject],
-                         .secondaries = count};
+                         .secondaries = summary.count};
   sample.nonzero = moments.nonzero;
   sample.nonfinite = kept.nonfinite;
   sample.cost = cost_of(summary);
@@ -85,7 +85,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
     sample.kurtosis = number(moments.kurtosis());
   }
   sample.histogram = histogram_of(kept.histogram);
-  if (spread) {
+  if (spread && !work.pools[subject]->is_ready_made()) {
     sample.quantiles =
         quantile_points(work.pools[subject]->values(index, std::min(count, plotted_values)));
   }
