@@ -285,15 +285,10 @@ void require_moments_suffice(const Question& question) {
                                    name));
     }
     if (costs && !reference && !run->knows_cost(question.test->cost)) {
-      throw InputError(
-          question.test->where,
-          question.test->cost == CostKind::seconds
-              ? fmt::format("the run that `{}` is of keeps no times of single observations; say "
-                            "`cost: rays` or `cost: samples`",
-                            name)
-              : fmt::format("the run that `{}` is of does not tell how its costs vary: claim "
-                            "something of its efficiency there",
-                            name));
+      throw InputError(question.test->where,
+                       fmt::format("the run that `{}` is of does not tell how its costs vary: "
+                                   "claim something of its efficiency there",
+                                   name));
     }
     if (question.test->secondaries && *question.test->secondaries != run->summary().count) {
       throw InputError(question.test->where,
