@@ -20,8 +20,9 @@ constexpr std::size_t most_estimators = 40;
 
 Number number(double value) { return std::isfinite(value) ? Number(value) : Number(); }
 
-const char* bias_name(BiasClass bias) {
-  switch (bias) {
+const char* bias_name(std::optional<BiasClass> bias) {
+  if (!bias) return "unknown";
+  switch (*bias) {
     case BiasClass::unbiased:
       return "unbiased";
     case BiasClass::inverse_primaries:
@@ -41,9 +42,7 @@ const Summary& summary_of(const Picture& picture) {
 }
 
 double per_primary(const Picture& picture) {
-  return picture.estimator->entry->information.averages
-             ? static_cast<double>(picture.pool->primaries())
-             : 1;
+  return picture.estimator->nature().averages ? static_cast<double>(picture.pool->primaries()) : 1;
 }
 
 bool has_spread(const stats::Moments& moments) { return moments.count > 3 && moments.m2 > 0; }
@@ -67,18 +66,19 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
 
 reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
   const Information& information = picture.estimator->entry->information;
+  const Nature nature = picture.estimator->nature();
   reports::EstimatorSummary row{
       .name = picture.estimator->name,
       .plugin = information.name,
       .parameters = picture.estimator->parameters,
       // Of rows that were made elsewhere nothing is known.
-      .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(information.bias),
+      .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(nature.bias),
       .original = information.original,
       .defect = information.defect,
       .primaries = picture.pool->primaries(),
       .secondaries = picture.pool->largest_prefix(),
       .confidence = confidence,
-      .variance_of = information.averages ? "primary" : "secondary"};
+      .variance_of = nature.averages ? "primary" : "secondary"};
   if (!picture.pool->trouble().empty()) return row;
   const Summary& summary = summary_of(picture);
   row.cost = cost_of(summary);
