@@ -65,6 +65,7 @@ class Reader {
   Hello finish() {
     if (!greeted_) throw ProtocolError("it says nothing; the first line is `assay 1 text`");
     if (!ready_) throw ProtocolError("its hello does not end with `ready`");
+    refuse_double_components();
     std::vector<Channel> all = elements();
     all.insert(all.end(), hello_.channels.begin(), hello_.channels.end());
     if (all.empty()) throw ProtocolError("its hello names neither a `channel` nor an `image`");
@@ -200,6 +201,14 @@ class Reader {
     return all;
   }
 
+  void refuse_double_components() const {
+    if (!hello_.image) return;
+    const std::vector<std::string>& all = hello_.image->components;
+    if (std::set<std::string>(all.begin(), all.end()).size() < all.size()) {
+      throw ProtocolError("its hello names a component twice");
+    }
+  }
+
   void refuse_doubles() const {
     std::set<std::string_view> names;
     for (const Channel& channel : hello_.channels) {
@@ -211,11 +220,6 @@ class Reader {
       if (hello_.channels[i].diagnostic) continue;
       throw ProtocolError("its hello has the channel `" + hello_.channels[i].name +
                           "` beside an image: such a channel is `diagnostic`");
-    }
-    std::set<std::string> components(hello_.image->components.begin(),
-                                     hello_.image->components.end());
-    if (components.size() < hello_.image->components.size()) {
-      throw ProtocolError("its hello names a component twice");
     }
   }
 

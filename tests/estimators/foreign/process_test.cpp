@@ -200,7 +200,7 @@ TEST_F(Process, EndsWhatAProgramLeftBehind) {
   {
     const auto setup = run_shell("sleep 987655 &\n" + std::string(answers));
     EXPECT_THAT(draw(*setup, 2, 2), ElementsAre(0, 1));
-    EXPECT_TRUE(is_running("987655"));
+    while (!is_running("987655")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     setups_.clear();
   }
   EXPECT_TRUE(is_soon_gone("987655"));
@@ -234,8 +234,14 @@ TEST_F(Process, RefusesWordsAmongTheNumbers) {
 }
 
 TEST_F(Process, RefusesWhatIsWrittenWithoutBeingAsked) {
-  const auto setup = run_shell("echo 'tidying up'\n" + std::string(answers));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  // Once its hello has been heard.
+  const auto setup =
+      run_shell("while [ ! -e heard ]; do sleep 0.01; done; echo 'tidying up'; echo >said\n" +
+                std::string(answers));
+  write("heard", "");
+  while (!std::filesystem::exists(folder_ / "said")) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   EXPECT_THAT(failure(*setup, 2, 2), HasSubstr("tidying up"));
 }
 
