@@ -84,7 +84,7 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
                       only(entry.parameters, names), folder);
     prepared.original = set_up(original, theirs);
     prepared.key_plugin = original.information.name;
-    prepared.key_parameters = theirs.canonical();
+    prepared.key_parameters = theirs.canonical(names);
   }
   return prepared;
 }
