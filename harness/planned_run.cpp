@@ -61,6 +61,7 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
   const bool all = std::all_of(chosen.begin(), chosen.end(), [](bool c) { return c; });
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const PreparedEstimator& estimator = run.estimators.at(entry.name);
+    if (estimator.setup->is_reference()) continue;  // nothing to draw
     bool wanted = all;
     for (std::size_t i = 0; i < questions.size(); ++i) {
       for (const Subject& subject : questions[i].subjects) {

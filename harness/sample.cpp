@@ -65,6 +65,10 @@ int sample(const SampleArguments& arguments) {
   const PreparedEstimator estimator = prepare(entries.front(), ".");
   const Sampled sampled = sampled_by(estimator, source);
   const auto rows = sampled.setup->observations();
+  if (sampled.setup->is_reference()) {
+    throw InputError(source.where, fmt::format("`{}` is a reference, a mean without observations",
+                                               source.estimator));
+  }
   if (rows && arguments.secondaries.value_or(0) > *rows) {
     throw InputError({}, fmt::format("--secondaries {}: `{}` has {} rows", *arguments.secondaries,
                                      source.estimator, *rows));

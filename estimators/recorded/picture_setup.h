@@ -1,0 +1,24 @@
+#pragma once
+
+// Pictures of another program as a set-up.
+
+#include <memory>
+#include <string>
+
+#include "estimators/estimator.h"
+#include "recorded/pictures.h"
+
+namespace assay::recorded {
+
+/// Observation i is file i. Files are read one by one when they are asked for and not kept.
+/// `data_file` tells which files they are (Setup::data_file()).
+std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,
+                                           std::string data_file);
+
+/// Means with their errors; there is nothing to draw.
+std::shared_ptr<const Setup> reference_setup(PictureMoments moments);
+
+/// Channels under the names of an image's elements, with nothing known of them.
+std::vector<Channel> element_channels(const ImageShape& shape);
+
+}  // namespace assay::recorded
