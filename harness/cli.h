@@ -9,6 +9,7 @@
 #include "harness/calibrate.h"
 #include "harness/commands.h"
 #include "harness/shell.h"
+#include "harness/suite_images.h"
 
 namespace assay::harness {
 
@@ -28,6 +29,12 @@ struct PlanCommand {
 
 struct CheckCommand {
   CheckArguments arguments;
+  RunOptions options;
+  Output output;
+};
+
+struct ImagesCommand {
+  ImagesArguments arguments;
   RunOptions options;
   Output output;
 };
@@ -57,7 +64,7 @@ struct TextCommand {
 };
 
 using Command =
-    std::variant<RunCommand, PlanCommand, CheckCommand, SampleArguments, ListCommand,
+    std::variant<RunCommand, PlanCommand, CheckCommand, ImagesCommand, SampleArguments, ListCommand,
                  DescribeCommand, ReplayArguments, ReportCommand, CalibrateCommand, TextCommand>;
 
 /// Parses the arguments after the program's name. InputError, with what was meant where that can be

@@ -47,7 +47,8 @@ struct Contents {
 
 inline Contents contents_of(const Part& part) {
   const Imath::Box2i box({part.left, 0}, {part.left + part.width - 1, part.height - 1});
-  Contents contents{Imf::Header(box, box), {}, {}, {}};
+  const Imath::Box2i canvas({0, 0}, {63, 63});  // one for all parts, as the format has it
+  Contents contents{Imf::Header(canvas, box), {}, {}, {}};
   contents.header.compression() = part.compression;
   if (!part.name.empty()) contents.header.setName(part.name);
   if (part.samples != 0) {

@@ -109,7 +109,7 @@ TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
   write_texel("b.exr", {"Y"}, {2});
   write_texel("a.exr", {"Y"}, {1});
   write_texel("c.exr", {"Y"}, {std::nanf("")});
-  const draws::Prepared pictures = prepare("{file: '*.exr'}");
+  const draws::Prepared pictures = prepare("{file: *.exr}");
   EXPECT_EQ(pictures.setup->observations(), 3u);
   EXPECT_FALSE(pictures.setup->image()->independent);
   EXPECT_EQ(pictures.setup->channels()[0].name, "x0y0");
@@ -123,17 +123,17 @@ TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
 TEST_F(Pictures, OfUnequalSizesAreRefusedByName) {
   draws::write_scan_lines(file("a.exr"), {.width = 4, .channels = {"Y"}});
   draws::write_scan_lines(file("b.exr"), {.width = 5, .channels = {"Y"}});
-  EXPECT_THAT(refusal("{file: '*.exr'}"),
+  EXPECT_THAT(refusal("{file: *.exr}"),
               HasSubstr("is `" + file("b.exr") + "`: it has 5 x 3 pixels, but `" + file("a.exr") +
                         "` has 4 x 3: render all files at one size"));
   draws::write_scan_lines(file("b.exr"), {.width = 4, .channels = {"Y"}, .left = 1});
-  EXPECT_THAT(refusal("{file: '*.exr'}"), HasSubstr("data window lies elsewhere"));
+  EXPECT_THAT(refusal("{file: *.exr}"), HasSubstr("data window lies elsewhere"));
   draws::write_scan_lines(file("b.exr"), {.width = 4, .channels = {"Z"}});
-  EXPECT_THAT(refusal("{file: '*.exr'}"), HasSubstr("there is no channel `Y`"));
+  EXPECT_THAT(refusal("{file: *.exr}"), HasSubstr("there is no channel `Y`"));
 }
 
 TEST_F(Pictures, ThatAreNotThereAreRefused) {
-  EXPECT_THAT(refusal("{file: 'x*.exr'}"), HasSubstr("no file matches"));
+  EXPECT_THAT(refusal("{file: x*.exr}"), HasSubstr("no file matches"));
   EXPECT_THAT(refusal("{file: x.exr}"), HasSubstr("there is no such file"));
 }
 
@@ -178,7 +178,7 @@ TEST_F(Pictures, AsReferencesAreRefusedWhereTheyMakeNoSense) {
               HasSubstr("`samples` must be 2 or more"));
   EXPECT_THAT(refusal("{file: a.exr, samples: 4, variance: V.*" + y + "}"),
               HasSubstr("there is no channel `V.Y`"));
-  EXPECT_THAT(refusal("{file: '*.exr', exact: true" + y + "}"), HasSubstr("names 2 files"));
+  EXPECT_THAT(refusal("{file: *.exr, exact: true" + y + "}"), HasSubstr("names 2 files"));
   EXPECT_THAT(refusal("{file: b.exr, exact: true}"), HasSubstr("not finite at pixel x 0, y 0"));
   EXPECT_THAT(refusal("{file: a.exr, exact: true, variance: Variance.*, samples: 4" + y + "}"),
               HasSubstr("exact or has an error"));

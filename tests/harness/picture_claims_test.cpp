@@ -24,18 +24,13 @@ constexpr int height = 12;
 // 8 x 8 pixels are brighter by a tenth.
 struct Stack {
   std::string name;
-  std::uint64_t key;
+  std::uint32_t key;
   bool block = false;
   int count = 24;
 };
 
-double normal(Philox& random) {
-  std::uniform_real_distribution<double> uniform(0x1p-53, 1);
-  return std::sqrt(-2 * std::log(uniform(random))) * std::cos(2 * M_PI * uniform(random));
-}
-
 void write_stack(const Workplace& place, const Stack& stack) {
-  Philox random(stack.key);
+  tests::Philox random(stack.key);
   for (int i = 0; i < stack.count; ++i) {
     draws::Picture picture{width, height, {"R", "G", "B"}, {}};
     for (int y = 0; y < height; ++y) {
@@ -43,7 +38,7 @@ void write_stack(const Workplace& place, const Stack& stack) {
         const bool brighter = stack.block && x >= 4 && x < 12 && y >= 4;
         const double mean = (1 + x / 16.0) * (brighter ? 1.1 : 1);
         for (int c = 0; c < 3; ++c) {
-          picture.values.push_back(static_cast<float>(mean * (1 + 0.1 * normal(random))));
+          picture.values.push_back(static_cast<float>(mean * (1 + 0.1 * random.normal())));
         }
       }
     }

@@ -162,14 +162,20 @@ TEST_F(ExrFiles, RefusesAHeaderThatPromisesMoreThanTheFileCanHold) {
     }
     write_bytes(file_, bytes);
   };
-  corner(100000, 100000);
+  corner(200000000, 2);
   expect_refused("2^27");
-  corner(9000, 9000);
+  corner(20000000, 2);
   expect_refused("which a file of this size cannot hold");
+  corner(2, 200000000);
+  expect_refused("damaged or cut short");
   for (const std::uint32_t x : {0U, 1U, 5U, 0x7fffffffU, 0x80000000U, 0xffffffffU}) {
     for (const std::uint32_t y : {0U, 3U, 200U, 0x3fffffffU, 0x7fffffffU, 0xfffffff0U}) {
       corner(x, y);
-      EXPECT_THROW(read({"R"}), InputError) << x << " " << y;
+      // A smaller picture than was written may be read; nothing else may happen.
+      try {
+        EXPECT_LE(read({"R"}).size(), 24U) << x << " " << y;
+      } catch (const InputError&) {
+      }
     }
   }
 }
