@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "stats/check.h"
+#include "stats/golden_section.h"
 #include "stats/special.h"
 #include "stats/tails.h"
 
@@ -113,29 +115,10 @@ struct UpperIntegrand {
 // Near enough for where to begin: within a tenth of what the chi law varies over. The integrand is
 // log-concave, and its maximum may lie beyond `high` where it still rises there.
 double maximise(const UpperIntegrand& f, double low, double high) {
-  constexpr double golden = 0.38196601125010515;
   const double near = 0.1 / std::sqrt(f.parameters.degrees);
   while (f(high) > f(high - near)) high += high - low;
-  double left = low + golden * (high - low);
-  double right = high - golden * (high - low);
-  double at_left = f(left);
-  double at_right = f(right);
-  while (high - low > near) {
-    if (at_left < at_right) {
-      low = left;
-      left = right;
-      at_left = at_right;
-      right = high - golden * (high - low);
-      at_right = f(right);
-    } else {
-      high = right;
-      right = left;
-      at_right = at_left;
-      left = low + golden * (high - low);
-      at_left = f(left);
-    }
-  }
-  return (low + high) / 2;
+  const GoldenSection left = golden_section(f, low, high, near);
+  return std::midpoint(left.low, left.high);
 }
 
 double support_edge(const UpperIntegrand& f, double centre, double direction) {
