@@ -22,7 +22,7 @@ class Picture final : public Estimator {
                               std::to_string(stack_->files.size()) + " files");
     }
     stack_->read(random.observation(), texels_);
-    std::ranges::copy(texels_, out.begin());
+    write_observation(texels_, out);
     cost.samples += 1;
   }
 
@@ -38,7 +38,11 @@ class PictureSetup final : public Setup {
         shape_(stack_->shape(independent)),
         data_file_(std::move(data_file)) {}
 
-  std::vector<Channel> channels() const override { return element_channels(shape_); }
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels = element_channels(shape_);
+    channels.push_back(average_channel());
+    return channels;
+  }
   std::optional<ImageShape> image() const override { return shape_; }
   std::unique_ptr<Estimator> make() const override {
     return std::make_unique<Picture>(stack_, shape_.elements());
@@ -86,6 +90,17 @@ std::vector<Channel> element_channels(const ImageShape& shape) {
   std::vector<Channel> channels(shape.elements());
   for (std::size_t i = 0; i < channels.size(); ++i) channels[i].name = element_name(shape, i);
   return channels;
+}
+
+Channel average_channel() { return {.name = "average", .diagnostic = true}; }
+
+void write_observation(std::span<const float> texels, std::span<double> out) {
+  double sum = 0;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    out[i] = double{texels[i]};
+    sum += out[i];
+  }
+  out[texels.size()] = sum / static_cast<double>(texels.size());
 }
 
 std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,

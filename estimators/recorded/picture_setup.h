@@ -21,4 +21,10 @@ std::shared_ptr<const Setup> reference_setup(PictureMoments moments);
 /// Channels under the names of an image's elements, with nothing known of them.
 std::vector<Channel> element_channels(const ImageShape& shape);
 
+/// What follows the elements in an observation: their average, for claims that name it.
+Channel average_channel();
+
+/// A picture's texels and their average.
+void write_observation(std::span<const float> texels, std::span<double> out);
+
 }  // namespace assay::recorded

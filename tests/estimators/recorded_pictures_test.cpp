@@ -118,6 +118,8 @@ TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
   EXPECT_EQ(observed[0].values[0], 1);
   EXPECT_EQ(observed[0].values[1], 2);
   EXPECT_TRUE(std::isnan(observed[0].values[2]));
+  EXPECT_EQ(observed[1].values[1], 2);  // the average over the picture
+  EXPECT_TRUE(pictures.setup->channels()[1].diagnostic);
 }
 
 TEST_F(Pictures, OfUnequalSizesAreRefusedByName) {

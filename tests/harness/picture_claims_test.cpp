@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "harness/refusal.h"
-#include "harness/running.h"
 #include "tests/estimators/exr.h"
+#include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
 #include "tests/philox.h"
 
 namespace assay::harness {
