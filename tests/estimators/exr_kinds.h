@@ -92,6 +92,7 @@ inline void write_tiles(const std::string& file, const Part& part) {
 
 inline void write_parts(const std::string& file, const std::vector<Part>& parts) {
   std::vector<Contents> contents;
+  contents.reserve(parts.size());  // a frame buffer points into its texels
   std::vector<Imf::Header> headers;
   for (const Part& part : parts) {
     contents.push_back(contents_of(part));
