@@ -190,6 +190,15 @@ std::shared_ptr<const Setup> prepare_text(Parameters& parameters) {
 }
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  for (const char* of_run : {"run", "estimator"}) {
+    parameters.string(of_run);
+    if (parameters.given(of_run)) {
+      parameters.refuse(of_run, "is of moments of a run, which have no rows");
+    }
+  }
+  if (!parameters.given("file")) {
+    parameters.refuse("file", "is missing; give it, or `run` and `estimator`");
+  }
   const PictureRequest request = picture_request(parameters);
   parameters.string("column");
   return recorded::names_pictures(request.pattern) ? prepare_pictures(parameters, request)
@@ -199,60 +208,79 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 }  // namespace
 
 std::vector<Entry> recorded_recorded() {
-  return {{{.name = "recorded",
-            .summary = "Observations from a text file, one a line, or from OpenEXR pictures.",
-            .description =
-                "Observation i is row i of a text `file`. Numbers are separated by white space or "
-                "commas, "
-                "`#` begins a comment, and `# columns: a b c` names the columns, each of which is "
-                "a channel unless `column` picks one. Every row needs the same number of numbers; "
-                "`nan` and `inf` are read as such. Or `file` is a pattern, `out/*.exr`, and "
-                "observation "
-                "i is the i-th OpenEXR picture by name, an image: of one part or several, scan "
-                "lines or tiles. `channels` chooses among its channels; a layer, or a part, stands "
-                "before a dot. A picture of a mean that carries its error, or is `exact`, is a "
-                "reference: it can stand on the right of `mean(x) ==`. Its error is "
-                "sqrt(variance / samples), with the channels that `variance` names (`Variance.*` "
-                "of pbrt), or of `second_moment` (`m2_*` of Mitsuba). What an observation was made "
-                "from is not known here: `primaries` stays 1.",
-            .parameters = {{.name = "file",
-                            .type = ParameterType::string,
-                            .summary = "the file, or a pattern of pictures, relative to the suite"},
-                           {.name = "column",
-                            .type = ParameterType::string,
-                            .summary = "the one column to use; all of them when absent",
-                            .fallback = "all"},
-                           {.name = "channels",
-                            .type = ParameterType::string,
-                            .summary = "of pictures: the channels to use, patterns with commas "
-                                       "between; R, G and B, or what stands for them, when absent",
-                            .fallback = "usual"},
-                           {.name = "pixels",
-                            .type = ParameterType::string,
-                            .summary = "of pictures: whether the pixels of one are independent, as "
-                                       "they are under a box filter one pixel wide",
-                            .fallback = "dependent",
-                            .choices = {"dependent", "independent"}},
-                           {.name = "exact",
-                            .type = ParameterType::boolean,
-                            .summary = "the picture is a reference without error",
-                            .fallback = "false"},
-                           {.name = "variance",
-                            .type = ParameterType::string,
-                            .summary = "of a reference: its channels of the variance of a sample, "
-                                       "`*` standing for the channel's name",
-                            .fallback = "none"},
-                           {.name = "second_moment",
-                            .type = ParameterType::string,
-                            .summary = "the same of second moments",
-                            .fallback = "none"},
-                           {.name = "samples",
-                            .type = ParameterType::string,
-                            .summary = "how many samples the mean is of, a number or the channel "
-                                       "that counts them; the file's own word when absent",
-                            .fallback = "none"}},
-            .averages = false},
-           prepare}};
+  return {
+      {{.name = "recorded",
+        .summary = "Observations from a text file, one a line, or from OpenEXR pictures, or "
+                   "moments of a saved run.",
+        .description =
+            "Observation i is row i of a text `file`. Numbers are separated by white space or "
+            "commas, "
+            "`#` begins a comment, and `# columns: a b c` names the columns, each of which is "
+            "a channel unless `column` picks one. Every row needs the same number of numbers; "
+            "`nan` and `inf` are read as such. What an observation was made from is not known "
+            "here: `primaries` stays 1.\n\n"
+            "Or `file` is a pattern, `out/*.exr`, and observation i is the i-th OpenEXR picture "
+            "by name, an image: of one part or several, scan lines or tiles. `channels` chooses "
+            "among its channels; a layer, or a part, stands before a dot. A picture of a mean "
+            "that carries its error, or is `exact`, is a reference: it can stand on the right "
+            "of `mean(x) ==`. Its error is sqrt(variance / samples), with the channels that "
+            "`variance` names (`Variance.*` of pbrt), or of `second_moment` (`m2_*` of "
+            "Mitsuba).\n\n"
+            "With `run`, a saved run's record, and `estimator` nothing is drawn: the source is "
+            "the moments that a test of the run kept of that estimator, with its primaries. "
+            "They answer claims on mean, bias, variance, cost and efficiency, so that a run is "
+            "the reference of the next one. The other side takes as many observations as the "
+            "run has, from a stream that the run has not used.",
+        .parameters = {{.name = "file",
+                        .type = ParameterType::string,
+                        .summary = "the file of rows, or a pattern of pictures, relative to the "
+                                   "suite",
+                        .fallback = "none"},
+                       {.name = "column",
+                        .type = ParameterType::string,
+                        .summary = "the one column to use; all of them when absent",
+                        .fallback = "all"},
+                       {.name = "channels",
+                        .type = ParameterType::string,
+                        .summary = "of pictures: the channels to use, patterns with commas "
+                                   "between; R, G and B, or what stands for them, when absent",
+                        .fallback = "usual"},
+                       {.name = "pixels",
+                        .type = ParameterType::string,
+                        .summary = "of pictures: whether the pixels of one are independent, as "
+                                   "they are under a box filter one pixel wide",
+                        .fallback = "dependent",
+                        .choices = {"dependent", "independent"}},
+                       {.name = "exact",
+                        .type = ParameterType::boolean,
+                        .summary = "the picture is a reference without error",
+                        .fallback = "false"},
+                       {.name = "variance",
+                        .type = ParameterType::string,
+                        .summary = "of a reference: its channels of the variance of a sample, "
+                                   "`*` standing for the channel's name",
+                        .fallback = "none"},
+                       {.name = "second_moment",
+                        .type = ParameterType::string,
+                        .summary = "the same of second moments",
+                        .fallback = "none"},
+                       {.name = "samples",
+                        .type = ParameterType::string,
+                        .summary = "how many samples the mean is of, a number or the channel "
+                                   "that counts them; the file's own word when absent",
+                        .fallback = "none"},
+                       {.name = "run",
+                        .type = ParameterType::string,
+                        .summary = "instead of a file of rows: a saved run, whose moments are "
+                                   "used",
+                        .fallback = "none"},
+                       {.name = "estimator",
+                        .type = ParameterType::string,
+                        .summary = "which of the run's estimators; may be left out where it "
+                                   "has one",
+                        .fallback = "the only one"}},
+        .averages = false},
+       prepare}};
 }
 
 }  // namespace assay::plugins
