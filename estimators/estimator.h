@@ -75,10 +75,6 @@ class Setup {
   virtual std::optional<std::uint64_t> observations() const { return {}; }
   /// The file that ready-made observations are read from: two set-ups of one file share its rows.
   virtual std::string data_file() const { return {}; }
-  /// The file that holds ready-made observation `index` alone, if one does.
-  virtual std::string observation_file(std::uint64_t /*index*/) const { return {}; }
-  /// Whether the channels' means, with their errors, are all there is: nothing can be drawn.
-  virtual bool is_reference() const { return false; }
   /// The stream that ready-made observations were drawn from, where they say so.
   virtual std::optional<StreamKey> data_stream() const { return {}; }
   /// What making the set-up cost.

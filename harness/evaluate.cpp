@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimators/recorded/picture_setup.h"
 #include "harness/activation.h"
 #include "harness/assumptions.h"
 #include "harness/consistency_setup.h"
@@ -38,7 +39,7 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, std::siz
   const std::string text = fmt::format(
       "{} of {} observations of `{}`{} are not finite, the first is observation {}",
       summary.nonfinite, outcome.secondaries(), side.estimator->name, at, summary.first_nonfinite);
-  const std::string file = side.setup->observation_file(summary.first_nonfinite);
+  const std::string file = recorded::observation_file(*side.setup, summary.first_nonfinite);
   if (!file.empty()) return fmt::format("{}, `{}`", text, file);
   return fmt::format("{}; `assay replay RUN.json '{}' {}` draws it again", text,
                      outcome.question.test->id, summary.first_nonfinite);

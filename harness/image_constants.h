@@ -37,8 +37,6 @@ class VaryingPart {
   /// Whether any element varied.
   bool any() const { return constants_ < first_.extent.elements(); }
   const stats::ImageStack<double>& first() const { return first_; }
-  /// Whether what it is held against has an error of its own, the same in every replicate.
-  bool has_reference_error() const { return !error_.empty(); }
 
   /// What `use` makes of the first stack and what it is held against.
   template <class Use>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "estimators/recorded/picture_setup.h"
 #include "harness/question_claims.h"
 #include "harness/question_image.h"
 #include "harness/recorded_run.h"
@@ -129,7 +130,7 @@ Question about_moments(const TestEntry& test, const Estimators& estimators) {
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
     question.factor = other->factor;
     Subject second = estimates(other->quantity.source, estimators);
-    if (mean && second.setup->is_reference()) {
+    if (mean && recorded::is_reference(*second.setup)) {
       question.references = recorded_means(question, second);
       question.factor = 1;
       return question;
@@ -238,7 +239,7 @@ void check_sizes(const Question& question) {
 /// A mean with its error has no observations to test anything else with.
 void require_observations(const Question& question) {
   for (const Subject& subject : question.subjects) {
-    if (!subject.setup->is_reference()) continue;
+    if (!recorded::is_reference(*subject.setup)) continue;
     throw InputError(question.test->claim.left.where,
                      fmt::format("`{0}` is a reference, a mean without observations: it can stand "
                                  "on the right of a mean, as in `mean(x) == mean({0})`",

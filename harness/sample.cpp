@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "estimators/recorded/picture_setup.h"
 #include "harness/commands.h"
 #include "harness/interrupt.h"
 #include "harness/pool.h"
@@ -66,7 +67,7 @@ int sample(const SampleArguments& arguments) {
   const PreparedEstimator estimator = prepare(entries.front(), ".");
   const Sampled sampled = sampled_by(estimator, source);
   const auto rows = sampled.setup->observations();
-  if (sampled.setup->is_reference()) {
+  if (recorded::is_reference(*sampled.setup)) {
     throw InputError(source.where, fmt::format("`{}` is a reference, a mean without observations",
                                                source.estimator));
   }

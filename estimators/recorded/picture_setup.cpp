@@ -1,4 +1,4 @@
-#include "recorded/picture_setup.h"
+#include "estimators/recorded/picture_setup.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -49,7 +49,7 @@ class PictureSetup final : public Setup {
   }
   std::optional<std::uint64_t> observations() const override { return stack_->files.size(); }
   std::string data_file() const override { return data_file_; }
-  std::string observation_file(std::uint64_t index) const override {
+  std::string file(std::uint64_t index) const {
     return index < stack_->files.size() ? stack_->files[index] : "";
   }
 
@@ -77,7 +77,6 @@ class ReferenceSetup final : public Setup {
     throw std::logic_error("a reference picture has no observations");
   }
   std::optional<std::uint64_t> observations() const override { return 0; }
-  bool is_reference() const override { return true; }
 
  private:
   PictureMoments moments_;
@@ -85,6 +84,15 @@ class ReferenceSetup final : public Setup {
 };
 
 }  // namespace
+
+bool is_reference(const Setup& setup) {
+  return dynamic_cast<const ReferenceSetup*>(&setup) != nullptr;
+}
+
+std::string observation_file(const Setup& setup, std::uint64_t index) {
+  const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
+  return pictures == nullptr ? "" : pictures->file(index);
+}
 
 std::vector<Channel> element_channels(const ImageShape& shape) {
   std::vector<Channel> channels(shape.elements());

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "recorded/pictures.h"
+#include "recorded/picture_setup.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr.h"
 #include "tests/estimators/exr_kinds.h"
@@ -113,7 +113,7 @@ TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
   EXPECT_EQ(pictures.setup->observations(), 3u);
   EXPECT_FALSE(pictures.setup->image()->independent);
   EXPECT_EQ(pictures.setup->channels()[0].name, "x0y0");
-  EXPECT_EQ(pictures.setup->observation_file(1), file("b.exr"));
+  EXPECT_EQ(recorded::observation_file(*pictures.setup, 1), file("b.exr"));
   const auto observed = draws::observe(pictures, 3);
   EXPECT_EQ(observed[0].values[0], 1);
   EXPECT_EQ(observed[0].values[1], 2);
@@ -143,7 +143,7 @@ TEST_F(Pictures, WithTheirVarianceAreReferences) {
   draws::write_scan_lines(
       file("a.exr"), {.width = 1, .height = 1, .channels = {"R", "Variance.R"}, .samples = 16});
   const draws::Prepared reference = prepare("{file: a.exr, channels: R, variance: Variance.*}");
-  EXPECT_TRUE(reference.setup->is_reference());
+  EXPECT_TRUE(recorded::is_reference(*reference.setup));
   const Channel channel = reference.setup->channels()[0];
   EXPECT_EQ(channel.mean, 0.5);
   EXPECT_DOUBLE_EQ(channel.mean_error, std::sqrt(1.5 / 16));
@@ -163,7 +163,7 @@ TEST_F(Pictures, WithSecondMomentsAreReferencesOfOneSampleLess) {
 TEST_F(Pictures, MayBeExactReferences) {
   write_texel("a.exr", {"Y"}, {3});
   const draws::Prepared reference = prepare("{file: a.exr, exact: true}");
-  EXPECT_TRUE(reference.setup->is_reference());
+  EXPECT_TRUE(recorded::is_reference(*reference.setup));
   EXPECT_EQ(reference.setup->channels()[0].mean, 3);
   EXPECT_EQ(reference.setup->channels()[0].mean_error, 0);
 }
