@@ -158,6 +158,20 @@ std::string replayable_check(const Given& given) {
   return line.text();
 }
 
+std::string replayable_images(const Given& given) {
+  Replayable line("images");
+  line.add("--candidate", given.candidate);
+  line.add("--reference", given.pictures);
+  line.add("--channels", given.channels);
+  line.add("--pixels", given.pixels);
+  line.add("--samples", given.picture_samples);
+  line.add("--detect", given.detect);
+  line.add("--allow", given.allow);
+  line.add("--within", given.within);
+  line.add("--alpha", given.alpha);
+  return line.text();
+}
+
 void require_suites(const Given& given, const CLI::App& sub) {
   require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
   for (const std::string& suite : given.suites) {
@@ -201,6 +215,28 @@ Command check_command(const Given& given, const CLI::App& sub) {
   command.arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 2);
   if (command.options.alpha) command.arguments.alpha = *command.options.alpha;
   command.options.command = replayable_check(given);
+  return command;
+}
+
+Command images_command(const Given& given, const CLI::App& sub) {
+  require(given.candidate, "--candidate, a pattern of OpenEXR files", sub);
+  require(given.pictures, "--reference, a pattern of OpenEXR files or one file", sub);
+  ImagesCommand command;
+  command.options = options(given);
+  command.output = output(given);
+  ImagesArguments& arguments = command.arguments;
+  arguments.candidate = given.candidate;
+  arguments.reference = given.pictures;
+  if (!given.channels.empty()) arguments.channels = given.channels;
+  if (!given.pixels.empty()) {
+    arguments.independent_pixels =
+        choice(Value::scalar(given.pixels), "--pixels", {"dependent", "independent"}) == 1;
+  }
+  arguments.samples = if_given(given.picture_samples);
+  arguments.detect = if_given(given.detect);
+  arguments.allow = if_given(given.allow);
+  arguments.within = if_given(given.within);
+  command.options.command = replayable_images(given);
   return command;
 }
 
@@ -269,6 +305,7 @@ Command command_of(const Given& given, const CLI::App& sub) {
   if (name == "run") return run_command(given, sub);
   if (name == "plan") return plan_command(given, sub);
   if (name == "check") return check_command(given, sub);
+  if (name == "images") return images_command(given, sub);
   if (name == "calibrate") return calibrate_command(given);
   if (name == "sample") return sample_command(given, sub);
   if (name == "list") return list_command(given, sub);

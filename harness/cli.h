@@ -10,6 +10,7 @@
 #include "harness/commands.h"
 #include "harness/merge.h"
 #include "harness/shell.h"
+#include "harness/suite_images.h"
 
 namespace assay::harness {
 
@@ -29,6 +30,12 @@ struct PlanCommand {
 
 struct CheckCommand {
   CheckArguments arguments;
+  RunOptions options;
+  Output output;
+};
+
+struct ImagesCommand {
+  ImagesArguments arguments;
   RunOptions options;
   Output output;
 };
@@ -62,9 +69,9 @@ struct TextCommand {
   std::string text;
 };
 
-using Command = std::variant<RunCommand, PlanCommand, CheckCommand, SampleArguments, ListCommand,
-                             DescribeCommand, ReplayArguments, ReportCommand, MergeCommand,
-                             CalibrateCommand, TextCommand>;
+using Command = std::variant<RunCommand, PlanCommand, CheckCommand, ImagesCommand, SampleArguments,
+                             ListCommand, DescribeCommand, ReplayArguments, ReportCommand,
+                             MergeCommand, CalibrateCommand, TextCommand>;
 
 /// Parses the arguments after the program's name. InputError, with what was meant where that can be
 /// guessed, for anything that is not exactly as `--help` says.

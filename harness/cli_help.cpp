@@ -17,6 +17,7 @@ Commands (each has its own --help, with examples and defaults):
   run       test the claims of suite files
   plan      what a run would do and cost; only the pilots are drawn
   check     test one claim
+  images    hold rendered pictures against each other, without a suite
   calibrate how often the methods err, and how much they find, on known laws
   sample    print observations of an estimator
   list      list plugins, or the tests of suites
@@ -69,6 +70,16 @@ Examples:
   assay check 'mean(luminaire/area) == 0.481046907316 +- 1e-12'
   assay check 'variance(a) < variance(h)' --estimator a=luminaire/area \
       --estimator 'h=luminaire/hemisphere,scene=rectangle'
+)"},
+      {"images",
+       R"(Holds pictures of one scene against each other, pixel by pixel and on every larger scale: are their
+means equal, and if not, where? Every file is one observation and needs a seed of its own.
+
+Examples:
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --report html=difference.html
+  assay images --candidate 'new/*.exr' --reference converged.exr --detect 1%
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --channels 'ViewLayer.DiffInd.*'
+  assay images --candidate 'half/*.exr' --reference 'float/*.exr' --within 0.5% --report json=run.json
 )"},
       {"calibrate",
        R"(Measures how often each method errs on laws whose truth is known, and how often it finds an effect:

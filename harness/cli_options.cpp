@@ -130,6 +130,33 @@ void define_check(CLI::App& app, Given& given) {
                .alpha = "probability that a claim that holds fails, in (0, 0.5]; default 0.01"});
 }
 
+void define_images(CLI::App& app, Given& given) {
+  CLI::App* sub = subcommand(app, "images");
+  one(sub, "--candidate", given.candidate, "GLOB",
+      "the pictures in question, OpenEXR, 16 or more, each rendered with a seed of its own");
+  one(sub, "--reference", given.pictures, "GLOB",
+      "what they are held against: as many again, or one picture, with its variance (channels "
+      "`Variance.*` or `m2_*`) or exact");
+  one(sub, "--channels", given.channels, "GLOB",
+      "the channels to test, as 'ViewLayer.DiffInd.*'; commas between several; default R, G and B, "
+      "or what stands for them");
+  one(sub, "--pixels", given.pixels, "KIND",
+      "independent, as under a box filter one pixel wide, or dependent; default dependent");
+  one(sub, "--samples", given.picture_samples, "N",
+      "of how many samples the means of one picture with its variance are, or the channel that "
+      "counts them; default its own word");
+  one(sub, "--detect", given.detect, "X",
+      "the difference over the whole picture that must not pass, as 0.5% or 0.002; default none");
+  one(sub, "--allow", given.allow, "X",
+      "the difference that may be there, as 0.5% or 0.002; default 0");
+  one(sub, "--within", given.within, "X",
+      "prove that the pictures differ by less, as 1% or 0.002; default test that they are equal");
+  add_running(sub, given,
+              {.seed = "seed of the signs that are flipped where pixels depend on each other; "
+                       "default 1",
+               .alpha = "probability that equal pictures fail, in (0, 0.5]; default 0.01"});
+}
+
 void define_others(CLI::App& app, Given& given) {
   CLI::App* sample = subcommand(app, "sample");
   sample->add_option("SOURCE", given.source, "an estimator, or a part of it")->type_name("");
@@ -190,6 +217,7 @@ void define_options(CLI::App& app, Given& given) {
   define_run(app, given);
   define_plan(app, given);
   define_check(app, given);
+  define_images(app, given);
   define_others(app, given);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimators/recorded/picture_setup.h"
 #include "harness/activation.h"
 #include "harness/assumptions.h"
 #include "harness/consistency_setup.h"
@@ -31,6 +32,19 @@ const Summary& summary_of(const TestWork& work, std::size_t subject) {
   return work.pools[subject]->prefix(work.outcome.secondaries());
 }
 
+std::string not_finite(const TestOutcome& outcome, const Subject& side, std::size_t channel,
+                       const ChannelSummary& summary) {
+  const std::string at =
+      side.image ? fmt::format(" at pixel {}", element_name(*side.setup->image(), channel)) : "";
+  const std::string text = fmt::format(
+      "{} of {} observations of `{}`{} are not finite, the first is observation {}",
+      summary.nonfinite, outcome.secondaries(), side.estimator->name, at, summary.first_nonfinite);
+  const std::string file = recorded::observation_file(*side.setup, summary.first_nonfinite);
+  if (!file.empty()) return fmt::format("{}, `{}`", text, file);
+  return fmt::format("{}; `assay replay RUN.json '{}' {}` draws it again", text,
+                     outcome.question.test->id, summary.first_nonfinite);
+}
+
 /// Whether the observations are all there and finite; the verdict is `error` where not.
 bool could_be_drawn(TestWork& work) {
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
@@ -44,15 +58,7 @@ bool could_be_drawn(TestWork& work) {
     for (const std::size_t channel : side.channels) {
       const ChannelSummary& summary = summary_of(work, subject).channels[channel];
       if (summary.nonfinite == 0) continue;
-      settle(
-          work.outcome, Verdict::error,
-          fmt::format(
-              "{} of {} observations of `{}`{} are not finite, the first is observation "
-              "{}; `assay replay RUN.json '{}' {}` draws it again",
-              summary.nonfinite, work.outcome.secondaries(), side.estimator->name,
-              side.image ? fmt::format(" at pixel {}", element_name(*side.setup->image(), channel))
-                         : "",
-              summary.first_nonfinite, work.outcome.question.test->id, summary.first_nonfinite));
+      settle(work.outcome, Verdict::error, not_finite(work.outcome, side, channel, summary));
       return false;
     }
   }

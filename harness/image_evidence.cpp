@@ -64,9 +64,14 @@ stats::FlipMatrix flips_of(const stats::ImageStack<double>& a, const stats::Imag
   return stats::flip_matrix(stack_of(a.extent, first), stack_of(b.extent, second));
 }
 
+bool has_error(const stats::ImageStack<double>&) { return false; }
+bool has_error(const stats::ImageReference& b) { return !b.standard_error.empty(); }
+
 /// The sum of squares of correlated elements: the share of sign vectors that reach it. nullopt
 /// where so few replicates, or so small a level, leave nothing to reject.
 std::optional<double> flipped_energy(const VaryingPart& varying, const ImageTest& test) {
+  // A reference's error does not flip with the replicates: cells alone are left.
+  if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return std::nullopt;
   const double share = test.share.alpha * stats::energy_share;
   const stats::FlipMatrix matrix =
       varying.with([](const auto& a, const auto& b) { return flips_of(a, b); });

@@ -75,10 +75,8 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
     if (pilot_of(side, pilots) == nullptr || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const stats::Moments& moments = pilot_channel(question, subject, channel, pilots).moments;
-      if (is_constant(question, subject, channel, moments)) continue;
-      if (std::string reason = beyond_doubles(moments, side.estimator->name); !reason.empty()) {
-        return reason;
-      }
+      const std::string reason = beyond_doubles(moments, side.estimator->name);
+      if (!reason.empty() && !is_constant(question, subject, channel, moments)) return reason;
     }
   }
   return "";

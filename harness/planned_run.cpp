@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "estimators/recorded/picture_setup.h"
 #include "harness/frozen.h"
 #include "harness/interrupt.h"
 #include "harness/plan.h"
@@ -77,6 +78,7 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
   std::vector<const PreparedEstimator*> used;
   const bool with_idle = draws_idle(questions, options);
   for (const EstimatorEntry& entry : run.suite.estimators) {
+    if (recorded::is_reference(*run.estimators.at(entry.name).setup)) continue;  // nothing to draw
     bool idle = true;
     bool wanted = false;
     for (std::size_t i = 0; i < questions.size(); ++i) {

@@ -138,6 +138,8 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
         ++mark;
       }
     }
+  } catch (const InputError&) {
+    throw;  // a file that cannot be read is a mistake of the user's and no verdict
   } catch (const std::exception& error) {
     block.trouble = fmt::format("observation {}: {}", index, error.what());
   }

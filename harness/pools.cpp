@@ -62,15 +62,16 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
                                         const Pilots& pilots) {
   std::vector<ChannelPlan> plan;
   const std::vector<Channel> channels = pool.setup()->channels();
-  if (pool.is_ready_made()) return std::vector<ChannelPlan>(channels.size());
+  // An image is drawn as maps: no histogram of each pixel.
+  if (pool.is_ready_made() || pool.setup()->image()) {
+    return std::vector<ChannelPlan>(channels.size());
+  }
   if (const auto rows = pool.setup()->observations()) {
     for (const Range& range : data_ranges(*pool.setup(), *rows)) {
       plan.push_back(with_histogram(range));
     }
     return plan;
   }
-  // An image is drawn as maps: no histogram of each pixel.
-  if (pool.setup()->image()) return std::vector<ChannelPlan>(channels.size());
   const auto found = pilots.find(estimator.name);  // a replay has none
   const Pilot pilot = found != pilots.end() ? found->second : Pilot{.trouble = "no pilot"};
   const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;

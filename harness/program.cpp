@@ -53,6 +53,10 @@ int act(const CheckCommand& command) {
   return run_suites({suite_of_claim(command.arguments)}, command.options, command.output);
 }
 
+int act(const ImagesCommand& command) {
+  return run_suites({suite_of_images(command.arguments)}, command.options, command.output);
+}
+
 int act(const SampleArguments& arguments) { return sample(arguments); }
 
 int act(const ListCommand& command) {

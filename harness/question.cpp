@@ -1,9 +1,11 @@
 #include "harness/question.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "estimators/recorded/picture_setup.h"
 #include "harness/question_claims.h"
 #include "harness/question_image.h"
 #include "harness/recorded_run.h"
@@ -84,6 +86,39 @@ void separate_streams(Question& question, const Claim& claim, std::uint64_t seed
   }
 }
 
+std::string size_of(const Subject& subject) {
+  if (subject.image) {
+    return fmt::format("{} x {} pixels of {}", subject.image->width, subject.image->height,
+                       fmt::join(subject.image->components, ", "));
+  }
+  return fmt::format("{} channels", subject.channels.size());
+}
+
+/// Means with their errors instead of observations: numbers to hold the first against, channel by
+/// channel.
+std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
+  const Subject& subject = question.subjects[0];
+  const bool one_size = subject.channels.size() == reference.channels.size() &&
+                        (!subject.image || !reference.image ||
+                         (subject.image->width == reference.image->width &&
+                          subject.image->components.size() == reference.image->components.size()));
+  if (!one_size) {
+    throw InputError(
+        question.test->claim.left.where,
+        fmt::format("`{}` has {} and `{}` has {}: only what is of one size can be compared, "
+                    "element by element",
+                    subject.estimator->name, size_of(subject), reference.estimator->name,
+                    size_of(reference)));
+  }
+  std::vector<Constant> means;
+  const std::vector<Channel> channels = reference.setup->channels();
+  for (const std::size_t i : reference.channels) {
+    means.push_back({question.factor * channels[i].mean.value_or(0),
+                     std::abs(question.factor) * channels[i].mean_error});
+  }
+  return means;
+}
+
 Question about_moments(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   const bool mean = claim.left.name == QuantityName::mean;
@@ -93,9 +128,15 @@ Question about_moments(const TestEntry& test, const Estimators& estimators) {
                     .kind = mean ? QuestionKind::mean_of_one : QuestionKind::variance_of_one,
                     .subjects = {estimates(claim.left.source, estimators)}};
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
-    question.kind = mean ? QuestionKind::mean_of_two : QuestionKind::variance_of_two;
     question.factor = other->factor;
-    question.subjects.push_back(estimates(other->quantity.source, estimators));
+    Subject second = estimates(other->quantity.source, estimators);
+    if (mean && recorded::is_reference(*second.setup)) {
+      question.references = recorded_means(question, second);
+      question.factor = 1;
+      return question;
+    }
+    question.kind = mean ? QuestionKind::mean_of_two : QuestionKind::variance_of_two;
+    question.subjects.push_back(std::move(second));
   } else {
     question.references = references(claim, question.subjects[0]);
   }
@@ -195,6 +236,17 @@ void check_sizes(const Question& question) {
   }
 }
 
+/// A mean with its error has no observations to test anything else with.
+void require_observations(const Question& question) {
+  for (const Subject& subject : question.subjects) {
+    if (!recorded::is_reference(*subject.setup)) continue;
+    throw InputError(question.test->claim.left.where,
+                     fmt::format("`{0}` is a reference, a mean without observations: it can stand "
+                                 "on the right of a mean, as in `mean(x) == mean({0})`",
+                                 subject.estimator->name));
+  }
+}
+
 Question asked(const TestEntry& test, const Estimators& estimators) {
   using enum QuantityName;
   if (test.claim.left.slope) return about_slope(test, estimators);
@@ -241,6 +293,7 @@ std::string Question::channel_name(std::size_t channel) const {
 
 Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
   Question question = asked(test, estimators);
+  require_observations(question);
   if (has_image(question)) ask_of_images(question);
   if (question.subjects.size() > 1) {
     require_pairs(question, test.claim);

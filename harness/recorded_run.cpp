@@ -233,7 +233,8 @@ const RecordedRun* as_recorded_run(const Setup& setup) {
 }
 
 std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
-  for (const char* other : {"file", "column"}) {
+  for (const char* other :
+       {"file", "column", "channels", "pixels", "exact", "variance", "second_moment", "samples"}) {
     parameters.string(other);
     if (parameters.given(other)) {
       parameters.refuse(other, "is of rows of a file: give it, or `run`, not both");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "estimators/recorded/picture_setup.h"
 #include "harness/commands.h"
 #include "harness/interrupt.h"
 #include "harness/pool.h"
@@ -66,6 +67,10 @@ int sample(const SampleArguments& arguments) {
   const PreparedEstimator estimator = prepare(entries.front(), ".");
   const Sampled sampled = sampled_by(estimator, source);
   const auto rows = sampled.setup->observations();
+  if (recorded::is_reference(*sampled.setup)) {
+    throw InputError(source.where, fmt::format("`{}` is a reference, a mean without observations",
+                                               source.estimator));
+  }
   if (as_recorded_run(*sampled.setup) != nullptr) {
     throw InputError(
         {}, fmt::format("`{}` has the moments of a run, not its observations", source.estimator));

@@ -1,6 +1,7 @@
 // Observations that another program made, or Assay itself earlier: observation i is row i of a text
-// file (recorded/table.h). Nothing is known of their mean. `primaries` is 1: what one row was made
-// from is the other program's affair.
+// file (recorded/table.h), or picture i of several (recorded/pictures.h). Nothing is known of their
+// mean, unless a picture carries its own error and is a reference. `primaries` is 1: what one
+// observation was made from is the other program's affair.
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "estimators/estimator.h"
+#include "recorded/picture_setup.h"
 #include "recorded/table.h"
 
 namespace assay::plugins {
@@ -103,6 +105,90 @@ recorded::Table read(Parameters& parameters) {
   }
 }
 
+// ---- Pictures
+
+/// What is asked of pictures.
+struct PictureRequest {
+  std::string pattern;
+  std::string channels;
+  bool independent;
+  bool exact;
+  recorded::MomentChannels errors;
+};
+
+PictureRequest picture_request(Parameters& parameters) {
+  const auto given = [&](const char* name) {
+    const std::string text = parameters.string(name);
+    return parameters.given(name) ? text : std::string();
+  };
+  return {.pattern = parameters.file("file"),
+          .channels = parameters.string("channels"),
+          .independent = parameters.string("pixels") == "independent",
+          .exact = parameters.boolean("exact"),
+          .errors = {.variance = given("variance"),
+                     .second_moment = given("second_moment"),
+                     .samples = given("samples")}};
+}
+
+/// What is wrong with a file is a mistake of the parameter that names it.
+template <class Read>
+auto reading(const Parameters& parameters, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    parameters.refuse("file", "is `" + error.where().file + "`: " + error.message());
+  }
+}
+
+/// One file that is a mean with its error.
+std::shared_ptr<const Setup> prepare_reference(const Parameters& parameters,
+                                               const PictureRequest& request,
+                                               const std::vector<std::string>& files) {
+  const recorded::MomentChannels& errors = request.errors;
+  if (files.size() > 1) {
+    parameters.refuse("file", "names " + std::to_string(files.size()) +
+                                  " files, and a mean with its error is one file");
+  }
+  if (!errors.variance.empty() && !errors.second_moment.empty()) {
+    parameters.refuse("second_moment", "is given beside `variance`; one of them tells the error");
+  }
+  if (request.exact && errors.any()) {
+    parameters.refuse("exact", "is given beside a variance: a mean is exact or has an error");
+  }
+  return recorded::reference_setup(reading(
+      parameters, [&] { return recorded::read_moments(files[0], request.channels, errors); }));
+}
+
+std::shared_ptr<const Setup> prepare_pictures(const Parameters& parameters,
+                                              const PictureRequest& request) {
+  if (parameters.given("column")) {
+    parameters.refuse("column", "is of text files; of pictures choose `channels`");
+  }
+  std::vector<std::string> files =
+      reading(parameters, [&] { return recorded::files_of(request.pattern); });
+  if (request.exact || request.errors.any()) return prepare_reference(parameters, request, files);
+  if (!request.errors.samples.empty()) {
+    parameters.refuse("samples", "needs `variance` or `second_moment` beside it");
+  }
+  recorded::PictureStack stack =
+      reading(parameters, [&] { return recorded::open_stack(std::move(files), request.channels); });
+  return recorded::picture_setup(std::move(stack), request.independent,
+                                 std::filesystem::weakly_canonical(request.pattern).string());
+}
+
+std::shared_ptr<const Setup> prepare_text(Parameters& parameters) {
+  for (const char* const name :
+       {"channels", "pixels", "exact", "variance", "second_moment", "samples"}) {
+    if (parameters.given(name)) {
+      parameters.refuse(name, "is of OpenEXR pictures, and `file` names none");
+    }
+  }
+  const auto table = std::make_shared<const recorded::Table>(read(parameters));
+  return std::make_shared<RecordedSetup>(
+      table, select(*table, parameters),
+      std::filesystem::weakly_canonical(parameters.file("file")).string());
+}
+
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   for (const char* of_run : {"run", "estimator"}) {
     parameters.string(of_run);
@@ -113,48 +199,88 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   if (!parameters.given("file")) {
     parameters.refuse("file", "is missing; give it, or `run` and `estimator`");
   }
-  const auto table = std::make_shared<const recorded::Table>(read(parameters));
-  return std::make_shared<RecordedSetup>(
-      table, select(*table, parameters),
-      std::filesystem::weakly_canonical(parameters.file("file")).string());
+  const PictureRequest request = picture_request(parameters);
+  parameters.string("column");
+  return recorded::names_pictures(request.pattern) ? prepare_pictures(parameters, request)
+                                                   : prepare_text(parameters);
 }
 
 }  // namespace
 
 std::vector<Entry> recorded_recorded() {
-  return {{{.name = "recorded",
-            .summary = "Observations from a text file, one a line, or moments of a saved run.",
-            .description =
-                "Observation i is row i of `file`. Numbers are separated by white space or commas, "
-                "`#` begins a comment, and `# columns: a b c` names the columns, each of which is "
-                "a channel unless `column` picks one. Every row needs the same number of numbers; "
-                "`nan` and `inf` are read as such. What a row was made from is not known here: "
-                "`primaries` stays 1.\n\n"
-                "With `run`, a saved run's record, and `estimator` nothing is drawn: the source is "
-                "the moments that a test of the run kept of that estimator, with its primaries. "
-                "They answer claims on mean, bias, variance, cost and efficiency, so that a run is "
-                "the reference of the next one. The other side takes as many observations as the "
-                "run has, from a stream that the run has not used.",
-            .parameters = {{.name = "file",
-                            .type = ParameterType::string,
-                            .summary = "the file of rows, relative to the suite",
-                            .fallback = "none"},
-                           {.name = "column",
-                            .type = ParameterType::string,
-                            .summary = "the one column to use; all of them when absent",
-                            .fallback = "all"},
-                           {.name = "run",
-                            .type = ParameterType::string,
-                            .summary = "instead of a file of rows: a saved run, whose moments are "
-                                       "used",
-                            .fallback = "none"},
-                           {.name = "estimator",
-                            .type = ParameterType::string,
-                            .summary = "which of the run's estimators; may be left out where it "
-                                       "has one",
-                            .fallback = "the only one"}},
-            .averages = false},
-           prepare}};
+  return {
+      {{.name = "recorded",
+        .summary = "Observations from a text file, one a line, or from OpenEXR pictures, or "
+                   "moments of a saved run.",
+        .description =
+            "Observation i is row i of a text `file`. Numbers are separated by white space or "
+            "commas, "
+            "`#` begins a comment, and `# columns: a b c` names the columns, each of which is "
+            "a channel unless `column` picks one. Every row needs the same number of numbers; "
+            "`nan` and `inf` are read as such. What an observation was made from is not known "
+            "here: `primaries` stays 1.\n\n"
+            "Or `file` is a pattern, `out/*.exr`, and observation i is the i-th OpenEXR picture "
+            "by name, an image: of one part or several, scan lines or tiles. `channels` chooses "
+            "among its channels; a layer, or a part, stands before a dot. A picture of a mean "
+            "that carries its error, or is `exact`, is a reference: it can stand on the right "
+            "of `mean(x) ==`. Its error is sqrt(variance / samples), with the channels that "
+            "`variance` names (`Variance.*` of pbrt), or of `second_moment` (`m2_*` of "
+            "Mitsuba).\n\n"
+            "With `run`, a saved run's record, and `estimator` nothing is drawn: the source is "
+            "the moments that a test of the run kept of that estimator, with its primaries. "
+            "They answer claims on mean, bias, variance, cost and efficiency, so that a run is "
+            "the reference of the next one. The other side takes as many observations as the "
+            "run has, from a stream that the run has not used.",
+        .parameters = {{.name = "file",
+                        .type = ParameterType::string,
+                        .summary = "the file of rows, or a pattern of pictures, relative to the "
+                                   "suite",
+                        .fallback = "none"},
+                       {.name = "column",
+                        .type = ParameterType::string,
+                        .summary = "the one column to use; all of them when absent",
+                        .fallback = "all"},
+                       {.name = "channels",
+                        .type = ParameterType::string,
+                        .summary = "of pictures: the channels to use, patterns with commas "
+                                   "between; R, G and B, or what stands for them, when absent",
+                        .fallback = "usual"},
+                       {.name = "pixels",
+                        .type = ParameterType::string,
+                        .summary = "of pictures: whether the pixels of one are independent, as "
+                                   "they are under a box filter one pixel wide",
+                        .fallback = "dependent",
+                        .choices = {"dependent", "independent"}},
+                       {.name = "exact",
+                        .type = ParameterType::boolean,
+                        .summary = "the picture is a reference without error",
+                        .fallback = "false"},
+                       {.name = "variance",
+                        .type = ParameterType::string,
+                        .summary = "of a reference: its channels of the variance of a sample, "
+                                   "`*` standing for the channel's name",
+                        .fallback = "none"},
+                       {.name = "second_moment",
+                        .type = ParameterType::string,
+                        .summary = "the same of second moments",
+                        .fallback = "none"},
+                       {.name = "samples",
+                        .type = ParameterType::string,
+                        .summary = "how many samples the mean is of, a number or the channel "
+                                   "that counts them; the file's own word when absent",
+                        .fallback = "none"},
+                       {.name = "run",
+                        .type = ParameterType::string,
+                        .summary = "instead of a file of rows: a saved run, whose moments are "
+                                   "used",
+                        .fallback = "none"},
+                       {.name = "estimator",
+                        .type = ParameterType::string,
+                        .summary = "which of the run's estimators; may be left out where it "
+                                   "has one",
+                        .fallback = "the only one"}},
+        .averages = false},
+       prepare}};
 }
 
 }  // namespace assay::plugins

@@ -1,0 +1,123 @@
+#include "estimators/recorded/picture_setup.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace assay::recorded {
+
+namespace {
+
+class Picture final : public Estimator {
+ public:
+  Picture(std::shared_ptr<const PictureStack> stack, std::size_t elements)
+      : stack_(std::move(stack)), texels_(elements) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
+    if (random.observation() >= stack_->files.size()) {
+      throw std::out_of_range("recorded: there is no observation " +
+                              std::to_string(random.observation()) + ", there are " +
+                              std::to_string(stack_->files.size()) + " files");
+    }
+    stack_->read(random.observation(), texels_);
+    write_observation(texels_, out);
+    cost.samples += 1;
+  }
+
+ private:
+  std::shared_ptr<const PictureStack> stack_;
+  std::vector<float> texels_;  // scratch
+};
+
+class PictureSetup final : public Setup {
+ public:
+  PictureSetup(PictureStack stack, bool independent, std::string data_file)
+      : stack_(std::make_shared<const PictureStack>(std::move(stack))),
+        shape_(stack_->shape(independent)),
+        data_file_(std::move(data_file)) {}
+
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels = element_channels(shape_);
+    channels.push_back(average_channel());
+    return channels;
+  }
+  std::optional<ImageShape> image() const override { return shape_; }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<Picture>(stack_, shape_.elements());
+  }
+  std::optional<std::uint64_t> observations() const override { return stack_->files.size(); }
+  std::string data_file() const override { return data_file_; }
+  std::string file(std::uint64_t index) const {
+    return index < stack_->files.size() ? stack_->files[index] : "";
+  }
+
+ private:
+  std::shared_ptr<const PictureStack> stack_;
+  ImageShape shape_;
+  std::string data_file_;
+};
+
+class ReferenceSetup final : public Setup {
+ public:
+  explicit ReferenceSetup(PictureMoments moments)
+      : moments_(std::move(moments)), shape_(moments_.shape()) {}
+
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels = element_channels(shape_);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      channels[i].mean = moments_.mean[i];
+      if (!moments_.standard_error.empty()) channels[i].mean_error = moments_.standard_error[i];
+    }
+    return channels;
+  }
+  std::optional<ImageShape> image() const override { return shape_; }
+  std::unique_ptr<Estimator> make() const override {
+    throw std::logic_error("a reference picture has no observations");
+  }
+  std::optional<std::uint64_t> observations() const override { return 0; }
+
+ private:
+  PictureMoments moments_;
+  ImageShape shape_;
+};
+
+}  // namespace
+
+bool is_reference(const Setup& setup) {
+  return dynamic_cast<const ReferenceSetup*>(&setup) != nullptr;
+}
+
+std::string observation_file(const Setup& setup, std::uint64_t index) {
+  const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
+  return pictures == nullptr ? "" : pictures->file(index);
+}
+
+std::vector<Channel> element_channels(const ImageShape& shape) {
+  std::vector<Channel> channels(shape.elements());
+  for (std::size_t i = 0; i < channels.size(); ++i) channels[i].name = element_name(shape, i);
+  return channels;
+}
+
+Channel average_channel() { return {.name = "average", .diagnostic = true}; }
+
+void write_observation(std::span<const float> texels, std::span<double> out) {
+  double sum = 0;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    out[i] = double{texels[i]};
+    sum += out[i];
+  }
+  out[texels.size()] = sum / static_cast<double>(texels.size());
+}
+
+std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,
+                                           std::string data_file) {
+  return std::make_shared<PictureSetup>(std::move(stack), independent, std::move(data_file));
+}
+
+std::shared_ptr<const Setup> reference_setup(PictureMoments moments) {
+  return std::make_shared<ReferenceSetup>(std::move(moments));
+}
+
+}  // namespace assay::recorded

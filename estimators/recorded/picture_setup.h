@@ -1,0 +1,37 @@
+#pragma once
+
+// Pictures of another program as a set-up.
+
+#include <memory>
+#include <string>
+
+#include "estimators/estimator.h"
+#include "estimators/recorded/pictures.h"
+
+namespace assay::recorded {
+
+/// Whether the means of a set-up's channels, with their errors, are all there is: nothing can be
+/// drawn.
+bool is_reference(const Setup& setup);
+
+/// The file that holds observation `index` of a set-up alone, or "".
+std::string observation_file(const Setup& setup, std::uint64_t index);
+
+/// Observation i is file i. Files are read one by one when they are asked for and not kept.
+/// `data_file` tells which files they are (Setup::data_file()).
+std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,
+                                           std::string data_file);
+
+/// Means with their errors; there is nothing to draw.
+std::shared_ptr<const Setup> reference_setup(PictureMoments moments);
+
+/// Channels under the names of an image's elements, with nothing known of them.
+std::vector<Channel> element_channels(const ImageShape& shape);
+
+/// What follows the elements in an observation: their average, for claims that name it.
+Channel average_channel();
+
+/// A picture's texels and their average.
+void write_observation(std::span<const float> texels, std::span<double> out);
+
+}  // namespace assay::recorded

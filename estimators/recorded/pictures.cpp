@@ -1,0 +1,340 @@
+#include "recorded/pictures.h"
+
+#include <glob.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "estimators/value.h"
+
+namespace assay::recorded {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& file, const std::string& why) {
+  throw InputError({.file = file}, why);
+}
+
+bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != text.npos; }
+
+/// "ViewLayer.Combined.R" is R of the layer "ViewLayer.Combined".
+std::string layer_of(const std::string& channel) {
+  const std::size_t dot = channel.rfind('.');
+  return dot == channel.npos ? "" : channel.substr(0, dot);
+}
+std::string last_of(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
+
+std::size_t rank_of(const std::string& channel) {
+  const std::vector<std::string> order{"R", "G", "B", "A"};
+  return static_cast<std::size_t>(std::ranges::find(order, last_of(channel)) - order.begin());
+}
+
+std::vector<std::string> names_of(const ExrFile& file) {
+  std::vector<std::string> names;
+  for (const ExrChannel& channel : file.channels()) names.push_back(channel.name);
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 16;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+    text += (i == 0 ? "`" : ", `") + names[i] + "`";
+  }
+  if (names.size() > most) text += ", … (" + std::to_string(names.size()) + " in all)";
+  return text.empty() ? "none" : text;
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> pieces;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::string piece = text.substr(begin, end - begin);
+    piece.erase(0, std::min(piece.find_first_not_of(' '), piece.size()));
+    piece.erase(piece.find_last_not_of(' ') + 1);
+    if (!piece.empty()) pieces.push_back(piece);
+    begin = end + 1;
+  }
+  return pieces;
+}
+
+/// The layers that have R, G and B, in the order of the file.
+std::vector<std::string> coloured_layers(const std::vector<std::string>& names) {
+  std::map<std::string, int> colours;
+  std::vector<std::string> layers;
+  for (const std::string& name : names) {
+    // Statistics of a picture are none themselves.
+    const bool statistic = name.starts_with("m2_") || name.find("Variance") != name.npos;
+    if (!statistic && rank_of(name) < 3 && ++colours[layer_of(name)] == 3) {
+      layers.push_back(layer_of(name));
+    }
+  }
+  return layers;
+}
+
+std::vector<std::string> colours_of(const std::string& layer) {
+  const std::string prefix = layer.empty() ? "" : layer + ".";
+  return {prefix + "R", prefix + "G", prefix + "B"};
+}
+
+std::vector<std::string> usual_channels(const ExrFile& file) {
+  const std::vector<std::string> names = names_of(file);
+  const auto has = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
+  if (has("R") && has("G") && has("B")) return colours_of("");
+  if (has("Y")) return {"Y"};
+  const std::vector<std::string> layers = coloured_layers(names);
+  if (layers.size() == 1) return colours_of(layers[0]);
+  for (const std::string& layer : layers) {
+    if (last_of(layer) == "Combined") return colours_of(layer);
+  }
+  if (names.size() == 1) return names;
+  refuse(file.name(),
+         "it is not plain which channels are meant; choose them with `channels`, as in "
+         "`channels: \"" +
+             (names.empty() ? "R" : layer_of(names[0]) + ".*") + "\"`; it has " + listed(names));
+}
+
+std::vector<std::string> matching_channels(const ExrFile& file, const std::string& patterns) {
+  const std::vector<std::string> names = names_of(file);
+  std::set<std::string> chosen;
+  for (const std::string& pattern : split_at_commas(patterns)) {
+    bool any = false;
+    for (const std::string& name : names) {
+      if (!matches_pattern(pattern, name)) continue;
+      any = true;
+      chosen.insert(name);
+    }
+    if (any) continue;
+    const std::string near = nearest(pattern, names);
+    refuse(file.name(),
+           "no channel matches `" + pattern + "`; " +
+               (near.empty() ? "it has " + listed(names) : "did you mean `" + near + "`?"));
+  }
+  return {chosen.begin(), chosen.end()};
+}
+
+/// Layers as in the alphabet, the last names by rank.
+void sort_channels(std::vector<std::string>& names) {
+  const auto key = [](const std::string& name) {
+    return std::tuple(layer_of(name), rank_of(name), last_of(name));
+  };
+  std::ranges::sort(names,
+                    [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
+}
+
+std::vector<std::string> components_of(const std::vector<std::string>& names) {
+  const bool one_layer = std::ranges::all_of(
+      names, [&](const std::string& name) { return layer_of(name) == layer_of(names[0]); });
+  if (!one_layer) return names;
+  std::vector<std::string> components;
+  for (const std::string& name : names) components.push_back(last_of(name));
+  return components;
+}
+
+std::string size_text(const ExrWindow& window) {
+  return std::to_string(window.width) + " x " + std::to_string(window.height);
+}
+
+void require_same(const ExrFile& file, const PictureStack& stack) {
+  const ExrWindow window = file.window(stack.channels.names);
+  if (window == stack.window) return;
+  const std::string first = "`" + stack.files[0] + "`";
+  if (window.width == stack.window.width && window.height == stack.window.height) {
+    refuse(file.name(), "its data window lies elsewhere than that of " + first +
+                            ": render all files with one crop window");
+  }
+  refuse(file.name(), "it has " + size_text(window) + " pixels, but " + first + " has " +
+                          size_text(stack.window) + ": render all files at one size");
+}
+
+std::string at_texel(const ImageShape& shape, std::size_t element) {
+  const std::size_t pixel = element / shape.components.size();
+  return "at pixel x " + std::to_string(pixel % shape.width) + ", y " +
+         std::to_string(pixel / shape.width) + " of " +
+         shape.components[element % shape.components.size()];
+}
+
+std::vector<double> read_doubles(const ExrFile& file, const std::vector<std::string>& names,
+                                 const ImageShape& shape) {
+  std::vector<float> texels(shape.pixels() * names.size());
+  file.read(names, texels);
+  const auto bad = std::ranges::find_if(texels, [](float x) { return !(x - x == 0); });
+  if (bad != texels.end()) {
+    refuse(file.name(), "the channels " + listed(names) + " are not finite " +
+                            at_texel(shape, static_cast<std::size_t>(bad - texels.begin())));
+  }
+  return {texels.begin(), texels.end()};
+}
+
+std::vector<std::string> substituted(const std::string& pattern,
+                                     const std::vector<std::string>& by) {
+  const std::size_t star = pattern.find('*');
+  std::vector<std::string> names;
+  for (const std::string& name : by) {
+    names.push_back(
+        star == pattern.npos ? pattern : pattern.substr(0, star) + name + pattern.substr(star + 1));
+  }
+  return names;
+}
+
+bool has_all(const ExrFile& file, const std::vector<std::string>& names) {
+  const std::vector<std::string> there = names_of(file);
+  return std::ranges::all_of(names, [&](const std::string& name) {
+    return std::ranges::find(there, name) != there.end();
+  });
+}
+
+/// Samples of every pixel.
+std::vector<double> read_counts(const ExrFile& file, const MomentChannels& errors,
+                                const ImageShape& shape, double least) {
+  const auto everywhere = [&](double count) { return std::vector<double>(shape.pixels(), count); };
+  const std::string& text = errors.samples;
+  if (text.empty()) {
+    if (const auto count = file.samples_per_pixel()) return everywhere(static_cast<double>(*count));
+    refuse(file.name(),
+           "it does not say of how many samples its means are; give `samples`, a number or the "
+           "name of the channel that counts them");
+  }
+  double number = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+  std::vector<double> counts;
+  if (problem == std::errc{} && end == text.data() + text.size()) {
+    counts = everywhere(number);
+  } else {
+    counts = read_doubles(file, {text},
+                          {.width = shape.width, .height = shape.height, .components = {text}});
+  }
+  const auto few = std::ranges::find_if(counts, [&](double count) { return !(count >= least); });
+  if (few == counts.end()) return counts;
+  refuse(file.name(), "`samples` must be " + std::string(least > 1 ? "2" : "1") +
+                          " or more, and in some pixel is " + std::to_string(*few));
+}
+
+}  // namespace
+
+bool matches_pattern(const std::string& pattern, const std::string& text) {
+  std::size_t p = 0;
+  std::size_t t = 0;
+  std::size_t star = pattern.npos;  // the last one, and where the text went on after it
+  std::size_t after = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      after = t;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+      ++p;
+      ++t;
+    } else if (star != pattern.npos) {
+      p = star + 1;
+      t = ++after;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == pattern.npos;
+}
+
+bool names_pictures(const std::string& file) {
+  std::error_code ignored;
+  const bool there = std::filesystem::exists(file, ignored);
+  return (!there && is_pattern(file)) || file.ends_with(".exr") || is_exr(file);
+}
+
+std::vector<std::string> files_of(const std::string& pattern) {
+  std::error_code ignored;
+  if (std::filesystem::exists(pattern, ignored)) return {pattern};
+  std::vector<std::string> files;
+  glob_t found{};
+  if (glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found) == 0) {
+    files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  }
+  globfree(&found);
+  if (files.empty()) {
+    refuse(pattern, is_pattern(pattern)
+                        ? "no file matches; quote the pattern so that the shell leaves it alone, "
+                          "and see that the folder is right"
+                        : "there is no such file");
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+PictureChannels choose_channels(const ExrFile& file, const std::string& patterns) {
+  PictureChannels channels;
+  if (patterns == "usual") {
+    channels.names = usual_channels(file);
+  } else {
+    channels.names = matching_channels(file, patterns);
+    sort_channels(channels.names);
+  }
+  if (channels.names.empty()) refuse(file.name(), "no channel is chosen");
+  channels.components = components_of(channels.names);
+  return channels;
+}
+
+ImageShape PictureStack::shape(bool independent) const {
+  return {.width = window.width,
+          .height = window.height,
+          .components = channels.components,
+          .independent = independent};
+}
+
+void PictureStack::read(std::size_t index, std::span<float> texels) const {
+  const ExrFile file(files[index]);
+  require_same(file, *this);
+  file.read(channels.names, texels);
+}
+
+PictureStack open_stack(std::vector<std::string> files, const std::string& patterns) {
+  const ExrFile first(files.at(0));
+  PictureStack stack{.files = std::move(files), .channels = choose_channels(first, patterns)};
+  stack.window = first.window(stack.channels.names);
+  for (std::size_t i = 1; i < stack.files.size(); ++i) {
+    require_same(ExrFile(stack.files[i]), stack);
+  }
+  return stack;
+}
+
+ImageShape PictureMoments::shape() const {
+  return {.width = window.width, .height = window.height, .components = channels.components};
+}
+
+MomentChannels usual_moments(const ExrFile& file, const PictureChannels& channels) {
+  if (has_all(file, substituted("Variance.*", channels.names))) return {.variance = "Variance.*"};
+  if (has_all(file, substituted("m2_*", channels.names))) return {.second_moment = "m2_*"};
+  return {};
+}
+
+PictureMoments read_moments(const std::string& name, const std::string& patterns,
+                            const MomentChannels& errors) {
+  const ExrFile file(name);
+  PictureMoments moments{.channels = choose_channels(file, patterns)};
+  moments.window = file.window(moments.channels.names);
+  const ImageShape shape = moments.shape();
+  moments.mean = read_doubles(file, moments.channels.names, shape);
+  if (!errors.any()) return moments;
+  const bool by_variance = !errors.variance.empty();
+  const std::vector<double> counts = read_counts(file, errors, shape, by_variance ? 1 : 2);
+  moments.standard_error = read_doubles(
+      file,
+      substituted(by_variance ? errors.variance : errors.second_moment, moments.channels.names),
+      shape);
+  for (std::size_t i = 0; i < moments.mean.size(); ++i) {
+    double& value = moments.standard_error[i];
+    if (!by_variance) value = std::max(0.0, value - moments.mean[i] * moments.mean[i]);
+    if (value < 0) refuse(name, "the variance is negative " + at_texel(shape, i));
+    const double count = counts[i / shape.components.size()];
+    // A variance is taken about the mean of the same samples, and that of second moments is not yet
+    // made up for it.
+    value = std::sqrt(value / (by_variance ? count : count - 1));
+  }
+  return moments;
+}
+
+}  // namespace assay::recorded

@@ -1,0 +1,108 @@
+// `assay images` on 64 + 64 OpenEXR pictures, beside the bare decoding of the same files by the
+// library on as many threads.
+//   pictures_bench ASSAY [WIDTH HEIGHT]      ASSAY the program; default 480 270
+// The pictures are 32-bit R, G and B, compressed by ZIP, of one law: a ramp with noise.
+
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+
+#include <atomic>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/bench/paired.h"
+#include "tests/estimators/exr.h"
+
+namespace {
+
+using namespace assay;
+
+constexpr std::size_t pictures = 128;
+constexpr int repetitions = 3;
+
+std::string name_of(const std::string& folder, std::size_t i) {
+  return folder + (i < pictures / 2 ? "/a" : "/b") + std::to_string(100 + i) + ".exr";
+}
+
+void write_pictures(const std::string& folder, int width, int height) {
+  std::uint32_t state = 1;
+  for (std::size_t i = 0; i < pictures; ++i) {
+    draws::Picture picture{width, height, {"R", "G", "B"}, {}};
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < 3 * width; ++x) {
+        state = state * 1664525U + 1013904223U;
+        const float u = static_cast<float>(state >> 8) * 0x1p-24F;
+        picture.values.push_back(
+            (0.5F + static_cast<float>(x % width) / static_cast<float>(width)) * (0.8F + 0.4F * u));
+      }
+    }
+    draws::write_exr(name_of(folder, i), picture);
+  }
+}
+
+void decode(const std::string& file) {
+  Imf::InputFile input(file.c_str(), 0);
+  const Imath::Box2i window = input.header().dataWindow();
+  const auto width = static_cast<std::size_t>(window.max.x + 1);
+  std::vector<float> values(3 * width * static_cast<std::size_t>(window.max.y + 1));
+  Imf::FrameBuffer buffer;
+  std::size_t c = 0;
+  for (const char* const channel : {"R", "G", "B"}) {
+    buffer.insert(channel,
+                  Imf::Slice::Make(Imf::FLOAT, values.data() + c++, window, 12, 12 * width));
+  }
+  input.setFrameBuffer(buffer);
+  input.readPixels(window.min.y, window.max.y);
+}
+
+void decode_all(const std::string& folder, unsigned threads) {
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> running;
+  for (unsigned t = 0; t < threads; ++t) {
+    running.emplace_back([&] {
+      for (std::size_t i = next++; i < pictures; i = next++) decode(name_of(folder, i));
+    });
+  }
+  for (std::thread& thread : running) thread.join();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2 && argc != 4) {
+    std::fprintf(stderr, "pictures_bench ASSAY [WIDTH HEIGHT]\n");
+    return 2;
+  }
+  const int width = argc > 2 ? std::atoi(argv[2]) : 480;
+  const int height = argc > 2 ? std::atoi(argv[3]) : 270;
+  const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / "assay_pictures_bench";
+  std::filesystem::create_directories(folder);
+  write_pictures(folder.string(), width, height);
+  const std::string command = std::string(argv[1]) + " images --quiet --candidate '" +
+                              folder.string() + "/a*.exr' --reference '" + folder.string() +
+                              "/b*.exr' --pixels independent --threads " + std::to_string(threads) +
+                              " >/dev/null";
+  std::vector<double> decoding;
+  std::vector<double> testing;
+  int code = 0;
+  for (int i = 0; i < repetitions; ++i) {
+    decoding.push_back(bench::seconds([&] { decode_all(folder.string(), threads); }));
+    testing.push_back(bench::seconds([&] { code = std::system(command.c_str()); }));
+  }
+  std::filesystem::remove_all(folder);
+  const double bare = bench::median(decoding);
+  const double whole = bench::median(testing);
+  std::printf(
+      "64 + 64 pictures of %d x %d, %u threads: decoding %.3f s, assay images %.3f s, %.2f "
+      "times (wait status %d)\n",
+      width, height, threads, bare, whole, whole / bare, code);
+  return code == 0 ? 0 : 1;
+}

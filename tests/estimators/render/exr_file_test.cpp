@@ -1,0 +1,184 @@
+#include "estimators/exr_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "estimators/value.h"
+#include "tests/estimators/exr_kinds.h"
+
+namespace assay {
+namespace {
+
+using namespace assay::draws;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class ExrFiles : public ::testing::Test {
+ protected:
+  ExrFiles() {
+    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("assay_exr_file_") + test->name());
+    std::filesystem::create_directories(folder_);
+    file_ = (folder_ / "picture.exr").string();
+  }
+  ~ExrFiles() override { std::filesystem::remove_all(folder_); }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    const ExrFile file(file_);
+    for (const ExrChannel& channel : file.channels()) names.push_back(channel.name);
+    return names;
+  }
+  std::vector<float> read(const std::vector<std::string>& channels) const {
+    const ExrFile file(file_);
+    const ExrWindow window = file.window(channels);
+    std::vector<float> texels(window.width * window.height * channels.size());
+    file.read(channels, texels);
+    return texels;
+  }
+  // Channels in the order asked for, not that of the file.
+  void expect_read(const Part& part) const {
+    ASSERT_EQ(part.channels.size(), 3u);
+    const std::vector<float> texels = read({part.channels[2], part.channels[0], part.channels[1]});
+    for (int y = 0; y < part.height; ++y) {
+      for (int x = 0; x < part.width; ++x) {
+        const auto at = static_cast<std::size_t>(3 * (y * part.width + x));
+        EXPECT_EQ(texels[at], expected_texel(x, y, 2));
+        EXPECT_EQ(texels[at + 1], expected_texel(x, y, 0));
+        EXPECT_EQ(texels[at + 2], expected_texel(x, y, 1));
+      }
+    }
+  }
+  void expect_refused(const std::string& why, const std::vector<std::string>& channels = {"R"}) {
+    try {
+      read(channels);
+      ADD_FAILURE() << "nothing was refused";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.where().file, file_);
+      EXPECT_THAT(error.message(), HasSubstr(why));
+    }
+  }
+
+  std::filesystem::path folder_;
+  std::string file_;
+};
+
+TEST_F(ExrFiles, ReadsScanLinesOfEveryLosslessCompressionAndBothTypes) {
+  for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT}) {
+    for (const Imf::Compression compression :
+         {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION,
+          Imf::PIZ_COMPRESSION}) {
+      const Part part{.channels = {"R", "G", "B"}, .type = type, .compression = compression};
+      write_scan_lines(file_, part);
+      expect_read(part);
+    }
+  }
+}
+
+TEST_F(ExrFiles, ReadsTilesThatDoNotDivideThePicture) {
+  for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT}) {
+    const Part part{.width = 5, .height = 3, .channels = {"R", "G", "B"}, .type = type};
+    write_tiles(file_, part);
+    expect_read(part);
+  }
+}
+
+TEST_F(ExrFiles, NamesChannelsByTheirPartsUnlessTheyDoSoThemselves) {
+  write_parts(file_, {{.channels = {"R", "G", "B"}, .name = "beauty"},
+                      {.width = 2, .channels = {"albedo.R"}, .type = Imf::HALF, .name = "albedo"}});
+  EXPECT_THAT(names(), ElementsAre("beauty.B", "beauty.G", "beauty.R", "albedo.R"));
+  EXPECT_EQ(read({"beauty.G"})[5], expected_texel(1, 1, 1));
+  EXPECT_EQ(read({"albedo.R"})[3], expected_texel(1, 1, 0));
+  expect_refused("of unequal sizes", {"beauty.R", "albedo.R"});
+}
+
+TEST_F(ExrFiles, ReadsNamesWithSpaces) {
+  write_scan_lines(file_, {.channels = {"ViewLayer.Combined.R", "ViewLayer.Debug Sample Count.X"}});
+  EXPECT_EQ(read({"ViewLayer.Debug Sample Count.X"})[0], expected_texel(0, 0, 1));
+}
+
+TEST_F(ExrFiles, ReadsTheDataWindowWhereverItLies) {
+  write_scan_lines(file_, {.channels = {"R"}, .left = -7});
+  EXPECT_EQ(read({"R"})[6], expected_texel(2, 1, 0));
+  const std::vector<std::string> channels{"R"};
+  EXPECT_EQ(ExrFile(file_).window(channels),
+            (ExrWindow{.left = -7, .top = 0, .width = 4, .height = 3}));
+}
+
+TEST_F(ExrFiles, KnowsTheSamplesThatPbrtWrites) {
+  write_scan_lines(file_, {.channels = {"R"}});
+  EXPECT_EQ(ExrFile(file_).samples_per_pixel(), std::nullopt);
+  write_scan_lines(file_, {.channels = {"R"}, .samples = 64});
+  EXPECT_EQ(ExrFile(file_).samples_per_pixel(), 64u);
+}
+
+TEST_F(ExrFiles, RefusesWhatIsNoPicture) {
+  expect_refused("it does not open: No such file");
+  write_bytes(file_, "1 2 3\n");
+  expect_refused("it is no OpenEXR picture");
+  write_bytes(file_, "");
+  expect_refused("it is no OpenEXR picture");
+  std::filesystem::remove(file_);
+  std::filesystem::create_directory(file_);
+  expect_refused("it is a folder");
+}
+
+TEST_F(ExrFiles, RefusesDeepPixels) {
+  write_deep(file_);
+  expect_refused("deep pixels");
+}
+
+TEST_F(ExrFiles, RefusesAChannelThatIsNotThere) {
+  write_scan_lines(file_, {.channels = {"R", "G"}});
+  expect_refused("there is no channel `Q`; it has `G`, `R`", {"Q"});
+}
+
+// A picture cut anywhere is refused, and nothing else happens.
+TEST_F(ExrFiles, RefusesAPictureCutShortAnywhere) {
+  for (const bool tiled : {false, true}) {
+    const Part part{.width = 40, .height = 40, .channels = {"R", "G", "B"}};
+    tiled ? write_tiles(file_, part) : write_scan_lines(file_, part);
+    const std::string whole = bytes_of(file_);
+    for (std::size_t size = 0; size < whole.size(); size += whole.size() / 37) {
+      write_bytes(file_, whole.substr(0, size));
+      EXPECT_THROW(read({"R", "G", "B"}), InputError) << size;
+    }
+  }
+}
+
+// The data window's last corner is four integers into its attribute: any number may stand there.
+TEST_F(ExrFiles, RefusesAHeaderThatPromisesMoreThanTheFileCanHold) {
+  write_scan_lines(file_, {.channels = {"R"}});
+  std::string bytes = bytes_of(file_);
+  const std::string key = std::string("dataWindow") + '\0' + "box2i" + '\0';
+  const std::size_t box = bytes.find(key) + key.size() + 4;
+  const auto corner = [&](std::uint32_t x, std::uint32_t y) {
+    for (int i = 0; i < 4; ++i) {
+      bytes[box + 8 + static_cast<std::size_t>(i)] = static_cast<char>(x >> (8 * i));
+      bytes[box + 12 + static_cast<std::size_t>(i)] = static_cast<char>(y >> (8 * i));
+    }
+    write_bytes(file_, bytes);
+  };
+  corner(200000000, 2);
+  expect_refused("2^27");
+  corner(20000000, 2);
+  expect_refused("which a file of this size cannot hold");
+  corner(2, 200000000);
+  expect_refused("damaged or cut short");
+  for (const std::uint32_t x : {0U, 1U, 5U, 0x7fffffffU, 0x80000000U, 0xffffffffU}) {
+    for (const std::uint32_t y : {0U, 3U, 200U, 0x3fffffffU, 0x7fffffffU, 0xfffffff0U}) {
+      corner(x, y);
+      // A smaller picture than was written may be read; nothing else may happen.
+      try {
+        EXPECT_LE(read({"R"}).size(), 24U) << x << " " << y;
+      } catch (const InputError&) {
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace assay

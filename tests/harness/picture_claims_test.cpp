@@ -1,0 +1,142 @@
+// Claims about pictures that another program rendered, from files to verdict.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/estimators/exr.h"
+#include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
+#include "tests/philox.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+using ::testing::HasSubstr;
+
+constexpr int width = 16;
+constexpr int height = 12;
+
+// Pictures of R, G, B with mean 1 + x / 16 and a normal error of a tenth of it; in `block` of them
+// 8 x 8 pixels are brighter by a tenth.
+struct Stack {
+  std::string name;
+  std::uint32_t key;
+  bool block = false;
+  int count = 24;
+};
+
+void write_stack(const Workplace& place, const Stack& stack) {
+  tests::Philox random(stack.key);
+  for (int i = 0; i < stack.count; ++i) {
+    draws::Picture picture{width, height, {"R", "G", "B"}, {}};
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const bool brighter = stack.block && x >= 4 && x < 12 && y >= 4;
+        const double mean = (1 + x / 16.0) * (brighter ? 1.1 : 1);
+        for (int c = 0; c < 3; ++c) {
+          picture.values.push_back(static_cast<float>(mean * (1 + 0.1 * random.normal())));
+        }
+      }
+    }
+    draws::write_exr(place.file(fmt::format("{}{:02}.exr", stack.name, i)), picture);
+  }
+}
+
+std::string suite_text(const std::string& reference, const std::string& claim) {
+  return "suite: s\nestimators:\n  a: {plugin: recorded, file: 'a*.exr', pixels: independent}\n"
+         "  b: {plugin: recorded, " +
+         reference + "}\ntests:\n  - claim: " + claim + "\n";
+}
+
+constexpr const char* stack_b = "file: 'b*.exr', pixels: independent";
+
+// False alarm 0.01 at seed 1: the files are the same whatever the seed.
+TEST(PictureClaims, StacksOfOneLawPass) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2, false, 32});
+  const auto record = run_files({place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"))});
+  const reports::Test& test = record.suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_EQ(test.image->replicates, 24u);
+  EXPECT_EQ(test.image->components, (std::vector<std::string>{"R", "G", "B"}));
+  EXPECT_FALSE(test.maps.empty());
+}
+
+TEST(PictureClaims, ADefectIsFoundWhereItIs) {
+  const Workplace place;
+  write_stack(place, {"a", 1, true});
+  write_stack(place, {"b", 2});
+  const auto record = run_files({place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"))});
+  const reports::Test& test = record.suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::fail) << test.message;
+  EXPECT_THAT(test.message, HasSubstr("columns 4-11, rows 4-11"));
+}
+
+TEST(PictureClaims, AReferenceIsHeldAgainstWithItsError) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  draws::Picture reference{
+      width, height, {"R", "G", "B", "Variance.R", "Variance.G", "Variance.B"}, {}};
+  for (int i = 0; i < width * height; ++i) {
+    const float mean = 1 + static_cast<float>(i % width) / 16;
+    // Off by two of its standard errors everywhere: 100 samples of variance mean^2.
+    for (int c = 0; c < 3; ++c) reference.values.push_back(1.2F * mean);
+    for (int c = 0; c < 3; ++c) reference.values.push_back(mean * mean);
+  }
+  draws::write_exr(place.file("ref.exr"), reference);
+  const auto verdict = [&](const std::string& how) {
+    return run_files(
+               {place.write("s.yaml", suite_text("file: ref.exr" + how, "mean(a) == mean(b)"))})
+        .suites[0]
+        .tests[0]
+        .verdict;
+  };
+  EXPECT_EQ(verdict(", exact: true"), Verdict::fail);
+  // Of an error a hundred times as large nothing can be said: it is within.
+  EXPECT_EQ(verdict(", variance: Variance.*, samples: 1"), Verdict::pass);
+}
+
+TEST(PictureClaims, ATexelThatIsNotFiniteIsAnErrorWithItsFileAndPixel) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2});
+  draws::Picture bad{width, height, {"R", "G", "B"}, std::vector<float>(3 * width * height, 1)};
+  bad.values[3 * (5 * width + 7) + 1] = std::numeric_limits<float>::infinity();
+  draws::write_exr(place.file("a07.exr"), bad);
+  const auto record = run_files({place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"))});
+  const reports::Test& test = record.suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::error);
+  EXPECT_THAT(test.message, HasSubstr("at pixel x7y5.G"));
+  EXPECT_THAT(test.message, HasSubstr("a07.exr"));
+}
+
+TEST(PictureClaims, ADamagedFileStopsTheRunWithItsName) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2});
+  const std::string file = place.file("b11.exr");
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 40);
+  const std::string suite = place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"));
+  EXPECT_THAT(refusal([&] { run_files({suite}); }), HasSubstr("damaged or cut short"));
+}
+
+TEST(PictureClaims, AReferenceStandsOnTheRightOfAMeanAlone) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  const auto refused = [&](const std::string& claim) {
+    const std::string suite =
+        place.write("s.yaml", suite_text("file: a00.exr, exact: true", claim));
+    return refusal([&] { run_files({suite}); });
+  };
+  EXPECT_THAT(refused("mean(b) == mean(a)"), HasSubstr("`b` is a reference"));
+  EXPECT_THAT(refused("total_variance(a) <= total_variance(b)"), HasSubstr("is a reference"));
+  EXPECT_THAT(refused("mean(a.R) == mean(b)"), HasSubstr("only what is of one size"));
+}
+
+}  // namespace
+}  // namespace assay::harness
