@@ -278,8 +278,9 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const std::uint64_t needed = enough_for_log_variance(question, channels, x);
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
-  if (plan.invalid.empty() && needed > (fixed ? size : std::max(size, most_for_a_variance))) {
-    note_too_few(plan, fixed ? size : std::max(size, most_for_a_variance), needed);
+  const std::uint64_t affordable = fixed ? size : std::max(size, most_for_a_variance);
+  if (plan.invalid.empty() && needed > affordable) {
+    note_too_few(plan, affordable, needed);
     plan.invalid = too_few(question, needed);
   }
   return std::min(needed, fixed ? size : most_for_a_variance);

@@ -127,8 +127,7 @@ class Chart {
 
 }  // namespace
 
-std::string kill_chart(const Suite& suite) {
-  const KillMatrix matrix = kill_matrix(suite);
+std::string kill_chart(const Suite& suite, const KillMatrix& matrix) {
   return is_worth_showing(matrix) ? Chart(suite, matrix).draw() : std::string();
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/kill_matrix.h"
 #include "reports/record.h"
 
 namespace assay::reports {
@@ -23,7 +24,7 @@ inline constexpr std::size_t most_in_matrix = 40;
 
 /// Mutants against methods (reports/kill_matrix.h): cells shaded by the samples that killed the
 /// mutant, a step a decade, each with its text; empty where no mutant was tested by two methods.
-std::string kill_chart(const Suite& suite);
+std::string kill_chart(const Suite& suite, const KillMatrix& matrix);
 
 /// A test's effect against none, `allow` and `detect`: one interval a channel, the first 40. A
 /// logarithm of a ratio is drawn as the ratio.

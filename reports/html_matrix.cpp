@@ -46,7 +46,7 @@ std::string kill_section(const Record& record, std::size_t index) {
       "<details class=\"more\"><summary>The same in words, with the "
       "defects</summary>\n{}</details>\n",
       words(kill_totals(suite, matrix)), escape_xml(kill_matrix_legend),
-      figure(kill_chart(suite), ""), table(suite, index, matrix));
+      figure(kill_chart(suite, matrix), ""), table(suite, index, matrix));
 }
 
 }  // namespace assay::reports

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "stats/check.h"
+#include "stats/golden_section.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
@@ -44,21 +45,10 @@ struct Difference {
   }
 };
 
-// Golden sections (Kiefer 1953) until neither end moves.
 double largest_log_p(const Difference& difference) {
-  constexpr double section = 1 / std::numbers::phi;
-  double low = std::max(0.0, (difference.size - difference.reach) / difference.error);
-  double high = difference.size / difference.error;
-  double best = std::max(difference.log_p(low), difference.log_p(high));
-  while (true) {
-    const double left = high - section * (high - low);
-    const double right = low + section * (high - low);
-    if (!(low < left && left < right && right < high)) return best;
-    const double at_left = difference.log_p(left);
-    const double at_right = difference.log_p(right);
-    best = std::max({best, at_left, at_right});
-    (at_left < at_right ? low : high) = at_left < at_right ? left : right;
-  }
+  const double least = std::max(0.0, (difference.size - difference.reach) / difference.error);
+  const auto log_p = [&](double errors) { return difference.log_p(errors); };
+  return golden_section(log_p, least, difference.size / difference.error).largest;
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "stats/check.h"
+#include "stats/golden_section.h"
 #include "stats/special.h"
 #include "stats/tails.h"
 
@@ -117,29 +119,12 @@ double scale_at(const UpperIntegrand& f, double u) {
 // Near enough for where to begin: within a tenth of what the integrand varies over. It is
 // log-concave, and its maximum may lie beyond `high` where it still rises there.
 double maximise(const UpperIntegrand& f, double low, double high) {
-  constexpr double golden = 0.38196601125010515;
   const double rising = 0.1 / std::sqrt(f.parameters.degrees);
   while (f(high) > f(high - rising)) high += high - low;
-  double left = low + golden * (high - low);
-  double right = high - golden * (high - low);
-  double at_left = f(left);
-  double at_right = f(right);
-  while (high - low > 0.1 * scale_at(f, low)) {
-    if (at_left < at_right) {
-      low = left;
-      left = right;
-      at_left = at_right;
-      right = high - golden * (high - low);
-      at_right = f(right);
-    } else {
-      high = right;
-      right = left;
-      at_right = at_left;
-      left = low + golden * (high - low);
-      at_left = f(left);
-    }
-  }
-  return (low + high) / 2;
+  const GoldenSection about = golden_section(f, low, high, rising);
+  const GoldenSection left =
+      golden_section(f, about.low, about.high, 0.1 * scale_at(f, about.high));
+  return std::midpoint(left.low, left.high);
 }
 
 double support_edge(const UpperIntegrand& f, double centre, double direction) {

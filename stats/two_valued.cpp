@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stats/check.h"
+#include "stats/golden_section.h"
 #include "stats/special.h"
 #include "stats/tails.h"
 
@@ -74,40 +75,13 @@ struct LogProduct {
   }
 };
 
-// The largest value of a concave function on [first, last], by golden sections. A point missed by
-// 1e-9 of the line is missed by second order.
-template <class Function>
-double maximum(const Function& f, double first, double last) {
-  constexpr double ratio = 0.6180339887498949;
-  double left = last - ratio * (last - first);
-  double right = first + ratio * (last - first);
-  double at_left = f(left);
-  double at_right = f(right);
-  double best = std::max({f(first), f(last), at_left, at_right});
-  for (int step = 0; step < 90 && first < left && right < last; ++step) {
-    if (at_left < at_right) {
-      first = left;
-      left = right;
-      at_left = at_right;
-      right = first + ratio * (last - first);
-      at_right = f(right);
-    } else {
-      last = right;
-      right = left;
-      at_right = at_left;
-      left = last - ratio * (last - first);
-      at_left = f(left);
-    }
-    best = std::max({best, at_left, at_right});
-  }
-  return best;
-}
-
 // ln p of "E x - scale E y >= offset", small when x has few high values and y many.
 double log_p_lower(const TwoValued& x, const TwoValued& y, Contrast null_value) {
   const NullLine line = null_line(x, y, null_value);
   if (line.empty()) return line.start > 0 ? special::lowest_log() : 0;
-  const double log_w = maximum(LogProduct{x.high, y.high, line}, line.first, line.last);
+  // Concave on the line; a maximum missed by 1e-9 of it is missed by second order.
+  const double log_w =
+      golden_section(LogProduct{x.high, y.high, line}, line.first, line.last).largest;
   return special::clamp_log(log_w + std::log1p(-log_w));
 }
 

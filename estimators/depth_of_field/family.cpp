@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "estimators/mutant_information.h"
+
 namespace assay::depth_of_field {
 
 ParameterInformation scene_parameter(const char* fallback) {
@@ -53,11 +55,9 @@ Channel radiance_channel(const SceneDescription& scene, const Moments& moments, 
 Information mutant_information(std::string name, const Information& original, std::string defect) {
   Information out = original;
   out.name = std::move(name);
-  out.summary = original.name + " that " + defect;
-  out.description = "The estimator " + original.name + " with one defect: it " + defect;
   out.original = original.name;
   out.defect = std::move(defect);
-  return out;
+  return assay::mutant_information(std::move(out));
 }
 
 }  // namespace assay::depth_of_field

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimators/flow.h"
+#include "estimators/value_checks.h"
 #include "luminaire/scene_description.h"
 
 namespace assay::depth_of_field {
@@ -13,29 +14,11 @@ namespace {
 using luminaire::require_keys;
 using luminaire::required_key;
 
-double finite(const Value& value, const std::string& what) {
-  const double number = value.number(what);
-  if (!std::isfinite(number)) throw InputError(value.where(), what + " must be finite");
-  return number;
-}
-
-double positive(const Value& value, const std::string& what) {
-  const double number = finite(value, what);
-  if (!(number > 0)) throw InputError(value.where(), what + " must be above 0");
-  return number;
-}
-
-double at_least_zero(const Value& value, const std::string& what) {
-  const double number = finite(value, what);
-  if (number < 0) throw InputError(value.where(), what + " must not be negative");
-  return number;
-}
-
 Interval interval(const Value& value, const std::string& what) {
   if (value.kind() != Value::Kind::list || value.items().size() != 2) {
     throw InputError(value.where(), what + " must be a list of two numbers, low and high");
   }
-  const Interval out{finite(value.items()[0], what), finite(value.items()[1], what)};
+  const Interval out{finite_number(value.items()[0], what), finite_number(value.items()[1], what)};
   if (!(out.low < out.high)) {
     throw InputError(value.where(), what + " must ascend: nothing lies between its ends");
   }
@@ -44,8 +27,8 @@ Interval interval(const Value& value, const std::string& what) {
 
 Lens lens(const Value& value) {
   require_keys(value, "the lens", {"radius", "focus"});
-  return {positive(required_key(value, "the lens", "radius"), "the lens's radius"),
-          positive(required_key(value, "the lens", "focus"), "the lens's focus")};
+  return {above_zero(required_key(value, "the lens", "radius"), "the lens's radius"),
+          above_zero(required_key(value, "the lens", "focus"), "the lens's focus")};
 }
 
 Texture texture(const Value& value) {
@@ -65,15 +48,15 @@ Texture texture(const Value& value) {
                      "a plane's amplitude must not exceed its radiance, or the radiance would be "
                      "negative in its troughs");
   }
-  out.frequency = 2 * std::numbers::pi / positive(*wavelength, "a plane's wavelength");
-  if (phase) out.phase = finite(*phase, "a plane's phase");
+  out.frequency = 2 * std::numbers::pi / above_zero(*wavelength, "a plane's wavelength");
+  if (phase) out.phase = finite_number(*phase, "a plane's phase");
   return out;
 }
 
 Plane plane(const Value& value) {
   require_keys(value, "a plane",
                {"depth", "x", "y", "radiance", "amplitude", "wavelength", "phase"});
-  return {.depth = positive(required_key(value, "a plane", "depth"), "a plane's depth"),
+  return {.depth = above_zero(required_key(value, "a plane", "depth"), "a plane's depth"),
           .x = interval(required_key(value, "a plane", "x"), "a plane's x"),
           .y = interval(required_key(value, "a plane", "y"), "a plane's y"),
           .texture = texture(value)};

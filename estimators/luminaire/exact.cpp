@@ -99,14 +99,10 @@ class SquaredGeometry {
   bool converged() const { return converged_; }
 
  private:
-  using Corners = std::array<Vector3, 3>;
+  using Corners = render::Corners;
 
   double refined(const Corners& t, double coarse, int depth) {
-    const Vector3 ab = 0.5 * (t[0] + t[1]);
-    const Vector3 bc = 0.5 * (t[1] + t[2]);
-    const Vector3 ca = 0.5 * (t[2] + t[0]);
-    const std::array<Corners, 4> parts = {
-        {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}}};
+    const std::array<Corners, 4> parts = render::quartered(t);
     std::array<double, 4> values{};
     std::ranges::transform(parts, values.begin(), [&](const Corners& p) { return quadrature(p); });
     const double fine = values[0] + values[1] + values[2] + values[3];

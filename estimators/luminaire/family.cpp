@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "estimators/mutant_information.h"
+
 namespace assay::luminaire {
 
 namespace {
@@ -34,11 +36,10 @@ Information information(std::string name, std::string summary, std::string descr
 }
 
 Information mutant_information(std::string name, std::string original, std::string defect) {
-  Information out = information(std::move(name), original + " that " + defect,
-                                "The estimator " + original + " with one defect: " + defect);
-  out.original = std::move(original);
-  out.defect = std::move(defect);
-  return out;
+  return assay::mutant_information({.name = std::move(name),
+                                    .parameters = {scene_parameter},
+                                    .original = std::move(original),
+                                    .defect = std::move(defect)});
 }
 
 SharedSetting read_setting(Parameters& parameters) {

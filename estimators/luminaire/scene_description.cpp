@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "estimators/value_checks.h"
+
 namespace assay::luminaire {
 
 namespace {
@@ -31,12 +33,6 @@ const Value& required(const Value& value, const std::string& what, const char* k
   return required_key(value, what, key);
 }
 
-double finite_number(const Value& value, const std::string& what) {
-  const double number = value.number(what);
-  if (!std::isfinite(number)) throw InputError(value.where(), what + " must be finite");
-  return number;
-}
-
 Vector3 vector(const Value& value, const std::string& what) {
   if (value.kind() != Value::Kind::list || value.items().size() != 3) {
     throw InputError(value.where(), what + " must be a list of three numbers");
@@ -51,12 +47,6 @@ Vector3 unit_vector(const Value& value, const std::string& what) {
   const double scale = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (scale == 0) throw InputError(value.where(), what + " must not be the zero vector");
   return render::normalised(v / scale);
-}
-
-double at_least_zero(const Value& value, const std::string& what) {
-  const double number = finite_number(value, what);
-  if (number < 0) throw InputError(value.where(), what + " must not be negative");
-  return number;
 }
 
 Polygon polygon(const Value& value, const std::string& what) {

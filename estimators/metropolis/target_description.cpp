@@ -1,9 +1,9 @@
 #include "metropolis/target_description.h"
 
-#include <cmath>
 #include <utility>
 
 #include "estimators/flow.h"
+#include "estimators/value_checks.h"
 #include "luminaire/scene_description.h"
 #include "metropolis/product_target.h"
 #include "metropolis/sphere_target.h"
@@ -14,24 +14,6 @@ namespace {
 
 using luminaire::require_keys;
 using luminaire::required_key;
-
-double finite(const Value& value, const std::string& what) {
-  const double number = value.number(what);
-  if (!std::isfinite(number)) throw InputError(value.where(), what + " must be finite");
-  return number;
-}
-
-double at_least_zero(const Value& value, const std::string& what) {
-  const double number = finite(value, what);
-  if (number < 0) throw InputError(value.where(), what + " must not be negative");
-  return number;
-}
-
-double above_zero(const Value& value, const std::string& what) {
-  const double number = finite(value, what);
-  if (!(number > 0)) throw InputError(value.where(), what + " must be above 0");
-  return number;
-}
 
 std::size_t dimensions_of(const Value& value) {
   const std::uint64_t count = value.count("`dimensions`");
@@ -44,14 +26,14 @@ std::size_t dimensions_of(const Value& value) {
 /// A number for all coordinates, or a list with one for each.
 std::vector<double> centre_of(const Value& value, std::size_t dimensions) {
   if (value.kind() != Value::Kind::list) {
-    return std::vector<double>(dimensions, finite(value, "a lobe's centre"));
+    return std::vector<double>(dimensions, finite_number(value, "a lobe's centre"));
   }
   if (value.items().size() != dimensions) {
     throw InputError(value.where(), "a lobe's centre must have a number for each of the " +
                                         std::to_string(dimensions) + " dimensions");
   }
   std::vector<double> centre;
-  for (const Value& item : value.items()) centre.push_back(finite(item, "a lobe's centre"));
+  for (const Value& item : value.items()) centre.push_back(finite_number(item, "a lobe's centre"));
   return centre;
 }
 

@@ -9,6 +9,7 @@
 #include "correlated/area_pairs.h"
 #include "correlated/parameters.h"
 #include "correlated/sky_pairs.h"
+#include "estimators/mutant_information.h"
 
 namespace assay::plugins {
 
@@ -126,12 +127,10 @@ Entry grey_integral() {
       "J) in each, nothing under a grey sky.";
   std::vector<ParameterInformation> parameters = sky_pair_parameters();
   parameters.push_back(lambda_parameter());
-  return {{.name = "mutants/control_grey_integral",
-           .summary = "correlated/sky that " + defect,
-           .description = "The estimator correlated/sky with one defect: " + defect,
-           .parameters = parameters,
-           .original = "correlated/sky",
-           .defect = defect},
+  return {mutant_information({.name = "mutants/control_grey_integral",
+                              .parameters = parameters,
+                              .original = "correlated/sky",
+                              .defect = defect}),
           [](Parameters& given) {
             return fixed(std::make_shared<GreyIntegral>(read_sky_pairs(given)),
                          given.number("lambda"));
@@ -219,24 +218,18 @@ std::vector<ParameterInformation> with_scene(std::vector<ParameterInformation> m
   return all;
 }
 
-Information described(std::string name, std::string original, std::string defect) {
-  return {.name = std::move(name),
-          .summary = original + " that " + defect,
-          .description = "The estimator " + original + " with one defect: " + defect,
-          .original = original,
-          .defect = defect};
-}
-
 Entry fixed_mutant(const char* name, const char* defect,
                    std::function<std::shared_ptr<const Setup>(Parameters&)> prepare) {
-  Information information = described(name, "correlated/area", defect);
+  Information information =
+      mutant_information({.name = name, .original = "correlated/area", .defect = defect});
   information.parameters = with_scene({lambda_parameter()});
   return {std::move(information), std::move(prepare)};
 }
 
 Entry rule_mutant(const char* name, const char* original, const char* defect,
                   std::function<std::shared_ptr<const Setup>(Parameters&)> prepare) {
-  Information information = described(name, original, defect);
+  Information information =
+      mutant_information({.name = name, .original = original, .defect = defect});
   information.parameters = with_scene(rule_parameters());
   information.averages = false;
   return {std::move(information), std::move(prepare)};

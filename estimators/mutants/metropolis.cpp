@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimators/mutant_information.h"
 #include "metropolis/parameters.h"
 
 namespace assay::plugins {
@@ -173,13 +174,11 @@ Defect bookkeeping() {
 
 Entry mutant(const std::string& original, const char* name, const std::string& defect,
              Defect apply) {
-  return {{.name = std::string("mutants/metropolis_") + name,
-           .summary = original + " that " + defect,
-           .description = "The estimator " + original + " with one defect: " + defect,
-           .parameters = chain_parameters(),
-           .averages = false,
-           .original = original,
-           .defect = defect},
+  return {mutant_information({.name = std::string("mutants/metropolis_") + name,
+                              .parameters = chain_parameters(),
+                              .averages = false,
+                              .original = original,
+                              .defect = defect}),
           [original, apply = std::move(apply)](Parameters& given) {
             const Ingredients parts = read_ingredients(given);
             std::shared_ptr<const Rules> sound = std::make_shared<MeanValueRules>();

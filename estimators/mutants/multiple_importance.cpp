@@ -11,6 +11,7 @@
 
 #include "direct_light/family.h"
 #include "direct_light/samplers.h"
+#include "estimators/mutant_information.h"
 
 namespace assay::plugins {
 
@@ -166,12 +167,10 @@ using Prepare = std::shared_ptr<const Setup> (*)(Parameters&);
 Entry mutant(const std::string& original, std::vector<ParameterInformation> more,
              const Described& described, Prepare prepare) {
   more.push_back(heuristic_parameter());
-  return {{.name = "mutants/" + described.name,
-           .summary = original + " that " + described.defect,
-           .description = "The estimator " + original + " with one defect: " + described.defect,
-           .parameters = parameters_with(std::move(more)),
-           .original = original,
-           .defect = described.defect},
+  return {mutant_information({.name = "mutants/" + described.name,
+                              .parameters = parameters_with(std::move(more)),
+                              .original = original,
+                              .defect = described.defect}),
           prepare};
 }
 

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "estimators/mutant_information.h"
+
 namespace assay::plugins {
 
 namespace {
@@ -40,17 +42,14 @@ struct DenominatorLeftOut {
 
 template <class Draw, class Combine>
 Entry mutant(const char* name, const char* original, const char* defect) {
-  return {
-      {.name = std::string("mutants/") + name,
-       .summary = std::string(original) + " that " + defect,
-       .description = std::string("The estimator ") + original + " with one defect: it " + defect,
-       .bias = BiasClass::inverse_primaries,
-       .averages = false,
-       .original = original,
-       .defect = defect},
-      [](Parameters&) {
-        return std::make_shared<RatioSetup<Draw, Combine>>(Channel{.mean = integral()});
-      }};
+  return {mutant_information({.name = std::string("mutants/") + name,
+                              .bias = BiasClass::inverse_primaries,
+                              .averages = false,
+                              .original = original,
+                              .defect = defect}),
+          [](Parameters&) {
+            return std::make_shared<RatioSetup<Draw, Combine>>(Channel{.mean = integral()});
+          }};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "estimators/mutant_information.h"
 #include "paths/roulette_setup.h"
 
 namespace assay::plugins {
@@ -147,12 +148,10 @@ Information information(const Kind& kind, const Defect& defect) {
   std::vector<ParameterInformation> parameters = improved_parameters();
   // The classical roulette knows no terminal value.
   if (original == classical.original) parameters.resize(3);
-  return {.name = "mutants/" + defect.name,
-          .summary = original + " that " + defect.what,
-          .description = "The estimator " + original + " with one defect: it " + defect.what,
-          .parameters = std::move(parameters),
-          .original = original,
-          .defect = defect.what};
+  return mutant_information({.name = "mutants/" + defect.name,
+                             .parameters = std::move(parameters),
+                             .original = original,
+                             .defect = defect.what});
 }
 
 // `broken` makes a trace from a shared world, a sound roulette and how light is learnt of.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "estimators/mutant_information.h"
 #include "luminaire/setting.h"
 #include "sky/estimator.h"
 #include "steerable/directions.h"
@@ -215,14 +216,10 @@ std::shared_ptr<const Setup> redrawn(const Parts& parts) {
 
 Entry mutant(const char* name, const char* defect,
              std::function<std::shared_ptr<const Setup>(const Parts&)> of) {
-  const std::string original = "steerable/sky";
-  Information information{
-      .name = name,
-      .summary = original + " that " + defect,
-      .description = "The estimator " + original + " with one defect: " + defect,
-      .parameters = sky::parameters(),
-      .original = original,
-      .defect = defect};
+  Information information = mutant_information({.name = name,
+                                                .parameters = sky::parameters(),
+                                                .original = "steerable/sky",
+                                                .defect = defect});
   for (ParameterInformation& p : steerable::parameters()) {
     information.parameters.push_back(std::move(p));
   }
@@ -240,12 +237,10 @@ Entry triangle_mutant() {
   const std::string defect =
       "takes T with s b for 2 s b, so that the second coordinate does not reach the far side.";
   return {
-      {.name = "mutants/triangle_transcribed",
-       .summary = "steerable/triangle that " + defect,
-       .description = "The estimator steerable/triangle with one defect: " + defect,
-       .parameters = triangle_parameters(),
-       .original = "steerable/triangle",
-       .defect = defect},
+      mutant_information({.name = "mutants/triangle_transcribed",
+                          .parameters = triangle_parameters(),
+                          .original = "steerable/triangle",
+                          .defect = defect}),
       [](Parameters& given) { return triangle_setup<Transcribed>(read_weights(given), false); }};
 }
 

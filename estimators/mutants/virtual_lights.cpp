@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "estimators/mutant_information.h"
 #include "virtual_lights/family.h"
 
 namespace assay::plugins {
@@ -58,12 +59,8 @@ struct ClampedDistance : Classic {
 // Entries.
 
 Information described(const char* name, const char* original, const char* defect) {
-  return {
-      .name = std::string("mutants/") + name,
-      .summary = std::string(original) + " that " + defect,
-      .description = std::string("The estimator ") + original + " with one defect: it " + defect,
-      .original = original,
-      .defect = defect};
+  return mutant_information(
+      {.name = std::string("mutants/") + name, .original = original, .defect = defect});
 }
 
 Information of_weighted(const char* name, const char* defect) {

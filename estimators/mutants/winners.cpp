@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimators/mutant_information.h"
 #include "paths/winners_setup.h"
 
 namespace assay::plugins {
@@ -98,12 +99,10 @@ struct Defect {
 };
 
 Information information(const Defect& defect) {
-  return {.name = "mutants/" + defect.name,
-          .summary = "paths/winners that " + defect.what,
-          .description = "The estimator paths/winners with one defect: it " + defect.what,
-          .parameters = winners_parameters(),
-          .original = "paths/winners",
-          .defect = defect.what};
+  return mutant_information({.name = "mutants/" + defect.name,
+                             .parameters = winners_parameters(),
+                             .original = "paths/winners",
+                             .defect = defect.what});
 }
 
 template <class Broken>

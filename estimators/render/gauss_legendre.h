@@ -101,7 +101,7 @@ class TriangleQuadrature {
     std::array<std::size_t, N> group{};
   };
 
-  TriangleQuadrature(const F& f, const Plan& plan) : f_(f), plan_(plan) {}
+  TriangleQuadrature(F f, const Plan& plan) : f_(std::move(f)), plan_(plan) {}
 
   void add(const Corners& triangle) {
     push({triangle, {detail::over_triangle<N>(f_, triangle), {}}, 0});
@@ -170,7 +170,7 @@ class TriangleQuadrature {
     return true;
   }
 
-  const F& f_;
+  F f_;
   Plan plan_;
   Integrals<N> total_;
   std::priority_queue<Patch> patches_;

@@ -182,14 +182,14 @@ TEST(KillMatrix, ReportsShowItOnlyWhereAMutantWasTestedByTwoMethods) {
   EXPECT_EQ(html(record_of(not_shown)).find(heading), std::string::npos);
   EXPECT_EQ(markdown(record_of(not_shown)).find(heading), std::string::npos);
   EXPECT_EQ(console(record_of(not_shown)).find("mutants are killed"), std::string::npos);
-  EXPECT_TRUE(kill_chart(not_shown).empty());
+  EXPECT_TRUE(kill_chart(not_shown, kill_matrix(not_shown)).empty());
 }
 
 TEST(KillMatrix, ThePictureIsPalerWhereMoreSamplesWereNeeded) {
   Suite suite = two_methods();
   const auto style = [&](std::uint64_t secondaries) {
     suite.tests[0].samples[0].secondaries = secondaries;
-    const std::string chart = kill_chart(suite);
+    const std::string chart = kill_chart(suite, kill_matrix(suite));
     return chart.substr(chart.find("<rect class=\"") + 13, 7);
   };
   EXPECT_EQ(style(15), "kill k0");     // 960

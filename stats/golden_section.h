@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+
+namespace assay::stats {
+
+// Internal. The largest value of f seen on [low, high], and what is left of the interval.
+struct GoldenSection {
+  double low = 0;
+  double high = 0;
+  double largest = 0;
+};
+
+// Of a function with one maximum on [low, high], its ends included, by golden sections (Kiefer
+// 1953), until at most `width` is left or no point between the ends is; 90 sections leave 1e-19.
+template <class Function>
+GoldenSection golden_section(const Function& f, double low, double high, double width = 0) {
+  constexpr double ratio = 0.6180339887498949;
+  double left = high - ratio * (high - low);
+  double right = low + ratio * (high - low);
+  double at_left = f(left);
+  double at_right = f(right);
+  double largest = std::max({f(low), f(high), at_left, at_right});
+  for (int step = 0; step < 90 && high - low > width && low < left && right < high; ++step) {
+    if (at_left < at_right) {
+      low = left;
+      left = right;
+      at_left = at_right;
+      right = low + ratio * (high - low);
+      at_right = f(right);
+    } else {
+      high = right;
+      right = left;
+      at_right = at_left;
+      left = high - ratio * (high - low);
+      at_left = f(left);
+    }
+    largest = std::max({largest, at_left, at_right});
+  }
+  return {low, high, largest};
+}
+
+}  // namespace assay::stats
