@@ -130,8 +130,10 @@ TEST(Statements, StandFirstInHtmlAndMarkdown) {
 TEST(Statements, AreNotMentionedWhereThereAreNone) {
   Record record = example_record();
   for (Suite& suite : record.suites) suite.statements.clear();
-  for (const std::string& report : {html(record), markdown(record), console(record)})
-    EXPECT_EQ(report.find("tatements"), std::string::npos);
+  for (const std::string& report : {html(record), markdown(record), console(record)}) {
+    EXPECT_EQ(report.find("Statements"), std::string::npos);
+    EXPECT_EQ(report.find("contradicted"), std::string::npos);
+  }
 }
 
 TEST(Statements, AreReadBackAndAnsweredAgainFromTheVerdicts) {
