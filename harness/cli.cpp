@@ -251,6 +251,11 @@ Command report_command(const Given& given, const CLI::App& sub) {
   return ReportCommand{given.record, output(given)};
 }
 
+Command merge_command(const Given& given, const CLI::App& sub) {
+  require(given.records.empty() ? "" : given.records[0], "the records of all shards", sub);
+  return MergeCommand{{given.records}, output(given)};
+}
+
 Command describe_command(const Given& given, const CLI::App& sub) {
   require(given.plugin, "a plugin", sub);
   return DescribeCommand{given.plugin};
@@ -266,6 +271,7 @@ Command command_of(const Given& given, const CLI::App& sub) {
   if (name == "list") return list_command(given, sub);
   if (name == "describe") return describe_command(given, sub);
   if (name == "replay") return replay_command(given, sub);
+  if (name == "merge") return merge_command(given, sub);
   return report_command(given, sub);
 }
 

@@ -8,6 +8,7 @@
 
 #include "harness/calibrate.h"
 #include "harness/commands.h"
+#include "harness/merge.h"
 #include "harness/shell.h"
 
 namespace assay::harness {
@@ -51,14 +52,19 @@ struct ReportCommand {
   Output output;
 };
 
+struct MergeCommand {
+  MergeArguments arguments;
+  Output output;
+};
+
 /// --help, --version: text for standard output.
 struct TextCommand {
   std::string text;
 };
 
-using Command =
-    std::variant<RunCommand, PlanCommand, CheckCommand, SampleArguments, ListCommand,
-                 DescribeCommand, ReplayArguments, ReportCommand, CalibrateCommand, TextCommand>;
+using Command = std::variant<RunCommand, PlanCommand, CheckCommand, SampleArguments, ListCommand,
+                             DescribeCommand, ReplayArguments, ReportCommand, MergeCommand,
+                             CalibrateCommand, TextCommand>;
 
 /// Parses the arguments after the program's name. InputError, with what was meant where that can be
 /// guessed, for anything that is not exactly as `--help` says.

@@ -22,6 +22,7 @@ Commands (each has its own --help, with examples and defaults):
   list      list plugins, or the tests of suites
   describe  print the manual of a plugin
   replay    draw the numbers of a recorded test again
+  merge     join the records of shards to that of one run
   report    make reports from a saved run
   help      this text, or that of a command: `assay help run`
 
@@ -34,7 +35,7 @@ Exit codes:
   1    at least one did not: it failed, was invalid or could not be tested; or the ledger alarms
   2    a mistake in what was asked for, or trouble
   3    none of these, but at least one is inconclusive
-  4    no test ran: --filter or --shard selected none
+  4    no test ran: --filter or --shard selected none (0 where the environment asked for a shard)
   77   all tests were skipped
   130  interrupted
 )";
@@ -51,6 +52,7 @@ Examples:
   assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
   assay run suites/luminaire.yaml --coarsen 4      a quick look: four times coarser effects
   assay run suites/luminaire.yaml --seed random --ledger nightly.ledger      every night
+  assay run suites/luminaire.yaml --shard 2/4 --report json=2.json      a part, for `assay merge`
 )"},
       {"plan",
        R"(Prints what a run of suites would do: of each test its method, sample sizes, expected cost and the
@@ -101,6 +103,15 @@ Examples:
 Examples:
   assay replay run.json 'luminaire/mean(triangle_area) == analytic'
   assay replay run.json 'luminaire/mean(triangle_area) == analytic' 17
+)"},
+      {"merge",
+       R"(Joins the records of all shards of a run, in any order, to the record of the whole, with Holm's
+adjustment over each suite, and reports it. Nothing is sampled.
+
+Examples:
+  assay run suites/luminaire.yaml --shard 1/2 --report json=1.json
+  assay run suites/luminaire.yaml --shard 2/2 --report json=2.json
+  assay merge 1.json 2.json --report json=run.json --report html=run.html
 )"},
       {"report", R"(Makes reports from a saved run; nothing is sampled.
 

@@ -45,10 +45,14 @@ void add_sampling(CLI::App* sub, Given& given, const Running& about) {
   sub->add_flag("--quiet", given.quiet, "no progress on standard error; default shown");
 }
 
-void add_running(CLI::App* sub, Given& given, const Running& about) {
-  add_sampling(sub, given, about);
+void add_inconclusive(CLI::App* sub, Given& given) {
   one(sub, "--inconclusive", given.inconclusive, "fail|pass",
       "count undecided tests as failed or as passed; default neither: exit code 3");
+}
+
+void add_running(CLI::App* sub, Given& given, const Running& about) {
+  add_sampling(sub, given, about);
+  add_inconclusive(sub, given);
   add_output(sub, given);
 }
 
@@ -89,7 +93,9 @@ void define_plan(CLI::App& app, Given& given) {
 void define_run(CLI::App& app, Given& given) {
   CLI::App* sub = subcommand(app, "run");
   add_suites(sub, given);
-  one(sub, "--shard", given.shard, "I/N", "only the I-th of N parts of the tests; default 1/1");
+  one(sub, "--shard", given.shard, "I/N",
+      "only the I-th of N parts of the tests, each on its fixed share of alpha, for `assay merge`; "
+      "default all, or what GTEST_TOTAL_SHARDS or TEST_TOTAL_SHARDS says");
   one(sub, "--ledger", given.ledger, "FILE",
       "add the run's evidence to a file of nights with fresh seeds and alarm at what they say "
       "together; default none");
@@ -163,6 +169,12 @@ void define_others(CLI::App& app, Given& given) {
       ->add_option("OBSERVATION", given.observation,
                    "one observation alone, from 0; default the whole test")
       ->type_name("");
+
+  CLI::App* merge = subcommand(app, "merge");
+  merge->add_option("SHARD.json", given.records, "the records of all shards, in any order")
+      ->type_name("");
+  add_inconclusive(merge, given);
+  add_output(merge, given);
 
   CLI::App* report = subcommand(app, "report");
   report->add_option("RUN.json", given.record, "a saved run")->type_name("");

@@ -90,15 +90,14 @@ void write_reports(const Output& output, const ReportWriter& written) {
   fmt::print("{}", to_stdout);
 }
 
-namespace {
-
-/// Maps are written beside the JSON report, which names them.
 void write_reports(reports::Record record, const Output& output) {
   write_reports(output, [&](const ReportRequest& request, bool colour) {
     if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
     return written(record, request.kind, colour);
   });
 }
+
+namespace {
 
 /// Says so where the filter matches no test.
 bool selects_nothing(const std::vector<Suite>& suites, const RunOptions& options) {
@@ -143,7 +142,8 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Record record = run(suites, options, *progress);
   write_reports(record, output);
-  return exit_code(record, output.inconclusive);
+  const int code = exit_code(record, output.inconclusive);
+  return code == nothing_ran && options.shard_of_runner ? 0 : code;
 }
 
 int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet) {

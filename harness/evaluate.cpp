@@ -313,20 +313,17 @@ std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
 }
 
 /// That of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
-double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel) {
+double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel,
+                           bool refuted) {
   const ErrorShare share = outcome.share();
-  if (outcome.verdict != Verdict::fail && channel.regions.has_forbidden()) {
+  if (!refuted && channel.regions.has_forbidden()) {
     return 1 - 2 * share.beta;
   }
   const bool two_tails = channel.regions.two_sided() && !channel.evidence.distance;
   return 1 - (two_tails ? 1 : 2) * share.alpha;
 }
 
-}  // namespace
-
-reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const Evidence& evidence = channel.evidence;
-  const double confidence = deciding_confidence(outcome, channel);
+reports::Effect effect_at(const Evidence& evidence, double confidence) {
   const stats::Interval interval = evidence.interval(confidence);
   const auto number = [](double value) {
     return std::isfinite(value) ? reports::Number(value) : reports::Number();
@@ -337,6 +334,17 @@ reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& chan
           .high = number(interval.high),
           .confidence = confidence,
           .relative = evidence.relative};
+}
+
+}  // namespace
+
+reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const bool refuted = outcome.verdict == Verdict::fail;
+  return effect_at(channel.evidence, deciding_confidence(outcome, channel, refuted));
+}
+
+reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return effect_at(channel.evidence, deciding_confidence(outcome, channel, true));
 }
 
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {

@@ -29,6 +29,8 @@ void take_look(TestWork& work, bool may_go_on = true);
 /// a pass that excludes the forbidden region does so by the ends of the interval at 1 - 2 beta, one
 /// test at beta to each side; what is still undecided is shown by that interval too.
 reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel);
+/// The same, should the claim be refuted.
+reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutcome& channel);
 
 /// The data a channel of the test is judged by.
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel);

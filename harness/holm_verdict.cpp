@@ -9,43 +9,76 @@ namespace assay::harness {
 
 using reports::Verdict;
 
-void apply_holm(const std::vector<TestWork*>& suite, double alpha) {
+namespace {
+
+void refute(TestOutcome& outcome, std::size_t by) {
+  outcome.verdict = Verdict::fail;
+  for (ChannelOutcome& channel : outcome.channels) channel.effect = effect_of(outcome, channel);
+  const ChannelOutcome& channel = outcome.channels[by];
+  outcome.message =
+      narrate_holm({.effect = channel.effect,
+                    .channel = outcome.question.channel_count() > 1 ? channel.name : "",
+                    .log_p = channel.decision.log_p_claimed,
+                    .log_p_adjusted = channel.log_p_adjusted});
+}
+
+void take_over(const FamilyMember& member, TestOutcome& outcome, double alpha) {
+  for (std::size_t i = 0; i < outcome.channels.size(); ++i) {
+    ChannelOutcome& channel = outcome.channels[i];
+    channel.log_p_adjusted = member.log_p_adjusted[i];
+    if (member.tested() && channel.log_p_adjusted <= std::log(alpha)) {
+      channel.decision.rejected = true;
+    }
+  }
+  if (member.refuted_by) refute(outcome, *member.refuted_by);
+}
+
+}  // namespace
+
+void decide_family(std::vector<FamilyMember>& family, double alpha) {
   std::vector<stats::WeightedLogP> entries;
-  std::vector<ChannelOutcome*> owners;
-  std::vector<TestOutcome*> tests;
-  for (TestWork* work : suite) {
-    TestOutcome& outcome = work->outcome;
-    if (!outcome.place.inside) continue;
-    const bool counted = outcome.verdict != Verdict::invalid && outcome.verdict != Verdict::error;
-    const std::size_t untested = outcome.question.channel_count() - outcome.channels.size();
-    for (ChannelOutcome& channel : outcome.channels) {
-      entries.push_back({.log_p = counted ? channel.decision.log_p_claimed : stats::untested_log_p,
-                         .weight = outcome.place.weight});
-      owners.push_back(&channel);
-      tests.push_back(&outcome);
+  for (const FamilyMember& member : family) {
+    for (const double log_p : member.log_p) {
+      entries.push_back(
+          {.log_p = member.tested() ? log_p : stats::untested_log_p, .weight = member.weight});
     }
-    for (std::size_t i = 0; i < untested; ++i) {
-      entries.push_back({.log_p = stats::untested_log_p, .weight = outcome.place.weight});
-      owners.push_back(nullptr);
-      tests.push_back(&outcome);
-    }
+    entries.insert(entries.end(), member.untested,
+                   {.log_p = stats::untested_log_p, .weight = member.weight});
   }
   if (entries.empty()) return;
-  const std::vector<double> adjusted = stats::weighted_holm(entries);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (owners[i] == nullptr) continue;
-    owners[i]->log_p_adjusted = adjusted[i];
-    const Verdict verdict = tests[i]->verdict;
-    const bool judged = verdict != Verdict::invalid && verdict != Verdict::error;
-    if (!judged || adjusted[i] > std::log(alpha)) continue;
-    owners[i]->decision.rejected = true;
-    if (verdict == Verdict::fail) continue;
-    tests[i]->verdict = Verdict::fail;
-    for (ChannelOutcome& channel : tests[i]->channels) {
-      channel.effect = effect_of(*tests[i], channel);
+  auto adjusted = stats::weighted_holm(entries);
+  auto next = adjusted.cbegin();
+  for (FamilyMember& member : family) {
+    const auto end = next + static_cast<std::ptrdiff_t>(member.log_p.size());
+    member.log_p_adjusted.assign(next, end);
+    next = end + static_cast<std::ptrdiff_t>(member.untested);
+    if (!member.tested() || member.verdict == Verdict::fail) continue;
+    for (std::size_t i = member.log_p.size(); i-- > 0;) {
+      if (member.log_p_adjusted[i] <= std::log(alpha)) member.refuted_by = i;
     }
-    tests[i]->message = narrate_holm(*tests[i], *owners[i]);
   }
+}
+
+FamilyMember member_of(const TestOutcome& outcome) {
+  FamilyMember member{.verdict = outcome.verdict,
+                      .weight = outcome.place.weight,
+                      .untested = outcome.question.channel_count() - outcome.channels.size()};
+  for (const ChannelOutcome& channel : outcome.channels) {
+    member.log_p.push_back(channel.decision.log_p_claimed);
+  }
+  return member;
+}
+
+void apply_holm(const std::vector<TestWork*>& suite, double alpha) {
+  std::vector<FamilyMember> family;
+  std::vector<TestOutcome*> outcomes;
+  for (TestWork* work : suite) {
+    if (!work->outcome.place.inside) continue;
+    family.push_back(member_of(work->outcome));
+    outcomes.push_back(&work->outcome);
+  }
+  decide_family(family, alpha);
+  for (std::size_t i = 0; i < family.size(); ++i) take_over(family[i], *outcomes[i], alpha);
 }
 
 }  // namespace assay::harness

@@ -28,10 +28,11 @@ std::string plain(std::string text) {
 }
 
 /// "difference from the reference is +0.31 % [+0.12 %, +0.5 %] (99 % interval)".
-std::string finding(const ChannelOutcome& channel) {
-  return fmt::format("{} is {}", reports::effect_name(channel.effect),
-                     reports::named_effect_text(channel.effect));
+std::string finding(const reports::Effect& effect) {
+  return fmt::format("{} is {}", reports::effect_name(effect), reports::named_effect_text(effect));
 }
+
+std::string finding(const ChannelOutcome& channel) { return finding(channel.effect); }
 
 std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return outcome.question.channel_count() > 1 ? " in channel " + channel.name : "";
@@ -213,12 +214,12 @@ std::string told(const TestOutcome& outcome) {
 
 }  // namespace
 
-std::string narrate_holm(const TestOutcome& outcome, const ChannelOutcome& channel) {
+std::string narrate_holm(const HolmFinding& found) {
   return plain(fmt::format(
       "{}{}, {} and after Holm {}: refuted by the share of alpha that the suite's other "
       "refuted claims leave to it, not by its own, which the interval is for",
-      finding(channel), in_channel(outcome, channel), p_text(channel.decision.log_p_claimed),
-      p_text(channel.log_p_adjusted)));
+      finding(found.effect), found.channel.empty() ? "" : " in channel " + found.channel,
+      p_text(found.log_p), p_text(found.log_p_adjusted)));
 }
 
 std::string narrate(const TestOutcome& outcome) {

@@ -10,7 +10,15 @@ namespace assay::harness {
 /// what could have been missed, or how many more samples would decide.
 std::string narrate(const TestOutcome& outcome);
 
-/// The same of a claim that only Holm's adjustment over the suite refutes, by this channel.
-std::string narrate_holm(const TestOutcome& outcome, const ChannelOutcome& channel);
+/// What Holm's adjustment over the suite alone refutes a claim by.
+struct HolmFinding {
+  const reports::Effect& effect;
+  std::string channel = "";  ///< "": the claim has no other
+  double log_p = 0;
+  double log_p_adjusted = 0;
+};
+
+/// The same of a claim that only Holm's adjustment over the suite refutes.
+std::string narrate_holm(const HolmFinding& found);
 
 }  // namespace assay::harness

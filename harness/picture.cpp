@@ -1,22 +1,17 @@
 #include "harness/picture.h"
 
+#include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "harness/image_record.h"
-#include "stats/holm.h"
 #include "stats/log_variance.h"
 #include "stats/student_t.h"
-#include "stats/welch_t.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Estimate;
 using reports::Number;
-
-// More pairs than this are no picture any more.
-constexpr std::size_t most_estimators = 40;
 
 Number number(double value) { return std::isfinite(value) ? Number(value) : Number(); }
 
@@ -34,10 +29,6 @@ const char* bias_name(BiasClass bias) {
       break;
   }
   return "reconstruction";
-}
-
-const Summary& summary_of(const Picture& picture) {
-  return picture.pool->prefix(picture.pool->largest_prefix());
 }
 
 double per_primary(const Picture& picture) {
@@ -65,7 +56,9 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
           number(primaries * std::exp(log.high))};
 }
 
-reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
+reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run) {
+  const std::uint64_t count = shown_by(picture, run);
+  const double confidence = 1 - run.suite.alpha;
   const Information& information = picture.estimator->entry->information;
   reports::EstimatorSummary row{
       .name = picture.estimator->name,
@@ -76,11 +69,11 @@ reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
       .original = information.original,
       .defect = information.defect,
       .primaries = picture.pool->primaries(),
-      .secondaries = picture.pool->largest_prefix(),
+      .secondaries = count,
       .confidence = confidence,
       .variance_of = information.averages ? "primary" : "secondary"};
-  if (!picture.pool->trouble().empty()) return row;
-  const Summary& summary = summary_of(picture);
+  if (!picture.pool->has(count)) return row;
+  const Summary& summary = picture.pool->prefix(count);
   row.cost = cost_of(summary);
   if (picture.pool->setup()->image()) {
     row.channels.push_back(
@@ -103,77 +96,6 @@ reports::EstimatorSummary summarise(const Picture& picture, double confidence) {
   return row;
 }
 
-using Pair = std::pair<std::string, std::string>;
-
-std::set<Pair> compared_by_claims(const SuiteRun& run) {
-  std::set<Pair> pairs;
-  for (const TestWork& work : run.tests) {
-    const std::vector<Subject>& subjects = work.outcome.question.subjects;
-    if (subjects.size() == 2) {
-      pairs.insert(std::minmax(subjects[0].estimator->name, subjects[1].estimator->name));
-    }
-  }
-  return pairs;
-}
-
-/// Estimators of one quantity, as far as can be told.
-bool comparable(const Picture& first, const Picture& second, const std::set<Pair>& claimed) {
-  if (claimed.contains(std::minmax(first.estimator->name, second.estimator->name))) return true;
-  const std::vector<Channel> mine = first.pool->setup()->channels();
-  const std::vector<Channel> theirs = second.pool->setup()->channels();
-  if (mine.size() != theirs.size()) return false;
-  for (std::size_t i = 0; i < mine.size(); ++i) {
-    if (mine[i].name != theirs[i].name || !mine[i].mean || !theirs[i].mean) return false;
-    // Closed forms of one number reached in two ways differ in their last digits.
-    const double scale = std::max(std::abs(*mine[i].mean), std::abs(*theirs[i].mean));
-    if (std::abs(*mine[i].mean - *theirs[i].mean) > 1e-9 * scale) return false;
-  }
-  return true;
-}
-
-struct ComparedPair {
-  reports::Comparison row;
-  double log_mean_p = 0;
-  double log_variance_p = 0;
-};
-
-ComparedPair compare(const Picture& first, const Picture& second, std::size_t channel) {
-  const stats::Moments& x = summary_of(first).channels[channel].moments;
-  const stats::Moments& y = summary_of(second).channels[channel].moments;
-  ComparedPair pair{.row = {.first = first.estimator->name,
-                            .second = second.estimator->name,
-                            .channel = first.pool->setup()->channels()[channel].name}};
-  if (!has_spread(x) || !has_spread(y)) return pair;
-  const double null = per_primary(second) / per_primary(first);
-  pair.log_mean_p = stats::log_p_two_sided(stats::welch_t(x, y, {}));
-  pair.log_variance_p = stats::log_p_two_sided(stats::log_variance_ratio(x, y, null));
-  pair.row.mean_p = std::exp(pair.log_mean_p);
-  pair.row.variance_p = std::exp(pair.log_variance_p);
-  pair.row.log10_mean_p = pair.log_mean_p / std::log(10.0);
-  pair.row.log10_variance_p = pair.log_variance_p / std::log(10.0);
-  pair.row.variance_ratio = number(x.variance() / y.variance() / null);
-  return pair;
-}
-
-/// Holm over all means and all variances compared.
-void mark_differences(std::vector<ComparedPair>& pairs, double alpha) {
-  std::vector<double> log_p;
-  for (const ComparedPair& pair : pairs) {
-    log_p.push_back(pair.log_mean_p);
-    log_p.push_back(pair.log_variance_p);
-  }
-  const std::vector<double> adjusted = stats::holm(log_p);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    pairs[i].row.means_differ = adjusted[2 * i] <= std::log(alpha);
-    pairs[i].row.variances_differ = adjusted[2 * i + 1] <= std::log(alpha);
-  }
-}
-
-bool drawn(const Picture& picture) { return picture.pool->trouble().empty(); }
-
-/// Images are compared by claims, not pixel by pixel.
-bool is_image(const Picture& picture) { return picture.pool->setup()->image().has_value(); }
-
 }  // namespace
 
 reports::Cost cost_of(const Summary& summary) {
@@ -184,27 +106,50 @@ reports::Cost cost_of(const Summary& summary) {
           .seconds = summary.seconds};
 }
 
-void add_pictures(const SuiteRun& run, reports::Suite& suite) {
-  for (const Picture& picture : run.pictures) {
-    suite.estimators.push_back(summarise(picture, 1 - run.suite.alpha));
-  }
-  if (run.pictures.size() > most_estimators) return;
-  const std::set<Pair> claimed = compared_by_claims(run);
-  std::vector<ComparedPair> pairs;
-  for (std::size_t i = 0; i < run.pictures.size(); ++i) {
-    for (std::size_t j = i + 1; j < run.pictures.size(); ++j) {
-      const Picture& first = run.pictures[i];
-      const Picture& second = run.pictures[j];
-      if (is_image(first) || is_image(second)) continue;
-      if (!drawn(first) || !drawn(second) || !comparable(first, second, claimed)) continue;
-      const std::size_t channels =
-          std::min(first.pool->setup()->channels().size(), second.pool->setup()->channels().size());
-      for (std::size_t c = 0; c < channels; ++c) pairs.push_back(compare(first, second, c));
+std::uint64_t shown_by(const Picture& picture, const SuiteRun& run) {
+  if (picture.own) return *picture.own;
+  std::uint64_t most = 0;
+  for (const TestWork& work : run.tests) {
+    const std::vector<Subject>& subjects = work.outcome.question.subjects;
+    for (std::size_t i = 0; i < work.pools.size(); ++i) {
+      const bool its =
+          work.pools[i] == picture.pool && subjects[i].estimator->name == picture.estimator->name;
+      if (its) most = std::max(most, work.outcome.secondaries());
     }
   }
-  if (pairs.empty()) return;
-  mark_differences(pairs, run.suite.alpha);
-  for (ComparedPair& pair : pairs) suite.comparisons.push_back(std::move(pair.row));
+  return most;
+}
+
+Pictured pictured(const Picture& picture, const SuiteRun& run) {
+  const std::uint64_t count = shown_by(picture, run);
+  const bool image = picture.pool->setup()->image().has_value();
+  Pictured result{.name = picture.estimator->name,
+                  .drawn = picture.pool->has(count),
+                  .image = image,
+                  .averaged = per_primary(picture)};
+  if (image || !result.drawn) return result;
+  const Summary& summary = picture.pool->prefix(count);
+  const std::vector<Channel> channels = picture.pool->setup()->channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    result.channels.push_back({channels[i].name, channels[i].mean, summary.channels[i].moments});
+  }
+  return result;
+}
+
+std::vector<std::string> compared_by(const Question& question) {
+  if (question.subjects.size() != 2) return {};
+  return {question.subjects[0].estimator->name, question.subjects[1].estimator->name};
+}
+
+void add_pictures(const SuiteRun& run, reports::Suite& suite) {
+  std::vector<Pictured> all;
+  for (const Picture& picture : run.pictures) {
+    suite.estimators.push_back(summarise(picture, run));
+    all.push_back(pictured(picture, run));
+  }
+  std::vector<std::vector<std::string>> claimed;
+  for (const TestWork& work : run.tests) claimed.push_back(compared_by(work.outcome.question));
+  suite.comparisons = comparisons(all, claimed, run.suite.alpha);
 }
 
 }  // namespace assay::harness

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "harness/recorded_run.h"
 #include "harness/scheduler.h"
 #include "stats/image.h"
 
@@ -45,6 +46,17 @@ std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
   return pool;
 }
 
+/// Moments that means of so many primaries would have these of.
+stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
+  const double n = static_cast<double>(primaries);
+  const double excess = means.m2 > 0 ? n * (means.kurtosis() - 3) : 0;
+  const double values = static_cast<double>(means.count);
+  means.m3 *= n * n;
+  means.m2 *= n;
+  means.m4 = (excess + 3) * means.m2 * means.m2 / values;
+  return means;
+}
+
 Pilot read(const Pool& pool) {
   Pilot pilot{.channels = {},
               .primaries = pool.primaries(),
@@ -53,8 +65,11 @@ Pilot read(const Pool& pool) {
               .trouble = pool.trouble()};
   if (!pilot.trouble.empty()) return pilot;
   const std::vector<ChannelSummary>& channels = pool.prefix(pool.requested()).channels;
+  const RecordedRun* run = as_recorded_run(*pool.setup());
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    pilot.channels.push_back(channels[i].moments);
+    const bool averaged = run != nullptr && run->entry().information.averages;
+    pilot.channels.push_back(averaged ? of_primaries(channels[i].moments, run->primaries())
+                                      : channels[i].moments);
     pilot.with_cost.push_back(channels[i].with_cost);
     const std::span<const double> kept = pool.values(i, pool.requested());
     if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());

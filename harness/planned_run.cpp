@@ -17,9 +17,13 @@ namespace {
 constexpr std::uint64_t picture_secondaries = 1000;
 constexpr std::uint64_t picture_primaries = 64;
 
+bool passes_filter(const TestEntry& test, const RunOptions& options) {
+  return options.filter.empty() || matches(options.filter, test.id);
+}
+
 bool selected(const TestEntry& test, std::size_t index, const RunOptions& options) {
   if (options.shard && index % options.shard->second != options.shard->first - 1) return false;
-  return options.filter.empty() || matches(options.filter, test.id);
+  return passes_filter(test, options);
 }
 
 /// The suite's primaries are split over its tests by weight, whichever of them run: what a test may
@@ -53,21 +57,34 @@ Suite adjusted(Suite suite, const RunOptions& options) {
   return suite;
 }
 
+bool is_about(const Question& question, const std::string& estimator) {
+  return std::any_of(question.subjects.begin(), question.subjects.end(),
+                     [&](const Subject& s) { return s.estimator->listed == estimator; });
+}
+
+/// Whether estimators that no test is about are drawn too, for the picture of the whole suite: of
+/// the shards the first does.
+bool draws_idle(const std::vector<Question>& questions, const RunOptions& options) {
+  if (options.shard && options.shard->first != 1) return false;
+  return std::all_of(questions.begin(), questions.end(),
+                     [&](const Question& q) { return passes_filter(*q.test, options); });
+}
+
 /// Estimators that a set of questions is about, in the suite's order.
 std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& questions,
-                                              const std::vector<bool>& chosen,
-                                              const SuiteRun& run) {
+                                              const std::vector<bool>& chosen, const SuiteRun& run,
+                                              const RunOptions& options) {
   std::vector<const PreparedEstimator*> used;
-  const bool all = std::all_of(chosen.begin(), chosen.end(), [](bool c) { return c; });
+  const bool with_idle = draws_idle(questions, options);
   for (const EstimatorEntry& entry : run.suite.estimators) {
-    const PreparedEstimator& estimator = run.estimators.at(entry.name);
-    bool wanted = all;
+    bool idle = true;
+    bool wanted = false;
     for (std::size_t i = 0; i < questions.size(); ++i) {
-      for (const Subject& subject : questions[i].subjects) {
-        wanted = wanted || (chosen[i] && subject.estimator->listed == estimator.name);
-      }
+      if (!is_about(questions[i], entry.name)) continue;
+      idle = false;
+      wanted = wanted || chosen[i];
     }
-    if (wanted) used.push_back(&estimator);
+    if (wanted || (idle && with_idle)) used.push_back(&run.estimators.at(entry.name));
   }
   return used;
 }
@@ -116,12 +133,14 @@ void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& us
                                                                             : picture_primaries;
     const auto pool =
         pools.for_picture(*estimator, estimator->primaries.value_or(automatic), run.seed, pilots);
-    if (!pool->is_marked()) {
+    Picture picture{estimator, pool};
+    if (shown_by(picture, run) == 0) {
       const bool image = estimator->setup->image().has_value();
-      pool->request(estimator->setup->observations().value_or(image ? stats::least_replicates
-                                                                    : picture_secondaries));
+      picture.own = estimator->setup->observations().value_or(image ? stats::least_replicates
+                                                                    : picture_secondaries);
+      pool->request(*picture.own);
     }
-    run.pictures.push_back({estimator, pool});
+    run.pictures.push_back(picture);
   }
 }
 
@@ -134,7 +153,7 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   }
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
   const std::vector<FamilyPlace> place = places(run.suite, questions);
-  const auto used = used_by(questions, chosen, run);
+  const auto used = used_by(questions, chosen, run, options);
   run.pilots = run_pilots(with_sweeps(used, questions, chosen),
                           {.seed = run.seed,
                            .threads = options.threads,

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "harness/group_variance.h"
+#include "harness/recorded_run.h"
 
 namespace assay::harness {
 namespace {
@@ -43,6 +44,11 @@ std::uint64_t primaries_of(const Setup& setup, std::uint64_t primaries) {
   return image ? primaries * image->elements() : primaries;
 }
 
+const Summary* ready_made(const Setup& setup) {
+  const RecordedRun* run = as_recorded_run(setup);
+  return run == nullptr ? nullptr : &run->summary();
+}
+
 ObservationCost difference(const Cost& after, const Cost& before) {
   return {static_cast<double>(after.rays() - before.rays()),
           static_cast<double>(after.samples - before.samples)};
@@ -59,6 +65,7 @@ FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
 Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries)
     : setup_(std::move(setup)),
+      ready_made_(ready_made(*setup_)),
       key_(key),
       primaries_(primaries),
       block_size_(block_size_of(primaries_of(*setup_, primaries))),
@@ -71,17 +78,21 @@ void Pool::mark(std::uint64_t count) {
 
 void Pool::request(std::uint64_t count) {
   mark(count);
-  requested_ = std::max(requested_, count);
+  if (!is_ready_made()) requested_ = std::max(requested_, count);
 }
 
-const Summary& Pool::prefix(std::uint64_t count) const { return prefixes_.at(count); }
+const Summary& Pool::prefix(std::uint64_t count) const {
+  return is_ready_made() ? *ready_made_ : prefixes_.at(count);
+}
 
 std::uint64_t Pool::largest_prefix() const {
+  if (is_ready_made()) return ready_made_->count;
   const auto beyond = prefixes_.upper_bound(drawn());
   return beyond == prefixes_.begin() ? 0 : std::prev(beyond)->first;
 }
 
 std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
+  if (is_ready_made()) return {};
   const std::vector<double>& kept = values_.at(channel);
   return {kept.data(), std::min<std::size_t>(kept.size(), count)};
 }

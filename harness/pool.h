@@ -107,9 +107,12 @@ class Pool {
   /// Takes the next block, in order.
   void fold(Block&& block);
   std::uint64_t drawn() const { return running_.count; }
+  /// Moments of an earlier run: nothing is drawn, and every prefix is the whole.
+  bool is_ready_made() const { return ready_made_ != nullptr; }
 
  private:
   std::shared_ptr<const Setup> setup_;
+  const Summary* ready_made_;  ///< of `setup_`
   StreamKey key_;
   std::uint64_t primaries_;
   std::uint64_t block_size_;

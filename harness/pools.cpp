@@ -62,6 +62,7 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
                                         const Pilots& pilots) {
   std::vector<ChannelPlan> plan;
   const std::vector<Channel> channels = pool.setup()->channels();
+  if (pool.is_ready_made()) return std::vector<ChannelPlan>(channels.size());
   if (const auto rows = pool.setup()->observations()) {
     for (const Range& range : data_ranges(*pool.setup(), *rows)) {
       plan.push_back(with_histogram(range));

@@ -5,12 +5,16 @@
 #include <filesystem>
 
 #include "estimators/catalogue.h"
+#include "harness/recorded_run.h"
 
 namespace assay::harness {
 namespace {
 
 std::shared_ptr<const Setup> set_up(const Entry& entry, Parameters& parameters) {
-  std::shared_ptr<const Setup> setup = entry.prepare(parameters);
+  const bool of_run = entry.information.name == "recorded" && parameters.given("run");
+  std::shared_ptr<const Setup> setup =
+      of_run ? std::shared_ptr<const Setup>(read_recorded_run(parameters))
+             : entry.prepare(parameters);
   parameters.require_all_read();
   return setup;
 }
@@ -22,6 +26,17 @@ Value only(const Value& given, const std::vector<std::string>& names) {
     if (std::find(names.begin(), names.end(), member.first) != names.end()) kept.push_back(member);
   }
   return Value::map(std::move(kept), given.where());
+}
+
+/// Of moments of an earlier run the primaries are the run's.
+void use_recorded_run(const RecordedRun& run, PreparedEstimator& prepared) {
+  if (prepared.primaries.value_or(run.primaries()) != run.primaries()) {
+    throw InputError(prepared.where, fmt::format("the moments of `{}` are of {} primaries each: "
+                                                 "leave `primaries` out",
+                                                 prepared.name, run.primaries()));
+  }
+  prepared.primaries = run.primaries();
+  prepared.entry = &run.entry();
 }
 
 }  // namespace
@@ -49,7 +64,9 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
                              .original = nullptr,
                              .where = entry.where,
                              .given = entry.parameters};
-  if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
+  if (const RecordedRun* run = as_recorded_run(*prepared.setup)) {
+    use_recorded_run(*run, prepared);
+  } else if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
     throw InputError(
         entry.where,
         fmt::format("`{}` has its observations ready made: leave `primaries` out", entry.plugin));

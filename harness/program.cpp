@@ -10,6 +10,7 @@
 #include "harness/cli.h"
 #include "harness/failure.h"
 #include "harness/interrupt.h"
+#include "harness/shard_environment.h"
 
 namespace assay::harness {
 
@@ -36,7 +37,9 @@ std::vector<Suite> load(const std::vector<std::string>& files) {
 int act(const RunCommand& command) {
   std::vector<Suite> suites = load(command.suites);
   for (const std::string& text : command.assignments) set_parameter(suites, text);
-  return run_suites(suites, command.options, command.output);
+  RunOptions options = command.options;
+  take_shard_from(system_environment, options);
+  return run_suites(suites, options, command.output);
 }
 
 int act(const PlanCommand& command) {
@@ -60,6 +63,8 @@ int act(const DescribeCommand& command) { return describe(command.plugin); }
 int act(const ReplayArguments& arguments) { return replay(arguments); }
 
 int act(const ReportCommand& command) { return report_saved_run(command.file, command.output); }
+
+int act(const MergeCommand& command) { return merge_shards(command.arguments, command.output); }
 
 int act(const CalibrateCommand& command) { return calibrate(command.arguments, command.output); }
 

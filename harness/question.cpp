@@ -6,6 +6,7 @@
 
 #include "harness/question_claims.h"
 #include "harness/question_image.h"
+#include "harness/recorded_run.h"
 
 namespace assay::harness {
 namespace {
@@ -43,6 +44,8 @@ void require_pairs(const Question& question, const Claim& claim) {
 
 /// Rows of one file belong together: two columns of it are no independent samples.
 void require_different_data(const Question& question, const Claim& claim) {
+  // Two estimators of one run have streams of their own (`separate_pair`).
+  if (as_recorded_run(*question.subjects[0].setup) != nullptr) return;
   const std::string first = question.subjects[0].setup->data_file();
   const auto same = [&](const Subject& other) { return other.setup->data_file() == first; };
   if (first.empty() ||
@@ -61,7 +64,7 @@ bool separate_pair(Subject& first, Subject& second, const Claim& claim, std::uin
   if (!(stream_of(first, seed) == stream_of(second, seed))) return false;
   if (first.setup->data_stream() && second.setup->data_stream()) {
     throw InputError(claim.left.where,
-                     "both files say that they were drawn from the same stream: they are not "
+                     "both sides say that they were drawn from the same stream: they are not "
                      "independent; draw one of them with another `--seed`");
   }
   ++(second.setup->data_stream() ? first : second).copy;
@@ -244,6 +247,7 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
     require_different_data(question, test.claim);
     separate_streams(question, test.claim, seed);
   }
+  require_moments_suffice(question);
   check_margins(question);
   check_sizes(question);
   return question;

@@ -13,6 +13,7 @@
 #include "harness/pools.h"
 #include "harness/quantiles.h"
 #include "harness/question_image.h"
+#include "harness/shard_record.h"
 #include "harness/shell.h"
 
 namespace assay::harness {
@@ -21,13 +22,6 @@ namespace {
 using reports::Number;
 
 Number number(double value) { return std::isfinite(value) ? Number(value) : Number(); }
-
-/// The probability of a natural logarithm; the least double stands for what underflows.
-Number probability(double log_p) {
-  return std::max(std::exp(log_p), std::numeric_limits<double>::denorm_min());
-}
-
-Number log10_of(double log_p) { return log_p / std::log(10.0); }
 
 reports::Verdict expected_verdict(Expectation expect) {
   switch (expect) {
@@ -64,10 +58,20 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
                          .parameters = side.estimator->parameters,
                          .channel = side.setup->channels()[index].name,
                          .primaries = work.outcome.plan.primaries[subject],
-                         .secondaries = count};
+                         .secondaries = summary.count};
   sample.nonzero = moments.nonzero;
   sample.nonfinite = kept.nonfinite;
   sample.cost = cost_of(summary);
+  // Another test on the same observations may have kept them: a record must not tell.
+  const bool costs = work.outcome.plan.method.keeps == Keeps::costs;
+  for (std::size_t i = 0; costs && i < kept.with_cost.size(); ++i) {
+    const stats::JointMoments& joint = kept.with_cost[i];
+    sample.with_cost.push_back({.kind = i == rays_cost ? "rays" : "samples",
+                                .mean = joint.cost.mean,
+                                .m2 = joint.cost.m2,
+                                .m11 = joint.m11,
+                                .m21 = joint.m21});
+  }
   // The number of a cell is a name: it has no mean.
   if (!kept.cells.empty()) return sample;
   if (moments.count > 0) {
@@ -81,7 +85,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
     sample.kurtosis = number(moments.kurtosis());
   }
   sample.histogram = histogram_of(kept.histogram);
-  if (spread) {
+  if (spread && !work.pools[subject]->is_ready_made()) {
     sample.quantiles =
         quantile_points(work.pools[subject]->values(index, std::min(count, plotted_values)));
   }
@@ -216,6 +220,12 @@ std::string id_filter(const std::string& id) { return " --filter " + shell_quote
 
 }  // namespace
 
+Number probability(double log_p) {
+  return std::max(std::exp(log_p), std::numeric_limits<double>::denorm_min());
+}
+
+Number log10_of(double log_p) { return log_p / std::log(10.0); }
+
 reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm) {
   const TestOutcome& outcome = work.outcome;
   const TestEntry& entry = *outcome.question.test;
@@ -283,11 +293,8 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
     add_pictures(*run, suite);
     record.suites.push_back(std::move(suite));
   }
-  if (!whole) {
-    record.note =
-        "not every test of the suites ran: verdicts rest on each test's fixed share of "
-        "alpha, without Holm's adjustment";
-  }
+  if (!whole) record.note = partial_note;
+  if (options.shard) add_shard(runs, options, record);
   return record;
 }
 

@@ -18,6 +18,8 @@ namespace assay::harness {
 struct Picture {
   const PreparedEstimator* estimator;
   std::shared_ptr<Pool> pool;
+  /// Observations drawn for the picture alone; nullopt: it shows those of the suite's tests.
+  std::optional<std::uint64_t> own = {};
 };
 
 /// A suite in a run: what it says, what was prepared from it, what came out.
@@ -31,11 +33,24 @@ struct SuiteRun {
   bool holm = false;  ///< the whole family ran
 };
 
+/// The number of observations that a picture shows: those of the test that drew most of them. It is
+/// the same whatever else ran, but for the suite's other tests.
+std::uint64_t shown_by(const Picture& picture, const SuiteRun& run);
+
+/// What a record says that holds not all tests of its suites.
+inline constexpr const char* partial_note =
+    "not every test of the suites ran: verdicts rest on each test's fixed share of alpha, without "
+    "Holm's adjustment";
+
 reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
                           const RunOptions& options);
 
 /// One test's numbers and verdict.
 reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm);
+
+/// The probability of a natural logarithm; the least double stands for what underflows.
+reports::Number probability(double log_p);
+reports::Number log10_of(double log_p);
 
 reports::Tool this_tool();
 reports::Environment this_environment(unsigned threads);

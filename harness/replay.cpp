@@ -239,6 +239,11 @@ bool print_observation(const TestWork& work, const reports::Test& recorded, std:
   bool same = true;
   for (std::size_t i = 0; i < work.pools.size(); ++i) {
     const Pool& pool = *work.pools[i];
+    if (pool.is_ready_made()) {
+      fmt::print("{}  has the moments of a run, not its observations\n",
+                 question.subjects[i].estimator->name);
+      continue;
+    }
     const std::vector<double> values =
         draw_observation(*pool.setup(), pool.key(), pool.primaries(), index);
     const std::vector<Channel> channels = pool.setup()->channels();

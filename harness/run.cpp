@@ -53,6 +53,10 @@ reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
   const auto start = std::chrono::steady_clock::now();
   const std::string started = utc_now();
   if (!options.ledger.empty()) require_ledger(options.ledger, suites);
+  if (!options.ledger.empty() && options.shard) {
+    throw InputError({},
+                     "--ledger takes whole runs: leave --shard and the environment's shards out");
+  }
   const PlannedRun planned = plan_run(suites, options, progress);
   std::vector<TestWork*> tests;
   for (auto& run : planned.suites) {

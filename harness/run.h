@@ -20,8 +20,9 @@ struct RunOptions {
   double coarsen = 1;                                       ///< multiplies every `detect`
   std::string filter = "";                                  ///< glob on test ids; "" selects all
   std::optional<std::pair<unsigned, unsigned>> shard = {};  ///< I of N, I from 1
-  std::string ledger = "";   ///< file to add the evidence to; "": none
-  std::string command = "";  ///< how to run the same again, for replay lines
+  bool shard_of_runner = false;  ///< a test runner's, for which a shard without tests is no mistake
+  std::string ledger = "";       ///< file to add the evidence to; "": none
+  std::string command = "";      ///< how to run the same again, for replay lines
 };
 
 /// Runs the selected tests of the suites. InputError for anything found wrong before sampling.

@@ -7,6 +7,7 @@
 #include "harness/interrupt.h"
 #include "harness/pool.h"
 #include "harness/prepare.h"
+#include "harness/recorded_run.h"
 #include "harness/sampler_setup.h"
 
 namespace assay::harness {
@@ -65,6 +66,10 @@ int sample(const SampleArguments& arguments) {
   const PreparedEstimator estimator = prepare(entries.front(), ".");
   const Sampled sampled = sampled_by(estimator, source);
   const auto rows = sampled.setup->observations();
+  if (as_recorded_run(*sampled.setup) != nullptr) {
+    throw InputError(
+        {}, fmt::format("`{}` has the moments of a run, not its observations", source.estimator));
+  }
   if (rows && arguments.secondaries.value_or(0) > *rows) {
     throw InputError({}, fmt::format("--secondaries {}: `{}` has {} rows", *arguments.secondaries,
                                      source.estimator, *rows));

@@ -120,12 +120,14 @@ std::vector<Source> sources_of(const Claim& claim) {
 }
 
 Suite load_suite(const std::string& file) {
-  const Document document = read_yaml_file(file);
+  const std::string text = read_text_file(file);
+  const Document document = read_yaml_text(text, file);
   const Keys keys(document, document.root(), "a suite",
                   {"suite", "about", "alpha", "beta", "seed", "budget", "scenes", "estimators",
                    "tests", "statements"});
   Suite suite;
   suite.file = file;
+  suite.text = text;
   suite.stem = std::filesystem::path(file).stem().string();
   suite.folder = folder_of(file);
   read_head(document, keys, suite);

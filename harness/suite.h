@@ -72,6 +72,7 @@ struct Suite {
   std::string about = {};
   std::string file = {};    ///< as given by the user
   std::string stem = {};    ///< "luminaire" of suites/luminaire.yaml
+  std::string text = {};    ///< of the file
   std::string folder = {};  ///< what relative file names are relative to
   double alpha = 0.01;
   double beta = 0.01;

@@ -53,6 +53,15 @@ void fields(Archive& a, T& point) {
   a("observed", point.observed);
 }
 
+template <class Archive, maybe_const<CostMoments> T>
+void fields(Archive& a, T& moments) {
+  a("kind", moments.kind);
+  a("mean", moments.mean);
+  a("m2", moments.m2);
+  a("m11", moments.m11);
+  a("m21", moments.m21);
+}
+
 template <class Archive, maybe_const<Sample> T>
 void fields(Archive& a, T& sample) {
   a("estimator", sample.estimator);
@@ -72,6 +81,7 @@ void fields(Archive& a, T& sample) {
   a("histogram", sample.histogram);
   a("quantiles", sample.quantiles);
   a("cost", sample.cost);
+  a("with_cost", sample.with_cost);
 }
 
 template <class Archive, maybe_const<Estimate> T>
@@ -328,6 +338,63 @@ void fields(Archive& a, T& ledger) {
   a("series", ledger.series);
 }
 
+template <class Archive, maybe_const<Moments> T>
+void fields(Archive& a, T& moments) {
+  a("count", moments.count);
+  a("mean", moments.mean);
+  a("m2", moments.m2);
+  a("m3", moments.m3);
+  a("m4", moments.m4);
+  a("min", moments.minimum);
+  a("max", moments.maximum);
+  a("nonzero", moments.nonzero);
+}
+
+template <class Archive, maybe_const<ShardChannel> T>
+void fields(Archive& a, T& channel) {
+  a("name", channel.name);
+  a("reference", channel.reference);
+  a("moments", channel.moments);
+}
+
+template <class Archive, maybe_const<ShardPicture> T>
+void fields(Archive& a, T& picture) {
+  a("position", picture.position);
+  a("by_tests", picture.by_tests);
+  a("secondaries", picture.secondaries);
+  a("drawn", picture.drawn);
+  a("averaged", picture.averaged);
+  a("image", picture.image);
+  a("channels", picture.channels);
+}
+
+template <class Archive, maybe_const<ShardTest> T>
+void fields(Archive& a, T& test) {
+  a("position", test.position);
+  a("inside", test.inside);
+  a("weight", test.weight);
+  a("untested", test.untested);
+  a("log_p", test.log_p);
+  a("refuted", test.refuted);
+  a("compared", test.compared);
+}
+
+template <class Archive, maybe_const<ShardSuite> T>
+void fields(Archive& a, T& suite) {
+  a("digest", suite.digest);
+  a("tests", suite.tests);
+  a("pictures", suite.pictures);
+  a("results", suite.results);
+}
+
+template <class Archive, maybe_const<Shard> T>
+void fields(Archive& a, T& shard) {
+  a("index", shard.index);
+  a("count", shard.count);
+  a("options", shard.options);
+  a("suites", shard.suites);
+}
+
 template <class Archive, maybe_const<Record> T>
 void fields(Archive& a, T& record) {
   a("schema", record.schema);
@@ -339,6 +406,7 @@ void fields(Archive& a, T& record) {
   a("note", record.note);
   a("suites", record.suites);
   a("ledger", record.ledger);
+  a("shard", record.shard);
 }
 
 }  // namespace assay::reports

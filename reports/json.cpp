@@ -41,11 +41,15 @@ Json leaf(double value) {
 Json leaf(const Number& value) { return value ? leaf(*value) : Json(nullptr); }
 Json leaf(const std::string& value) { return clean(value); }
 Json leaf(const Texels& value) { return base64(bytes_of(value.values)); }
-Json leaf(const std::optional<Image>& value) { return value ? tree(*value) : Json(nullptr); }
 Json leaf(Verdict value) { return to_string(value); }
 Json leaf(bool value) { return value; }
 Json leaf(int value) { return value; }
 Json leaf(std::uint64_t value) { return value; }
+
+template <class T>
+Json leaf(const std::optional<T>& value) {
+  return value ? tree(*value) : Json(nullptr);
+}
 
 template <class T>
 Json leaf(const std::vector<T>& values) {

@@ -108,12 +108,13 @@ void leaf(const Json& node, const std::string& place, Texels& value) {
   value.values = floats_of(*bytes);
 }
 
-void leaf(const Json& node, const std::string& place, std::optional<Image>& value) {
+template <class T>
+void leaf(const Json& node, const std::string& place, std::optional<T>& value) {
   value.reset();
   if (node.is_null()) return;
-  Image image;
-  read(node, place, image);
-  value = std::move(image);
+  T held{};
+  read(node, place, held);
+  value = std::move(held);
 }
 
 void leaf(const Json& node, const std::string& place, bool& value) {

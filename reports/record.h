@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "reports/record_ledger.h"
+
 namespace assay::reports {
 
 inline constexpr int schema_version = 1;
-
-using Number = std::optional<double>;
 
 /// What a claim's test answers (design: verdicts). `skipped` was not run (another shard's).
 enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };
@@ -61,6 +61,14 @@ struct QuantilePoint {
   bool operator==(const QuantilePoint&) const = default;
 };
 
+/// How the cost of an observation varies with its value: m2, m11 and m21 are sums over the
+/// observations of (c - mean c)^2, (x - mean x)(c - mean c) and (x - mean x)^2 (c - mean c).
+struct CostMoments {
+  std::string kind;  ///< rays, samples
+  double mean = 0, m2 = 0, m11 = 0, m21 = 0;
+  bool operator==(const CostMoments&) const = default;
+};
+
 /// Observations of one channel of one estimator, as one test saw them.
 struct Sample {
   std::string estimator;  ///< its name in the suite
@@ -75,6 +83,7 @@ struct Sample {
   Histogram histogram;
   std::vector<QuantilePoint> quantiles;
   Cost cost;
+  std::vector<CostMoments> with_cost;  ///< where a claim on a cost or an efficiency kept them
   bool operator==(const Sample&) const = default;
 };
 
@@ -297,38 +306,63 @@ struct Suite {
   bool operator==(const Suite&) const = default;
 };
 
-/// One channel of one claim in the ledger: what all nights with fresh seeds say together.
-struct LedgerSeries {
-  std::string test;  ///< id
-  std::string channel;
-  std::string series;    ///< hash of claim, margins and parameters: another one is another series
-  std::string quantity;  ///< theta, as in Effect; empty where nights add up as e-values
-  bool relative = false;
-  std::uint64_t nights = 0;
-  std::string first, last;           ///< dates of the first and the last night, UTC, ISO 8601
-  Number score, information;         ///< sums over the nights; theta is about score / information
-  Number log_e;                      ///< ln of the e-value of all nights
-  Number limit;                      ///< the ln E that is an alarm
-  bool alarm = false;                ///< ln E was at the limit after some night
-  std::string since;                 ///< the first such night
-  std::string moved;                 ///< of an alarm: the night at which theta most likely moved
-  std::string moved_commit;          ///< what ran then
-  std::string moved_from, moved_to;  ///< first and last of the most likely nights, 90 % together
-  bool added = false;                ///< this run is one of the nights
-  std::string note;                  ///< why it is not, or that a new series began
-  bool operator==(const LedgerSeries&) const = default;
+/// One-pass moments of the finite values of a channel: m2, m3 and m4 are sums of powers of
+/// deviations from the mean.
+struct Moments {
+  std::uint64_t count = 0;
+  double mean = 0, m2 = 0, m3 = 0, m4 = 0;
+  double minimum = 0, maximum = 0;
+  std::uint64_t nonzero = 0;
+  bool operator==(const Moments&) const = default;
 };
 
-/// The ledger that a run added to, of the tests it ran. An empty file name: none was kept.
-struct Ledger {
-  std::string file;
-  Number budget;  ///< of each suite, over all nights
-  std::vector<LedgerSeries> series;
-  bool operator==(const Ledger&) const = default;
+struct ShardChannel {
+  std::string name;
+  Number reference;  ///< analytic mean
+  Moments moments;
+  bool operator==(const ShardChannel&) const = default;
 };
 
-/// Series with an alarm.
-int alarms(const Ledger&);
+/// What lies behind an estimator of a shard's suite, at the same place in `Suite::estimators`.
+struct ShardPicture {
+  std::uint64_t position = 0;     ///< in the suite's file
+  bool by_tests = false;          ///< a test drew it; else it was drawn for the picture alone
+  std::uint64_t secondaries = 0;  ///< asked for
+  bool drawn = false;             ///< false: the estimator threw
+  double averaged = 1;            ///< primaries that an observation averages
+  bool image = false;
+  std::vector<ShardChannel> channels;  ///< none of an image
+  bool operator==(const ShardPicture&) const = default;
+};
+
+/// What Holm's method over the whole suite needs of a test, at the same place in `Suite::tests`.
+struct ShardTest {
+  std::uint64_t position = 0;         ///< in the suite's file
+  bool inside = false;                ///< of the family; mutants and expected failures are not
+  double weight = 0;                  ///< of one channel, of the family's weights, which sum to 1
+  std::uint64_t untested = 0;         ///< channels without a p-value
+  std::vector<double> log_p;          ///< natural logarithms, of the test's channels in their order
+  std::vector<Effect> refuted;        ///< their effects, should Holm refute the claim
+  std::vector<std::string> compared;  ///< the two estimators of a claim about two
+  bool operator==(const ShardTest&) const = default;
+};
+
+struct ShardSuite {
+  std::string digest;       ///< of the suite's file and the data files it names
+  std::uint64_t tests = 0;  ///< in the suite's file
+  std::vector<ShardPicture> pictures;
+  std::vector<ShardTest> results;
+  bool operator==(const ShardSuite&) const = default;
+};
+
+/// What makes a run one part of several, and what joining the parts takes.
+struct Shard {
+  std::uint64_t index = 1;  ///< from 1
+  std::uint64_t count = 1;
+  std::string options;             ///< the command without seed, shard and reports
+  std::vector<ShardSuite> suites;  ///< in the record's order
+  bool operator==(const Shard&) const = default;
+};
 
 struct Record {
   int schema = schema_version;
@@ -340,6 +374,7 @@ struct Record {
   std::string note;  ///< "filtered: verdicts rest on fixed shares" and the like
   std::vector<Suite> suites;
   Ledger ledger;
+  std::optional<Shard> shard;  ///< none: a whole run, or shards merged
   bool operator==(const Record&) const = default;
 };
 

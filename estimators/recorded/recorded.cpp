@@ -104,6 +104,15 @@ recorded::Table read(Parameters& parameters) {
 }
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  for (const char* of_run : {"run", "estimator"}) {
+    parameters.string(of_run);
+    if (parameters.given(of_run)) {
+      parameters.refuse(of_run, "is of moments of a run, which have no rows");
+    }
+  }
+  if (!parameters.given("file")) {
+    parameters.refuse("file", "is missing; give it, or `run` and `estimator`");
+  }
   const auto table = std::make_shared<const recorded::Table>(read(parameters));
   return std::make_shared<RecordedSetup>(
       table, select(*table, parameters),
@@ -114,20 +123,36 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 
 std::vector<Entry> recorded_recorded() {
   return {{{.name = "recorded",
-            .summary = "Observations from a text file, one a line.",
+            .summary = "Observations from a text file, one a line, or moments of a saved run.",
             .description =
                 "Observation i is row i of `file`. Numbers are separated by white space or commas, "
                 "`#` begins a comment, and `# columns: a b c` names the columns, each of which is "
                 "a channel unless `column` picks one. Every row needs the same number of numbers; "
                 "`nan` and `inf` are read as such. What a row was made from is not known here: "
-                "`primaries` stays 1.",
+                "`primaries` stays 1.\n\n"
+                "With `run`, a saved run's record, and `estimator` nothing is drawn: the source is "
+                "the moments that a test of the run kept of that estimator, with its primaries. "
+                "They answer claims on mean, bias, variance, cost and efficiency, so that a run is "
+                "the reference of the next one. The other side takes as many observations as the "
+                "run has, from a stream that the run has not used.",
             .parameters = {{.name = "file",
                             .type = ParameterType::string,
-                            .summary = "the file, relative to the suite"},
+                            .summary = "the file of rows, relative to the suite",
+                            .fallback = "none"},
                            {.name = "column",
                             .type = ParameterType::string,
                             .summary = "the one column to use; all of them when absent",
-                            .fallback = "all"}},
+                            .fallback = "all"},
+                           {.name = "run",
+                            .type = ParameterType::string,
+                            .summary = "instead of a file of rows: a saved run, whose moments are "
+                                       "used",
+                            .fallback = "none"},
+                           {.name = "estimator",
+                            .type = ParameterType::string,
+                            .summary = "which of the run's estimators; may be left out where it "
+                                       "has one",
+                            .fallback = "the only one"}},
             .averages = false},
            prepare}};
 }

@@ -39,6 +39,7 @@ write_suite() {
 }
 
 good='  - {name: good, claim: mean(normal) == 2, detect: 20%}'
+good2='  - {name: good 2, claim: mean(normal) == 2, detect: 30%}'
 wrong='  - {name: wrong, claim: mean(normal) == 3}'
 open='  - {name: open, claim: mean(normal) == 2, detect: 1%, secondaries: 100}'
 long='  - {name: long, claim: mean(hemisphere) == analytic, secondaries: 100000000}'
@@ -372,6 +373,68 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
   contains err '--law normal(0,1) is given twice'
   expect 2 calibrate --runs 0
   contains err '--runs'
+}
+
+# A record without its times: reports::without_times.
+timeless() {
+  /usr/bin/python3 - "$1" <<'END'
+import json, sys
+def clear(node):
+    if isinstance(node, dict):
+        return {key: clear(value) for key, value in node.items() if key != "seconds"}
+    return [clear(item) for item in node] if isinstance(node, list) else node
+record = json.load(open(sys.argv[1]))
+del record["started"], record["environment"]["threads"]
+print(json.dumps(clear(record), indent=1))
+END
+}
+# shown FILE EXPRESSION: of a record, by Python.
+shown() { /usr/bin/python3 -c "import json, sys; r = json.load(open('$1')); print($2)"; }
+
+test_shards_of_four_processes_merge_to_one_run() {
+  local i processes=()
+  mkdir shards merged
+  write_suite many.yaml "$good" "$wrong" '  - {claim: mean(hemisphere) == analytic}' \
+    '  - {claim: variance(normal) == 1}' '  - {claim: distribution(hemisphere.direction) == density}'
+  expect 1 run many.yaml --quiet --report json=run.json --report html=run.html
+  for i in 4 2 3 1; do
+    "$assay" run many.yaml --quiet --shard "$i/4" --threads "$i" --report "json=shards/$i.json" \
+      >/dev/null &
+    processes+=($!)
+  done
+  wait "${processes[@]}"
+  expect 1 merge shards/2.json shards/4.json shards/1.json shards/3.json \
+    --report json=merged/run.json --report html=merged/run.html
+  contains out '4 passed, 1 failed, 0 skipped'
+  diff <(timeless run.json) <(timeless merged/run.json) || fail 'the merged record is another'
+  expect 2 merge shards/2.json shards/4.json shards/1.json --report json=merged/none.json
+  contains err 'missing: 3'
+  [ ! -e merged/none.json ] || fail 'a report of half a run'
+  expect 2 merge shards/2.json run.json
+  contains err 'run.json: is a whole run, not a shard'
+  expect 2 merge
+  contains err 'needs the records of all shards'
+  expect 2 merge many.yaml
+  contains err 'no saved run but a suite'
+}
+
+test_environment_asks_for_a_shard() {
+  write_suite many.yaml "$good" "$good2"
+  export GTEST_TOTAL_SHARDS=3 GTEST_SHARD_INDEX=1 GTEST_SHARD_STATUS_FILE=$work/status
+  expect 0 run many.yaml --report json=run.json
+  [ -e status ] || fail 'no status file'
+  [ "$(shown run.json '[r["shard"]["index"], r["shard"]["count"]]')" = '[2, 3]' ] ||
+    fail 'not shard 2 of 3'
+  [ "$(shown run.json '[t["name"] for t in r["suites"][0]["tests"]]')" = "['good 2']" ] ||
+    fail 'not its test'
+  GTEST_SHARD_INDEX=2 expect 0 run many.yaml
+  contains out '0 passed, 0 failed, 0 skipped'
+  expect 0 run many.yaml --shard 1/2 --report json=run.json
+  [ "$(shown run.json '[r["shard"]["index"], r["shard"]["count"]]')" = '[1, 2]' ] ||
+    fail 'the flag did not win'
+  expect 4 run many.yaml --shard 3/3
+  GTEST_SHARD_INDEX=3 expect 2 run many.yaml
+  contains err 'GTEST_SHARD_INDEX is 3'
 }
 
 test_check_points_at_the_option_that_is_wrong() {

@@ -229,6 +229,33 @@ Ledger nights() {
   return ledger;
 }
 
+Shard shard_of(const Record& record) {
+  Shard shard{.index = 2, .count = 4, .options = "assay run 'suites/光線.yaml'", .suites = {}};
+  for (const Suite& suite : record.suites) {
+    shard.suites.push_back(
+        {.digest = "17ab1f5b7c630505", .tests = 12, .pictures = {}, .results = {}});
+    shard.suites.back().pictures.push_back(
+        {.position = 3,
+         .by_tests = true,
+         .secondaries = 16384,
+         .drawn = true,
+         .averaged = 64,
+         .image = shard.suites.size() == 2,
+         .channels = {{.name = "value",
+                       .reference = 0.25,
+                       .moments = {16384, 0.2501, 3.5, -0.1, 2e-3, -0.5, 1.5, 16000}},
+                      {.name = "never finite", .reference = {}, .moments = {}}}});
+    shard.suites.back().results.push_back({.position = 7,
+                                           .inside = true,
+                                           .weight = 0.125,
+                                           .untested = 1,
+                                           .log_p = {-3.5, -0.25},
+                                           .refuted = {mean_effect(0.01, 0.002)},
+                                           .compared = {suite.name, "b"}});
+  }
+  return shard;
+}
+
 }  // namespace
 
 Record example_record() {
@@ -243,6 +270,7 @@ Record example_record() {
   r.ledger = nights();
   r.suites.push_back({});
   r.suites.back().name = "an empty suite";
+  r.shard = shard_of(r);
   return r;
 }
 

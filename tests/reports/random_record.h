@@ -69,9 +69,10 @@ class Randomise {
     for (float& value : map.texels.values) value = static_cast<float>(*any_double());
   }
   static void fill(Texels&) {}
-  static void fill(std::optional<Image>& image) {
-    image.reset();
-    if (*rc::gen::arbitrary<bool>()) fill(image.emplace());
+  template <class T>
+  static void fill(std::optional<T>& value) {
+    value.reset();
+    if (*rc::gen::arbitrary<bool>()) fill(value.emplace());
   }
   template <class T>
   requires requires(Randomise& r, T& value) { fields(r, value); }

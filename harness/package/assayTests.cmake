@@ -1,0 +1,37 @@
+# A CTest test for each claim of a suite, found when ctest runs: a claim that was added needs no
+# build, and one that is misspelt is a test that fails with the program's message.
+#
+#   assay_discover_tests(SUITE
+#     [PREFIX text]               before each test's id, where two suites have one name
+#     [ARGUMENTS argument…]       of `assay run`; generator expressions may stand in them
+#     [WORKING_DIRECTORY folder]  default the current source folder
+#     [PROPERTIES name value…])   of all the tests
+#
+# Each test is tested alone, on its fixed share of the suite's alpha; 77, all skipped, is a skip.
+# ARGUMENTS --set mine.file=$<TARGET_FILE:mine> names a library that this build makes.
+set(_assay_tests_template ${CMAKE_CURRENT_LIST_DIR}/assayTestsAtTestTime.cmake.in)
+
+function(assay_discover_tests suite)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "PREFIX;WORKING_DIRECTORY" "ARGUMENTS;PROPERTIES")
+  if(ARG_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "assay_discover_tests: what is `${ARG_UNPARSED_ARGUMENTS}`?")
+  endif()
+  get_filename_component(suite "${suite}" ABSOLUTE)
+  if(NOT EXISTS "${suite}")
+    message(FATAL_ERROR "assay_discover_tests: there is no suite ${suite}")
+  endif()
+  if(NOT ARG_WORKING_DIRECTORY)
+    set(ARG_WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+  endif()
+  string(MD5 name "${suite} ${ARG_PREFIX}")
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/assay_tests_${name})
+  configure_file(${_assay_tests_template} ${file}.cmake.in @ONLY)
+  get_property(multiple GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
+  if(multiple)
+    file(GENERATE OUTPUT ${file}-$<CONFIG>.cmake INPUT ${file}.cmake.in)
+    file(WRITE ${file}.cmake "include(\"${file}-\${CTEST_CONFIGURATION_TYPE}.cmake\")\n")
+  else()
+    file(GENERATE OUTPUT ${file}.cmake INPUT ${file}.cmake.in)
+  endif()
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file}.cmake)
+endfunction()

@@ -1,0 +1,21 @@
+# What `cmake --install` puts where: the program, the headers of plugins, and a CMake package that
+# finds them again wherever the prefix was moved to.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(ASSAY_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/assay)
+install(TARGETS assay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+
+configure_package_config_file(
+  ${CMAKE_CURRENT_LIST_DIR}/assayConfig.cmake.in ${PROJECT_BINARY_DIR}/package/assayConfig.cmake
+  INSTALL_DESTINATION ${ASSAY_PACKAGE_DIR}
+  PATH_VARS CMAKE_INSTALL_BINDIR CMAKE_INSTALL_INCLUDEDIR)
+# Before 1.0 a minor version may change what suites and records mean.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/assayConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/package/assayConfig.cmake
+  ${PROJECT_BINARY_DIR}/package/assayConfigVersion.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/assayTests.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/assayTestsAtTestTime.cmake.in
+  DESTINATION ${ASSAY_PACKAGE_DIR})

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Installs the build, then builds and tests a project that finds the package.
+#   consumer_test.sh BUILD_FOLDER SOURCE_FOLDER
+set -uo pipefail
+
+build=$1
+source_folder=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+fail() {
+  printf 'FAILED: %s\n' "$*"
+  tail -n 60 "$work/log"
+  exit 1
+}
+contains() { grep -qF -- "$1" "$work/log" || fail "no \`$1\`"; }
+run() { "$@" >"$work/log" 2>&1; }
+
+run cmake --install "$build" --prefix "$work/first" || fail 'the installation failed'
+# The package is found where the prefix is now, not where it was made.
+mv "$work/first" "$work/prefix"
+[ -z "$(grep -rlF "$work/first" "$work/prefix/lib")" ] || fail 'a path of the installation is fixed'
+cp -r "$source_folder/tests/consumer" "$work/project"
+cd "$work/project" || exit 1
+
+run cmake -S . -B build -DCMAKE_PREFIX_PATH="$work/prefix" || fail 'the project is not configured'
+run cmake --build build || fail 'the project is not built'
+run ctest --test-dir build || true
+contains 'claims/mean(normal) == 2 '
+contains "claims/a name; with [brackets, 'quotes' \"and\" \$signs "
+contains 'again:claims/mean(normal) == 2 '
+# As the second set-up sets it, the mean is 3.
+contains '75% tests passed, 1 tests failed out of 4'
+
+# A claim that is new, and one that is misspelt, need no build.
+printf '  - {name: new, claim: mean(normal) <= 9}\n' >>claims.yaml
+run ctest --test-dir build -R '^claims/new$' || fail 'the new claim fails'
+contains '100% tests passed, 0 tests failed out of 1'
+printf '  - {claim: maen(normal) <= 9}\n' >>claims.yaml
+! run ctest --test-dir build --output-on-failure || fail 'a suite that cannot be read passes'
+contains 'did you mean `mean`'
+
+sed -i 's/assay 0.1/assay 99/' CMakeLists.txt
+! run cmake -S . -B newer -DCMAKE_PREFIX_PATH="$work/prefix" || fail 'version 99 is found'
+contains '"99"'
