@@ -140,14 +140,14 @@ Pictured pictured(const View& view) {
 /// of its tests has to do with.
 std::vector<reports::Statement> statements_of(const std::vector<ShardFile>& shards,
                                               std::size_t suite) {
-  std::map<int, reports::Statement> by_line;
+  std::map<std::pair<int, std::string>, reports::Statement> by_line;
   for (const ShardFile& shard : shards) {
     for (const reports::Statement& statement : shard.record.suites[suite].statements) {
-      by_line.emplace(statement.line, statement);
+      by_line.emplace(std::pair(statement.line, statement.text), statement);
     }
   }
   std::vector<reports::Statement> all;
-  for (auto& [line, statement] : by_line) all.push_back(std::move(statement));
+  for (auto& [place, statement] : by_line) all.push_back(std::move(statement));
   return all;
 }
 
