@@ -92,6 +92,7 @@ Output output(const Given& given) {
   Output output{.quiet = given.quiet};
   for (const std::string& report : given.reports) output.reports.push_back(parse_report(report));
   refuse_same_path(output.reports);
+  if (!given.github.empty()) output.github = parse_github(given.github);
   if (!given.colour.empty()) output.colour = parse_colour(given.colour);
   if (!given.inconclusive.empty()) output.inconclusive = parse_inconclusive(given.inconclusive);
   return output;
@@ -207,7 +208,9 @@ Command calibrate_command(const Given& given) {
   CalibrateCommand command;
   command.output = output(given);
   for (const ReportRequest& report : command.output.reports) {
-    if (report.kind == "junit") usage_error("a calibration has no junit report");
+    if (report.kind == "junit" || report.kind == "metrics") {
+      usage_error(fmt::format("a calibration has no {} report", report.kind));
+    }
   }
   CalibrateArguments& arguments = command.arguments;
   arguments.threads = options(given).threads;

@@ -25,9 +25,9 @@ void one(CLI::App* sub, const char* name, std::string& value, const char* kind,
 
 void add_output(CLI::App* sub, Given& given) {
   many(sub, "--report", given.reports, "KIND=PATH",
-       "console, json, junit, markdown or html to a file, - is standard output; repeatable; "
-       "default console=-, which goes to standard error where another report has standard output; "
-       "console=/dev/null silences it");
+       "console, json, junit, markdown, html or metrics (OpenMetrics) to a file, - is standard "
+       "output; repeatable; default console=-, which goes to standard error where another report "
+       "has standard output; console=/dev/null silences it");
   one(sub, "--color", given.colour, "WHEN",
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
 }
@@ -48,6 +48,9 @@ void add_sampling(CLI::App* sub, Given& given, const Running& about) {
 void add_inconclusive(CLI::App* sub, Given& given) {
   one(sub, "--inconclusive", given.inconclusive, "fail|pass",
       "count undecided tests as failed or as passed; default neither: exit code 3");
+  one(sub, "--github", given.github, "auto|never",
+      "annotations and the step's summary for a job of GitHub Actions; default auto: where "
+      "GITHUB_ACTIONS is true");
 }
 
 void add_running(CLI::App* sub, Given& given, const Running& about) {

@@ -15,7 +15,7 @@ using Texts = std::vector<std::string>;
 struct Given {
   std::string claim, source, what, plugin, record, test, observation, runs, samples;
   Texts suites, estimators, sets, reports, laws, alphas, records;
-  std::string filter, seed, threads, alpha, coarsen, shard, ledger, inconclusive, colour;
+  std::string filter, seed, threads, alpha, coarsen, shard, ledger, inconclusive, colour, github;
   std::string detect, allow, method, primaries, secondaries, over, reference, cost, budget;
   bool quiet = false;
 };

@@ -78,8 +78,13 @@ ReportRequest parse_report(const std::string& text) {
                                      text));
   }
   const std::string kind = text.substr(0, equals);
-  choice(given(kind), "the kind of --report", {"console", "json", "junit", "markdown", "html"});
+  choice(given(kind), "the kind of --report",
+         {"console", "json", "junit", "markdown", "html", "metrics"});
   return {kind, text.substr(equals + 1)};
+}
+
+bool parse_github(const std::string& text) {
+  return choice(given(text), "--github", {"auto", "never"}) == 0;
 }
 
 Colour parse_colour(const std::string& text) {

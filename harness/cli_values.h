@@ -23,6 +23,7 @@ std::pair<unsigned, unsigned> parse_shard(const std::string& text);
 /// "KIND=PATH" with a known kind.
 ReportRequest parse_report(const std::string& text);
 
+bool parse_github(const std::string& text);  ///< auto or never
 Colour parse_colour(const std::string& text);
 InconclusivePolicy parse_inconclusive(const std::string& text);
 

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "harness/github.h"
 #include "harness/image_record.h"
 #include "harness/plan_table.h"
 #include "harness/progress_terminal.h"
@@ -18,6 +19,7 @@
 #include "reports/json.h"
 #include "reports/junit.h"
 #include "reports/markdown.h"
+#include "reports/metrics.h"
 
 namespace assay::harness {
 namespace {
@@ -47,6 +49,7 @@ bool is_single(const reports::Record& record) {
 std::string written(const reports::Record& record, const std::string& kind, bool colour) {
   if (kind == "json") return reports::json(record);
   if (kind == "junit") return reports::junit(record);
+  if (kind == "metrics") return reports::metrics(record);
   if (kind == "markdown") return reports::markdown(record);
   if (kind == "html") return reports::html(record);
   return reports::console(record, {.colour = colour, .verbose = is_single(record)});
@@ -136,12 +139,18 @@ std::string unmatched_filter(const std::vector<Suite>& suites, const std::string
   return text;
 }
 
+void report_run(const reports::Record& record, const Output& output) {
+  write_reports(record, output);
+  // The runner reads commands from both streams, other programs the reports from standard output.
+  if (output.github) fmt::print(stderr, "{}", tell_github(record, system_environment));
+}
+
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
   require_writable(output);
   if (selects_nothing(suites, options)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Record record = run(suites, options, *progress);
-  write_reports(record, output);
+  report_run(record, output);
   const int code = exit_code(record, output.inconclusive);
   return code == nothing_ran && options.shard_of_runner ? 0 : code;
 }

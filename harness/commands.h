@@ -23,6 +23,7 @@ struct Output {
   Colour colour = Colour::automatic;
   InconclusivePolicy inconclusive = InconclusivePolicy::report;
   bool quiet = false;  ///< no progress
+  bool github = true;  ///< a job of GitHub Actions is told what is not ok (github.h)
 };
 
 /// The text of a report, in colour or not.
@@ -36,6 +37,9 @@ void require_writable(const Output& output);
 void write_reports(const Output& output, const ReportWriter& written);
 /// The same of a record. Maps are written beside the JSON report, which names them.
 void write_reports(reports::Record record, const Output& output);
+
+/// Of a run: the reports, and what a job of GitHub Actions is told (github.h).
+void report_run(const reports::Record& record, const Output& output);
 
 /// What is said of a filter that no test's id matches: what an id looks like and the nearest ones;
 /// "" when one does.

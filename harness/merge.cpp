@@ -209,7 +209,7 @@ int merge_shards(const MergeArguments& arguments, const Output& output) {
   std::vector<ShardFile> shards;
   for (const std::string& file : arguments.records) shards.push_back({file, read_record(file)});
   const reports::Record record = merge(std::move(shards));
-  write_reports(record, output);
+  report_run(record, output);
   return exit_code(record, output.inconclusive);
 }
 

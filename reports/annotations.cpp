@@ -64,10 +64,11 @@ std::string annotation(const char* kind, const Test& test) {
   if (!test.file.empty()) {
     where = fmt::format("file={},line={},", property(test.file), std::max(test.line, 1));
   }
-  const std::string text = plain_text(test);
+  std::string text = plain_text(test);
+  while (text.ends_with('\n')) text.pop_back();
   return fmt::format("::{} {}title={}::{}\n", kind, where,
                      property(fmt::format("{}: {}", verdict_text(test), test.id)),
-                     message(headline(test) + (text.empty() ? "" : "\n" + text)));
+                     message(text.empty() ? headline(test) : text));
 }
 
 std::string all_of(const char* kind, const std::vector<std::string>& lines) {

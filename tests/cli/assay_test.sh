@@ -9,7 +9,8 @@ source_folder=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-unset NO_COLOR FORCE_COLOR CLICOLOR_FORCE
+unset NO_COLOR FORCE_COLOR CLICOLOR_FORCE GITHUB_ACTIONS
+unset GTEST_TOTAL_SHARDS GTEST_SHARD_INDEX TEST_TOTAL_SHARDS TEST_SHARD_INDEX
 
 fail() {
   printf 'FAILED: %s\n' "$*"
@@ -435,6 +436,30 @@ test_environment_asks_for_a_shard() {
   expect 4 run many.yaml --shard 3/3
   GTEST_SHARD_INDEX=3 expect 2 run many.yaml
   contains err 'GTEST_SHARD_INDEX is 3'
+}
+
+test_github_is_told_what_is_not_ok() {
+  write_suite mixed.yaml "$good" "$wrong"
+  printf 'earlier\n' >summary.md
+  export GITHUB_ACTIONS=true GITHUB_STEP_SUMMARY=$work/summary.md
+  expect 1 run mixed.yaml --quiet
+  contains err '::error file=mixed.yaml,line=7,title=fail%3A mixed/wrong::'
+  [ "$(grep -c '^::' err)" -eq 1 ] || fail 'more than one annotation'
+  [ "$(tail -n 1 out)" = '1 passed, 1 failed, 0 skipped' ] || fail 'the last line is no tally'
+  [ "$(head -n 1 summary.md)" = earlier ] || fail 'the summary was not appended to'
+  contains summary.md 'tests not ok'
+  cp summary.md before.md
+  expect 1 run mixed.yaml --quiet --github never
+  lacks err '::error'
+  cmp -s summary.md before.md || fail 'a summary though it was turned off'
+}
+
+test_metrics_end_as_openmetrics_do() {
+  write_suite good.yaml "$good"
+  expect 0 run good.yaml --quiet --report metrics=metrics.txt
+  contains metrics.txt 'assay_ok{test="good/good",verdict="pass"} 1'
+  contains metrics.txt 'assay_mean{suite="small",estimator="normal",channel="value"} '
+  [ "$(tail -n 1 metrics.txt)" = '# EOF' ] || fail 'no end'
 }
 
 test_check_points_at_the_option_that_is_wrong() {

@@ -179,11 +179,24 @@ TEST(CommandLine, SuggestsWhatWasMeant) {
 }
 
 TEST(CommandLine, OffersNothingOfLaterVersions) {
-  for (const char* name : {"merge", "images"}) {
+  for (const char* name : {"images"}) {
     EXPECT_THAT(refused({name}), StartsWith("unknown command `"));
   }
   EXPECT_THAT(refused({"check", "mean(a) == 1", "--ledger", "f"}),
               StartsWith("`assay check` has no option `--ledger`"));
+}
+
+TEST(CommandLine, MergesRecordsInAnyNumber) {
+  const auto command =
+      parsed<MergeCommand>({"merge", "2.json", "1.json", "--report", "metrics=m.txt", "--github",
+                            "never", "--inconclusive", "pass"});
+  EXPECT_THAT(command.arguments.records, ElementsAre("2.json", "1.json"));
+  EXPECT_EQ(command.output.reports.at(0).kind, "metrics");
+  EXPECT_FALSE(command.output.github);
+  EXPECT_EQ(command.output.inconclusive, InconclusivePolicy::pass);
+  EXPECT_TRUE(parsed<MergeCommand>({"merge", "1.json"}).output.github);
+  EXPECT_THAT(refused({"merge", "1.json", "--github", "always"}), HasSubstr("--github"));
+  EXPECT_THAT(refused({"merge", "1.json", "--shard", "1/2"}), HasSubstr("has no option `--shard`"));
 }
 
 TEST(CommandLine, NamesWhatIsMissingOrTooMuch) {

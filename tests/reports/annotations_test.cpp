@@ -15,8 +15,8 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-Test test(const std::string& id, Verdict verdict, double log10_p = -3) {
-  Test t;
+assay::reports::Test test(const std::string& id, Verdict verdict, double log10_p = -3) {
+  assay::reports::Test t;
   t.id = t.name = id;
   t.file = "suites/a.yaml";
   t.line = 12;
@@ -26,7 +26,7 @@ Test test(const std::string& id, Verdict verdict, double log10_p = -3) {
   return t;
 }
 
-Record of(const std::vector<Test>& tests) {
+Record of(const std::vector<assay::reports::Test>& tests) {
   Record record;
   record.suites.push_back({.name = "a", .tests = tests});
   return record;
@@ -59,7 +59,7 @@ TEST(Annotations, OfWhatIsUndecidedAreWarnings) {
 }
 
 TEST(Annotations, EscapeWhatWouldEndACommand) {
-  Test t = test("a/100%: a, b", Verdict::fail);
+  assay::reports::Test t = test("a/100%: a, b", Verdict::fail);
   t.message = "50 %\nsecond: line, with ::error::";
   const std::string text = annotations(of({t}));
   EXPECT_EQ(lines(text).size(), 1);
@@ -68,7 +68,7 @@ TEST(Annotations, EscapeWhatWouldEndACommand) {
 }
 
 TEST(Annotations, AreTheWorstNineAndACountOfTheRest) {
-  std::vector<Test> tests;
+  std::vector<assay::reports::Test> tests;
   for (int i = 1; i <= 12; ++i) {
     tests.push_back(test("a/" + std::to_string(i), Verdict::fail, -i));
   }

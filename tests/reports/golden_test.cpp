@@ -16,6 +16,7 @@
 #include "reports/json.h"
 #include "reports/junit.h"
 #include "reports/markdown.h"
+#include "reports/metrics.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {
@@ -53,6 +54,8 @@ TEST(Approved, JunitIsAsApproved) { compare("junit.xml", junit(example_record())
 TEST(Approved, MarkdownIsAsApproved) { compare("report.md", markdown(example_record())); }
 
 TEST(Approved, ConsoleIsAsApproved) { compare("console.txt", console(example_record())); }
+
+TEST(Approved, MetricsAreAsApproved) { compare("metrics.txt", metrics(example_record())); }
 
 TEST(Approved, HtmlIsAsApproved) { compare("report.html", html(example_record())); }
 
