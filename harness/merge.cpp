@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -135,6 +136,21 @@ Pictured pictured(const View& view) {
   return result;
 }
 
+/// Those of all shards, each once, in the order of the suite's file. A shard has left out what none
+/// of its tests has to do with.
+std::vector<reports::Statement> statements_of(const std::vector<ShardFile>& shards,
+                                              std::size_t suite) {
+  std::map<std::pair<int, std::string>, reports::Statement> by_line;
+  for (const ShardFile& shard : shards) {
+    for (const reports::Statement& statement : shard.record.suites[suite].statements) {
+      by_line.emplace(std::pair(statement.line, statement.text), statement);
+    }
+  }
+  std::vector<reports::Statement> all;
+  for (auto& [place, statement] : by_line) all.push_back(std::move(statement));
+  return all;
+}
+
 reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t index, bool& whole) {
   reports::Suite suite = shards.front().record.suites[index];
   suite.estimators.clear();
@@ -159,6 +175,7 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
     suite.tests.push_back(std::move(part.test));
   }
   suite.comparisons = comparisons(pictures, compared, suite.alpha);
+  suite.statements = statements_of(shards, index);
   return suite;
 }
 

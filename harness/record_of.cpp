@@ -195,6 +195,27 @@ bool is_timed(const TestWork& work) {
   return work.outcome.plan.method.keeps == Keeps::blocks || (budget && budget->seconds) || of_suite;
 }
 
+/// Those that a test of the run has to do with.
+std::vector<reports::Statement> statements_of(const Suite& suite,
+                                              const std::vector<reports::Test>& ran) {
+  const auto has_run = [&](const std::string& name) {
+    return std::ranges::any_of(ran, [&](const reports::Test& test) { return test.name == name; });
+  };
+  std::vector<reports::Statement> statements;
+  for (const StatementEntry& entry : suite.statements) {
+    if (!std::ranges::any_of(entry.holds, has_run) && !std::ranges::any_of(entry.fails, has_run)) {
+      continue;
+    }
+    statements.push_back({.text = entry.text,
+                          .source = entry.source,
+                          .condition = entry.condition,
+                          .holds = entry.holds,
+                          .fails = entry.fails,
+                          .line = entry.where.line});
+  }
+  return statements;
+}
+
 std::string id_filter(const std::string& id) { return " --filter " + shell_quoted(id); }
 
 }  // namespace
@@ -266,6 +287,7 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
               : options.command + fmt::format(" --seed {}", run->seed) +
                     (run->suite.file.empty() ? "" : id_filter(suite.tests.back().id));
     }
+    suite.statements = statements_of(run->suite, suite.tests);
     suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
     whole = whole && run->holm;
     add_pictures(*run, suite);

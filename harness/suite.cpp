@@ -8,6 +8,7 @@
 #include "estimators/catalogue.h"
 #include "harness/suite_entries.h"
 #include "harness/suite_keys.h"
+#include "harness/suite_statements.h"
 #include "harness/text_file.h"
 #include "harness/yaml.h"
 
@@ -121,9 +122,9 @@ std::vector<Source> sources_of(const Claim& claim) {
 Suite load_suite(const std::string& file) {
   const std::string text = read_text_file(file);
   const Document document = read_yaml_text(text, file);
-  const Keys keys(
-      document, document.root(), "a suite",
-      {"suite", "about", "alpha", "beta", "seed", "budget", "scenes", "estimators", "tests"});
+  const Keys keys(document, document.root(), "a suite",
+                  {"suite", "about", "alpha", "beta", "seed", "budget", "scenes", "estimators",
+                   "tests", "statements"});
   Suite suite;
   suite.file = file;
   suite.text = text;
@@ -133,6 +134,9 @@ Suite load_suite(const std::string& file) {
   suite.scenes = read_scenes(keys);
   read_estimators(document, keys.require("estimators"), suite);
   read_tests(document, keys.require("tests"), suite);
+  if (const Value* v = keys.find("statements")) {
+    suite.statements = read_statements(document, *v, suite.tests);
+  }
   return suite;
 }
 

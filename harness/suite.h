@@ -57,6 +57,16 @@ struct TestEntry {
   Location where = {};
 };
 
+/// An entry of `statements:`: what somebody claims, and the tests that answer it.
+struct StatementEntry {
+  std::string text = {};
+  std::string source = {};
+  std::string condition = {};           ///< completes "only if"; of one with both lists
+  std::vector<std::string> holds = {};  ///< names of tests whose expected verdicts show it true
+  std::vector<std::string> fails = {};  ///< of those that show it false, or where it is
+  Location where = {};
+};
+
 struct Suite {
   std::string name = {};
   std::string about = {};
@@ -73,6 +83,7 @@ struct Suite {
       {};  ///< map of `scenes:`, for --set; their names are already replaced in `estimators`
   std::vector<EstimatorEntry> estimators = {};
   std::vector<TestEntry> tests = {};
+  std::vector<StatementEntry> statements = {};
 };
 
 /// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite:

@@ -11,6 +11,7 @@
 #include "reports/kill_text.h"
 #include "reports/ledger.h"
 #include "reports/number.h"
+#include "reports/statement_text.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
 
@@ -55,6 +56,7 @@ class Screen {
   void run(const Record& record) {
     for (const Suite& suite : record.suites) write(suite);
     if (!record.note.empty()) paragraph(record.note);
+    statements(record);
     if (!record.ledger.file.empty()) write(record.ledger);
     summary(record);
   }
@@ -130,6 +132,35 @@ class Screen {
     for (const std::string& part : lines) line(plain_spaces(part), colour_of(result));
     if (result == Outcome::failed || result == Outcome::inconclusive || options_.verbose)
       explain(test);
+  }
+
+  // What the suites' statements are answered: the answer in a column, beside it the statement and
+  // the tests that answer it.
+  void statements(const Record& record) {
+    if (statement_count(record) == 0) return;
+    blank();
+    line("Statements", "\x1b[1m");
+    for (const Suite& suite : record.suites) {
+      for (const Statement& statement : suite.statements) write(suite, statement);
+    }
+    paragraph(statement_totals(record));
+  }
+
+  void write(const Suite& suite, const Statement& statement) {
+    const Answer given = answer(suite, statement);
+    const Outcome outcome = given == Answer::contradicted ? Outcome::failed
+                            : given == Answer::open       ? Outcome::inconclusive
+                                                          : Outcome::passed;
+    const std::vector<std::string> text =
+        wrapped(one_line(statement.text + " (" + statement.source + ")"), beside_width());
+    std::string first = pad_right("  " + answer_text(given), label_width + 6);
+    for (const std::string& part : text) {
+      line(first + part, colour_of(outcome));
+      first.assign(static_cast<std::size_t>(label_width + 6), ' ');
+    }
+    if (given == Answer::only_if) fact("only if", one_line(statement.condition));
+    if (!statement.holds.empty()) fact("it holds", one_line(findings(suite, statement.holds)));
+    if (!statement.fails.empty()) fact("it does not", one_line(findings(suite, statement.fails)));
   }
 
   // Which method sees which defect.

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "reports/record.h"
+#include "reports/statements.h"
 
 namespace assay::reports {
 
@@ -279,6 +280,17 @@ void fields(Archive& a, T& comparison) {
   a("variance_ratio", comparison.variance_ratio);
 }
 
+template <class Archive, maybe_const<Statement> T>
+void fields(Archive& a, T& statement) {
+  a("text", statement.text);
+  a("source", statement.source);
+  a("condition", statement.condition);
+  a("holds", statement.holds);
+  a("fails", statement.fails);
+  a("line", statement.line);
+}
+
+/// The answers follow from the verdicts: they are written for readers, never read.
 template <class Archive, maybe_const<Suite> T>
 void fields(Archive& a, T& suite) {
   a("name", suite.name);
@@ -291,6 +303,8 @@ void fields(Archive& a, T& suite) {
   a("estimators", suite.estimators);
   a("comparisons", suite.comparisons);
   a("tests", suite.tests);
+  a("statements", suite.statements);
+  a.repeated("answers", answers(suite));
 }
 
 template <class Archive, maybe_const<LedgerSeries> T>

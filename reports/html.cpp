@@ -6,6 +6,7 @@
 #include "reports/html_parts.h"
 #include "reports/ledger.h"
 #include "reports/number.h"
+#include "reports/statements.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
 
@@ -118,6 +119,8 @@ std::string html(const Record& record) {
   out += fmt::format("<body>\n<h1 class=\"{}\">{}</h1>\n<p>{}</p>\n<p>{}</p>\n",
                      overall_style(record, counts), escape_xml(sentence),
                      escape_xml(verdict_counts(record)), escape_xml(error_rates(record)));
+  out += statements_section(record);
+  if (statement_count(record) > 0) out += "<h2>Tests</h2>\n";
   out += about_the_run(record);
   out += reading_help;
   out += "<p class=\"tools\"></p>\n";

@@ -45,6 +45,9 @@ HtmlTable::Cell cost_cell(const Cost&);
 /// The tests of a suite in the order of their urgency (reports/verdict.h).
 std::vector<std::size_t> by_urgency(const Suite&);
 
+/// What the suites' statements are answered, in one table; empty where there are none.
+std::string statements_section(const Record&);
+
 /// All tests in one table: first what is not ok, then what is undecided, then the suites.
 std::string overview(const Record&);
 

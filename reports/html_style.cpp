@@ -38,6 +38,10 @@ td.name { min-width: 180px; overflow-wrap: anywhere; }
 td.number { white-space: nowrap; } td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 td .muted { font-size: 12px; } td > .chart { min-width: 130px; } .whole { white-space: nowrap; }
 .badge { font-weight: 600; }
+h2.first { margin-top: 16px; }
+table.statements td { padding-top: 8px; } td .statement { font-size: 14px; } td.answer { min-width: 9em; width: 17%; }
+ul.witnesses { margin: 0 0 4px; padding-left: 1.1em; } ul.witnesses li { overflow-wrap: anywhere; }
+table.statements td.name { width: 36%; }
 .passed .badge { color: var(--ok); } .failed .badge { color: var(--bad); }
 .inconclusive .badge { color: var(--open); } .skipped .badge { color: var(--muted); }
 h1.passed { color: var(--ok); } h1.failed { color: var(--bad); } h1.inconclusive { color: var(--open); }

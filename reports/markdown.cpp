@@ -8,6 +8,7 @@
 #include "reports/kill_matrix.h"
 #include "reports/ledger.h"
 #include "reports/number.h"
+#include "reports/statement_text.h"
 #include "reports/text.h"
 #include "reports/verdict.h"
 
@@ -127,6 +128,26 @@ std::string ledger_section(const Ledger& ledger) {
   return out + "\n";
 }
 
+// What the suites' statements are answered.
+std::string statements_section(const Record& record) {
+  if (statement_count(record) == 0) return {};
+  std::string out = fmt::format(
+      "## Statements\n\n{}\n\n| statement | answer | tests that answer it |\n|---|---|---|\n",
+      cell(statement_totals(record)));
+  for (const Suite& suite : record.suites) {
+    for (const Statement& statement : suite.statements) {
+      const bool both = !statement.holds.empty() && !statement.fails.empty();
+      std::string tests = findings(suite, statement.holds);
+      if (both) tests = "it holds: " + tests + ". It does not: ";
+      tests += findings(suite, statement.fails);
+      out +=
+          fmt::format("| {} ({}) | **{}** | {} |\n", cell(statement.text), cell(statement.source),
+                      cell(whole_answer(suite, statement)), cell(tests, 4 * cell_limit));
+    }
+  }
+  return out + "\n";
+}
+
 int add_problems(const Record& record, Outcome kind, Page& page) {
   int missing = 0;
   for (const Suite& suite : record.suites) {
@@ -154,10 +175,11 @@ int add_table(const Suite& suite, Page& page) {
 std::string markdown(const Record& record, std::size_t limit) {
   Page page(limit);
   page.add(title(record));
+  const bool statements = page.add(statements_section(record));
   if (!record.ledger.file.empty()) page.add(ledger_section(record.ledger));
   int problems = add_problems(record, Outcome::failed, page);
   problems += add_problems(record, Outcome::inconclusive, page);
-  int rows = 0;
+  int rows = statements ? 0 : static_cast<int>(statement_count(record));
   for (const Suite& suite : record.suites) rows += add_table(suite, page);
   std::string out = page.take();
   if (problems > 0 || rows > 0)

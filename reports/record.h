@@ -279,6 +279,18 @@ struct Comparison {
   bool operator==(const Comparison&) const = default;
 };
 
+/// What somebody claims, and the tests of the suite that answer it, by their names. The answer is
+/// not part of the record: it follows from the verdicts (reports/statements.h).
+struct Statement {
+  std::string text;
+  std::string source;              ///< who says it, and where
+  std::string condition;           ///< completes "only if"; empty but where both lists have tests
+  std::vector<std::string> holds;  ///< tests whose expected verdicts show that it is true
+  std::vector<std::string> fails;  ///< tests whose expected verdicts show that it is not
+  int line = 0;                    ///< in the suite's file
+  bool operator==(const Statement&) const = default;
+};
+
 struct Suite {
   std::string name;
   std::string file;
@@ -290,6 +302,7 @@ struct Suite {
   std::vector<EstimatorSummary> estimators;
   std::vector<Comparison> comparisons;
   std::vector<Test> tests;
+  std::vector<Statement> statements;
   bool operator==(const Suite&) const = default;
 };
 

@@ -17,7 +17,7 @@ namespace {
 using reports::Verdict;
 using testing::HasSubstr;
 
-// An estimator without a test, two of one plugin, a mutant, an image, several channels, a law, and
+// Statements whose tests are of several shards, an estimator without a test, two of one plugin, a mutant, an image, several channels, a law, and
 // an estimator that a test's own observations do not show (its draws alone are tested).
 constexpr const char* suite = R"(suite: good
 estimators:
@@ -30,6 +30,10 @@ estimators:
   hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
   floor: {plugin: luminaire/floor, width: 8, height: 8, primaries: 4}
   no_cosine: {plugin: mutants/no_cosine, scene: triangle}
+statements:
+  - {text: Areas are right., source: a talk, holds: ["mean(area) == *"]}
+  - {text: So is the last of all., source: a talk, holds: [no cosine]}
+  - {text: Importance has less variance., source: a talk, holds: ["variance(imp*"]}
 tests:
   - {claim: mean(uniform) == analytic, detect: 2%}
   - {claim: mean(uniform) == mean(importance), detect: 2%, weight: 3}

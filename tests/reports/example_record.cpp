@@ -73,6 +73,42 @@ void compare_all(Suite& suite) {
   }
 }
 
+// One of each answer, in another order than that of their urgency.
+std::vector<Statement> statements_of_each_answer(const Suite& s) {
+  const auto name = [&](std::size_t t) { return s.tests[t].name; };
+  const std::string source = "A talk, slide 7";
+  return {{.text = "Areas are sampled without bias, and with less variance than hemispheres.",
+           .source = source,
+           .condition = "",
+           .holds = {name(0), name(1)},
+           .fails = {},
+           .line = 50},
+          {.text = "The receiver's cosine does not matter.",
+           .source = source,
+           .condition = "",
+           .holds = {},
+           .fails = {name(3)},
+           .line = 53},
+          {.text = "Every estimator has the same mean.",
+           .source = source,
+           .condition = "the cosine is not forgotten",
+           .holds = {name(0)},
+           .fails = {name(3)},
+           .line = 56},
+          {.text = "Nothing is known of these.",
+           .source = source,
+           .condition = "",
+           .holds = {name(0), name(5), name(6), name(7), name(8), "a test that was filtered out"},
+           .fails = {},
+           .line = 60},
+          {.text = "Winners have no bias.",
+           .source = source,
+           .condition = "",
+           .holds = {name(0), name(2)},
+           .fails = {},
+           .line = 63}};
+}
+
 Suite triangle() {
   Suite s;
   s.name = "triangle luminaire";
@@ -98,6 +134,7 @@ Suite triangle() {
   compare_all(s);
   s.tests = {passing(),   proof(),   failing(), caught_mutant(), surviving_mutant(),
              undecided(), invalid(), broken(),  not_run(),       unseen_mutant()};
+  s.statements = statements_of_each_answer(s);
   return s;
 }
 
@@ -145,6 +182,12 @@ Suite hostile() {
   constant.channels = {channel("R", mean_effect(0, 0))};
   constant.message = "every observation is 0.5; what was not seen could still add more than detect";
   s.tests = {t, copy, constant};
+  s.statements = {{.text = "Text | with *marks*, <b>tags</b> and a \x1b[31mescape.",
+                   .source = "\"a<b>&\" | `x`\nof two lines",
+                   .condition = "]]> " + std::string(130, 'c'),
+                   .holds = {copy.name},
+                   .fails = {copy.name},
+                   .line = 12}};
   return s;
 }
 

@@ -76,7 +76,7 @@ TEST(Html, EveryLinkInsideThePageHasATarget) {
   int links = 0;
   for (std::sregex_iterator i(page.begin(), page.end(), link), end; i != end; ++i, ++links)
     EXPECT_NE(page.find("id=\"" + (*i)[1].str() + "\""), std::string::npos) << (*i)[1];
-  EXPECT_EQ(links, 17);
+  EXPECT_EQ(links, 33);
 }
 
 TEST(Html, ForeignTextCannotBecomeMarkup) {
