@@ -59,7 +59,7 @@ TEST(Reply, QuestionsAreWordsOrBytes) {
 TEST(Reply, IsTheSameInPiecesOfAnySize) {
   const std::string text = "1 2.5\n-3e-2\t+4\n" + text_question;
   const std::string binary = bytes_of({1, 2.5, -0.03, 4}) + to_bytes(question, Numbers::binary);
-  for (const std::size_t piece : {1, 2, 3, 7, 31, 64, 1000}) {
+  for (const std::size_t piece : {1U, 2U, 3U, 7U, 31U, 64U, 1000U}) {
     EXPECT_THAT(numbers_of(text, Numbers::text, piece), ElementsAre(1, 2.5, -0.03, 4));
     EXPECT_THAT(numbers_of(binary, Numbers::binary, piece), ElementsAre(1, 2.5, -0.03, 4));
   }
