@@ -5,6 +5,9 @@ include(CMakePackageConfigHelpers)
 
 set(ASSAY_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/assay)
 install(TARGETS assay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# The interface of shared libraries: a plugin is compiled against it and linked against nothing.
+install(FILES ${PROJECT_SOURCE_DIR}/estimators/plugin_abi.h
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/assay)
 
 configure_package_config_file(
   ${CMAKE_CURRENT_LIST_DIR}/assayConfig.cmake.in ${PROJECT_BINARY_DIR}/package/assayConfig.cmake
