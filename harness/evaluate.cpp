@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/recorded/picture_setup.h"
+#include "estimators/ready_made.h"
 #include "harness/activation.h"
 #include "harness/assumptions.h"
 #include "harness/consistency_setup.h"
@@ -34,15 +34,14 @@ const Summary& summary_of(const TestWork& work, std::size_t subject) {
 
 std::string not_finite(const TestOutcome& outcome, const Subject& side, std::size_t channel,
                        const ChannelSummary& summary) {
-  const std::string at =
-      side.image ? fmt::format(" at pixel {}", element_name(*side.setup->image(), channel)) : "";
+  const auto at = side.image ? " at pixel " + element_name(*side.setup->image(), channel) : "";
   const std::string text = fmt::format(
       "{} of {} observations of `{}`{} are not finite, the first is observation {}",
       summary.nonfinite, outcome.secondaries(), side.estimator->name, at, summary.first_nonfinite);
-  const std::string file = recorded::observation_file(*side.setup, summary.first_nonfinite);
-  if (!file.empty()) return fmt::format("{}, `{}`", text, file);
-  return fmt::format("{}; `assay replay RUN.json '{}' {}` draws it again", text,
-                     outcome.question.test->id, summary.first_nonfinite);
+  const auto file = recorded::observation_file(*side.setup, summary.first_nonfinite);
+  return text + (file.empty() ? fmt::format("; `assay replay RUN.json '{}' {}` draws it again",
+                                            outcome.question.test->id, summary.first_nonfinite)
+                              : ", `" + file + "`");
 }
 
 /// Whether the observations are all there and finite; the verdict is `error` where not.

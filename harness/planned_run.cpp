@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "estimators/recorded/picture_setup.h"
+#include "estimators/ready_made.h"
 #include "harness/frozen.h"
 #include "harness/interrupt.h"
 #include "harness/plan.h"

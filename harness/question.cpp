@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "estimators/recorded/picture_setup.h"
+#include "estimators/ready_made.h"
 #include "harness/question_claims.h"
 #include "harness/question_image.h"
 #include "harness/recorded_run.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "estimators/recorded/picture_setup.h"
+#include "estimators/ready_made.h"
 #include "harness/commands.h"
 #include "harness/interrupt.h"
 #include "harness/pool.h"

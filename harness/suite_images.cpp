@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "estimators/recorded/pictures.h"
+#include "estimators/pictures.h"
 #include "harness/suite_entries.h"
 #include "harness/suite_keys.h"
 #include "stats/image.h"

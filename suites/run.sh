@@ -6,7 +6,12 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source suites/install.sh
 
-install_packages suites/packages.txt
+lists=(suites/packages.txt)
+for suite in "$@"; do
+  # What one suite alone needs, another renderer, stands in a list beside it.
+  if [ -e "${suite%.yaml}-packages.txt" ]; then lists+=("${suite%.yaml}-packages.txt"); fi
+done
+install_packages "${lists[@]}"
 build_project build assay
 
 if [ $# -eq 0 ]; then

@@ -6,16 +6,10 @@
 #include <string>
 
 #include "estimators/estimator.h"
-#include "estimators/recorded/pictures.h"
+#include "estimators/pictures.h"
+#include "estimators/ready_made.h"
 
 namespace assay::recorded {
-
-/// Whether the means of a set-up's channels, with their errors, are all there is: nothing can be
-/// drawn.
-bool is_reference(const Setup& setup);
-
-/// The file that holds observation `index` of a set-up alone, or "".
-std::string observation_file(const Setup& setup, std::uint64_t index);
 
 /// Observation i is file i. Files are read one by one when they are asked for and not kept.
 /// `data_file` tells which files they are (Setup::data_file()).

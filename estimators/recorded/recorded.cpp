@@ -1,6 +1,6 @@
 // Observations that another program made, or Assay itself earlier: observation i is row i of a text
-// file (recorded/table.h), or picture i of several (recorded/pictures.h). Nothing is known of their
-// mean, unless a picture carries its own error and is a reference. `primaries` is 1: what one
+// file (recorded/table.h), or picture i of several (estimators/pictures.h). Nothing is known of
+// their mean, unless a picture carries its own error and is a reference. `primaries` is 1: what one
 // observation was made from is the other program's affair.
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "recorded/pictures.h"
+#include "estimators/pictures.h"
 
 #include <glob.h>
 

@@ -1,0 +1,19 @@
+#pragma once
+
+// What is asked of set-ups whose numbers another program made.
+
+#include <cstdint>
+#include <string>
+
+#include "estimators/estimator.h"
+
+namespace assay::recorded {
+
+/// Whether the means of a set-up's channels, with their errors, are all there is: nothing can be
+/// drawn.
+bool is_reference(const Setup& setup);
+
+/// The file that holds observation `index` of a set-up alone, or "".
+std::string observation_file(const Setup& setup, std::uint64_t index);
+
+}  // namespace assay::recorded
