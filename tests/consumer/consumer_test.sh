@@ -32,6 +32,17 @@ contains 'again:claims/mean(normal) == 2 '
 # As the second set-up sets it, the mean is 3.
 contains '75% tests passed, 1 tests failed out of 4'
 
+# 50 true claims at alpha 0.01 together, under 200 seeds: two failing runs are expected at most.
+# This fails by chance with probability 1.4e-6 (12 or more of 200 at .01, binomial).
+failures=0
+for seed in $(seq 1 200); do
+  ASSAY_SEED=$seed run build/claims_test || failures=$((failures + 1))
+done
+[ "$failures" -lt 12 ] || fail "$failures of 200 runs of true claims fail"
+echo "$failures of 200 runs of 50 true claims at alpha 0.01 failed"
+ASSAY_SEED=1 run build/claims_test --gtest_output="xml:$work/claims.xml"
+grep -q 'property name="estimate_25" value="0' "$work/claims.xml" || fail 'no properties'
+
 # A claim that is new, and one that is misspelt, need no build.
 printf '  - {name: new, claim: mean(normal) <= 9}\n' >>claims.yaml
 run ctest --test-dir build -R '^claims/new$' || fail 'the new claim fails'
