@@ -24,11 +24,23 @@
 
 namespace assay {
 
+/// Observations [first, last) of one stream, about to be asked for in order.
+struct Announcement {
+  StreamKey key;
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+};
+
 /// Yields secondary estimates. One object per worker; nothing leaks from one call to the next, so
 /// that an observation is a function of its stream alone.
 class Estimator {
  public:
   virtual ~Estimator() = default;
+  /// What comes next, for an estimator that fetches several observations at a time. Changes no
+  /// number; observations may be asked for without it.
+  virtual void announce(const Announcement&) {}
+  /// CPU seconds spent so far outside of the calling thread: those of another process.
+  virtual double seconds_elsewhere() const { return 0; }
   /// Writes one secondary estimate built from `primaries` >= 1 primary estimates, one number per
   /// channel, and adds what it cost.
   virtual void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
@@ -42,6 +54,12 @@ enum class BiasClass {
   inverse_bootstrap,  ///< bias falls like 1 / bootstrap (a normaliser from so many points)
   start_up,           ///< a chain that has not forgotten its start
   reconstruction,     ///< bias of a filter or an interpolation
+};
+
+/// How secondary estimates relate to primaries and to the integral.
+struct Nature {
+  bool averages = true;
+  std::optional<BiasClass> bias = {};  ///< unknown where the program does not say
 };
 
 /// One number of an observation, and what is known of it exactly.
@@ -77,6 +95,9 @@ class Setup {
   virtual std::string data_file() const { return {}; }
   /// The stream that ready-made observations were drawn from, where they say so.
   virtual std::optional<StreamKey> data_stream() const { return {}; }
+  /// What stands in the place of the catalogue's `averages` and `bias`, which cannot be known
+  /// before another program has been asked.
+  virtual std::optional<Nature> nature() const { return {}; }
   /// What making the set-up cost.
   virtual Cost cost() const { return {}; }
 };
@@ -91,6 +112,8 @@ struct Information {
   /// A secondary estimate is the mean of `primaries` independent primaries, so that its variance
   /// falls like 1 / primaries and `primaries` may be chosen from the pilot.
   bool averages = true;
+  /// `bias` and `averages` are another program's to say: Setup::nature() has them.
+  bool says_nature = false;
   std::string original = "";  ///< of a mutant: the plugin whose streams it uses
   std::string defect = "";    ///< of a mutant: what is wrong
 };

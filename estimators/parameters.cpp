@@ -52,9 +52,25 @@ bool within(const ParameterInformation& p, double value) {
   return std::isfinite(value) && above && below;
 }
 
+std::vector<std::string> texts_of(const Value& value, const std::string& what) {
+  if (value.kind() != Value::Kind::list) {
+    throw InputError(value.where(), what + " must be a list of texts: `[one, two]`");
+  }
+  std::vector<std::string> texts;
+  for (const Value& item : value.items()) texts.push_back(item.string("each item of " + what));
+  return texts;
+}
+
+std::string canonical_texts(const std::vector<Value>& items) {
+  std::vector<Value> marked;
+  for (const Value& item : items) marked.push_back(Value::scalar(":" + item.text()));
+  return Value::list(std::move(marked)).canonical();
+}
+
 std::string canonical_value(const ParameterInformation& parameter, const Value& value) {
   // A text parameter `1e3` is not the text `1000`; prefixing keeps both from reading as numbers.
   if (parameter.type == ParameterType::string) return Value::scalar(":" + value.text()).canonical();
+  if (parameter.type == ParameterType::texts) return canonical_texts(value.items());
   return value.canonical();
 }
 
@@ -109,6 +125,9 @@ void Parameters::check(const ParameterInformation& parameter, const Value& value
     case ParameterType::string:
       one_of(parameter, value.string(what));
       break;
+    case ParameterType::texts:
+      texts_of(value, what);
+      break;
     case ParameterType::structure:
       break;
   }
@@ -148,6 +167,9 @@ double Parameters::number(std::string_view name) { return value(name).number(nam
 std::uint64_t Parameters::count(std::string_view name) { return value(name).count(name); }
 bool Parameters::boolean(std::string_view name) { return value(name).boolean(name); }
 std::string Parameters::string(std::string_view name) { return value(name).string(name); }
+std::vector<std::string> Parameters::texts(std::string_view name) {
+  return texts_of(value(name), std::string(name));
+}
 const Value& Parameters::structure(std::string_view name) { return value(name); }
 
 std::string Parameters::file(std::string_view name) {

@@ -14,7 +14,8 @@
 
 namespace assay {
 
-enum class ParameterType { number, count, boolean, string, structure };
+/// `texts` is a list of texts that are taken as they are written: the words of a command.
+enum class ParameterType { number, count, boolean, string, texts, structure };
 
 /// One parameter as the plugin declares it. `fallback` is YAML-like text; empty means required.
 struct ParameterInformation {
@@ -29,6 +30,8 @@ struct ParameterInformation {
   bool high_excluded = false;
   std::vector<std::string> choices = {};  ///< of a string: the only texts allowed
   std::string reason = "";  ///< why nothing outside the range will do, if that is not plain
+  /// Whether the numbers drawn depend on it; if not (a time-out) it is no part of the stream's key.
+  bool shapes_draws = true;
 };
 
 /// The values a user gave for one estimator, checked against what the plugin declares.
@@ -47,6 +50,7 @@ class Parameters {
   std::uint64_t count(std::string_view name);
   bool boolean(std::string_view name);
   std::string string(std::string_view name);
+  std::vector<std::string> texts(std::string_view name);
   /// A string that names a file, resolved against the folder of the suite.
   std::string file(std::string_view name);
   /// A list or map with a meaning of the plugin's own (a scene).

@@ -46,6 +46,9 @@ class Stream {
   /// Uniform in (0, 1): the midpoints of 2^52 cells, for logarithms and quantiles.
   double uniform_open() { return (to_double((*this)() >> 12) + 0.5) * 0x1p-52; }
 
+  /// The family it is of: with the observation's index all that another program needs to draw it.
+  StreamKey key() const { return {key_[0] | static_cast<std::uint64_t>(key_[1]) << 32}; }
+
   /// Which observation this is: the index of a row for recorded data.
   std::uint64_t observation() const {
     return counter_[2] | static_cast<std::uint64_t>(counter_[3]) << 32;

@@ -53,6 +53,8 @@ const char* type_name(ParameterType type) {
       return "true or false";
     case ParameterType::string:
       return "text";
+    case ParameterType::texts:
+      return "list of texts";
     case ParameterType::structure:
       return "structure";
   }
@@ -63,6 +65,7 @@ const char* bias_text(const Information& information) {
   // A mutant's bias is its defect's; the class is that of the estimator it was made from.
   if (!information.original.empty()) return "that of its defect";
   if (information.name == "recorded") return "unknown: the observations were made elsewhere";
+  if (information.says_nature) return "what the program says of it; unknown where it says nothing";
   switch (information.bias) {
     case BiasClass::unbiased:
       return "unbiased";
@@ -76,6 +79,12 @@ const char* bias_text(const Information& information) {
       return "reconstruction: that of a filter or an interpolation";
   }
   return "";
+}
+
+const char* primaries_text(const Information& information) {
+  if (information.says_nature) return "averaged where the program says so; else 1 unless given";
+  return information.averages ? "averaged: a secondary estimate is the mean of its primaries"
+                              : "not averaged; 1 unless given";
 }
 
 const char* domain_name(Domain domain) {
@@ -218,9 +227,7 @@ std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
     out += "\n" + wrapped(information.description, page_width, 0);
   }
   out += "\n" + field("bias", bias_text(information));
-  out += field("primaries", information.averages
-                                ? "averaged: a secondary estimate is the mean of its primaries"
-                                : "not averaged; 1 unless given");
+  out += field("primaries", primaries_text(information));
   out += field("mutant of", information.original) + field("defect", information.defect);
   return out + parameters_text(information) + prepared_text(plugin) +
          mutants_text(information, entries);

@@ -15,8 +15,9 @@ using reports::Number;
 
 Number number(double value) { return std::isfinite(value) ? Number(value) : Number(); }
 
-const char* bias_name(BiasClass bias) {
-  switch (bias) {
+const char* bias_name(std::optional<BiasClass> bias) {
+  if (!bias) return "unknown";
+  switch (*bias) {
     case BiasClass::unbiased:
       return "unbiased";
     case BiasClass::inverse_primaries:
@@ -32,9 +33,7 @@ const char* bias_name(BiasClass bias) {
 }
 
 double per_primary(const Picture& picture) {
-  return picture.estimator->entry->information.averages
-             ? static_cast<double>(picture.pool->primaries())
-             : 1;
+  return picture.estimator->nature().averages ? static_cast<double>(picture.pool->primaries()) : 1;
 }
 
 bool has_spread(const stats::Moments& moments) { return moments.count > 3 && moments.m2 > 0; }
@@ -60,18 +59,19 @@ reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run)
   const std::uint64_t count = shown_by(picture, run);
   const double confidence = 1 - run.suite.alpha;
   const Information& information = picture.estimator->entry->information;
+  const Nature nature = picture.estimator->nature();
   reports::EstimatorSummary row{
       .name = picture.estimator->name,
       .plugin = information.name,
       .parameters = picture.estimator->parameters,
       // Of rows that were made elsewhere nothing is known.
-      .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(information.bias),
+      .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(nature.bias),
       .original = information.original,
       .defect = information.defect,
       .primaries = picture.pool->primaries(),
       .secondaries = count,
       .confidence = confidence,
-      .variance_of = information.averages ? "primary" : "secondary"};
+      .variance_of = nature.averages ? "primary" : "secondary"};
   if (!picture.pool->has(count)) return row;
   const Summary& summary = picture.pool->prefix(count);
   row.cost = cost_of(summary);

@@ -20,7 +20,7 @@ constexpr std::uint64_t least_images = 2 * stats::least_replicates;
 constexpr std::size_t kept_channels = 64;
 
 std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
-  const bool averages = estimator.entry->information.averages;
+  const bool averages = estimator.nature().averages;
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
   auto pool =
       std::make_shared<Pool>(estimator.setup, key_of(estimator, seed, 0, "pilot"), primaries);

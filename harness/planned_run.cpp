@@ -128,9 +128,9 @@ void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& us
                   const Primaries& primaries, const Pilots& pilots, Pools& pools) {
   for (const PreparedEstimator* estimator : used) {
     const auto found = primaries.find(estimator->name);
-    const std::uint64_t automatic = !estimator->entry->information.averages ? 1
-                                    : found != primaries.end()              ? found->second
-                                                                            : picture_primaries;
+    const std::uint64_t automatic = !estimator->nature().averages ? 1
+                                    : found != primaries.end()    ? found->second
+                                                                  : picture_primaries;
     const auto pool =
         pools.for_picture(*estimator, estimator->primaries.value_or(automatic), run.seed, pilots);
     Picture picture{estimator, pool};

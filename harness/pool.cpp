@@ -113,11 +113,13 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
               .trouble = {}};
   std::vector<double> out(plan_.size());
   auto mark = prefixes_.upper_bound(first);
-  const double start = thread_seconds();
+  const auto seconds = [&estimator] { return thread_seconds() + estimator.seconds_elsewhere(); };
+  const double start = seconds();
   std::uint64_t index = first;
   GroupVariance groups(grouped_channels_);
   const FlushDenormals flush;
   try {
+    estimator.announce({.key = key_, .first = first, .last = last});
     for (; index < last; ++index) {
       Stream random(key_, index);
       const Cost before = block.whole.cost;
@@ -132,14 +134,14 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
       ++block.whole.count;
       if (mark != prefixes_.end() && index + 1 == mark->first) {
         block.partial.emplace_back(mark->first, block.whole);
-        block.partial.back().second.seconds = thread_seconds() - start;
+        block.partial.back().second.seconds = seconds() - start;
         ++mark;
       }
     }
   } catch (const std::exception& error) {
     block.trouble = fmt::format("observation {}: {}", index, error.what());
   }
-  block.whole.seconds = thread_seconds() - start;
+  block.whole.seconds = seconds() - start;
   return block;
 }
 

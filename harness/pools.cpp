@@ -73,8 +73,7 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   if (pool.setup()->image()) return std::vector<ChannelPlan>(channels.size());
   const auto found = pilots.find(estimator.name);  // a replay has none
   const Pilot pilot = found != pilots.end() ? found->second : Pilot{.trouble = "no pilot"};
-  const double averaged =
-      estimator.entry->information.averages ? static_cast<double>(pool.primaries()) : 1;
+  const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (!pilot.trouble.empty() || pilot.channels[i].count < 2) {
       plan.push_back({.keep = plotted_values});

@@ -41,10 +41,15 @@ void use_recorded_run(const RecordedRun& run, PreparedEstimator& prepared) {
 
 }  // namespace
 
+Nature PreparedEstimator::nature() const {
+  return setup->nature().value_or(
+      Nature{.averages = entry->information.averages, .bias = entry->information.bias});
+}
+
 std::vector<std::string> parameter_names(const Information& information) {
   std::vector<std::string> names;
   for (const ParameterInformation& parameter : information.parameters) {
-    names.push_back(parameter.name);
+    if (parameter.shapes_draws) names.push_back(parameter.name);
   }
   return names;
 }
@@ -52,18 +57,19 @@ std::vector<std::string> parameter_names(const Information& information) {
 PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder) {
   const Entry& plugin = find_plugin(entry.plugin, entry.where);
   Parameters parameters(entry.plugin, plugin.information.parameters, entry.parameters, folder);
-  PreparedEstimator prepared{.name = entry.name,
-                             .listed = entry.name,
-                             .entry = &plugin,
-                             .setup = set_up(plugin, parameters),
-                             .parameters = parameters.canonical(),
-                             .folder = std::filesystem::weakly_canonical(folder).string(),
-                             .key_plugin = entry.plugin,
-                             .key_parameters = parameters.canonical(),
-                             .primaries = entry.primaries,
-                             .original = nullptr,
-                             .where = entry.where,
-                             .given = entry.parameters};
+  PreparedEstimator prepared{
+      .name = entry.name,
+      .listed = entry.name,
+      .entry = &plugin,
+      .setup = set_up(plugin, parameters),
+      .parameters = parameters.canonical(),
+      .folder = std::filesystem::weakly_canonical(folder).string(),
+      .key_plugin = entry.plugin,
+      .key_parameters = parameters.canonical(parameter_names(plugin.information)),
+      .primaries = entry.primaries,
+      .original = nullptr,
+      .where = entry.where,
+      .given = entry.parameters};
   if (const RecordedRun* run = as_recorded_run(*prepared.setup)) {
     use_recorded_run(*run, prepared);
   } else if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
@@ -78,7 +84,7 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
                       only(entry.parameters, names), folder);
     prepared.original = set_up(original, theirs);
     prepared.key_plugin = original.information.name;
-    prepared.key_parameters = theirs.canonical();
+    prepared.key_parameters = theirs.canonical(names);
   }
   return prepared;
 }

@@ -26,6 +26,9 @@ struct PreparedEstimator {
   std::shared_ptr<const Setup> original;   ///< of a mutant: its original at the same parameters
   Location where;
   Value given = {};  ///< the parameters as the suite gives them
+
+  /// Whether a secondary estimate is the mean of its primaries; how it is biased, if that is known.
+  Nature nature() const;
 };
 
 /// The names of the parameters an estimator's streams depend on.

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "estimators/library_host.h"
 #include "harness/cli.h"
 #include "harness/failure.h"
 #include "harness/interrupt.h"
@@ -89,6 +90,8 @@ int flushed(int code) {
 int guarded(const std::vector<std::string>& arguments, Command& command) {
   command = parse_command_line(arguments);
   watch_interrupts();
+  set_stop_question(interrupted);
+  set_library_host("/proc/self/exe");
   const int code = std::visit([](const auto& c) { return act(c); }, command);
   return interrupted() ? stopped : flushed(code);
 }
@@ -96,6 +99,10 @@ int guarded(const std::vector<std::string>& arguments, Command& command) {
 }  // namespace
 
 int program(const std::vector<std::string>& arguments) {
+  // Not for users: this very program started by itself, to keep a library's crash out of the run.
+  if (!arguments.empty() && arguments.front() == library_host_word) {
+    return host_library({arguments.begin() + 1, arguments.end()});
+  }
   Command command;
   try {
     return guarded(arguments, command);

@@ -69,7 +69,7 @@ void add_reference(Question& question, const Estimators& estimators) {
 }
 
 bool is_biased(const Subject& subject) {
-  return subject.estimator->entry->information.bias != BiasClass::unbiased;
+  return subject.estimator->nature().bias.value_or(BiasClass::unbiased) != BiasClass::unbiased;
 }
 
 /// Seconds are measured over blocks of drawing.

@@ -100,7 +100,7 @@ Subject estimates(const Source& source, const PreparedEstimator& estimator) {
                   .setup = estimator.setup,
                   .channels = source.part.empty() ? tested_channels(channels)
                                                   : channels_named(channels, source.part),
-                  .averages = estimator.entry->information.averages};
+                  .averages = estimator.nature().averages};
   if (auto image = estimator.setup->image()) {
     std::vector<std::size_t> elements = elements_named(*image, source.part);
     if (!elements.empty()) {

@@ -26,6 +26,15 @@
 namespace assay::harness {
 namespace {
 
+/// A list of texts without the colon before each.
+Value unmarked(const Value& texts, const Location& where) {
+  std::vector<Value> items;
+  for (const Value& item : texts.items()) {
+    items.push_back(Value::scalar(item.text().substr(1), where));
+  }
+  return Value::list(std::move(items), where);
+}
+
 /// Canonical parameters ("name=value,…") as a suite would give them. Text parameters are written
 /// with a colon before them; null and a text's fallback stand for what was not given.
 Value parameters_of(const reports::Sample& sample, const Location& where) {
@@ -44,6 +53,7 @@ Value parameters_of(const reports::Sample& sample, const Location& where) {
       value = Value::scalar(value.text().substr(1), where);
       if (value.text() == known->fallback) continue;
     }
+    if (known->type == ParameterType::texts) value = unmarked(value, where);
     members.emplace_back(name, std::move(value));
   }
   return Value::map(std::move(members), where);

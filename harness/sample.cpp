@@ -86,6 +86,7 @@ int sample(const SampleArguments& arguments) {
   const std::unique_ptr<Estimator> worker = sampled.setup->make();
   const FlushDenormals flush;
   std::vector<double> out(channels.size());
+  worker->announce({.key = key, .first = 0, .last = count});
   for (std::uint64_t row = 0; row < count && !interrupted(); ++row) {
     Stream random(key, row);
     Cost unused;

@@ -7,6 +7,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "harness/interrupt.h"
 
@@ -24,15 +25,21 @@ struct Drawn {
   std::shared_ptr<Pool::Block> block;  // shared: a pipeline's items are copied
 };
 
-/// The blocks still to draw, pool by pool.
+/// The blocks still to draw, pool by pool. Of a pool that is in trouble no more are: what comes
+/// after counts for nothing, and may take a time-out each. Handing out and folding may go on at the
+/// same time, so that the pool itself cannot be asked.
 class TaskList {
  public:
-  explicit TaskList(const std::vector<std::shared_ptr<Pool>>& pools) : pools_(pools) {
+  explicit TaskList(const std::vector<std::shared_ptr<Pool>>& pools)
+      : pools_(pools), in_trouble_(pools.size()) {
+    for (std::size_t i = 0; i < pools.size(); ++i) in_trouble_[i] = !pools[i]->trouble().empty();
     if (!pools_.empty()) next_ = pools_[0]->drawn();
   }
 
+  void note_trouble(std::size_t pool) { in_trouble_[pool] = true; }
+
   bool next(Task& task) {
-    while (pool_ < pools_.size() && next_ >= pools_[pool_]->requested()) {
+    while (pool_ < pools_.size() && (in_trouble_[pool_] || next_ >= pools_[pool_]->requested())) {
       if (++pool_ < pools_.size()) next_ = pools_[pool_]->drawn();
     }
     if (pool_ == pools_.size()) return false;
@@ -44,6 +51,7 @@ class TaskList {
 
  private:
   const std::vector<std::shared_ptr<Pool>>& pools_;
+  std::vector<std::atomic<bool>> in_trouble_;
   std::size_t pool_ = 0;
   std::uint64_t next_ = 0;
 };
@@ -96,6 +104,7 @@ void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& dr
   const auto fold = [&](const Drawn& drawn) {
     done += work(*pools[drawn.pool], drawn.block->whole.count);
     pools[drawn.pool]->fold(std::move(*drawn.block));
+    if (!pools[drawn.pool]->trouble().empty()) tasks.note_trouble(drawn.pool);
     progress.advance(done);
   };
   // An arena of its own: the limit above holds also where the calling thread is in another.

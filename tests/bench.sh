@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Benchmarks, on a machine that does nothing else. Last results: harness/README.md,
 # estimators/README.md and stats/README.md.
-#   bash tests/bench.sh            engine, rays, Kolmogorov-Smirnov, images, p-values
+#   bash tests/bench.sh            engine, rays, Kolmogorov-Smirnov, images, p-values, other programs
 #   bash tests/bench.sh build      a clean build, and the rebuild after touching one estimator
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -22,12 +22,13 @@ if [ "${1:-}" = build ]; then
   time cmake --build "$folder" --target assay >/dev/null
   exit
 fi
-build_project build engine_bench ks_bench rays_bench image_bench tails_bench looks_bench
+build_project build foreign_bench engine_bench ks_bench rays_bench image_bench tails_bench looks_bench
 build/tests/bench/engine_bench
 build/tests/estimators/rays_bench
 build/tests/bench/ks_bench
 build/tests/bench/image_bench
 build/tests/bench/tails_bench
+build/tests/bench/foreign_bench estimators/foreign/examples estimators
 build/tests/bench/looks_bench suites/analytic.yaml suites/luminaire.yaml suites/brdf.yaml
 # The same with scipy, where that is installed.
 if /usr/bin/python3 -c 'import scipy' 2>/dev/null; then

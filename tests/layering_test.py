@@ -16,8 +16,8 @@ MAY_INCLUDE = {
     "harness": set(LAYERS),
 }
 # How a layer's own folders are named in its includes (private include folder).
-FOLDERS_OF_ESTIMATORS = ("analytic", "brdf", "environment", "luminaire", "mutants", "recorded",
-                         "render")
+FOLDERS_OF_ESTIMATORS = ("analytic", "brdf", "environment", "foreign", "luminaire", "mutants",
+                         "recorded", "render")
 RENDERER = re.compile(r"embree|OpenEXR|Imf|Imath|Iex", re.IGNORECASE)
 FOREIGN_TO_STATS = re.compile(r"(?<![a-z])(estimator|pixel|suite|file)s?(?![a-z])", re.IGNORECASE)
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)

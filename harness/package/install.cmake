@@ -5,6 +5,9 @@ include(CMakePackageConfigHelpers)
 
 set(ASSAY_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/assay)
 install(TARGETS assay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# The interface of shared libraries: a plugin is compiled against it and linked against nothing.
+install(FILES ${PROJECT_SOURCE_DIR}/estimators/plugin_abi.h
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/assay)
 
 if(TARGET assay_googletest)
   install(TARGETS assay_googletest EXPORT assayTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

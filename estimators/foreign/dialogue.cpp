@@ -1,0 +1,143 @@
+#include "estimators/foreign/dialogue.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <system_error>
+
+#include "estimators/foreign/words.h"
+
+namespace assay::foreign {
+
+namespace {
+
+using std::chrono::duration;
+using std::chrono::steady_clock;
+
+// A question is as large as is answered in about this time: long against what the change between
+// two programs takes (some 20 microseconds), short against a time-out.
+constexpr double pleasant_seconds = 0.02;
+constexpr std::size_t longest_hello = std::size_t{1} << 20;
+
+std::string seconds_text(double seconds) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%g", seconds);
+  return std::string(buffer.data()) + (seconds == 1 ? " second" : " seconds");
+}
+
+/// The last lines, on one line.
+std::string tail_of(const std::string& text) {
+  constexpr std::size_t most = 300;
+  std::size_t begin = text.size() > most ? text.size() - most : 0;
+  // Not from the middle of a word, where words are words.
+  const std::size_t blank = text.find_first_of(" \n", begin);
+  if (begin > 0 && blank != std::string::npos) begin = blank;
+  const std::string legible = shown(std::string_view(text).substr(begin), 2 * most);
+  std::string out;
+  for (const std::string_view word : words_of(legible)) {
+    out += (out.empty() ? "" : " ") + std::string(word);
+  }
+  return (begin > 0 && !out.empty() ? "… " : "") + out;
+}
+
+}  // namespace
+
+Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
+  try {
+    hear_hello();
+  } catch (const TimeOut&) {
+    give_up("said no whole hello within " + seconds_text(terms_.timeout) +
+            "; it ends with the line `ready`, and buffers must be flushed");
+  } catch (const Refusal& refusal) {
+    throw NoAnswer(refusal.what());
+  } catch (const ProtocolError& error) {
+    give_up("cannot be understood: " + std::string(error.what()));
+  }
+}
+
+Deadline Dialogue::deadline() const {
+  return steady_clock::now() +
+         std::chrono::duration_cast<steady_clock::duration>(duration<double>(terms_.timeout));
+}
+
+void Dialogue::hear_hello() {
+  const Deadline end = deadline();
+  std::string text;
+  std::array<char, 4096> buffer{};
+  while (!is_whole_hello(text)) {
+    const std::size_t count = child_.receive(buffer, end);
+    if (count == 0) {
+      const std::string said = text.empty() ? "" : "; it said `" + shown(text) + "`";
+      give_up(child_.ending() + " before its hello was whole" + said);
+    }
+    text.append(buffer.data(), count);
+    if (text.size() > longest_hello) throw ProtocolError("its hello has no end");
+    // Garbage is seen at once, not when the time is over.
+    const std::size_t line = text.find('\n');
+    if (line != std::string::npos && !words_of(text.substr(0, line)).empty() &&
+        words_of(text.substr(0, line))[0] != "assay") {
+      parse_hello(text);
+    }
+  }
+  hello_ = parse_hello(text);
+}
+
+void Dialogue::give_up(const std::string& why) {
+  child_.kill();
+  const std::string tail = tail_of(child_.last_errors());
+  throw NoAnswer("`" + terms_.name + "` " + why +
+                 (tail.empty() ? "" : "; its standard error ends with: " + tail));
+}
+
+std::vector<double> Dialogue::ask(const Question& question) {
+  const auto start = steady_clock::now();
+  try {
+    std::vector<double> numbers = hear(question);
+    learn_pace(question.count, duration<double>(steady_clock::now() - start).count());
+    return numbers;
+  } catch (const ProtocolError& error) {
+    give_up("cannot be understood: " + std::string(error.what()));
+  }
+}
+
+std::vector<double> Dialogue::hear(const Question& question) {
+  Reply reply(question, hello_.width(), hello_.numbers);
+  const Deadline end = deadline();
+  if (child_.has_output()) {
+    std::array<char, 64> early{};
+    const std::size_t count = child_.receive(early, end);
+    if (count > 0) {
+      throw ProtocolError("it wrote to standard output without being asked: `" +
+                          shown({early.data(), count}) + "`");
+    }
+  }
+  try {
+    child_.send(to_bytes(question, hello_.numbers), end);
+    while (true) {
+      const std::size_t count = child_.receive(reply.space(), end);
+      if (count == 0) {
+        give_up(child_.ending() + " instead of answering for " + to_text(question) + "; " +
+                reply.so_far());
+      }
+      if (reply.take(count)) break;
+      if (child_.has_output()) continue;
+      if (const std::string why = reply.ends_early(); !why.empty()) throw ProtocolError(why);
+    }
+  } catch (const TimeOut&) {
+    give_up("did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
+            " (parameter `timeout`); " + reply.so_far());
+  }
+  return reply.numbers();
+}
+
+std::uint64_t Dialogue::well_sized(std::uint64_t most) const { return std::min(size_, most); }
+
+void Dialogue::learn_pace(std::uint64_t count, double seconds) {
+  constexpr std::uint64_t growth = 8;
+  const double wanted = static_cast<double>(count) * pleasant_seconds / std::max(seconds, 1e-9);
+  const auto most = static_cast<double>(growth * count);
+  size_ = static_cast<std::uint64_t>(std::clamp(wanted, 1.0, most));
+}
+
+}  // namespace assay::foreign

@@ -1,0 +1,327 @@
+#include "estimators/foreign/hello.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "estimators/foreign/words.h"
+
+namespace assay::foreign {
+
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+struct BiasWord {
+  std::string_view word;
+  BiasClass bias;
+};
+constexpr std::array<BiasWord, 5> bias_words = {{{"unbiased", BiasClass::unbiased},
+                                                 {"primaries", BiasClass::inverse_primaries},
+                                                 {"bootstrap", BiasClass::inverse_bootstrap},
+                                                 {"start-up", BiasClass::start_up},
+                                                 {"reconstruction", BiasClass::reconstruction}}};
+
+[[noreturn]] void wrong(std::string_view line, const std::string& why) {
+  throw ProtocolError("its hello has the line `" + shown(line) + "`: " + why);
+}
+
+// As a claim can name it.
+bool is_name(std::string_view word) {
+  const auto letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  if (word.empty() || !letter(word[0])) return false;
+  for (const char c : word) {
+    if (!letter(c) && !(c >= '0' && c <= '9')) return false;
+  }
+  return true;
+}
+
+/// Reads the lines one by one.
+class Reader {
+ public:
+  explicit Reader(std::uint64_t most) : most_(most) {}
+
+  void line(std::string_view text) {
+    const Words words = words_of(text);
+    if (words.empty()) return;
+    if (!greeted_) return greet(text, words);
+    const auto found = meanings_.find(words[0]);
+    if (found == meanings_.end()) {
+      wrong(text,
+            "a line begins with channel, image, range, independent, averages, bias, rays, ready or "
+            "error");
+    }
+    line_ = text;
+    found->second(words);
+  }
+
+  bool ready() const { return ready_; }
+
+  Hello finish() {
+    if (!greeted_) throw ProtocolError("it says nothing; the first line is `assay 1 text`");
+    if (!ready_) throw ProtocolError("its hello does not end with `ready`");
+    refuse_double_components();
+    std::vector<Channel> all = elements();
+    all.insert(all.end(), hello_.channels.begin(), hello_.channels.end());
+    if (all.empty()) throw ProtocolError("its hello names neither a `channel` nor an `image`");
+    hello_.channels = std::move(all);
+    refuse_doubles();
+    return hello_;
+  }
+
+ private:
+  void greet(std::string_view text, const Words& words) {
+    if (words[0] != "assay" || words.size() != 3) {
+      wrong(text, "the first is `assay 1 text` or `assay 1 binary`");
+    }
+    if (whole_of(words[1]) != protocol_version) {
+      wrong(text, "it speaks version " + std::string(words[1]) +
+                      " of the protocol, this is version " + std::to_string(protocol_version));
+    }
+    if (words[2] != "text" && words[2] != "binary") wrong(text, "numbers are `text` or `binary`");
+    hello_.numbers = words[2] == "text" ? Numbers::text : Numbers::binary;
+    greeted_ = true;
+  }
+
+  [[noreturn]] void wrong_here(const std::string& why) const { wrong(line_, why); }
+
+  double number(std::string_view word) const {
+    const std::optional<double> value = number_of(word);
+    if (!value || std::isnan(*value)) wrong_here("`" + shown(word) + "` is not a number");
+    return *value;
+  }
+
+  double finite(std::string_view word) const {
+    const double value = number(word);
+    if (!std::isfinite(value)) wrong_here("`" + shown(word) + "` is not finite");
+    return value;
+  }
+
+  void take_range(double low, double high, Channel& channel) const {
+    if (!(low <= high)) wrong_here("the range is empty");
+    channel.low = low;
+    channel.high = high;
+  }
+
+  void take_fact(std::string_view what, double value, Channel& channel) const {
+    const bool spread = what == "error" || what == "variance" || what == "rounding";
+    if (spread && value < 0) wrong_here("`" + std::string(what) + "` cannot be negative");
+    if (what == "mean")
+      channel.mean = value;
+    else if (what == "error")
+      channel.mean_error = value;
+    else if (what == "variance")
+      channel.variance = value;
+    else if (what == "rounding")
+      channel.rounding = value;
+    else
+      wrong_here(
+          "of a channel mean, error, variance, low, high, rounding and diagnostic are known");
+  }
+
+  void channel(const Words& words) {
+    if (words.size() < 2 || !is_name(words[1])) {
+      wrong_here("a channel has a name of letters, digits and `_`");
+    }
+    Channel channel{.name = std::string(words[1])};
+    double low = channel.low;
+    double high = channel.high;
+    for (std::size_t i = 2; i < words.size(); ++i) {
+      if (words[i] == "diagnostic") {
+        channel.diagnostic = true;
+        continue;
+      }
+      if (i + 1 == words.size()) wrong_here("`" + shown(words[i]) + "` needs a number");
+      const std::string_view what = words[i++];
+      if (what == "low")
+        low = number(words[i]);
+      else if (what == "high")
+        high = number(words[i]);
+      else
+        take_fact(what, finite(words[i]), channel);
+    }
+    take_range(low, high, channel);
+    hello_.channels.push_back(std::move(channel));
+  }
+
+  void image(const Words& words) {
+    if (hello_.image) wrong_here("there is one image");
+    if (words.size() < 3) wrong_here("an image has a width and a height in pixels");
+    const std::uint64_t width = whole_of(words[1]).value_or(0);
+    const std::uint64_t height = whole_of(words[2]).value_or(0);
+    const std::uint64_t components = words.size() == 3 ? 1 : words.size() - 3;
+    if (width == 0 || height == 0) wrong_here("width and height are whole numbers above 0");
+    if (width > most_ || height > most_ / width / components) {
+      wrong_here("an observation has " + std::to_string(most_) + " numbers at most");
+    }
+    hello_.image = ImageShape{.width = width, .height = height, .independent = false};
+    if (words.size() > 3) hello_.image->components.clear();
+    for (std::size_t i = 3; i < words.size(); ++i) {
+      if (!is_name(words[i])) wrong_here("a component has a name of letters, digits and `_`");
+      hello_.image->components.emplace_back(words[i]);
+    }
+  }
+
+  void range(const Words& words) {
+    if (words.size() != 3) wrong_here("a range is two numbers");
+    take_range(number(words[1]), number(words[2]), element_);
+    needs_image_ = line_;
+  }
+
+  void bias(const Words& words) {
+    for (const BiasWord& known : bias_words) {
+      if (words.size() == 2 && words[1] == known.word) hello_.nature.bias = known.bias;
+    }
+    if (!hello_.nature.bias) {
+      wrong_here("bias is unbiased, primaries, bootstrap, start-up or reconstruction");
+    }
+  }
+
+  [[noreturn]] void error() const {
+    const std::size_t words = std::min(line_.find("error") + 6, line_.size());
+    throw Refusal(std::string(line_.substr(words)));
+  }
+
+  void alone(const Words& words) const {
+    if (words.size() != 1) wrong_here("nothing follows this word");
+  }
+
+  std::vector<Channel> elements() const {
+    if (!hello_.image) {
+      if (!needs_image_.empty()) wrong(needs_image_, "there is no `image`");
+      return {};
+    }
+    std::vector<Channel> all(hello_.image->elements(), element_);
+    for (std::size_t i = 0; i < all.size(); ++i) all[i].name = element_name(*hello_.image, i);
+    return all;
+  }
+
+  void refuse_double_components() const {
+    if (!hello_.image) return;
+    const std::vector<std::string>& all = hello_.image->components;
+    if (std::set<std::string>(all.begin(), all.end()).size() < all.size()) {
+      throw ProtocolError("its hello names a component twice");
+    }
+  }
+
+  void refuse_doubles() const {
+    std::set<std::string_view> names;
+    for (const Channel& channel : hello_.channels) {
+      if (names.insert(channel.name).second) continue;
+      throw ProtocolError("its hello names `" + channel.name + "` twice");
+    }
+    if (!hello_.image) return;
+    for (std::size_t i = hello_.image->elements(); i < hello_.channels.size(); ++i) {
+      if (hello_.channels[i].diagnostic) continue;
+      throw ProtocolError("its hello has the channel `" + hello_.channels[i].name +
+                          "` beside an image: such a channel is `diagnostic`");
+    }
+  }
+
+  std::map<std::string_view, std::function<void(const Words&)>> meanings_{
+      {"channel", [this](const Words& words) { channel(words); }},
+      {"image", [this](const Words& words) { image(words); }},
+      {"range", [this](const Words& words) { range(words); }},
+      {"bias", [this](const Words& words) { bias(words); }},
+      {"error", [this](const Words&) { error(); }},
+      {"averages",
+       [this](const Words& words) {
+         alone(words);
+         hello_.nature.averages = true;
+       }},
+      {"rays",
+       [this](const Words& words) {
+         alone(words);
+         hello_.rays = true;
+       }},
+      {"ready",
+       [this](const Words& words) {
+         alone(words);
+         ready_ = true;
+       }},
+      {"independent", [this](const Words& words) {
+         alone(words);
+         if (!hello_.image) wrong_here("it stands after the `image` whose pixels it is about");
+         hello_.image->independent = true;
+       }}};
+  std::uint64_t most_;
+  Hello hello_;
+  Channel element_;
+  std::string_view line_;
+  std::string_view needs_image_;
+  bool greeted_ = false;
+  bool ready_ = false;
+};
+
+std::string shortest(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+std::string channel_line(const Channel& channel) {
+  std::string line = "channel " + channel.name;
+  if (channel.mean) line += " mean " + shortest(*channel.mean);
+  if (channel.mean_error != 0) line += " error " + shortest(channel.mean_error);
+  if (channel.variance) line += " variance " + shortest(*channel.variance);
+  if (std::isfinite(channel.low)) line += " low " + shortest(channel.low);
+  if (std::isfinite(channel.high)) line += " high " + shortest(channel.high);
+  if (channel.rounding != 0) line += " rounding " + shortest(channel.rounding);
+  return line + (channel.diagnostic ? " diagnostic\n" : "\n");
+}
+
+std::string image_lines(const Hello& hello) {
+  const ImageShape& image = *hello.image;
+  std::string lines = "image " + std::to_string(image.width) + " " + std::to_string(image.height);
+  for (const std::string& component : image.components) lines += " " + component;
+  lines += image.independent ? "\nindependent\n" : "\n";
+  const Channel& element = hello.channels.front();
+  if (!std::isfinite(element.low) && !std::isfinite(element.high)) return lines;
+  return lines + "range " + shortest(element.low) + " " + shortest(element.high) + "\n";
+}
+
+}  // namespace
+
+bool is_whole_hello(std::string_view text) {
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    const auto words = words_of(text.substr(0, end));
+    if (!words.empty() && (words[0] == "ready" || words[0] == "error")) return true;
+    text.remove_prefix(end + 1);
+  }
+  return false;
+}
+
+Hello parse_hello(std::string_view text, std::uint64_t most) {
+  Reader reader(most);
+  while (!text.empty() && !reader.ready()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    reader.line(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  if (reader.ready() && !text.empty()) {
+    throw ProtocolError("it says `" + shown(text) +
+                        "` after `ready`, before it was asked anything");
+  }
+  return reader.finish();
+}
+
+std::string to_text(const Hello& hello) {
+  std::string text = "assay " + std::to_string(protocol_version) +
+                     (hello.numbers == Numbers::binary ? " binary\n" : " text\n");
+  if (hello.image) text += image_lines(hello);
+  for (std::size_t i = hello.image ? hello.image->elements() : 0; i < hello.channels.size(); ++i) {
+    text += channel_line(hello.channels[i]);
+  }
+  if (hello.nature.averages) text += "averages\n";
+  for (const BiasWord& known : bias_words) {
+    if (hello.nature.bias == known.bias) text += "bias " + std::string(known.word) + "\n";
+  }
+  if (hello.rays) text += "rays\n";
+  return text + "ready\n";
+}
+
+}  // namespace assay::foreign

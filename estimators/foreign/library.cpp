@@ -1,0 +1,112 @@
+// Observations of an estimator in a shared library (plugin_abi.h): in a process of its own unless
+// asked otherwise.
+
+#include <filesystem>
+#include <memory>
+
+#include "estimators/foreign/library_setup.h"
+#include "estimators/foreign/setup.h"
+#include "estimators/library_host.h"
+
+namespace assay::plugins {
+
+namespace {
+
+foreign::LibraryChoice choice_of(Parameters& parameters) {
+  // Absolute: the host runs in the suite's folder.
+  foreign::LibraryChoice choice{
+      .file = std::filesystem::absolute(parameters.file("file")).lexically_normal().string(),
+      .estimator = parameters.string("estimator"),
+      .parameters = {},
+      .folder = parameters.folder()};
+  if (!parameters.given("estimator")) choice.estimator.clear();
+  const Value& given = parameters.structure("parameters");
+  if (given.kind() != Value::Kind::map) {
+    parameters.refuse("parameters", "must be a map of names to values: `{rate: 2}`");
+  }
+  for (const auto& [name, value] : given.members()) {
+    choice.parameters.emplace_back(name, value.string("parameter `" + name + "` of the library"));
+  }
+  return choice;
+}
+
+std::shared_ptr<const Setup> isolated(foreign::Terms terms, const foreign::LibraryChoice& choice,
+                                      const Parameters& parameters) {
+  try {
+    terms.launch.command = {library_host(), library_host_word, choice.file, choice.estimator,
+                            std::filesystem::absolute(choice.folder).string()};
+  } catch (const std::runtime_error& error) {
+    parameters.refuse("isolated", error.what());
+  }
+  for (const auto& [name, text] : choice.parameters) {
+    terms.launch.command.push_back(name);
+    terms.launch.command.push_back(text);
+  }
+  terms.name = choice.file;
+  return foreign::start(std::move(terms), parameters, "file");
+}
+
+std::shared_ptr<const Setup> in_process(const foreign::LibraryChoice& choice,
+                                        const Parameters& parameters) {
+  try {
+    return foreign::library_setup(std::make_shared<const foreign::PreparedLibrary>(choice));
+  } catch (const std::runtime_error& error) {
+    parameters.refuse("file", std::string("is of no use: ") + error.what());
+  }
+}
+
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  foreign::Terms terms = foreign::read_terms(parameters);
+  const foreign::LibraryChoice choice = choice_of(parameters);
+  if (parameters.boolean("isolated")) return isolated(std::move(terms), choice, parameters);
+  return in_process(choice, parameters);
+}
+
+std::vector<ParameterInformation> parameters() {
+  std::vector<ParameterInformation> all = {
+      {.name = "file",
+       .type = ParameterType::string,
+       .summary = "the library, relative to the suite"},
+      {.name = "estimator",
+       .type = ParameterType::string,
+       .summary = "which of its estimators; where it has one, that",
+       .fallback = "only"},
+      {.name = "parameters",
+       .type = ParameterType::structure,
+       .summary = "what the library declares, `{rate: 2}`",
+       .fallback = "{}"},
+      {.name = "isolated",
+       .type = ParameterType::boolean,
+       .summary = "run in a process of its own; if false a crash of the library ends the whole run",
+       .fallback = "true",
+       .shapes_draws = false}};
+  for (const ParameterInformation& term : foreign::terms_parameters()) all.push_back(term);
+  return all;
+}
+
+}  // namespace
+
+std::vector<Entry> foreign_library() {
+  return {
+      {{.name = "library",
+        .summary = "Observations of an estimator in a shared library.",
+        .description =
+            "The library exports assay_library(), as the header plugin_abi.h (C11, linked "
+            "against nothing) declares it, and is compiled by `gcc -std=c11 -O2 -fPIC -shared`. "
+            "Its random numbers are Assay's own streams: a C copy of an estimator draws the very "
+            "numbers of the original under the same key.\n"
+            "It runs in a process of its own, one a worker, with `timeout` and `memory` as those "
+            "of `process`. A crash, a time-out, an error that it reports, a number that is not "
+            "finite and a word on standard output are then errors of the tests that use it, with "
+            "the index of the observation, and all other tests go on. With `isolated: false` it "
+            "is called in the run's own process: faster for estimators that cost nothing, the "
+            "same numbers to the last bit, but a crash ends the run, nothing times out, and "
+            "secondary() is called by several threads at a time. Its samplers can be tested only "
+            "so.",
+        .parameters = parameters(),
+        .averages = false,
+        .says_nature = true},
+       prepare}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,195 @@
+#include "estimators/library_host.h"
+
+#include <fcntl.h>
+#include <immintrin.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+
+#include "estimators/foreign/child.h"
+#include "estimators/foreign/library_setup.h"
+#include "estimators/foreign/reply.h"
+#include "estimators/foreign/words.h"
+
+namespace assay {
+
+namespace {
+
+using foreign::Hello;
+using foreign::PreparedLibrary;
+using foreign::Question;
+
+constexpr int failed = 3;
+
+// As the harness draws: _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON. Bits are then the same in a
+// process of its own and in this one.
+constexpr unsigned flush_bits = 0x8040;
+
+std::string& host_program() {
+  static std::string program;
+  return program;
+}
+
+/// The pipes of the protocol, out of the library's reach: what it reads from standard input is
+/// empty, what it writes to standard output goes to a file in memory.
+class Channels {
+ public:
+  Channels()
+      : questions_(fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3)),
+        replies_(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)),
+        printed_(memfd_create("printed", MFD_CLOEXEC)) {
+    const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    if (questions_ < 0 || replies_ < 0 || printed_ < 0 || nothing < 0 ||
+        dup2(nothing, STDIN_FILENO) < 0 || dup2(printed_, STDOUT_FILENO) < 0) {
+      throw std::system_error(errno, std::generic_category(), "standard input and output");
+    }
+    close(nothing);
+  }
+
+  int questions() const { return questions_; }
+
+  bool read_question(Question& question) const {
+    std::array<char, 32> bytes{};
+    std::size_t have = 0;
+    while (have < bytes.size()) {
+      const ssize_t count = read(questions_, bytes.data() + have, bytes.size() - have);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      have += static_cast<std::size_t>(count);
+    }
+    static_assert(sizeof question == bytes.size());
+    std::memcpy(&question, bytes.data(), bytes.size());
+    return true;
+  }
+
+  void write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(replies_, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) throw std::system_error(errno, std::generic_category(), "a reply");
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
+
+  /// What the library wrote to standard output, the beginning of it.
+  std::string printed() const {
+    std::fflush(stdout);
+    std::array<char, 128> text{};
+    const ssize_t count = pread(printed_, text.data(), text.size(), 0);
+    return {text.data(), count > 0 ? static_cast<std::size_t>(count) : 0};
+  }
+
+ private:
+  int questions_;
+  int replies_;
+  int printed_;
+};
+
+void refuse_printing(const Channels& channels) {
+  const std::string printed = channels.printed();
+  if (printed.empty()) return;
+  throw foreign::LibraryError(
+      "the library printed `" + foreign::shown(printed) +
+      "` to standard output, which is not its own; print to standard error");
+}
+
+/// Ends this process when the one that asks has gone, even if the library never returns.
+void watch(int questions) {
+  std::thread([questions] {
+    pollfd watched{questions, 0, 0};
+    while (poll(&watched, 1, -1) < 1) {
+    }
+    std::this_thread::sleep_for(std::chrono::seconds{1});
+    _exit(failed);
+  }).detach();
+}
+
+/// Rays stand behind an observation's numbers, as doubles.
+void answer(const PreparedLibrary& library, const Channels& channels, const Question& question) {
+  const Hello& hello = library.hello();
+  const std::size_t width = hello.width();
+  std::vector<double> numbers(static_cast<std::size_t>(question.count) * width);
+  for (std::uint64_t i = 0; i < question.count; ++i) {
+    const std::span<double> row = std::span(numbers).subspan(i * width, width);
+    AssayStream random = assay_stream(question.key, question.first + i);
+    try {
+      const std::uint64_t rays =
+          library.observe(random, question.primaries, row.first(hello.channels.size()));
+      if (hello.rays) row.back() = static_cast<double>(rays);
+    } catch (const foreign::LibraryError& error) {
+      throw foreign::LibraryError("observation " + std::to_string(question.first + i) + ": " +
+                                  error.what());
+    }
+  }
+  refuse_printing(channels);
+  channels.write({reinterpret_cast<const char*>(numbers.data()), 8 * numbers.size()});
+  channels.write(to_bytes(question, hello.numbers));
+}
+
+std::unique_ptr<PreparedLibrary> prepared(const std::vector<std::string>& arguments) {
+  if (arguments.size() < 3 || arguments.size() % 2 == 0) {
+    throw std::runtime_error("a host is given file, estimator, folder, then names and values");
+  }
+  foreign::LibraryChoice choice{
+      .file = arguments[0], .estimator = arguments[1], .parameters = {}, .folder = arguments[2]};
+  for (std::size_t i = 3; i < arguments.size(); i += 2) {
+    choice.parameters.emplace_back(arguments[i], arguments[i + 1]);
+  }
+  return std::make_unique<PreparedLibrary>(choice);
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text) c = c == '\n' ? ' ' : c;
+  return text;
+}
+
+}  // namespace
+
+void set_library_host(const std::string& program) { host_program() = program; }
+
+std::string library_host() {
+  if (!host_program().empty()) return host_program();
+  const char* const program = std::getenv("ASSAY_PROGRAM");
+  if (program != nullptr && *program != '\0') return program;
+  throw std::runtime_error(
+      "needs the program `assay` to run in; name it by the environment variable ASSAY_PROGRAM, or "
+      "set `isolated: false`");
+}
+
+void set_stop_question(bool (*stop)()) { foreign::set_stop_question(stop); }
+
+int host_library(const std::vector<std::string>& arguments) {
+  const Channels channels;
+  watch(channels.questions());
+  _mm_setcsr(_mm_getcsr() | flush_bits);
+  std::unique_ptr<PreparedLibrary> library;
+  try {
+    library = prepared(arguments);
+    refuse_printing(channels);
+  } catch (const std::exception& error) {
+    channels.write("assay 1 binary\nerror " + one_line(error.what()) + "\n");
+    return failed;
+  }
+  try {
+    channels.write(to_text(library->hello()));
+    for (Question question; channels.read_question(question);) {
+      answer(*library, channels, question);
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return failed;
+  }
+  return 0;
+}
+
+}  // namespace assay

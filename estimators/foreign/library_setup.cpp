@@ -1,0 +1,287 @@
+#include "estimators/foreign/library_setup.h"
+
+#include <array>
+#include <charconv>
+#include <filesystem>
+
+#include "estimators/foreign/library_sampler.h"
+#include "estimators/parameters.h"
+
+namespace assay::foreign {
+
+namespace {
+
+constexpr std::size_t message_size = 512;
+using Message = std::array<char, message_size>;
+
+std::string text_of(const Message& message) {
+  const std::string text(message.data(), strnlen(message.data(), message.size()));
+  return text.empty() ? "it says no reason" : text;
+}
+
+std::string or_empty(const char* text) { return text != nullptr ? text : ""; }
+
+bool has(std::uint32_t flags, int flag) { return (flags & static_cast<unsigned>(flag)) != 0; }
+
+ParameterType type_of(const AssayParameter& parameter, const std::string& library) {
+  switch (parameter.type) {
+    case ASSAY_NUMBER:
+      return ParameterType::number;
+    case ASSAY_COUNT:
+      return ParameterType::count;
+    case ASSAY_BOOLEAN:
+      return ParameterType::boolean;
+    case ASSAY_TEXT:
+      return ParameterType::string;
+    default:
+      throw LibraryError(library + " declares a parameter of type " +
+                         std::to_string(parameter.type) + ", which is none");
+  }
+}
+
+std::vector<ParameterInformation> declared(const AssayEstimator& estimator,
+                                           const std::string& library) {
+  std::vector<ParameterInformation> all;
+  if (estimator.parameter_count == 0) return all;
+  for (const AssayParameter& p : all_known(estimator.parameters, estimator.parameter_count)) {
+    ParameterInformation parameter{.name = or_empty(p.name),
+                                   .type = type_of(p, library),
+                                   .summary = or_empty(p.summary),
+                                   .fallback = or_empty(p.fallback)};
+    if (has(p.flags, ASSAY_LOW)) parameter.low = p.low;
+    if (has(p.flags, ASSAY_HIGH)) parameter.high = p.high;
+    all.push_back(std::move(parameter));
+  }
+  return all;
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+/// The values as the library gets them, with the texts that they point to.
+struct Values {
+  std::vector<std::string> texts;
+  std::vector<AssayValue> values;
+};
+
+double read(Parameters& given, const ParameterInformation& parameter, std::string& text) {
+  double number = 0;
+  switch (parameter.type) {
+    case ParameterType::number:
+      number = given.number(parameter.name);
+      break;
+    case ParameterType::count:
+      number = static_cast<double>(given.count(parameter.name));
+      break;
+    case ParameterType::boolean:
+      number = given.boolean(parameter.name) ? 1 : 0;
+      text = number == 1 ? "true" : "false";
+      return number;
+    default:
+      text = given.string(parameter.name);
+      return 0;
+  }
+  text = number_text(number);
+  return number;
+}
+
+Values values_of(const std::vector<ParameterInformation>& declared, Parameters& given) {
+  Values all;
+  all.texts.resize(declared.size());
+  for (std::size_t i = 0; i < declared.size(); ++i) {
+    const double number = read(given, declared[i], all.texts[i]);
+    all.values.push_back({.size = sizeof(AssayValue),
+                          .name = declared[i].name.c_str(),
+                          .text = all.texts[i].c_str(),
+                          .number = number});
+  }
+  return all;
+}
+
+Channel channel_of(const AssayChannel& theirs) {
+  Channel channel{.name = or_empty(theirs.name), .mean_error = theirs.mean_error};
+  if (has(theirs.flags, ASSAY_MEAN)) channel.mean = theirs.mean;
+  if (has(theirs.flags, ASSAY_VARIANCE)) channel.variance = theirs.variance;
+  if (has(theirs.flags, ASSAY_LOW)) channel.low = theirs.low;
+  if (has(theirs.flags, ASSAY_HIGH)) channel.high = theirs.high;
+  channel.rounding = theirs.rounding;
+  channel.diagnostic = has(theirs.flags, ASSAY_DIAGNOSTIC);
+  return channel;
+}
+
+ImageShape shape_of(const AssayImage& theirs) {
+  ImageShape shape{.width = theirs.width,
+                   .height = theirs.height,
+                   .independent = has(theirs.flags, ASSAY_INDEPENDENT)};
+  if (theirs.components == nullptr) return shape;
+  shape.components.clear();
+  for (std::size_t i = 0; i < theirs.component_count; ++i) {
+    shape.components.push_back(or_empty(theirs.components[i]));
+  }
+  return shape;
+}
+
+std::string image_lines(const AssayImage& theirs) {
+  const ImageShape shape = shape_of(theirs);
+  std::string text = "image " + std::to_string(shape.width) + " " + std::to_string(shape.height);
+  for (const std::string& component : shape.components) text += " " + component;
+  text += shape.independent ? "\nindependent\n" : "\n";
+  if (!has(theirs.flags, ASSAY_LOW) && !has(theirs.flags, ASSAY_HIGH)) return text;
+  return text + "range " + (has(theirs.flags, ASSAY_LOW) ? number_text(theirs.low) : "-inf") + " " +
+         (has(theirs.flags, ASSAY_HIGH) ? number_text(theirs.high) : "inf") + "\n";
+}
+
+const char* bias_line(std::uint32_t bias) {
+  switch (bias) {
+    case ASSAY_BIAS_UNKNOWN:
+      return "";
+    case ASSAY_UNBIASED:
+      return "bias unbiased\n";
+    case ASSAY_BIAS_PRIMARIES:
+      return "bias primaries\n";
+    case ASSAY_BIAS_BOOTSTRAP:
+      return "bias bootstrap\n";
+    case ASSAY_BIAS_START_UP:
+      return "bias start-up\n";
+    case ASSAY_BIAS_RECONSTRUCTION:
+      return "bias reconstruction\n";
+    default:
+      throw LibraryError("declares the bias " + std::to_string(bias) + ", which is none");
+  }
+}
+
+/// What the library says, in the words of a program, so that both are read by the same rules.
+std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& prepared) {
+  std::string text = "assay " + std::to_string(protocol_version) + " binary\n";
+  if (prepared.image != nullptr) text += image_lines(as_known(prepared.image));
+  if (prepared.channel_count > 0) {
+    Hello channels;
+    for (const AssayChannel& c : all_known(prepared.channels, prepared.channel_count)) {
+      channels.channels.push_back(channel_of(c));
+    }
+    const std::string all = to_text(channels);  // a greeting, the channels, `ready`
+    const std::size_t begin = all.find('\n') + 1;
+    text += all.substr(begin, all.rfind("ready\n") - begin);
+  }
+  if (has(estimator.flags, ASSAY_AVERAGES)) text += "averages\n";
+  if (has(estimator.flags, ASSAY_RAYS)) text += "rays\n";
+  return text + bias_line(estimator.bias) + "ready\n";
+}
+
+class LibraryEstimator final : public Estimator {
+ public:
+  explicit LibraryEstimator(std::shared_ptr<const PreparedLibrary> library)
+      : library_(std::move(library)),
+        elements_(library_->hello().image ? library_->hello().image->elements() : 1) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    AssayStream theirs = assay_stream(random.key().bits, random.observation());
+    cost.closest_hit_rays += library_->observe(theirs, primaries, out);
+    cost.samples += primaries * elements_;
+  }
+
+ private:
+  std::shared_ptr<const PreparedLibrary> library_;
+  std::uint64_t elements_;
+};
+
+class LibrarySetup final : public Setup {
+ public:
+  explicit LibrarySetup(std::shared_ptr<const PreparedLibrary> library)
+      : library_(std::move(library)) {}
+
+  std::vector<Channel> channels() const override { return library_->hello().channels; }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<LibraryEstimator>(library_);
+  }
+  std::optional<ImageShape> image() const override { return library_->hello().image; }
+  std::optional<Nature> nature() const override { return library_->hello().nature; }
+  std::vector<NamedSampler> samplers() const override {
+    std::vector<NamedSampler> all;
+    for (const AssaySampler& sampler : library_->samplers()) {
+      all.push_back({sampler.name, library_sampler(library_, sampler)});
+    }
+    return all;
+  }
+
+ private:
+  std::shared_ptr<const PreparedLibrary> library_;
+};
+
+}  // namespace
+
+PreparedLibrary::PreparedLibrary(const LibraryChoice& choice)
+    : object_(choice.file), estimator_(object_.find(choice.estimator)) {
+  AssayPreparation preparation{.size = sizeof preparation,
+                               .channels = estimator_.channels,
+                               .channel_count = estimator_.channel_count,
+                               .image = estimator_.image,
+                               .samplers = estimator_.samplers,
+                               .sampler_count = estimator_.sampler_count};
+  prepare(choice, preparation);
+  try {
+    hello_ = parse_hello(hello_text(estimator_, preparation));
+    if (preparation.sampler_count > 0) {
+      samplers_ = all_known(preparation.samplers, preparation.sampler_count);
+      for (const AssaySampler& sampler : samplers_) require_whole(sampler);
+    }
+  } catch (...) {
+    if (estimator_.release != nullptr) estimator_.release(state_);
+    throw;
+  }
+}
+
+PreparedLibrary::~PreparedLibrary() {
+  if (estimator_.release != nullptr) estimator_.release(state_);
+}
+
+void PreparedLibrary::prepare(const LibraryChoice& choice, AssayPreparation& preparation) {
+  const std::string name = "`" + choice.file + "`, estimator `" + estimator_.name + "`";
+  const std::vector<ParameterInformation> known = declared(estimator_, name);
+  std::vector<Value::Member> members;
+  for (const auto& [key, text] : choice.parameters) members.emplace_back(key, Value::scalar(text));
+  Parameters given(name, known, Value::map(std::move(members)), choice.folder);
+  const Values values = values_of(known, given);
+  if (estimator_.prepare == nullptr) return;
+  Message message{};
+  const std::string folder = std::filesystem::absolute(choice.folder).string();
+  preparation.values = values.values.data();
+  preparation.value_count = values.values.size();
+  preparation.folder = folder.c_str();
+  preparation.message = message.data();
+  preparation.message_size = message.size();
+  const int status = estimator_.prepare(&preparation);
+  if (status != 0) {
+    throw LibraryError(name + " refuses: " + text_of(message) + " (status " +
+                       std::to_string(status) + " of prepare())");
+  }
+  state_ = preparation.setup;
+}
+
+std::uint64_t PreparedLibrary::observe(AssayStream& random, std::uint64_t primaries,
+                                       std::span<double> out) const {
+  Message message;
+  message[0] = '\0';
+  AssayCall call{.size = sizeof call,
+                 .setup = state_,
+                 .random = &random,
+                 .primaries = primaries,
+                 .out = out.data(),
+                 .out_count = out.size(),
+                 .message = message.data(),
+                 .message_size = message.size(),
+                 .rays = 0};
+  const int status = estimator_.secondary(&call);
+  if (status == 0) return call.rays;
+  throw LibraryError("`" + object_.file() + "`, estimator `" + estimator_.name + "`: " +
+                     text_of(message) + " (status " + std::to_string(status) + " of secondary())");
+}
+
+std::shared_ptr<const Setup> library_setup(std::shared_ptr<const PreparedLibrary> library) {
+  return std::make_shared<LibrarySetup>(std::move(library));
+}
+
+}  // namespace assay::foreign

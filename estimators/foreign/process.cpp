@@ -1,0 +1,66 @@
+// Observations that another program draws: a renderer, a script, anything that reads its standard
+// input and writes its standard output. Nothing is known of their mean but what the program says.
+
+#include <memory>
+
+#include "estimators/foreign/setup.h"
+
+namespace assay::plugins {
+
+namespace {
+
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  foreign::Terms terms = foreign::read_terms(parameters);
+  terms.launch.command = parameters.texts("command");
+  if (terms.launch.command.empty() || terms.launch.command.front().empty()) {
+    parameters.refuse("command", "names no program; as in `[python3, mine.py]`");
+  }
+  return foreign::start(std::move(terms), parameters, "command");
+}
+
+std::vector<ParameterInformation> parameters() {
+  std::vector<ParameterInformation> all = foreign::terms_parameters();
+  all.insert(all.begin(),
+             {.name = "command",
+              .type = ParameterType::texts,
+              .summary = "the program and its arguments, `[python3, mine.py]`; it runs in "
+                         "the folder of the suite"});
+  return all;
+}
+
+}  // namespace
+
+std::vector<Entry> foreign_process() {
+  return {
+      {{.name = "process",
+        .summary = "Observations that another program draws, asked for through pipes.",
+        .description =
+            "The program is started once a worker, in a process group of its own, and says hello "
+            "on its standard output: `assay 1 text` (or `assay 1 binary`), a line `channel NAME` "
+            "for each number of an observation, `ready`.\n"
+            "Then it reads questions from its standard input until that ends. As text a question "
+            "is a line of five numbers: the high and the low 32 bits of the key, the index of the "
+            "first observation, how many observations, of how many primaries each. It answers "
+            "with a line for each observation, the numbers of its channels, and the question's "
+            "line once more; then it flushes. In binary a question is four little-endian 64-bit "
+            "words (key, first, count, primaries), the reply count times channels doubles and the "
+            "question again.\n"
+            "An observation must be a function of key and index alone, whatever was asked before: "
+            "each program is asked for one observation twice, and other bits are an error. A "
+            "program that ends, takes too long or writes anything else is an error too, with the "
+            "index of the observation and the end of its standard error; what of its group still "
+            "runs is killed.\n"
+            "More lines of the hello: after a channel's name `mean X`, `error X`, `variance X` (of "
+            "a primary), `low X`, `high X`, `rounding X`, `diagnostic`; `averages` where an "
+            "observation is the mean of its primaries; `bias` unbiased, primaries, bootstrap, "
+            "start-up or reconstruction; `image WIDTH HEIGHT COMPONENT…` in the place of "
+            "channels, with `range LOW HIGH` of its elements and `independent` where pixels are; "
+            "`rays` where one more number follows each observation, the rays it took; `error "
+            "WORDS` to refuse.",
+        .parameters = parameters(),
+        .averages = false,
+        .says_nature = true},
+       prepare}};
+}
+
+}  // namespace assay::plugins

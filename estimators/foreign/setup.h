@@ -1,0 +1,37 @@
+#pragma once
+
+// Estimators whose observations are drawn by another program.
+
+#include <memory>
+
+#include "estimators/estimator.h"
+#include "estimators/foreign/children.h"
+
+namespace assay::foreign {
+
+/// An observation is a function of the stream's key and its index: what the program answers for
+/// them. Nothing is drawn from the stream itself.
+class ForeignSetup final : public Setup {
+ public:
+  explicit ForeignSetup(std::shared_ptr<Children> children) : children_(std::move(children)) {}
+
+  std::vector<Channel> channels() const override { return children_->hello().channels; }
+  std::unique_ptr<Estimator> make() const override;
+  std::optional<ImageShape> image() const override { return children_->hello().image; }
+  std::optional<Nature> nature() const override { return children_->hello().nature; }
+
+ private:
+  std::shared_ptr<Children> children_;
+};
+
+/// Starts the program. InputError at the parameter `name`, whose value says which program it is,
+/// where it cannot be started or does not introduce itself.
+std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
+                                   std::string_view name);
+
+/// What `process` and `library` have in common.
+std::vector<ParameterInformation> terms_parameters();
+/// Reads them.
+Terms read_terms(Parameters& parameters);
+
+}  // namespace assay::foreign

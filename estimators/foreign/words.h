@@ -1,0 +1,55 @@
+#pragma once
+
+// Lines and words of what programs write to each other.
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace assay::foreign {
+
+/// The words of a line, which blanks and tabs separate.
+inline std::vector<std::string_view> words_of(std::string_view line) {
+  constexpr std::string_view blanks = " \t\r";
+  std::vector<std::string_view> words;
+  std::size_t begin = line.find_first_not_of(blanks);
+  while (begin != std::string_view::npos) {
+    const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(blanks, end);
+  }
+  return words;
+}
+
+/// A number as C or Python writes it: decimal, `inf`, `nan`, perhaps with a sign.
+inline std::optional<double> number_of(std::string_view word) {
+  if (word.starts_with("+") && !word.starts_with("+-")) word.remove_prefix(1);
+  double value = 0;
+  const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (parsed.ec != std::errc{} || parsed.ptr != word.data() + word.size()) return {};
+  return value;
+}
+
+inline std::optional<std::uint64_t> whole_of(std::string_view word) {
+  std::uint64_t value = 0;
+  const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (parsed.ec != std::errc{} || parsed.ptr != word.data() + word.size()) return {};
+  return value;
+}
+
+/// The beginning of what a program wrote, fit to be shown in a message.
+inline std::string shown(std::string_view text, std::size_t most = 60) {
+  std::string out;
+  for (const char c : text.substr(0, most)) {
+    const auto byte = static_cast<unsigned char>(c);
+    out += c == '\n' ? ' ' : byte < 0x20 || byte >= 0x7f ? '?' : c;
+  }
+  while (out.ends_with(' ')) out.pop_back();
+  return text.size() > most ? out + "…" : out;
+}
+
+}  // namespace assay::foreign

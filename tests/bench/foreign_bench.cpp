@@ -1,0 +1,211 @@
+// What it costs to have an estimator elsewhere: numbers a second across the interface of a library,
+// through the pipes of a program, and of a program in Python against its own loop.
+//
+//   foreign_bench EXAMPLES HEADERS     the folders of the example programs and of plugin_abi.h
+//
+// The programs that are measured do next to nothing, so that all that is left is the way. The best
+// of nine, wall clock.
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimators/catalogue.h"
+
+namespace {
+
+using namespace assay;
+
+constexpr int repetitions = 9;
+constexpr StreamKey key{0x123456789abcdef};
+
+// An observation of CHANNELS numbers, none of them worth the name.
+constexpr const char* library_source = R"(#include "plugin_abi.h"
+static int secondary(AssayCall *call) {
+  const double value = assay_uniform(call->random);
+  for (size_t i = 0; i < call->out_count; ++i) call->out[i] = value + (double)i;
+  return 0;
+}
+#define NAMED(n) {.size = sizeof(AssayChannel), .name = n}
+static const AssayChannel x[] = {
+    NAMED("a"), NAMED("b"), NAMED("c"), NAMED("d"), NAMED("e"), NAMED("f"), NAMED("g"), NAMED("h"),
+    NAMED("i"), NAMED("j"), NAMED("k"), NAMED("l"), NAMED("m"), NAMED("n"), NAMED("o"), NAMED("p")};
+static const AssayEstimator mine = {.size = sizeof mine, .name = "mine", .channels = x,
+                                    .channel_count = CHANNELS, .secondary = secondary};
+static const AssayLibrary table = {sizeof table, ASSAY_ABI_VERSION, &mine, 1};
+const AssayLibrary *assay_library(void) { return &table; }
+)";
+
+constexpr const char* program_source = R"(#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+int main(void) {
+  uint64_t question[4];
+  setvbuf(stdout, NULL, _IOFBF, 1 << 20);
+  puts("assay 1 binary\n" SHAPE "\nready");
+  double *numbers = malloc(4096 * sizeof(double) * WIDTH);
+  for (; !fflush(stdout) && fread(question, 8, 4, stdin) == 4; fwrite(question, 8, 4, stdout)) {
+    for (uint64_t i = 0; i < question[2] * WIDTH; ++i) numbers[i] = (double)(question[1] * WIDTH + i);
+    fwrite(numbers, sizeof(double), question[2] * WIDTH, stdout);
+  }
+}
+)";
+
+// The loop of darts.py by itself: what the program could do if nobody asked it anything.
+constexpr const char* bare_loop = R"(import random, sys, time
+start = time.perf_counter()
+for index in range(int(sys.argv[1])):
+    draw = random.Random(123456 << 64 | index).random
+    hits = 0
+    for _ in range(int(sys.argv[2])):
+        if (2 * draw() - 1) ** 2 + (2 * draw() - 1) ** 2 < 1:
+            hits += 1
+print(time.perf_counter() - start)
+)";
+
+double seconds_of(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double best_of(const auto& work) {
+  double best = seconds_of(work);
+  for (int i = 1; i < repetitions; ++i) best = std::min(best, seconds_of(work));
+  return best;
+}
+
+class Workshop {
+ public:
+  explicit Workshop(std::string headers) : headers_(std::move(headers)) {
+    char name[] = "/tmp/assay_bench_XXXXXX";
+    folder_ = mkdtemp(name);
+  }
+  ~Workshop() { std::filesystem::remove_all(folder_); }
+  Workshop(const Workshop&) = delete;
+  Workshop& operator=(const Workshop&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  std::string compile(const std::string& name, const std::string& text,
+                      const std::string& flags) const {
+    const std::string file = (folder_ / name).string();
+    const std::string command = "cc -std=c11 -O2 " + flags + " -I " + headers_ + " " +
+                                write(name + ".c", text) + " -o " + file;
+    if (std::system(command.c_str()) != 0) throw std::runtime_error("cc failed");
+    return file;
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string headers_;
+};
+
+std::shared_ptr<const Setup> set_up(const std::string& plugin, Value given) {
+  const Entry& entry = find_plugin(plugin, {});
+  Parameters parameters(plugin, entry.information.parameters, given, ".");
+  return entry.prepare(parameters);
+}
+
+std::shared_ptr<const Setup> process(const std::vector<std::string>& command) {
+  std::vector<Value> words;
+  for (const std::string& word : command) words.push_back(Value::scalar(word));
+  return set_up("process", Value::map({{"command", Value::list(std::move(words))}}));
+}
+
+/// As the harness draws: blocks are announced. A worker is used twice, the first time to warm up.
+struct Drawn {
+  std::uint64_t observations;
+  std::uint64_t block;
+  std::uint64_t primaries = 1;
+};
+double seconds_to_draw(const Setup& setup, const Drawn& what) {
+  const std::unique_ptr<Estimator> worker = setup.make();
+  std::vector<double> out(setup.channels().size());
+  Cost cost;
+  return best_of([&] {
+    for (std::uint64_t i = 0; i < what.observations; ++i) {
+      if (i % what.block == 0) worker->announce({key, i, i + what.block});
+      Stream random(key, i);
+      worker->secondary(random, what.primaries, out, cost);
+    }
+  });
+}
+
+void report(const char* what, const Setup& setup, const Drawn& drawn) {
+  const double numbers = static_cast<double>(drawn.observations * setup.channels().size());
+  std::printf("%-52s %7.1f million numbers a second\n", what,
+              1e-6 * numbers / seconds_to_draw(setup, drawn));
+}
+
+void libraries(const Workshop& workshop) {
+  for (const char* channels : {"1", "4", "16"}) {
+    const std::string file =
+        workshop.compile(std::string("mine") + channels + ".so", library_source,
+                         std::string("-fPIC -shared -DCHANNELS=") + channels);
+    const auto setup =
+        set_up("library",
+               Value::map({{"file", Value::scalar(file)}, {"isolated", Value::scalar("false")}}));
+    const std::string what = std::string("library in process, channels: ") + channels;
+    report(what.c_str(), *setup, {.observations = 2'000'000, .block = 4096});
+  }
+}
+
+void programs(const Workshop& workshop) {
+  const auto compiled = [&](const char* name, const char* shape, const char* width) {
+    return process({workshop.compile(name, program_source,
+                                     std::string("-DSHAPE='\"") + shape + "\"' -DWIDTH=" + width)});
+  };
+  report("process, binary, one channel, blocks of 4096", *compiled("one", "channel x", "1"),
+         {.observations = 1'000'000, .block = 4096});
+  report("process, binary, image of 64 x 64, blocks of 8",
+         *compiled("image", "image 64 64", "4096"), {.observations = 4000, .block = 8});
+}
+
+double bare_seconds(const std::string& script, const Drawn& drawn) {
+  const std::string command = "/usr/bin/python3 " + script + " " +
+                              std::to_string(drawn.observations) + " " +
+                              std::to_string(drawn.primaries);
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  double seconds = 0;
+  if (pipe == nullptr || std::fscanf(pipe, "%lf", &seconds) != 1) {
+    throw std::runtime_error("python3 failed");
+  }
+  pclose(pipe);
+  return seconds;
+}
+
+void python(const Workshop& workshop, const std::string& examples) {
+  const std::string script = workshop.write("bare.py", bare_loop);
+  const auto setup = process({"/usr/bin/python3", examples + "/darts.py"});
+  const Drawn drawn{.observations = 4096, .block = 256, .primaries = 64};
+  double bare = bare_seconds(script, drawn);
+  for (int i = 1; i < repetitions; ++i) bare = std::min(bare, bare_seconds(script, drawn));
+  const double asked = seconds_to_draw(*setup, drawn);
+  std::printf("%-52s %7.3f (%.0f ns a primary)\n", "process, darts.py: rate against its own loop",
+              bare / asked,
+              1e9 * asked / static_cast<double>(drawn.observations * drawn.primaries));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: foreign_bench EXAMPLES HEADERS\n");
+    return 2;
+  }
+  const Workshop workshop(argv[2]);
+  libraries(workshop);
+  programs(workshop);
+  python(workshop, argv[1]);
+}

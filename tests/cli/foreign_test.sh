@@ -1,0 +1,252 @@
+#!/usr/bin/env bash
+# Estimators of other programs, through the program itself: verdicts, exit codes, replay, isolation.
+#   foreign_test.sh ASSAY SOURCE_FOLDER TEST        TEST is one of the functions test_… below
+# Runs in a temporary folder of its own; no process that it started may be left at the end.
+set -uo pipefail
+
+assay=$1
+source_folder=$2
+examples=$source_folder/estimators/foreign/examples
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+fail() {
+  printf 'FAILED: %s\n' "$*"
+  for file in out err; do
+    printf -- '--- %s\n' "$file"
+    head -c 4000 "$work/$file" 2>/dev/null
+  done
+  exit 1
+}
+
+expect() {
+  local wanted=$1 code=0
+  shift
+  "$assay" "$@" >out 2>err </dev/null || code=$?
+  [ "$code" -eq "$wanted" ] || fail "assay $* ended with $code, not $wanted"
+}
+contains() { tr -s ' \n' ' ' <"$1" | grep -qF -- "$2" || fail "no \`$2\` in $1"; }
+
+# compile FILE.c: as the manual says, every warning an error, against nothing at all.
+compile() {
+  cc -std=c11 -O2 -Wall -Wextra -Wpedantic -Werror -fPIC -shared ${2:--nostdlib} \
+    -I "$source_folder/estimators" "$1" -o "${1%.c}.so" || fail "$1 does not compile"
+}
+
+# library NAME BODY_OF_SECONDARY
+library() {
+  printf '%s\n' '#include "plugin_abi.h"' "${3:-}" "static int secondary(AssayCall *call) {" "$2" "}" \
+    'static const AssayChannel x = {.size = sizeof x, .name = "x"};' \
+    'static const AssayEstimator mine = {.size = sizeof mine, .name = "mine", .channels = &x,' \
+    '    .channel_count = 1, .secondary = secondary};' \
+    'static const AssayLibrary table = {sizeof table, ASSAY_ABI_VERSION, &mine, 1};' \
+    'const AssayLibrary *assay_library(void) { return &table; }' >"$1.c"
+  compile "$1.c" "${4:-}"
+}
+
+# suite FILE ESTIMATOR_LINE...: each with a test of its own, and a sound one.
+suite() {
+  local file=$1 line name
+  shift
+  {
+    printf '%s\n' 'suite: foreign' 'estimators:' '  sound: {plugin: analytic/normal}'
+    printf '  %s\n' "$@"
+    printf '%s\n' 'tests:' '  - {name: sound, claim: mean(sound) == 0}'
+    for line in "$@"; do
+      name=${line%%:*}
+      printf '  - {name: "%s", claim: mean(%s) == 3.141592653589793, secondaries: 200}\n' \
+        "$name" "$name"
+    done
+  } >"$file"
+}
+
+# verdicts RUN.json: a line of name and verdict for each test.
+verdicts() {
+  python3 -c '
+import json, sys
+for test in json.load(open(sys.argv[1]))["suites"][0]["tests"]:
+    print(test["name"], test["verdict"])' "$1"
+}
+message() {
+  python3 -c '
+import json, sys
+for test in json.load(open(sys.argv[1]))["suites"][0]["tests"]:
+    if test["name"] == sys.argv[2]: print(test["message"])' "$1" "$2" >err
+}
+
+none_left() {
+  # By their folder: everything that was started runs here.
+  local process
+  for process in /proc/[0-9]*; do
+    [ "$(readlink "$process/cwd" 2>/dev/null)" = "$work" ] || continue
+    [ "${process#/proc/}" -eq $$ ] || [ "${process#/proc/}" -eq "$BASHPID" ] && continue
+    [ "$(tr '\0' ' ' <"$process/cmdline" 2>/dev/null)" = "" ] && continue
+    grep -q "^PPid:[[:space:]]*$$\$" "$process/status" 2>/dev/null && continue
+    fail "left running: $(tr '\0' ' ' <"$process/cmdline")"
+  done
+}
+
+test_examples_pass_their_claims() {
+  cp "$examples"/* .
+  compile darts_library.c
+  suite darts.yaml 'shell: {plugin: process, command: [sh, darts.sh], primaries: 16}' \
+    'python: {plugin: process, command: [/usr/bin/python3, darts.py]}' \
+    'c: {plugin: process, command: [sh, compile_and_run.sh, darts.c]}' \
+    'isolated: {plugin: library, file: darts_library.so}' \
+    'inside: {plugin: library, file: darts_library.so, isolated: false}'
+  expect 0 run darts.yaml --report json=one.json --threads 1
+  expect 0 run darts.yaml --report json=two.json --threads 2
+  local times='s/"(started|seconds|threads)": *("[^"]*"|[-+0-9.e]+)/"\1": 0/g'
+  cmp -s <(sed -E "$times" one.json) <(sed -E "$times" two.json) || fail 'threads change the record'
+  for name in shell python c isolated inside; do
+    expect 0 replay one.json "darts/$name"
+    contains out 'the same numbers as recorded'
+    expect 0 replay one.json "darts/$name" 17
+    contains out 'lies in ['
+  done
+  none_left
+}
+
+test_isolated_draws_the_bits_of_in_process() {
+  cp "$examples/darts_library.c" .
+  compile darts_library.c
+  expect 0 sample a --estimator a=library,file=darts_library.so --primaries 64 --secondaries 300
+  tail -n +2 out >isolated.txt
+  expect 0 sample a --estimator a=library,file=darts_library.so,isolated=false --primaries 64 \
+    --secondaries 300
+  cmp isolated.txt <(tail -n +2 out) || fail 'the numbers differ'
+  [ "$(wc -l <isolated.txt)" -gt 300 ] || fail 'too few numbers'
+}
+
+test_libraries_that_fail_are_errors_and_the_others_finish() {
+  local at='if (call->random->counter[2] == 37)'
+  library crashes "$at { *(volatile int *)0 = 1; } call->out[0] = 3; return 0;"
+  library hangs "$at { for (volatile int i = 0;; ++i) {} } call->out[0] = 3; return 0;"
+  library writes_nan "call->out[0] = call->random->counter[2] == 37 ? 0.0 / (double)(call->primaries - 1) : 3; return 0;"
+  library reports "$at { call->message[0] = '?'; call->message[1] = 0; return 4; } call->out[0] = 3; return 0;"
+  library prints "$at { puts(\"37 it is\"); } call->out[0] = 3; return 0;" '#include <stdio.h>' ' '
+  library exits "$at { _Exit(0); } call->out[0] = 3; return 0;" '#include <stdlib.h>' ' '
+  suite bad.yaml 'crashes: {plugin: library, file: crashes.so, primaries: 1}' \
+    'hangs: {plugin: library, file: hangs.so, primaries: 1, timeout: 0.5}' \
+    'writes_nan: {plugin: library, file: writes_nan.so, primaries: 1}' \
+    'reports: {plugin: library, file: reports.so, primaries: 1}' \
+    'prints: {plugin: library, file: prints.so, primaries: 1}' \
+    'exits: {plugin: library, file: exits.so, primaries: 1}'
+  expect 1 run bad.yaml --report json=run.json
+  local name
+  [ "$(verdicts run.json | head -n 1)" = 'sound pass' ] || fail 'the sound one did not pass'
+  for name in crashes hangs writes_nan reports prints exits; do
+    [ "$(verdicts run.json | grep "^$name ")" = "$name error" ] || fail "$name is no error"
+    message run.json "$name"
+    contains err 'observation 37'
+  done
+  message run.json crashes
+  contains err 'was ended by signal 11 (Segmentation fault)'
+  message run.json hangs
+  contains err 'within 0.5 seconds'
+  message run.json reports
+  contains err '? (status 4 of secondary())'
+  message run.json prints
+  contains err 'the library printed `37 it is` to standard output'
+  none_left
+}
+
+test_programs_that_fail_are_errors_and_the_others_finish() {
+  local hello="printf 'assay 1 text\\nchannel x\\nready\\n'"
+  printf '%s\n' "$hello" 'read -r q; echo gone >&2; exit 3' >exits.sh
+  printf '%s\n' "$hello" 'read -r q; kill -KILL $$' >killed.sh
+  printf '%s\n' "$hello" 'read -r q; sleep 765432' >hangs.sh
+  printf '%s\n' "$hello" 'while read -r q; do echo "$q"; done' >short.sh
+  printf '%s\n' "$hello" 'n=0; while read -r q; do set -- $q; i=0; while [ $i -lt $4 ]; do
+    n=$((n + 1)); echo $n; i=$((i + 1)); done; echo "$q"; done' >counts.sh
+  suite bad.yaml 'exits: {plugin: process, command: [sh, exits.sh]}' \
+    'killed: {plugin: process, command: [sh, killed.sh]}' \
+    'hangs: {plugin: process, command: [sh, hangs.sh], timeout: 0.5}' \
+    'short: {plugin: process, command: [sh, short.sh]}' \
+    'counts: {plugin: process, command: [sh, counts.sh]}'
+  expect 1 run bad.yaml --report json=run.json
+  local name
+  [ "$(verdicts run.json | head -n 1)" = 'sound pass' ] || fail 'the sound one did not pass'
+  for name in exits killed hangs short counts; do
+    [ "$(verdicts run.json | grep "^$name ")" = "$name error" ] || fail "$name is no error"
+    message run.json "$name"
+    contains err 'observation 0'
+  done
+  message run.json exits
+  contains err 'exit status 3'
+  contains err 'gone'
+  message run.json counts
+  contains err 'a function of key and index'
+  none_left
+}
+
+test_mistakes_are_2_before_anything_is_sampled() {
+  library other 'call->out[0] = 1; return 0;'
+  sed 's/ASSAY_ABI_VERSION/7/' other.c >version.c
+  compile version.c
+  printf 'int nothing(void);\nint nothing(void) { return 0; }\n' >symbol.c
+  compile symbol.c
+  library loud 'call->out[0] = 1; return 0;' '#include <stdio.h>
+__attribute__((constructor)) static void greet(void) { puts("welcome"); }' ' '
+  local line
+  while IFS='|' read -r line wanted; do
+    suite bad.yaml "mine: {$line}"
+    expect 2 run bad.yaml
+    contains err 'bad.yaml:4:'
+    contains err "$wanted"
+    [ ! -s out ] || fail 'something was printed'
+  done <<'LINES'
+plugin: library, file: none.so|cannot be opened: No such file or directory
+plugin: library, file: bad.yaml|is no shared library
+plugin: library, file: symbol.so|does not export assay_library()
+plugin: library, file: version.so|was compiled for version 7 of the interface
+plugin: library, file: other.so, estimator: mien|did you mean `mine`
+plugin: library, file: other.so, parameters: {rate: 2}|has no parameter `rate`
+plugin: library, file: loud.so|the library printed `welcome`
+plugin: process, command: [no_such_program]|cannot be started: No such file or directory
+plugin: process, command: python3|must be a list of texts
+plugin: process, command: [sh, none.sh]|before its hello was whole
+plugin: process, command: [echo, hello]|the first is `assay 1 text`
+plugin: process, command: [sh, none.sh], timeout: 0|must be above 0
+LINES
+  none_left
+}
+
+test_interruption_ends_a_wait_for_a_program() {
+  printf '%s\n' "printf 'assay 1 text\\nchannel x\\nready\\n'" 'read -r q; sleep 765433' >hangs.sh
+  suite hangs.yaml 'hangs: {plugin: process, command: [sh, hangs.sh]}'
+  set -m
+  "$assay" run hangs.yaml >out 2>err &
+  local process=$!
+  sleep 1
+  kill -INT "$process"
+  local code=0
+  wait "$process" || code=$?
+  [ "$code" -eq 130 ] || fail "ended with $code, not 130"
+  none_left
+}
+
+test_a_library_does_not_outlive_the_run() {
+  library hangs 'for (volatile int i = 0;; ++i) {} call->out[0] = 3; return 0;'
+  suite hangs.yaml 'hangs: {plugin: library, file: hangs.so, primaries: 1}'
+  set -m
+  "$assay" run hangs.yaml >out 2>err &
+  local process=$!
+  sleep 1
+  kill -KILL "$process"
+  wait "$process" 2>/dev/null
+  sleep 2
+  none_left
+}
+
+test_manuals_tell_all() {
+  expect 0 describe process
+  contains out 'assay 1 text'
+  contains out 'timeout: number, (0, 1000000], s, default 60'
+  expect 0 describe library
+  contains out 'gcc -std=c11 -O2 -fPIC -shared'
+  contains out 'a crash of the library ends the whole run'
+}
+
+"$3"

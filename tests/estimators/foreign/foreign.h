@@ -1,0 +1,113 @@
+#pragma once
+
+// Programs that answer, and programs that do not, for the tests of `process` and `library`.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimators/catalogue.h"
+
+namespace assay::foreign {
+
+/// GoogleTest's fixtures have a Setup of their own.
+using SharedSetup = std::shared_ptr<const Setup>;
+
+inline const std::string examples = std::string(ASSAY_SOURCE_DIR) + "/estimators/foreign/examples";
+
+/// A folder of the current test alone. At the end no program that it started may be left.
+class Programs : public ::testing::Test {
+ protected:
+  Programs() {
+    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("assay_") + test->test_suite_name() + "_" + test->name());
+    std::filesystem::create_directories(folder_);
+  }
+  ~Programs() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override {
+    setups_.clear();
+    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a program was left";
+    EXPECT_EQ(errno, ECHILD);
+  }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
+  /// A plugin with parameters as a map.
+  SharedSetup prepare(const std::string& plugin, Value given) {
+    const Entry& entry = find_plugin(plugin, {});
+    Parameters parameters(plugin, entry.information.parameters, given, folder_.string());
+    auto setup = entry.prepare(parameters);
+    parameters.require_all_read();
+    setups_.push_back(setup);
+    return setup;
+  }
+
+  /// `process` with these words as its command.
+  SharedSetup run(const std::vector<std::string>& command, double timeout = 20) {
+    std::vector<Value> words;
+    for (const std::string& word : command) words.push_back(Value::scalar(word));
+    return prepare("process", Value::map({{"command", Value::list(std::move(words))},
+                                          {"timeout", Value::scalar(std::to_string(timeout))}}));
+  }
+
+  /// A shell program of these lines after the hello of one channel.
+  SharedSetup run_shell(const std::string& lines, double timeout = 20) {
+    return run(
+        {"sh", write("program.sh", "printf 'assay 1 text\\nchannel x\\nready\\n'\n" + lines)},
+        timeout);
+  }
+
+  std::string refusal(const std::vector<std::string>& command, double timeout = 20) {
+    try {
+      run(command, timeout);
+    } catch (const InputError& error) {
+      return error.message();
+    }
+    return "nothing was refused";
+  }
+
+  std::filesystem::path folder_;
+  std::vector<SharedSetup> setups_;
+};
+
+/// Observations [0, count) of one stream as the harness draws them, `block` announced at a time; 0:
+/// none announced.
+inline std::vector<double> draw(const Setup& setup, std::uint64_t count, std::uint64_t block,
+                                std::uint64_t primaries = 1,
+                                std::uint64_t key = 0x9876543210abcdef) {
+  const std::unique_ptr<Estimator> estimator = setup.make();
+  const std::size_t width = setup.channels().size();
+  std::vector<double> all(count * width);
+  Cost cost;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (block > 0 && i % block == 0) {
+      estimator->announce({.key = {key}, .first = i, .last = std::min(i + block, count)});
+    }
+    Stream random({key}, i);
+    estimator->secondary(random, primaries, std::span(all).subspan(i * width, width), cost);
+  }
+  return all;
+}
+
+/// Why observations could not be drawn.
+inline std::string failure(const Setup& setup, std::uint64_t count, std::uint64_t block) {
+  try {
+    draw(setup, count, block);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "nothing failed";
+}
+
+}  // namespace assay::foreign
