@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "estimators/catalogue.h"
+#include "harness/claim_entry.h"
 #include "harness/suite.h"
 #include "harness/suite_entries.h"
 #include "harness/suite_keys.h"
@@ -211,7 +212,7 @@ std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
   return used;
 }
 
-Suite suite_of_claim(const CheckArguments& arguments) {
+TestEntry test_of_claim(const CheckArguments& arguments) {
   const Location where{"claim", 1, 1};
   TestEntry test{.claim = parse_claim(arguments.claim, where), .where = where};
   test.name = test.claim.text;
@@ -227,6 +228,11 @@ Suite suite_of_claim(const CheckArguments& arguments) {
   check_test(test, [&](std::string_view key) {
     return key == "claim" ? where : Location{"--" + std::string(key), 0, 0};
   });
+  return test;
+}
+
+Suite suite_of_claim(const CheckArguments& arguments) {
+  TestEntry test = test_of_claim(arguments);
   Suite suite;
   suite.name = "check";
   suite.stem = "check";

@@ -35,3 +35,16 @@ function(assay_discover_tests suite)
   endif()
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file}.cmake)
 endfunction()
+
+# A shared library of estimators in C or C++ for the plugin `library`, from these sources:
+#
+#   assay_add_plugin(NAME source…)
+#
+# It finds `estimators/plugin_abi.h`, links nothing and exports what that header declares.
+
+function(assay_add_plugin name)
+  add_library(${name} MODULE ${ARGN})
+  target_include_directories(${name} PRIVATE ${_assay_include_dir})
+  set_target_properties(${name} PROPERTIES
+    PREFIX "" C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden)
+endfunction()

@@ -9,6 +9,18 @@ install(TARGETS assay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/estimators/plugin_abi.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/assay)
 
+if(TARGET assay_googletest)
+  install(TARGETS assay_googletest EXPORT assayTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT assayTargets NAMESPACE assay:: DESTINATION ${ASSAY_PACKAGE_DIR})
+  # With the folders that their includes name.
+  foreach(header IN ITEMS harness/googletest/claims.h harness/googletest/matchers.h
+          estimators/stream.h estimators/philox.h)
+    get_filename_component(folder ${header} DIRECTORY)
+    install(FILES ${PROJECT_SOURCE_DIR}/${header}
+      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/assay/${folder})
+  endforeach()
+endif()
+
 configure_package_config_file(
   ${CMAKE_CURRENT_LIST_DIR}/assayConfig.cmake.in ${PROJECT_BINARY_DIR}/package/assayConfig.cmake
   INSTALL_DESTINATION ${ASSAY_PACKAGE_DIR}

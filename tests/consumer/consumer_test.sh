@@ -21,6 +21,7 @@ run cmake --install "$build" --prefix "$work/first" || fail 'the installation fa
 mv "$work/first" "$work/prefix"
 [ -z "$(grep -rlF "$work/first" "$work/prefix/lib")" ] || fail 'a path of the installation is fixed'
 cp -r "$source_folder/tests/consumer" "$work/project"
+cp "$source_folder/estimators/foreign/examples/darts_library.c" "$work/project"
 cd "$work/project" || exit 1
 
 run cmake -S . -B build -DCMAKE_PREFIX_PATH="$work/prefix" || fail 'the project is not configured'
@@ -30,7 +31,19 @@ contains 'claims/mean(normal) == 2 '
 contains "claims/a name; with [brackets, 'quotes' \"and\" \$signs "
 contains 'again:claims/mean(normal) == 2 '
 # As the second set-up sets it, the mean is 3.
-contains '75% tests passed, 1 tests failed out of 4'
+contains 'darts/mean(darts) == 3.141592653589793 '
+contains '80% tests passed, 1 tests failed out of 5'
+
+# 50 true claims at alpha 0.01 together, under 30 seeds: coarse, since a run takes a second.
+# This fails by chance with probability 1.2e-5 (5 or more of 30 at .01, binomial).
+failures=0
+for seed in $(seq 1 30); do
+  ASSAY_SEED=$seed run build/claims_test || failures=$((failures + 1))
+done
+[ "$failures" -lt 5 ] || fail "$failures of 30 runs of true claims fail"
+echo "$failures of 30 runs of 50 true claims at alpha 0.01 failed"
+ASSAY_SEED=1 run build/claims_test --gtest_output="xml:$work/claims.xml"
+grep -q 'property name="estimate_25" value=' "$work/claims.xml" || fail 'no properties'
 
 # A claim that is new, and one that is misspelt, need no build.
 printf '  - {name: new, claim: mean(normal) <= 9}\n' >>claims.yaml

@@ -1,0 +1,198 @@
+#include "harness/googletest/claims.h"
+
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "harness/claim_entry.h"
+#include "harness/cli_values.h"
+#include "harness/googletest/sources.h"
+#include "harness/looks.h"
+#include "harness/plan.h"
+#include "harness/pools.h"
+#include "harness/record_of.h"
+#include "reports/describe.h"
+#include "reports/number.h"
+#include "reports/verdict.h"
+
+namespace assay::googletest {
+namespace {
+
+using harness::Suite;
+using harness::TestWork;
+
+/// The budget, and how many of its claims were made.
+struct Spent {
+  std::optional<ClaimBudget> budget = {};
+  std::uint64_t claims = 0;
+};
+Spent& spent() {
+  static Spent state;
+  return state;
+}
+
+/// Every repetition of the tests makes all claims again.
+class Repetitions : public testing::EmptyTestEventListener {
+  void OnTestIterationStart(const testing::UnitTest&, int) override { spent().claims = 0; }
+};
+
+std::string current_test() {
+  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+  if (test == nullptr) return "outside of a test";
+  return std::string(test->test_suite_name()) + "." + test->name();
+}
+
+/// Which claim of its test this is, from 1.
+std::uint64_t ordinal() {
+  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+  std::uint64_t before = 0;
+  const testing::TestResult* result = test == nullptr ? nullptr : test->result();
+  for (int i = 0; result != nullptr && i < result->test_property_count(); ++i) {
+    before += std::string(result->GetTestProperty(i).key()).starts_with("claim_") ? 1U : 0U;
+  }
+  return before + 1;
+}
+
+std::uint64_t seed_of(const ClaimBudget& budget) {
+  const char* given = std::getenv("ASSAY_SEED");
+  return given == nullptr || *given == '\0' ? budget.seed : harness::parse_seed(given);
+}
+
+/// One claim, its sources and its margins.
+struct Asked {
+  std::map<std::string, harness::PreparedEstimator> estimators = {};
+  std::optional<std::string> detect = {};
+  std::optional<std::string> allow = {};
+};
+
+Asked asked(const std::vector<Part>& parts, const std::string& stream) {
+  Asked result;
+  for (const Part& part : parts) {
+    if (const auto* source = std::get_if<Source>(&part)) {
+      const bool is_new =
+          result.estimators.emplace(source->name, prepared(*source, stream + "/" + source->name))
+              .second;
+      if (!is_new) throw InputError({}, "two sources are named `" + source->name + "`");
+    } else {
+      const Margin& margin = std::get<Margin>(part);
+      (margin.detects ? result.detect : result.allow) = margin.text;
+    }
+  }
+  return result;
+}
+
+/// The test alone at its share of the budget.
+reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBudget& budget) {
+  const std::uint64_t seed = seed_of(budget);
+  Suite suite{.name = "googletest",
+              .stem = "googletest",
+              .alpha = budget.alpha / static_cast<double>(budget.claims),
+              .beta = budget.beta};
+  suite.tests = {
+      harness::test_of_claim({.claim = claim, .detect = asked.detect, .allow = asked.allow})};
+  const harness::Question question = harness::ask(suite.tests[0], asked.estimators, seed);
+  const std::vector<harness::FamilyPlace> place = harness::places(suite, {question});
+  std::vector<const harness::PreparedEstimator*> used;
+  std::set<std::string> costly;
+  for (const harness::Subject& subject : question.subjects) {
+    used.push_back(subject.estimator);
+    costly.insert(subject.estimator->name);
+  }
+  const bool costs = harness::methods_for(question).front().keeps == harness::Keeps::costs;
+  harness::Silence silence;
+  const harness::Pilots pilots = harness::run_pilots(
+      used, {.seed = seed, .threads = 0, .with_cost = costs ? costly : std::set<std::string>()},
+      silence);
+  TestWork work{.outcome = {.question = question,
+                            .place = place[0],
+                            .plan = harness::plan_test(
+                                question, place[0], pilots,
+                                harness::choose_primaries({question}, place, pilots))}};
+  harness::Pools pools;
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    work.pools.push_back(pools.for_subject(question, i, work.outcome.plan, seed, pilots));
+  }
+  harness::sample_in_looks({&work}, pools.all(), 0, silence);
+  return harness::record_of_test(work, "", false);
+}
+
+void record(const std::string& name, std::uint64_t claim, const std::string& value) {
+  if (!value.empty()) testing::Test::RecordProperty(name + "_" + std::to_string(claim), value);
+}
+
+std::string text_of(const reports::Number& number) {
+  return number ? reports::round_trip(*number) : "";
+}
+
+void record(const reports::Test& test, std::uint64_t claim) {
+  const reports::Channel channel = reports::worst_channel(test);
+  record("verdict", claim, reports::to_string(test.verdict));
+  record("method", claim, test.method);
+  record("estimate", claim, text_of(channel.effect.estimate));
+  record("low", claim, text_of(channel.effect.low));
+  record("high", claim, text_of(channel.effect.high));
+  record("log10_p", claim, text_of(channel.log10_p));
+  if (test.samples.empty()) return;
+  record("secondaries", claim, std::to_string(test.samples[0].secondaries));
+}
+
+testing::AssertionResult judged(const std::string& claim, const std::vector<Part>& parts) {
+  Spent& state = spent();
+  if (!state.budget) {
+    return testing::AssertionFailure()
+           << "no budget of errors: declare how many claims the binary makes, as in `const "
+              "assay::googletest::DeclaredClaims budget{{.claims = 5}};`";
+  }
+  if (++state.claims > state.budget->claims) {
+    return testing::AssertionFailure()
+           << "this is claim " << state.claims << " of a binary that declared "
+           << state.budget->claims << ": raise `claims` of its DeclaredClaims";
+  }
+  const std::uint64_t number = ordinal();
+  record("claim", number, claim);
+  const Asked sources = asked(parts, current_test() + "#" + std::to_string(number));
+  const reports::Test test = tested(claim, sources, *state.budget);
+  record(test, number);
+  const bool holds = test.verdict == reports::Verdict::pass;
+  return (holds ? testing::AssertionSuccess() : testing::AssertionFailure())
+         << reports::to_string(test.verdict) << ": " << test.message << "\n"
+         << reports::plain_text(test);
+}
+
+}  // namespace
+
+Source primary(const std::string& name, std::function<double(Stream&)> estimate) {
+  return {.name = name,
+          .draw = [estimate = std::move(estimate)](
+                      Stream& random, std::span<double> out) { out[0] = estimate(random); },
+          .averages = true};
+}
+
+Source secondary(const std::string& name, std::size_t channels,
+                 std::function<void(Stream&, std::span<double>)> estimate) {
+  return {.name = name, .draw = std::move(estimate), .channels = channels};
+}
+
+Margin detect(const std::string& text) { return {true, text}; }
+Margin allow(const std::string& text) { return {false, text}; }
+
+testing::AssertionResult claim_holds(const std::string& claim, const std::vector<Part>& parts) {
+  try {
+    return judged(claim, parts);
+  } catch (const InputError& error) {
+    return testing::AssertionFailure() << claim << ": " << error.message();
+  }
+}
+
+DeclaredClaims::DeclaredClaims(const ClaimBudget& budget) {
+  const auto rate = [](double value) { return value > 0 && value <= 0.5; };
+  if (budget.claims == 0 || !rate(budget.alpha) || !rate(budget.beta)) {
+    throw std::logic_error("DeclaredClaims: claims from 1 on, alpha and beta in (0, 0.5]");
+  }
+  if (spent().budget) throw std::logic_error("DeclaredClaims: a binary has one budget");
+  spent().budget = budget;
+  testing::UnitTest::GetInstance()->listeners().Append(new Repetitions);
+}
+
+}  // namespace assay::googletest
