@@ -1,0 +1,248 @@
+// A renderer run once an observation: a command with places for the seed, the number of samples and
+// the file to write. Nothing is known of its mean.
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "estimators/estimator.h"
+#include "estimators/foreign/render_seed.h"
+#include "estimators/foreign/renderings.h"
+#include "recorded/picture_setup.h"
+#include "recorded/table.h"
+
+namespace assay::plugins {
+
+namespace {
+
+/// What the files of a rendering hold, learnt from one of them.
+struct Contents {
+  recorded::PictureStack pictures = {};   ///< of pictures: size and channels, and no files
+  std::vector<std::string> columns = {};  ///< of text
+  std::optional<ImageShape> shape = {};
+  std::size_t size() const { return shape ? shape->elements() : columns.size(); }
+};
+
+/// One observation from its file. A file that cannot be read is the program's failure.
+void read_file(const Contents& contents, const std::string& file, std::vector<float>& texels,
+               std::span<double> out) {
+  try {
+    if (contents.shape) {
+      recorded::PictureStack picture = contents.pictures;
+      picture.files = {file};
+      texels.resize(contents.size());
+      picture.read(0, texels);
+      recorded::write_observation(texels, out);
+      return;
+    }
+    const recorded::Table table = recorded::read_table(file);
+    if (table.rows() != 1 || table.columns.size() != contents.size()) {
+      throw InputError({.file = file}, "one row of " + std::to_string(contents.size()) +
+                                           " numbers was expected, as in the first file");
+    }
+    std::ranges::copy(table.values, out.begin());
+  } catch (const InputError& error) {
+    throw std::runtime_error("what the program wrote is of no use: " + error.where().file + ": " +
+                             error.message() + "; mend the program and delete the file");
+  }
+}
+
+class Command final : public Estimator {
+ public:
+  Command(std::shared_ptr<foreign::Renderings> renderings, std::shared_ptr<const Contents> contents)
+      : renderings_(std::move(renderings)), contents_(std::move(contents)) {}
+
+  void announce(const Announcement& what) override { announced_ = what; }
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const std::uint64_t index = random.observation();
+    const bool ahead =
+        announced_.key == random.key() && index >= announced_.first && index < announced_.last;
+    if (ahead) {
+      renderings_->make(
+          {.key = random.key(), .first = index, .last = announced_.last, .samples = primaries});
+      announced_.last = index;  // once a block
+    }
+    read_file(*contents_, renderings_->file(random.key(), index, primaries), texels_, out);
+    cost.samples += primaries * (contents_->shape ? contents_->shape->pixels() : 1);
+  }
+
+ private:
+  std::shared_ptr<foreign::Renderings> renderings_;
+  std::shared_ptr<const Contents> contents_;
+  Announcement announced_;
+  std::vector<float> texels_;  // scratch
+};
+
+class CommandSetup final : public Setup {
+ public:
+  CommandSetup(std::shared_ptr<foreign::Renderings> renderings, Contents contents)
+      : renderings_(std::move(renderings)),
+        contents_(std::make_shared<const Contents>(std::move(contents))) {}
+
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels;
+    if (contents_->shape) {
+      channels = recorded::element_channels(*contents_->shape);
+      channels.push_back(recorded::average_channel());
+    }
+    for (const std::string& column : contents_->columns) channels.push_back({.name = column});
+    return channels;
+  }
+  std::optional<ImageShape> image() const override { return contents_->shape; }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<Command>(renderings_, contents_);
+  }
+
+ private:
+  std::shared_ptr<foreign::Renderings> renderings_;
+  std::shared_ptr<const Contents> contents_;
+};
+
+struct Look {
+  std::string channels;
+  bool independent;
+};
+
+/// Renders one picture of one sample a pixel, with a seed of its own, to see its size.
+Contents look_at_one(foreign::Renderings& renderings, const Look& look) {
+  const std::string file = renderings.file(stream_key(0, "command", "size", 0), 0, 1);
+  Contents contents;
+  if (is_exr(file)) {
+    contents.pictures = recorded::open_stack({file}, look.channels);
+    contents.shape = contents.pictures.shape(look.independent);
+    contents.pictures.files.clear();
+  } else {
+    contents.columns = recorded::read_table(file).columns;
+  }
+  return contents;
+}
+
+bool has(const std::vector<std::string>& command, const char* place) {
+  return std::ranges::any_of(
+      command, [&](const std::string& word) { return word.find(place) != word.npos; });
+}
+
+void check_command(const Parameters& parameters, const std::vector<std::string>& command) {
+  if (command.empty() || command[0].empty()) {
+    parameters.refuse("command",
+                      "names no program; as in `[render, --seed, \"{seed}\", \"{out}\"]`");
+  }
+  if (!has(command, "{seed}") && !has(command, "{seeds}")) {
+    parameters.refuse("command", "has no place `{seed}`: every observation would be the same");
+  }
+  if (has(command, "{seed}") && has(command, "{seeds}")) {
+    parameters.refuse("command", "has `{seed}` and `{seeds}`: one picture a program, or several");
+  }
+  if (!has(command, "{out}")) {
+    parameters.refuse("command", "has no place `{out}` for the file to write");
+  }
+}
+
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  foreign::Rendering rendering{.command = parameters.texts("command"),
+                               .depends = parameters.texts("depends"),
+                               .folder = parameters.folder().empty() ? "." : parameters.folder(),
+                               .cache = parameters.file("cache"),
+                               .ending = parameters.string("output") == "text" ? "txt" : "exr",
+                               .timeout = parameters.number("timeout"),
+                               .memory = parameters.number("memory"),
+                               .jobs = parameters.count("jobs")};
+  check_command(parameters, rendering.command);
+  if (rendering.jobs == 0) {
+    rendering.jobs = std::max(1U, std::thread::hardware_concurrency());
+  }
+  const Look look{parameters.string("channels"), parameters.string("pixels") == "independent"};
+  rendering.cache = std::filesystem::absolute(rendering.cache).string();
+  try {
+    auto renderings = std::make_shared<foreign::Renderings>(std::move(rendering));
+    Contents contents = look_at_one(*renderings, look);
+    return std::make_shared<CommandSetup>(std::move(renderings), std::move(contents));
+  } catch (const InputError& error) {
+    parameters.refuse("command", "writes `" + error.where().file + "`: " + error.message());
+  } catch (const std::runtime_error& error) {
+    parameters.refuse("command", std::string("is of no use: ") + error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<Entry> foreign_command() {
+  return {
+      {{.name = "command",
+        .summary = "A renderer run once an observation, its pictures kept on disk.",
+        .description =
+            "In the words of `command` `{seed}`, `{samples}` and `{out}` stand for a seed, the "
+            "number of `primaries` and the file to write; it runs in the suite's folder. The file "
+            "is an OpenEXR picture, an image, or a text of one row. With `{seeds}` one program "
+            "makes several: it gets seeds with commas between and writes SEED.exr in the folder "
+            "`{out}`.\n"
+            "A seed is 1 + 630360016 (key + observation) mod (2^31 - 1), key the stream's: no two "
+            "observations of a stream have the same, and where two streams of a run would meet, "
+            "that is an error.\n"
+            "What was made is kept in `cache`, in a folder for each command, number of samples "
+            "and contents of the files that the command or `depends` names: an interrupted run "
+            "goes on where it stopped. A file counts once its program has ended with status 0. "
+            "A program that fails, takes too long or writes nothing is an error with the end of "
+            "its standard error. The size is learnt from one picture of one sample.",
+        .parameters =
+            {{.name = "command",
+              .type = ParameterType::texts,
+              .summary = "the program and its arguments, with the places `{seed}` or `{seeds}`, "
+                         "`{samples}` and `{out}`"},
+             {.name = "output",
+              .type = ParameterType::string,
+              .summary = "what it writes: OpenEXR, or text",
+              .fallback = "exr",
+              .choices = {"exr", "text"}},
+             {.name = "channels",
+              .type = ParameterType::string,
+              .summary = "of pictures: the channels to use, patterns with commas between; R, G and "
+                         "B, or what stands for them, when absent",
+              .fallback = "usual"},
+             {.name = "pixels",
+              .type = ParameterType::string,
+              .summary = "of pictures: whether the pixels of one are independent, as they are "
+                         "under a box filter one pixel wide",
+              .fallback = "dependent",
+              .choices = {"dependent", "independent"}},
+             {.name = "depends",
+              .type = ParameterType::texts,
+              .summary = "files that change the pictures, beside those that the command names",
+              .fallback = "[]"},
+             {.name = "cache",
+              .type = ParameterType::string,
+              .summary = "the folder of what was made, relative to the suite",
+              .fallback = ".assay-cache",
+              .shapes_draws = false},
+             {.name = "jobs",
+              .type = ParameterType::count,
+              .summary = "programs at a time; 0 for one each core",
+              .fallback = "0",
+              .high = 1024,
+              .shapes_draws = false},
+             {.name = "timeout",
+              .type = ParameterType::number,
+              .summary = "how long one picture may take",
+              .unit = "s",
+              .fallback = "600",
+              .low = 0,
+              .high = 1e6,
+              .low_excluded = true,
+              .shapes_draws = false},
+             {.name = "memory",
+              .type = ParameterType::number,
+              .summary = "the most address space that the program may take; 0 is no limit",
+              .unit = "MiB",
+              .fallback = "0",
+              .low = 0,
+              .high = 1e9,
+              .shapes_draws = false}},
+        .averages = false},
+       prepare}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,311 @@
+#include "estimators/foreign/renderings.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include "estimators/foreign/child.h"
+#include "estimators/foreign/render_seed.h"
+
+namespace assay::foreign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t most_read = std::uintmax_t{16} << 20;
+constexpr const char* part_prefix = "part-";
+
+// Seeds of all renderings of this process.
+SeedLedger seed_ledger;
+
+/// FNV-1a of 128 bits (Fowler, Noll, Vo, Eastlake and Hansen 2019): files are told apart by it.
+class Hash {
+ public:
+  void add(std::string_view text) {
+    for (const char c : text) {
+      state_ = (state_ ^ static_cast<unsigned char>(c)) * prime;
+    }
+    // The length, so that "ab" "c" is not "a" "bc".
+    for (std::size_t n = text.size(), i = 0; i < 8; ++i, n >>= 8) {
+      state_ = (state_ ^ (n & 0xff)) * prime;
+    }
+  }
+  std::string text() const {
+    constexpr const char* digits = "0123456789abcdef";
+    std::string out;
+    for (int shift = 124; shift >= 0; shift -= 4) {
+      out += digits[static_cast<unsigned>(state_ >> shift) & 15U];
+    }
+    return out;
+  }
+
+ private:
+  __extension__ using Word = unsigned __int128;
+  static constexpr Word prime = (Word{1} << 88) + 0x13b;
+  Word state_ = (Word{0x6c62272e07bb0142} << 64) + 0x62b821756295c58d;
+};
+
+/// Size and time of change, or the contents of a file that is not large.
+std::string stamp_of(const fs::path& file, bool program) {
+  const std::uintmax_t size = fs::file_size(file);
+  if (program || size > most_read) {
+    const auto changed = fs::last_write_time(file).time_since_epoch().count();
+    return std::to_string(size) + " " + std::to_string(changed);
+  }
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Where a shell would find the program; empty where it would not.
+fs::path program_path(const std::string& word, const fs::path& folder) {
+  if (word.find('/') != word.npos) return folder / word;
+  const char* const variable = std::getenv("PATH");
+  std::string rest = variable == nullptr ? "/usr/bin:/bin" : variable;
+  while (!rest.empty()) {
+    const std::size_t colon = std::min(rest.find(':'), rest.size());
+    const fs::path candidate = fs::path(rest.substr(0, colon)) / word;
+    if (access(candidate.c_str(), X_OK) == 0) return candidate;
+    rest.erase(0, colon + 1);
+  }
+  return {};
+}
+
+std::string stamp_of(const Rendering& rendering) {
+  Hash hash;
+  hash.add("command 1");
+  std::error_code ignored;
+  hash.add(fs::weakly_canonical(rendering.folder, ignored).string());
+  hash.add(rendering.ending);
+  for (std::size_t i = 0; i < rendering.command.size(); ++i) {
+    const std::string& word = rendering.command[i];
+    hash.add(word);
+    const fs::path file =
+        i == 0 ? program_path(word, rendering.folder) : fs::path(rendering.folder) / word;
+    if (!word.empty() && fs::is_regular_file(file, ignored)) hash.add(stamp_of(file, i == 0));
+  }
+  for (const std::string& file : rendering.depends) {
+    const fs::path path = fs::path(rendering.folder) / file;
+    if (!fs::is_regular_file(path, ignored)) {
+      throw std::runtime_error("there is no file `" + file + "` that it could depend on");
+    }
+    hash.add(stamp_of(path, false));
+  }
+  return hash.text();
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+  return out;
+}
+
+/// What programs that no longer run have left unfinished.
+void remove_leftovers(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(part_prefix)) continue;
+    const int process = std::atoi(name.c_str() + std::string_view(part_prefix).size());
+    const bool gone = process > 0 && ::kill(process, 0) != 0 && errno == ESRCH;
+    if (gone) fs::remove_all(entry.path(), ignored);
+  }
+}
+
+/// A name in the folder that nobody else has, removed with whatever stands there at the end.
+class Unfinished {
+ public:
+  Unfinished(const std::string& folder, const std::string& ending) {
+    static std::atomic<std::uint64_t> count{0};
+    path_ = folder + "/" + part_prefix + std::to_string(getpid()) + "-" + std::to_string(count++) +
+            ending;
+  }
+  ~Unfinished() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::string with_errors(const std::string& text, Child& child) {
+  std::string errors = child.last_errors();
+  while (errors.ends_with('\n')) errors.pop_back();
+  return errors.empty() ? text : text + "; the end of its standard error: " + errors;
+}
+
+}  // namespace
+
+bool Rendering::takes_several() const {
+  return std::ranges::any_of(
+      command, [](const std::string& word) { return word.find("{seeds}") != word.npos; });
+}
+
+Renderings::Renderings(Rendering rendering)
+    : rendering_(std::move(rendering)),
+      stamp_(stamp_of(rendering_)),
+      free_jobs_(static_cast<std::ptrdiff_t>(rendering_.jobs)) {}
+
+std::string Renderings::folder_of(std::uint64_t samples) {
+  const std::scoped_lock lock(mutex_);
+  std::string& folder = folders_[samples];
+  if (!folder.empty()) return folder;
+  Hash hash;
+  hash.add(stamp_);
+  hash.add(std::to_string(samples));
+  const std::string path = (fs::path(rendering_.cache) / hash.text()).string();
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) {
+    throw std::runtime_error("the folder `" + path + "` cannot be made: " + error.message());
+  }
+  remove_leftovers(path);
+  std::ofstream(path + "/command.txt") << joined(rendering_.command) << "\nin " << rendering_.folder
+                                       << ", samples " << samples << "\n";
+  return folder = path;
+}
+
+std::string Renderings::path_of(std::uint64_t samples, std::uint32_t seed) {
+  return folder_of(samples) + "/" + std::to_string(seed) + "." + rendering_.ending;
+}
+
+std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
+  std::vector<std::uint32_t> seeds;
+  for (std::uint64_t i = wanted.first; i < wanted.last; ++i) {
+    seed_ledger.note(wanted.key, i);
+    const std::uint32_t seed = render_seed(wanted.key, i);
+    if (!fs::exists(path_of(wanted.samples, seed))) seeds.push_back(seed);
+  }
+  if (rendering_.takes_several()) {
+    if (seeds.empty()) return {};
+    return {{.seeds = std::move(seeds), .samples = wanted.samples}};
+  }
+  std::vector<Task> tasks;
+  for (const std::uint32_t seed : seeds) {
+    tasks.push_back({.seeds = {seed}, .samples = wanted.samples});
+  }
+  return tasks;
+}
+
+void Renderings::run_program(const Task& task, const std::string& out) {
+  std::string seeds;
+  for (const std::uint32_t seed : task.seeds) {
+    seeds += (seeds.empty() ? "" : ",") + std::to_string(seed);
+  }
+  Launch launch{.command = {}, .folder = rendering_.folder, .memory = rendering_.memory};
+  for (std::string word : rendering_.command) {
+    word = replaced(std::move(word), "{seeds}", seeds);
+    word = replaced(std::move(word), "{seed}", std::to_string(task.seeds.front()));
+    word = replaced(std::move(word), "{samples}", std::to_string(task.samples));
+    launch.command.push_back(replaced(std::move(word), "{out}", out));
+  }
+  const double seconds = rendering_.timeout * static_cast<double>(task.seeds.size());
+  const Deadline deadline = std::chrono::steady_clock::now() +
+                            std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
+  const std::string what = "`" + joined(launch.command) + "` ";
+  Child child(launch);
+  child.close_input();
+  try {
+    std::array<char, 4096> said{};
+    while (child.receive(said, deadline) > 0) {
+    }
+    if (!child.ends_by(deadline)) throw TimeOut("time-out");
+  } catch (const TimeOut&) {
+    child.kill();
+    throw std::runtime_error(with_errors(what + "took more than " + std::to_string(seconds) +
+                                             " s and was ended; give "
+                                             "it a larger `timeout`",
+                                         child));
+  }
+  const std::string ending = child.ending();
+  if (ending != "ended with exit status 0") {
+    throw std::runtime_error(with_errors(what + ending, child));
+  }
+}
+
+void Renderings::run(const Task& task) {
+  const std::string folder = folder_of(task.samples);
+  const bool several = rendering_.takes_several();
+  std::string failure;
+  const Unfinished part(folder, several ? "" : "." + rendering_.ending);
+  try {
+    if (several) fs::create_directories(part.path());
+    run_program(task, part.path());
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  for (const std::uint32_t seed : task.seeds) {
+    const std::string made =
+        several ? part.path() + "/" + std::to_string(seed) + "." + rendering_.ending : part.path();
+    std::error_code error;
+    // What was made before a program of several failed is whole or not: nobody knows.
+    if (failure.empty()) fs::rename(made, path_of(task.samples, seed), error);
+    if (failure.empty() && !error) continue;
+    const std::scoped_lock lock(mutex_);
+    failures_[{task.samples, seed}] =
+        !failure.empty()
+            ? failure
+            : "`" + joined(rendering_.command) +
+                  "` ended well and wrote no file for "
+                  "the seed " +
+                  std::to_string(seed) +
+                  (several ? ": it must write SEED." + rendering_.ending + " in the folder `{out}`"
+                           : ": it must write the file `{out}`");
+  }
+}
+
+void Renderings::make(const Wanted& wanted) {
+  const std::vector<Task> tasks = tasks_of(wanted);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < tasks.size(); i = next++) {
+      free_jobs_.acquire();
+      run(tasks[i]);
+      free_jobs_.release();
+    }
+  };
+  const std::size_t helpers = std::min<std::size_t>(tasks.size(), rendering_.jobs);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 1; i < helpers; ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+}
+
+std::string Renderings::failure_of(std::uint64_t samples, std::uint32_t seed) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = failures_.find({samples, seed});
+  return found == failures_.end() ? "" : found->second;
+}
+
+std::string Renderings::file(StreamKey key, std::uint64_t observation, std::uint64_t samples) {
+  const std::uint32_t seed = render_seed(key, observation);
+  const std::string path = path_of(samples, seed);
+  if (!fs::exists(path) && failure_of(samples, seed).empty()) {
+    make({.key = key, .first = observation, .last = observation + 1, .samples = samples});
+  }
+  const std::string failure = failure_of(samples, seed);
+  if (!failure.empty()) throw std::runtime_error(failure);
+  return path;
+}
+
+}  // namespace assay::foreign

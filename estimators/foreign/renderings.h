@@ -1,0 +1,81 @@
+#pragma once
+
+// Files that another program makes, one an observation, kept on disk.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <semaphore>
+#include <string>
+#include <vector>
+
+#include "estimators/stream.h"
+
+namespace assay::foreign {
+
+/// How a file is made. In the words of the command `{seed}`, `{samples}` and `{out}` stand for the
+/// seed, the number of primaries and the file to write. With `{seeds}` one program makes several:
+/// it is given seeds with commas between, and `{out}` is the folder in which it writes SEED.exr.
+struct Rendering {
+  std::vector<std::string> command;
+  std::vector<std::string> depends = {};  ///< files that change what is made, beside those named
+  std::string folder = "";                ///< where the program runs
+  std::string cache = "";                 ///< folder of the files that are kept
+  std::string ending = "exr";             ///< of the files
+  double timeout = 600;                   ///< seconds for one file
+  double memory = 0;                      ///< MiB; 0: no limit
+  std::uint64_t jobs = 1;                 ///< programs at a time
+
+  bool takes_several() const;
+};
+
+/// A run of observations, each of so many primaries.
+struct Wanted {
+  StreamKey key;
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  std::uint64_t samples = 1;
+};
+
+/// The files of one rendering. Thread-safe.
+///
+/// They stand in `cache`/HASH/SEED.exr. HASH is of the command before it is filled in, the samples,
+/// the folder, and the contents of every file that the command or `depends` names (of a program,
+/// and beyond 16 MiB, size and time of change): change a scene and all is made anew. The file
+/// command.txt beside them says what they are. A file is written under another name and renamed
+/// when the program has ended with status 0: one that is there is whole, and a run that was
+/// interrupted goes on where it stopped.
+class Renderings {
+ public:
+  /// Throws std::runtime_error where the cache cannot be made or a file of `depends` is not there.
+  explicit Renderings(Rendering rendering);
+
+  /// Makes what is missing, `jobs` at a time. Failures are kept for file() to tell.
+  void make(const Wanted& wanted);
+  /// The file of one observation, made if need be. Throws std::runtime_error with the command, how
+  /// it ended and the end of its standard error.
+  std::string file(StreamKey key, std::uint64_t observation, std::uint64_t samples);
+
+ private:
+  struct Task {
+    std::vector<std::uint32_t> seeds;
+    std::uint64_t samples;
+  };
+
+  std::string folder_of(std::uint64_t samples);
+  std::string path_of(std::uint64_t samples, std::uint32_t seed);
+  std::vector<Task> tasks_of(const Wanted& wanted);
+  void run(const Task& task);
+  void run_program(const Task& task, const std::string& out);
+  std::string failure_of(std::uint64_t samples, std::uint32_t seed);
+
+  Rendering rendering_;
+  std::string stamp_;  ///< of the command and what it reads
+  std::counting_semaphore<> free_jobs_;
+  std::mutex mutex_;
+  std::map<std::uint64_t, std::string> folders_;  ///< by samples
+  std::map<std::pair<std::uint64_t, std::uint32_t>, std::string> failures_;
+};
+
+}  // namespace assay::foreign

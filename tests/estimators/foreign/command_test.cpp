@@ -1,0 +1,188 @@
+// The plugin `command`: programs that write a file for each seed.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "estimators/foreign/render_seed.h"
+#include "tests/estimators/draws.h"
+#include "tests/estimators/exr_kinds.h"
+
+namespace assay {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(RenderSeed, IsPositiveOf31BitsAndNeverTwiceInAStream) {
+  const StreamKey key = stream_key(1, "command", "a", 0);
+  std::set<std::uint32_t> seeds;
+  for (std::uint64_t i = 0; i < 100000; ++i) seeds.insert(foreign::render_seed(key, i));
+  EXPECT_EQ(seeds.size(), 100000U);
+  EXPECT_GE(*seeds.begin(), 1U);
+  EXPECT_LE(*seeds.rbegin(), 0x7fffffffU);
+  EXPECT_EQ(foreign::render_seed({0}, 0), 1U);
+  EXPECT_EQ(foreign::render_seed({foreign::render_seeds - 1}, 1), 1U);
+}
+
+TEST(RenderSeed, OfTwoStreamsThatMeetIsRefused) {
+  foreign::SeedLedger ledger;
+  for (std::uint64_t i = 0; i < 10; ++i) ledger.note({100}, i);
+  ledger.note({110}, 5);                         // 110 to 115
+  ledger.note({foreign::render_seeds + 90}, 9);  // 90 to 99
+  EXPECT_THROW(ledger.note({90}, 10), std::runtime_error);
+  EXPECT_THROW(ledger.note({100}, 10), std::runtime_error);
+}
+
+class Commands : public ::testing::Test {
+ protected:
+  Commands() {
+    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("assay_command_") + test->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~Commands() override { std::filesystem::remove_all(folder_); }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  // A program that notes every start: SEED SAMPLES OUT.
+  void write_program(const std::string& body) const {
+    std::ofstream(file("render.sh")) << "echo start >>log\n" << body << "\n";
+  }
+  // The plugin, and what differs from two programs at a time that write text.
+  draws::Prepared prepare(std::vector<Value::Member> more = {}) const {
+    const auto words = [](const std::vector<std::string>& texts) {
+      std::vector<Value> items;
+      for (const std::string& text : texts) items.push_back(Value::scalar(text));
+      return Value::list(std::move(items));
+    };
+    std::vector<Value::Member> members{
+        {"command",
+         words({"sh", "render.sh", several_ ? "{seeds}" : "{seed}", "{samples}", "{out}"})},
+        {"jobs", Value::scalar("2")}};
+    if (more.empty()) more = {{"output", Value::scalar("text")}};
+    members.insert(members.end(), more.begin(), more.end());
+    const Entry& entry = find_plugin("command", {});
+    Parameters given("command", entry.information.parameters, Value::map(members),
+                     folder_.string());
+    auto setup = entry.prepare(given);
+    given.require_all_read();
+    return {std::move(setup), stream_key(1, "command", given.canonical(), 0), entry.information};
+  }
+  std::size_t starts() const {
+    const std::string log = draws::bytes_of(file("log"));
+    return static_cast<std::size_t>(std::count(log.begin(), log.end(), '\n'));
+  }
+  template <class Act>
+  std::string failure(const Act& act) const {
+    try {
+      act();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "nothing failed";
+  }
+
+  std::filesystem::path folder_;
+  bool several_ = false;
+};
+
+TEST_F(Commands, RunOnceAnObservationAndNeverAgain) {
+  write_program("echo \"$1 $2\" >$3");
+  const draws::Prepared first = prepare();
+  EXPECT_EQ(starts(), 1U);  // to learn the size
+  EXPECT_EQ(first.setup->channels().size(), 2U);
+  const auto observed = draws::observe(first, 12, 4);
+  EXPECT_EQ(starts(), 13U);
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    EXPECT_EQ(observed[0].values[i], foreign::render_seed(first.key, i));
+    EXPECT_EQ(observed[1].values[i], 4);
+  }
+  const auto again = draws::observe(prepare(), 12, 4);
+  EXPECT_EQ(again[0].values, observed[0].values);
+  EXPECT_EQ(starts(), 13U);
+  draws::observe(prepare(), 13, 4);
+  EXPECT_EQ(starts(), 14U);
+  draws::observe(prepare(), 2, 8);  // other samples, other files
+  EXPECT_EQ(starts(), 16U);
+}
+
+TEST_F(Commands, RunAgainWhenAFileThatTheyReadHasChanged) {
+  write_program("echo 1 >$3");
+  EXPECT_EQ(draws::observe(prepare(), 2)[0].values[0], 1);
+  write_program("echo 2 >$3");
+  EXPECT_EQ(draws::observe(prepare(), 2)[0].values[0], 2);
+  EXPECT_EQ(starts(), 6U);
+}
+
+TEST_F(Commands, MayMakeSeveralFilesAtATime) {
+  several_ = true;
+  write_program("for seed in $(echo $1 | tr , ' '); do echo $seed >$3/$seed.txt; done");
+  const draws::Prepared plugin = prepare();
+  const auto worker = plugin.setup->make();
+  worker->announce({.key = plugin.key, .first = 0, .last = 8});
+  Stream random(plugin.key, 0);
+  Cost cost;
+  double out = 0;
+  worker->secondary(random, 1, {&out, 1}, cost);
+  EXPECT_EQ(out, foreign::render_seed(plugin.key, 0));
+  EXPECT_EQ(draws::observe(plugin, 8)[0].values[7], foreign::render_seed(plugin.key, 7));
+  EXPECT_EQ(starts(), 2U);
+}
+
+TEST_F(Commands, WritePictures) {
+  draws::write_scan_lines(file("made.exr"), {.width = 4, .height = 3, .channels = {"R", "G", "B"}});
+  write_program("cp made.exr $3");
+  const draws::Prepared plugin = prepare({{"pixels", Value::scalar("independent")}});
+  ASSERT_TRUE(plugin.setup->image());
+  EXPECT_EQ(plugin.setup->image()->width, 4U);
+  EXPECT_TRUE(plugin.setup->image()->independent);
+  EXPECT_EQ(draws::observe(plugin, 2)[5].values[1], draws::expected_texel(1, 0, 2));
+}
+
+TEST_F(Commands, ThatFailSayHowAndWhatTheySaidLast) {
+  write_program("echo what a pity >&2; exit 3");
+  const std::string text = failure([&] { prepare(); });
+  EXPECT_THAT(text, HasSubstr("ended with exit status 3"));
+  EXPECT_THAT(text, HasSubstr("what a pity"));
+  write_program("true");
+  EXPECT_THAT(failure([&] { prepare(); }), HasSubstr("wrote no file"));
+  write_program("sleep 60");
+  EXPECT_THAT(failure([&] {
+                prepare({{"output", Value::scalar("text")}, {"timeout", Value::scalar("0.2")}});
+              }),
+              HasSubstr("took more than"));
+}
+
+// The observation fails, the others stand, and what was half written is not taken the next time.
+TEST_F(Commands, ThatFailOnceLeaveNothingBehind) {
+  write_program("echo 1 >$3; test $2 = 1");
+  const draws::Prepared plugin = prepare();
+  EXPECT_THAT(failure([&] { draws::observe(plugin, 1, 2); }), HasSubstr("exit status 1"));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(file(".assay-cache"))) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with("part-")) << entry.path();
+  }
+  EXPECT_THAT(failure([&] { draws::observe(prepare(), 1, 2); }), HasSubstr("exit status 1"));
+}
+
+TEST_F(Commands, NeedPlacesForSeedAndFile) {
+  const auto refused = [&](const std::vector<std::string>& words) {
+    std::vector<Value> items;
+    for (const std::string& word : words) items.push_back(Value::scalar(word));
+    const Entry& entry = find_plugin("command", {});
+    Parameters given("command", entry.information.parameters,
+                     Value::map({{"command", Value::list(items)}}), folder_.string());
+    return failure([&] { entry.prepare(given); });
+  };
+  EXPECT_THAT(refused({"render", "{out}"}), HasSubstr("has no place `{seed}`"));
+  EXPECT_THAT(refused({"render", "{seed}"}), HasSubstr("has no place `{out}`"));
+  EXPECT_THAT(refused({"render", "{seed}", "{seeds}", "{out}"}),
+              HasSubstr("one picture a program"));
+  EXPECT_THAT(refused({"no_such_program_anywhere", "{seed}", "{out}"}), HasSubstr("is of no use"));
+}
+
+}  // namespace
+}  // namespace assay

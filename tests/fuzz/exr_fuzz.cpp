@@ -1,0 +1,65 @@
+// OpenEXR pictures of other programs (estimators/exr_file.h, estimators/pictures.h).
+// Whatever the bytes are, the file is read or refused with its name.
+//
+// sources: estimators/render/exr_file.cpp estimators/pictures.cpp
+// sources: estimators/value.cpp estimators/image.cpp
+// libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
+// libraries: -lOpenEXR -lIex -lIlmThread -lImath
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "estimators/pictures.h"
+#include "estimators/value.h"
+
+namespace {
+
+using namespace assay;
+
+/// A file of this process alone, in memory where the system has such a place.
+std::string own_file() {
+  const bool shared = std::filesystem::is_directory("/dev/shm");
+  return std::string(shared ? "/dev/shm" : "/tmp") + "/assay_exr_fuzz_" + std::to_string(getpid()) +
+         ".exr";
+}
+
+void read_all(const std::string& file) {
+  const ExrFile picture(file);
+  for (const ExrChannel& channel : picture.channels()) {
+    const std::vector<std::string> names{channel.name};
+    const ExrWindow window = picture.window(names);
+    // The format lets a file of 4 KiB hold more than a case may take.
+    if (window.width * window.height > 1 << 20) continue;
+    std::vector<float> texels(window.width * window.height);
+    picture.read(names, texels);
+  }
+}
+
+/// What is refused must be refused with the file's name and a reason.
+template <class Work>
+void guarded(const std::string& file, const Work& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    if (error.where().file != file || error.message().empty()) std::abort();
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::string file = own_file();
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  guarded(file, [&] { read_all(file); });
+  guarded(file, [&] { recorded::open_stack({file}, "usual"); });
+  guarded(file, [&] { recorded::open_stack({file}, "*.R,?"); });
+  return 0;
+}
