@@ -36,7 +36,7 @@ Value unmarked(const Value& texts, const Location& where) {
 }
 
 /// Canonical parameters ("name=value,…") as a suite would give them. Text parameters are written
-/// with a colon before them; null and a text's fallback stand for what was not given.
+/// with a colon before them; null and a scalar's fallback stand for what was not given.
 Value parameters_of(const reports::Sample& sample, const Location& where) {
   const std::vector<ParameterInformation>& declared =
       find_plugin(sample.plugin, where).information.parameters;
@@ -49,10 +49,9 @@ Value parameters_of(const reports::Sample& sample, const Location& where) {
     const auto known = std::find_if(declared.begin(), declared.end(),
                                     [&](const auto& parameter) { return parameter.name == name; });
     if (known == declared.end() || value.kind() == Value::Kind::null) continue;
-    if (known->type == ParameterType::string) {
-      value = Value::scalar(value.text().substr(1), where);
-      if (value.text() == known->fallback) continue;
-    }
+    if (known->type == ParameterType::string) value = Value::scalar(value.text().substr(1), where);
+    const bool is_scalar = value.kind() == Value::Kind::scalar;
+    if (is_scalar && !known->fallback.empty() && value.text() == known->fallback) continue;
     if (known->type == ParameterType::texts) value = unmarked(value, where);
     members.emplace_back(name, std::move(value));
   }

@@ -3,16 +3,12 @@
 // The keys of the JSON record, once, in their order. An archive is called with a key and a member;
 // writing and reading are two archives, so they cannot disagree. Not part of the public interface.
 
-#include <concepts>
-#include <type_traits>
-
+#include "reports/fields_image.h"
+#include "reports/maybe_const.h"
 #include "reports/record.h"
 #include "reports/statements.h"
 
 namespace assay::reports {
-
-template <class T, class Struct>
-concept maybe_const = std::same_as<std::remove_const_t<T>, Struct>;
 
 template <class Archive, maybe_const<Tool> T>
 void fields(Archive& a, T& tool) {
@@ -156,48 +152,6 @@ void fields(Archive& a, T& look) {
   a("log10_p_pass", look.log10_p_pass);
 }
 
-template <class Archive, maybe_const<ImageFinding> T>
-void fields(Archive& a, T& finding) {
-  a("statistic", finding.statistic);
-  a("place", finding.place);
-  a("x", finding.x);
-  a("y", finding.y);
-  a("width", finding.width);
-  a("height", finding.height);
-  a("component", finding.component);
-  a("z", finding.z);
-  a("log10_p", finding.log10_p);
-  a("log10_p_adjusted", finding.log10_p_adjusted);
-}
-
-template <class Archive, maybe_const<Image> T>
-void fields(Archive& a, T& image) {
-  a("width", image.width);
-  a("height", image.height);
-  a("components", image.components);
-  a("replicates", image.replicates);
-  a("tested", image.tested);
-  a("constant", image.constant);
-  a("unseen", image.unseen);
-  a("smallest_cell", image.smallest_cell);
-  a("sign_flips", image.sign_flips);
-  a("winner", image.winner);
-  a("groups", image.groups);
-}
-
-template <class Archive, maybe_const<Map> T>
-void fields(Archive& a, T& map) {
-  a("name", map.name);
-  a("source", map.source);
-  a("file", map.file);
-  a("width", map.width);
-  a("height", map.height);
-  a("components", map.components);
-  a("texels", map.texels);
-}
-
-/// The worst channel's numbers are `repeated` at the test's own level, for readers that want one
-/// number a test; an archive that reads checks their presence and keeps those of `channels`.
 template <class Archive, maybe_const<Test> T>
 void fields(Archive& a, T& test) {
   const Channel worst = test.channels.empty() ? Channel{} : test.channels.front();

@@ -178,10 +178,7 @@ TEST(CommandLine, SuggestsWhatWasMeant) {
             "`plugins`?");
 }
 
-TEST(CommandLine, OffersNothingOfLaterVersions) {
-  for (const char* name : {"images"}) {
-    EXPECT_THAT(refused({name}), StartsWith("unknown command `"));
-  }
+TEST(CommandLine, OffersNoOptionOfOtherCommands) {
   EXPECT_THAT(refused({"check", "mean(a) == 1", "--ledger", "f"}),
               StartsWith("`assay check` has no option `--ledger`"));
 }

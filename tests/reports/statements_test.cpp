@@ -96,7 +96,7 @@ TEST(Statements, AreCountedByTheirAnswers) {
   suite.statements[1].fails = {"kill"};
   suite.statements[2].holds = {"kill"};
   EXPECT_EQ(statement_count(record), 3U);
-  EXPECT_EQ(statement_totals(record), "3 statements: 2\u00A0yes, 1\u00A0no.");
+  EXPECT_EQ(statement_totals(record), "3\u00A0statements: 2\u00A0yes, 1\u00A0no.");
 }
 
 TEST(Statements, ShowTheIntervalThatTheVerdictRestsOn) {
