@@ -22,6 +22,8 @@ constexpr double level_factor = 1.25;
 // Of one replicate's pixels, against an exact reference: false alarms at .01 were .007 at a
 // skewness of 1 and .016 at 2 (README.md).
 constexpr double most_skewed = 1.5;
+// Of images at the first look: more are taken only by looks that follow.
+constexpr std::uint64_t most_first_look = 1024;
 
 double averaged(const Question& question, const Plan& plan, std::size_t subject) {
   const Subject& side = question.subjects[subject];
@@ -128,9 +130,7 @@ std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const Im
         {.name = fmt::format("skewness of {}, pilot", cells_text(tails[i].size, shape)),
          .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
          .limit = level_factor + tails[i].scatter,
-         .state = good       ? "green"
-                  : i < kept ? "amber"
-                             : "red"});
+         .state = good ? "green" : "amber"});
   }
   return tails[kept].size;
 }
@@ -161,16 +161,26 @@ class PilotSides {
   std::vector<stats::CellPilot> sides_;
 };
 
-void choose_cells(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                  std::uint64_t replicates, Plan& plan) {
-  const PilotSides pilot(question, plan, pilots, replicates);
-  const std::vector<stats::CellTails> tails =
-      stats::cell_tails(pilot.sides(), smallest_level(question, place), plan.method.frozen.weights);
-  plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
-  if (keeps_level(tails.back()) || question.test->method || !plan.invalid.empty()) return;
-  plan.invalid =
-      "even sums over the whole image are too skewed for tests to keep their level; take more "
-      "`primaries`, or more `secondaries`";
+struct Replicates {
+  std::uint64_t first = 0;
+  std::uint64_t most = 0;
+};
+
+/// The cells that take part, and the replicates of the first look: so many, or in looks as many
+/// more as the sum over the whole image needs. It always takes part.
+std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                           const Replicates& replicates, Plan& plan) {
+  const double level = smallest_level(question, place);
+  std::uint64_t count = replicates.first;
+  for (;; count *= 2) {
+    const PilotSides pilot(question, plan, pilots, count);
+    const std::vector<stats::CellTails> tails =
+        stats::cell_tails(pilot.sides(), level, plan.method.frozen.weights);
+    if (keeps_level(tails.back()) || 2 * count > replicates.most) {
+      plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
+      return count;
+    }
+  }
 }
 
 // ---- Replicates
@@ -225,8 +235,11 @@ std::uint64_t choose_for_image(const Question& question, const FamilyPlace& plac
   size = std::min(question.test->secondaries.value_or(size), most);
   freeze(question, pilots, plan);
   judge_skewness(question, pilots, plan);
-  choose_cells(question, place, pilots, size, plan);
-  return stats::least_replicates;
+  const bool in_looks = planned && !question.test->secondaries;
+  const std::uint64_t largest = in_looks ? std::min(most, most_first_look) : size;
+  const std::uint64_t first =
+      choose_cells(question, place, pilots, {.first = size, .most = largest}, plan);
+  return in_looks ? first : stats::least_replicates;
 }
 
 std::optional<std::uint64_t> image_secondaries(const Question& question, const ErrorShare& share,
