@@ -4,34 +4,7 @@
 # Runs in a temporary folder of its own and says what was wrong.
 set -uo pipefail
 
-assay=$1
-source_folder=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-unset NO_COLOR FORCE_COLOR CLICOLOR_FORCE GITHUB_ACTIONS
-unset GTEST_TOTAL_SHARDS GTEST_SHARD_INDEX TEST_TOTAL_SHARDS TEST_SHARD_INDEX
-
-fail() {
-  printf 'FAILED: %s\n' "$*"
-  for file in out err; do
-    printf -- '--- %s\n' "$file"
-    head -c 4000 "$work/$file" 2>/dev/null
-  done
-  exit 1
-}
-
-# expect CODE ARGUMENT…: runs assay into the files `out` and `err`.
-expect() {
-  local wanted=$1 code=0
-  shift
-  "$assay" "$@" >out 2>err </dev/null || code=$?
-  [ "$code" -eq "$wanted" ] || fail "assay $* ended with $code, not $wanted"
-}
-
-contains() { grep -qF -- "$2" "$1" || fail "no \`$2\` in $1"; }
-lacks() { ! grep -qF -- "$2" "$1" || fail "\`$2\` in $1"; }
-empty() { [ ! -s "$1" ] || fail "$1 is not empty"; }
+source "$(dirname "$0")/program.sh"
 
 write_suite() {
   printf '%s\n' 'suite: small' 'estimators:' \

@@ -4,29 +4,11 @@
 # Runs in a temporary folder of its own; no process that it started may be left at the end.
 set -uo pipefail
 
-assay=$1
-source_folder=$2
+source "$(dirname "$0")/program.sh"
 examples=$source_folder/estimators/foreign/examples
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
 
-fail() {
-  printf 'FAILED: %s\n' "$*"
-  for file in out err; do
-    printf -- '--- %s\n' "$file"
-    head -c 4000 "$work/$file" 2>/dev/null
-  done
-  exit 1
-}
-
-expect() {
-  local wanted=$1 code=0
-  shift
-  "$assay" "$@" >out 2>err </dev/null || code=$?
-  [ "$code" -eq "$wanted" ] || fail "assay $* ended with $code, not $wanted"
-}
-contains() { tr -s ' \n' ' ' <"$1" | grep -qF -- "$2" || fail "no \`$2\` in $1"; }
+# tells FILE TEXT: that the text is in it, whatever the width at which the program broke its lines.
+tells() { tr -s ' \n' ' ' <"$1" | grep -qF -- "$2" || fail "no \`$2\` in $1"; }
 
 # compile FILE.c: as the manual says, every warning an error, against nothing at all.
 compile() {
@@ -101,9 +83,9 @@ test_examples_pass_their_claims() {
   cmp -s <(sed -E "$times" one.json) <(sed -E "$times" two.json) || fail 'threads change the record'
   for name in shell python c isolated inside; do
     expect 0 replay one.json "darts/$name"
-    contains out 'the same numbers as recorded'
+    tells out 'the same numbers as recorded'
     expect 0 replay one.json "darts/$name" 17
-    contains out 'lies in ['
+    tells out 'lies in ['
   done
   none_left
 }
@@ -139,16 +121,16 @@ test_libraries_that_fail_are_errors_and_the_others_finish() {
   for name in crashes hangs writes_nan reports prints exits; do
     [ "$(verdicts run.json | grep "^$name ")" = "$name error" ] || fail "$name is no error"
     message run.json "$name"
-    contains err 'observation 37'
+    tells err 'observation 37'
   done
   message run.json crashes
-  contains err 'was ended by signal 11 (Segmentation fault)'
+  tells err 'was ended by signal 11 (Segmentation fault)'
   message run.json hangs
-  contains err 'within 0.5 seconds'
+  tells err 'within 0.5 seconds'
   message run.json reports
-  contains err '? (status 4 of secondary())'
+  tells err '? (status 4 of secondary())'
   message run.json prints
-  contains err 'the library printed `37 it is` to standard output'
+  tells err 'the library printed `37 it is` to standard output'
   none_left
 }
 
@@ -171,13 +153,13 @@ test_programs_that_fail_are_errors_and_the_others_finish() {
   for name in exits killed hangs short counts; do
     [ "$(verdicts run.json | grep "^$name ")" = "$name error" ] || fail "$name is no error"
     message run.json "$name"
-    contains err 'observation 0'
+    tells err 'observation 0'
   done
   message run.json exits
-  contains err 'exit status 3'
-  contains err 'gone'
+  tells err 'exit status 3'
+  tells err 'gone'
   message run.json counts
-  contains err 'a function of key and index'
+  tells err 'a function of key and index'
   none_left
 }
 
@@ -193,8 +175,8 @@ __attribute__((constructor)) static void greet(void) { puts("welcome"); }' ' '
   while IFS='|' read -r line wanted; do
     suite bad.yaml "mine: {$line}"
     expect 2 run bad.yaml
-    contains err 'bad.yaml:4:'
-    contains err "$wanted"
+    tells err 'bad.yaml:4:'
+    tells err "$wanted"
     [ ! -s out ] || fail 'something was printed'
   done <<'LINES'
 plugin: library, file: none.so|cannot be opened: No such file or directory
@@ -242,11 +224,11 @@ test_a_library_does_not_outlive_the_run() {
 
 test_manuals_tell_all() {
   expect 0 describe process
-  contains out 'assay 1 text'
-  contains out 'timeout: number, (0, 1000000], s, default 60'
+  tells out 'assay 1 text'
+  tells out 'timeout: number, (0, 1000000], s, default 60'
   expect 0 describe library
-  contains out 'gcc -std=c11 -O2 -fPIC -shared'
-  contains out 'a crash of the library ends the whole run'
+  tells out 'gcc -std=c11 -O2 -fPIC -shared'
+  tells out 'a crash of the library ends the whole run'
 }
 
 "$3"
