@@ -10,6 +10,7 @@
 #include <set>
 #include <tuple>
 
+#include "estimators/text_pattern.h"
 #include "estimators/value.h"
 
 namespace assay::recorded {
@@ -106,7 +107,7 @@ std::vector<std::string> matching_channels(const ExrFile& file, const std::strin
   for (const std::string& pattern : split_at_commas(patterns)) {
     bool any = false;
     for (const std::string& name : names) {
-      if (!matches_pattern(pattern, name)) continue;
+      if (!matches(pattern, name)) continue;
       any = true;
       chosen.insert(name);
     }
@@ -217,28 +218,6 @@ std::vector<double> read_counts(const ExrFile& file, const MomentChannels& error
 }
 
 }  // namespace
-
-bool matches_pattern(const std::string& pattern, const std::string& text) {
-  std::size_t p = 0;
-  std::size_t t = 0;
-  std::size_t star = pattern.npos;  // the last one, and where the text went on after it
-  std::size_t after = 0;
-  while (t < text.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      after = t;
-    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
-      ++p;
-      ++t;
-    } else if (star != pattern.npos) {
-      p = star + 1;
-      t = ++after;
-    } else {
-      return false;
-    }
-  }
-  return pattern.find_first_not_of('*', p) == pattern.npos;
-}
 
 bool names_pictures(const std::string& file) {
   std::error_code ignored;

@@ -12,9 +12,6 @@
 
 namespace assay::recorded {
 
-/// Whether a text matches a pattern in which `*` stands for any text and `?` for any character.
-bool matches_pattern(const std::string& pattern, const std::string& text);
-
 /// Whether a file's name is a pattern, or that of an OpenEXR picture by its ending or its contents.
 bool names_pictures(const std::string& file);
 

@@ -117,10 +117,7 @@ void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std
       continue;
     }
     TestOutcome& outcome = works[i]->outcome;
-    for (std::size_t subject = 0; subject < outcome.question.subjects.size(); ++subject) {
-      works[i]->pools.push_back(
-          pools.for_subject(outcome.question, subject, outcome.plan, seed, pilots));
-    }
+    works[i]->pools = pools.for_question(outcome.question, outcome.plan, seed, pilots);
     open.push_back(works[i].get());
   }
   Silence silence;

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "estimators/text_pattern.h"
 #include "harness/github.h"
 #include "harness/image_record.h"
 #include "harness/plan_table.h"

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "estimators/ready_made.h"
+#include "estimators/text_pattern.h"
 #include "harness/frozen.h"
 #include "harness/interrupt.h"
 #include "harness/plan.h"
@@ -171,10 +172,7 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
     TestWork work{
         .suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
         .outcome = {.question = questions[i], .place = place[i], .plan = std::move(plan)}};
-    for (std::size_t subject = 0; subject < work.outcome.question.subjects.size(); ++subject) {
-      work.pools.push_back(
-          pools.for_subject(work.outcome.question, subject, work.outcome.plan, run.seed, pilots));
-    }
+    work.pools = pools.for_question(work.outcome.question, work.outcome.plan, run.seed, pilots);
     run.tests.push_back(std::move(work));
   }
   plan_picture(run, used, primaries, pilots, pools);

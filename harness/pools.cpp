@@ -114,6 +114,15 @@ std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t se
   return pool;
 }
 
+std::vector<std::shared_ptr<Pool>> Pools::for_question(const Question& question, const Plan& plan,
+                                                       std::uint64_t seed, const Pilots& pilots) {
+  std::vector<std::shared_ptr<Pool>> pools;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    pools.push_back(for_subject(question, subject, plan, seed, pilots));
+  }
+  return pools;
+}
+
 std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t subject,
                                          const Plan& plan, std::uint64_t seed,
                                          const Pilots& pilots) {

@@ -18,9 +18,9 @@ inline constexpr std::uint64_t plotted_values = 2000;
 /// All pools of a run: tests that draw the same stream from the same plugin share one.
 class Pools {
  public:
-  /// The pool of a test's subject, planned for what the method keeps.
-  std::shared_ptr<Pool> for_subject(const Question& question, std::size_t subject, const Plan& plan,
-                                    std::uint64_t seed, const Pilots& pilots);
+  /// The pools of a test, one a subject, planned for what the method keeps.
+  std::vector<std::shared_ptr<Pool>> for_question(const Question& question, const Plan& plan,
+                                                  std::uint64_t seed, const Pilots& pilots);
   /// The pool of an estimator's secondary estimates for the suite's picture.
   std::shared_ptr<Pool> for_picture(const PreparedEstimator& estimator, std::uint64_t primaries,
                                     std::uint64_t seed, const Pilots& pilots);
@@ -28,6 +28,8 @@ class Pools {
   const std::vector<std::shared_ptr<Pool>>& all() const { return all_; }
 
  private:
+  std::shared_ptr<Pool> for_subject(const Question& question, std::size_t subject, const Plan& plan,
+                                    std::uint64_t seed, const Pilots& pilots);
   struct Wanted {
     const PreparedEstimator& estimator;
     std::shared_ptr<const Setup> setup;

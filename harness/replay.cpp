@@ -193,10 +193,8 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
                           .beta = recorded.test.beta.value_or(rebuilt->suite.beta)}},
       .plan = std::move(plan)};
   TestWork& work = rebuilt->work;
-  for (std::size_t i = 0; i < work.outcome.question.subjects.size(); ++i) {
-    work.pools.push_back(
-        rebuilt->pools.for_subject(work.outcome.question, i, work.outcome.plan, recorded.seed, {}));
-  }
+  work.pools =
+      rebuilt->pools.for_question(work.outcome.question, work.outcome.plan, recorded.seed, {});
   return rebuilt;
 }
 

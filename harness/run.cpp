@@ -87,13 +87,4 @@ int exit_code(const reports::Record& record, InconclusivePolicy policy) {
   return 0;
 }
 
-bool matches(std::string_view glob, std::string_view text) {
-  if (glob.empty()) return text.empty();
-  if (glob[0] == '*') {
-    return matches(glob.substr(1), text) || (!text.empty() && matches(glob, text.substr(1)));
-  }
-  if (text.empty() || (glob[0] != '?' && glob[0] != text[0])) return false;
-  return matches(glob.substr(1), text.substr(1));
-}
-
 }  // namespace assay::harness

@@ -35,7 +35,4 @@ enum class InconclusivePolicy { report, fail, pass };
 /// is inconclusive; 4 nothing ran; 77 all skipped.
 int exit_code(const reports::Record&, InconclusivePolicy);
 
-/// Whether a glob (`*`, `?`) matches the whole of a text.
-bool matches(std::string_view glob, std::string_view text);
-
 }  // namespace assay::harness

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "estimators/text_pattern.h"
 #include "harness/run.h"
 #include "harness/suite_keys.h"
 

@@ -110,9 +110,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
                                 question, place[0], pilots,
                                 harness::choose_primaries({question}, place, pilots))}};
   harness::Pools pools;
-  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
-    work.pools.push_back(pools.for_subject(question, i, work.outcome.plan, seed, pilots));
-  }
+  work.pools = pools.for_question(question, work.outcome.plan, seed, pilots);
   harness::sample_in_looks({&work}, pools.all(), 0, silence);
   return harness::record_of_test(work, "", false);
 }

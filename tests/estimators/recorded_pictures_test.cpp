@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "estimators/text_pattern.h"
 #include "recorded/picture_setup.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr.h"
@@ -52,13 +53,13 @@ class Pictures : public ::testing::Test {
 };
 
 TEST(Patterns, KnowStarsAndQuestionMarks) {
-  EXPECT_TRUE(recorded::matches_pattern("ViewLayer.*.R", "ViewLayer.Debug Sample Count.R"));
-  EXPECT_TRUE(recorded::matches_pattern("*", ""));
-  EXPECT_TRUE(recorded::matches_pattern("a*b*c", "abbbc"));
-  EXPECT_TRUE(recorded::matches_pattern("?", "R"));
-  EXPECT_FALSE(recorded::matches_pattern("?", ""));
-  EXPECT_FALSE(recorded::matches_pattern("a*b", "abc"));
-  EXPECT_FALSE(recorded::matches_pattern("R", "RR"));
+  EXPECT_TRUE(matches("ViewLayer.*.R", "ViewLayer.Debug Sample Count.R"));
+  EXPECT_TRUE(matches("*", ""));
+  EXPECT_TRUE(matches("a*b*c", "abbbc"));
+  EXPECT_TRUE(matches("?", "R"));
+  EXPECT_FALSE(matches("?", ""));
+  EXPECT_FALSE(matches("a*b", "abc"));
+  EXPECT_FALSE(matches("R", "RR"));
 }
 
 TEST_F(Pictures, ChooseWhatARendererShows) {

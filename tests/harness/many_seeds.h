@@ -94,10 +94,8 @@ inline void take_first_looks(const Prepared& prepared, std::uint64_t seed,
     const Plan& plan = prepared.plans[i];
     TestWork work{.outcome = {.question = question, .place = prepared.place[i], .plan = plan}};
     Pools pools;
-    for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
-      work.pools.push_back(pools.for_subject(question, subject, plan, seed, prepared.pilots));
-      work.pools.back()->request(plan.looks.sizes.front());
-    }
+    work.pools = pools.for_question(question, plan, seed, prepared.pilots);
+    for (const auto& pool : work.pools) pool->request(plan.looks.sizes.front());
     draw_all(pools.all(), {.threads = 1}, silence);
     const Evidence evidence = evidence_of(plan.method, question, 0, data_of(work, 0));
     Outcomes& mine = outcomes[question.test->name];

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "estimators/text_pattern.h"
 #include "refusal.h"
 #include "reports/json.h"
 #include "running.h"
