@@ -46,8 +46,6 @@ struct ComparedPair {
   double log_variance_p = 0;
 };
 
-bool has_spread(const stats::Moments& moments) { return moments.count > 3 && moments.m2 > 0; }
-
 ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t channel) {
   const stats::Moments& x = first.channels[channel].moments;
   const stats::Moments& y = second.channels[channel].moments;

@@ -25,6 +25,11 @@ struct Pictured {
   std::vector<PicturedChannel> channels = {};
 };
 
+/// Whether moments suffice for intervals of mean and variance.
+inline bool has_spread(const stats::Moments& moments) {
+  return moments.count > 3 && moments.m2 > 0;
+}
+
 /// Every pair of estimators of one quantity (equal analytic means, or a claim that compares them:
 /// `claimed` holds their names in pairs): Welch on the means, log-variance ratio on the variances
 /// of a primary, Holm over the pairs at level alpha. Nothing of more than 40 estimators.

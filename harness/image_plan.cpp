@@ -135,18 +135,17 @@ std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const Im
   return tails[kept].size;
 }
 
-/// The pilots as sides of a comparison of so many replicates.
+/// The pilots as sides of a comparison of one replicate, or of as many as are set.
 class PilotSides {
  public:
-  PilotSides(const Question& question, const Plan& plan, const Pilots& pilots,
-             std::uint64_t replicates) {
+  PilotSides(const Question& question, const Plan& plan, const Pilots& pilots) {
     for (std::size_t s = 0; s < question.subjects.size(); ++s) {
       const Subject& subject = question.subjects[s];
       images_.push_back(images_of(subject, pilot_at(question, s, pilots)));
-      const double count = static_cast<double>(replicates) * averaged(question, plan, s);
+      averaged_.push_back(averaged(question, plan, s));
       stats::CellPilot side{.stack = {extent_of(*subject.image), {}},
                             .factor = factor_of(question, s),
-                            .replicates = count};
+                            .replicates = averaged_.back()};
       for (const std::vector<double>& image : images_.back()) side.stack.images.emplace_back(image);
       sides_.push_back(std::move(side));
     }
@@ -154,10 +153,16 @@ class PilotSides {
   PilotSides(const PilotSides&) = delete;  // spans point inside
   PilotSides& operator=(const PilotSides&) = delete;
 
+  void set_replicates(std::uint64_t replicates) {
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      sides_[s].replicates = static_cast<double>(replicates) * averaged_[s];
+    }
+  }
   std::span<const stats::CellPilot> sides() const { return sides_; }
 
  private:
   std::vector<Images> images_;
+  std::vector<double> averaged_;  // primaries of an image's pixel
   std::vector<stats::CellPilot> sides_;
 };
 
@@ -171,9 +176,9 @@ struct Replicates {
 std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                            const Replicates& replicates, Plan& plan) {
   const double level = smallest_level(question, place);
-  std::uint64_t count = replicates.first;
-  for (;; count *= 2) {
-    const PilotSides pilot(question, plan, pilots, count);
+  PilotSides pilot(question, plan, pilots);
+  for (std::uint64_t count = replicates.first;; count *= 2) {
+    pilot.set_replicates(count);
     const std::vector<stats::CellTails> tails =
         stats::cell_tails(pilot.sides(), level, plan.method.frozen.weights);
     if (keeps_level(tails.back()) || 2 * count > replicates.most) {
@@ -224,7 +229,7 @@ std::vector<double> image_weights(const Question& question, const Pilots& pilots
                                   const Plan& plan) {
   if (has_rows(question) || !all_piloted(question, pilots)) return {};
   // Replicates are as many on both sides: their number is a common factor.
-  return stats::cell_weights(PilotSides(question, plan, pilots, 1).sides());
+  return stats::cell_weights(PilotSides(question, plan, pilots).sides());
 }
 
 std::uint64_t choose_for_image(const Question& question, const FamilyPlace& place,

@@ -20,7 +20,8 @@ std::vector<double> image_weights(const Question& question, const Pilots& pilots
 
 /// Which cells take part: none so small that the pilot's skewness would raise their share of false
 /// alarms by more than a quarter (mean over the cells of a size). Notes the gates. Returns the
-/// fewest replicates that any method takes.
+/// replicates of the first look: in looks as many, up to 1024, as the whole image's sum needs to
+/// keep its level.
 std::uint64_t choose_for_image(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, std::uint64_t most, Plan& plan);
 

@@ -11,6 +11,7 @@
 #include "harness/holm_verdict.h"
 #include "harness/narrate.h"
 #include "harness/record_of.h"
+#include "harness/recorded_moments.h"
 #include "harness/replay.h"
 #include "harness/shard_check.h"
 
@@ -18,17 +19,6 @@ namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-
-stats::Moments moments_of(const reports::Moments& recorded) {
-  return {.count = recorded.count,
-          .mean = recorded.mean,
-          .m2 = recorded.m2,
-          .m3 = recorded.m3,
-          .m4 = recorded.m4,
-          .minimum = recorded.minimum,
-          .maximum = recorded.maximum,
-          .nonzero = recorded.nonzero};
-}
 
 /// A test of a shard with what the family needs of it.
 struct Part {

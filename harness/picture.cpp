@@ -36,8 +36,6 @@ double per_primary(const Picture& picture) {
   return picture.estimator->nature().averages ? static_cast<double>(picture.pool->primaries()) : 1;
 }
 
-bool has_spread(const stats::Moments& moments) { return moments.count > 3 && moments.m2 > 0; }
-
 Estimate mean_of(const stats::Moments& moments, double confidence) {
   if (moments.count == 0) return {};
   if (moments.m2 == 0) return {number(moments.mean), number(moments.mean), number(moments.mean)};

@@ -233,8 +233,10 @@ const RecordedRun* as_recorded_run(const Setup& setup) {
 }
 
 std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
-  for (const char* other :
-       {"file", "column", "channels", "pixels", "exact", "variance", "second_moment", "samples"}) {
+  const Entry& recorded = find_plugin("recorded", {});
+  for (const ParameterInformation& declared : recorded.information.parameters) {
+    const std::string& other = declared.name;
+    if (other == "run" || other == "estimator") continue;
     parameters.string(other);
     if (parameters.given(other)) {
       parameters.refuse(other, "is of rows of a file: give it, or `run`, not both");

@@ -7,6 +7,7 @@
 
 #include "harness/holm_verdict.h"
 #include "harness/picture.h"
+#include "harness/recorded_moments.h"
 #include "harness/shell.h"
 #include "harness/text_hash.h"
 
@@ -24,17 +25,6 @@ std::string digest_of(const SuiteRun& run) {
     hash = text_hash(text, hash);
   }
   return fmt::format("{:016x}", hash);
-}
-
-reports::Moments recorded(const stats::Moments& moments) {
-  return {.count = moments.count,
-          .mean = moments.mean,
-          .m2 = moments.m2,
-          .m3 = moments.m3,
-          .m4 = moments.m4,
-          .minimum = moments.minimum,
-          .maximum = moments.maximum,
-          .nonzero = moments.nonzero};
 }
 
 std::uint64_t position_of(const std::string& estimator, const Suite& suite) {
