@@ -74,6 +74,9 @@ struct Channel {
   bool diagnostic = false;  ///< tested only where a claim names it
 };
 
+/// Channels under the names of an image's elements, of each of which the same is known.
+std::vector<Channel> element_channels(const ImageShape& shape, const Channel& element = {});
+
 /// A sampler under the name by which claims reach it.
 struct NamedSampler {
   std::string name;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimators/flush_denormals.h"
 #include "harness/sampler_setup.h"
 
 namespace assay::harness {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "estimators/flush_denormals.h"
+
 namespace assay::harness {
 namespace {
 

@@ -1,7 +1,6 @@
 #include "harness/pool.h"
 
 #include <fmt/format.h>
-#include <immintrin.h>
 
 #include <algorithm>
 #include <bit>
@@ -10,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "estimators/flush_denormals.h"
 #include "harness/group_variance.h"
 #include "harness/recorded_run.h"
 
@@ -22,9 +22,6 @@ constexpr std::uint64_t primaries_per_block = 16384;
 constexpr std::uint64_t least_block = 8;
 constexpr std::uint64_t most_block = 4096;
 constexpr std::uint64_t most_observations = std::numeric_limits<std::uint64_t>::max();
-
-// _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON
-constexpr unsigned flush_bits = 0x8040;
 
 double thread_seconds() {
   timespec time{};
@@ -59,9 +56,6 @@ ObservationCost difference(const Cost& after, const Cost& before) {
 std::uint64_t block_size_of(std::uint64_t primaries) {
   return std::bit_floor(std::clamp(primaries_per_block / primaries, least_block, most_block));
 }
-
-FlushDenormals::FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | flush_bits); }
-FlushDenormals::~FlushDenormals() { _mm_setcsr(saved_); }
 
 Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries)
     : setup_(std::move(setup)),

@@ -16,19 +16,6 @@
 
 namespace assay::harness {
 
-/// Sets the processor to flush denormals to zero while it lives. Rays are traced that way, and bits
-/// must not depend on which thread drew them.
-class FlushDenormals {
- public:
-  FlushDenormals();
-  ~FlushDenormals();
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  unsigned saved_;
-};
-
 /// Observations of a block, a power of two that depends on `primaries` alone; of an image they are
 /// those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "estimators/flush_denormals.h"
 #include "estimators/ready_made.h"
 #include "harness/commands.h"
 #include "harness/interrupt.h"

@@ -10,6 +10,7 @@
 #include "estimators/estimator.h"
 #include "estimators/foreign/render_seed.h"
 #include "estimators/foreign/renderings.h"
+#include "estimators/foreign/setup.h"
 #include "recorded/picture_setup.h"
 #include "recorded/table.h"
 
@@ -86,7 +87,7 @@ class CommandSetup final : public Setup {
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
     if (contents_->shape) {
-      channels = recorded::element_channels(*contents_->shape);
+      channels = element_channels(*contents_->shape);
       channels.push_back(recorded::average_channel());
     }
     for (const std::string& column : contents_->columns) channels.push_back({.name = column});
@@ -121,23 +122,18 @@ Contents look_at_one(foreign::Renderings& renderings, const Look& look) {
   return contents;
 }
 
-bool has(const std::vector<std::string>& command, const char* place) {
-  return std::ranges::any_of(
-      command, [&](const std::string& word) { return word.find(place) != word.npos; });
-}
-
 void check_command(const Parameters& parameters, const std::vector<std::string>& command) {
   if (command.empty() || command[0].empty()) {
     parameters.refuse("command",
                       "names no program; as in `[render, --seed, \"{seed}\", \"{out}\"]`");
   }
-  if (!has(command, "{seed}") && !has(command, "{seeds}")) {
+  if (!foreign::has_place(command, "{seed}") && !foreign::has_place(command, "{seeds}")) {
     parameters.refuse("command", "has no place `{seed}`: every observation would be the same");
   }
-  if (has(command, "{seed}") && has(command, "{seeds}")) {
+  if (foreign::has_place(command, "{seed}") && foreign::has_place(command, "{seeds}")) {
     parameters.refuse("command", "has `{seed}` and `{seeds}`: one picture a program, or several");
   }
-  if (!has(command, "{out}")) {
+  if (!foreign::has_place(command, "{out}")) {
     parameters.refuse("command", "has no place `{out}` for the file to write");
   }
 }
@@ -224,23 +220,8 @@ std::vector<Entry> foreign_command() {
               .fallback = "0",
               .high = 1024,
               .shapes_draws = false},
-             {.name = "timeout",
-              .type = ParameterType::number,
-              .summary = "how long one picture may take",
-              .unit = "s",
-              .fallback = "600",
-              .low = 0,
-              .high = 1e6,
-              .low_excluded = true,
-              .shapes_draws = false},
-             {.name = "memory",
-              .type = ParameterType::number,
-              .summary = "the most address space that the program may take; 0 is no limit",
-              .unit = "MiB",
-              .fallback = "0",
-              .low = 0,
-              .high = 1e9,
-              .shapes_draws = false}},
+             foreign::timeout_parameter("how long one picture may take", "600"),
+             foreign::memory_parameter()},
         .averages = false},
        prepare}};
 }

@@ -196,9 +196,7 @@ class Reader {
       if (!needs_image_.empty()) wrong(needs_image_, "there is no `image`");
       return {};
     }
-    std::vector<Channel> all(hello_.image->elements(), element_);
-    for (std::size_t i = 0; i < all.size(); ++i) all[i].name = element_name(*hello_.image, i);
-    return all;
+    return element_channels(*hello_.image, element_);
   }
 
   void refuse_double_components() const {
@@ -258,33 +256,34 @@ class Reader {
   bool ready_ = false;
 };
 
-std::string shortest(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
+}  // namespace
 
 std::string channel_line(const Channel& channel) {
   std::string line = "channel " + channel.name;
-  if (channel.mean) line += " mean " + shortest(*channel.mean);
-  if (channel.mean_error != 0) line += " error " + shortest(channel.mean_error);
-  if (channel.variance) line += " variance " + shortest(*channel.variance);
-  if (std::isfinite(channel.low)) line += " low " + shortest(channel.low);
-  if (std::isfinite(channel.high)) line += " high " + shortest(channel.high);
-  if (channel.rounding != 0) line += " rounding " + shortest(channel.rounding);
+  if (channel.mean) line += " mean " + text_of(*channel.mean);
+  if (channel.mean_error != 0) line += " error " + text_of(channel.mean_error);
+  if (channel.variance) line += " variance " + text_of(*channel.variance);
+  if (std::isfinite(channel.low)) line += " low " + text_of(channel.low);
+  if (std::isfinite(channel.high)) line += " high " + text_of(channel.high);
+  if (channel.rounding != 0) line += " rounding " + text_of(channel.rounding);
   return line + (channel.diagnostic ? " diagnostic\n" : "\n");
 }
 
-std::string image_lines(const Hello& hello) {
-  const ImageShape& image = *hello.image;
+std::string image_lines(const ImageShape& image, const Channel& element) {
   std::string lines = "image " + std::to_string(image.width) + " " + std::to_string(image.height);
   for (const std::string& component : image.components) lines += " " + component;
   lines += image.independent ? "\nindependent\n" : "\n";
-  const Channel& element = hello.channels.front();
-  if (!std::isfinite(element.low) && !std::isfinite(element.high)) return lines;
-  return lines + "range " + shortest(element.low) + " " + shortest(element.high) + "\n";
+  const Channel unknown;
+  if (element.low == unknown.low && element.high == unknown.high) return lines;
+  return lines + "range " + text_of(element.low) + " " + text_of(element.high) + "\n";
 }
 
-}  // namespace
+std::string bias_line(std::optional<BiasClass> bias) {
+  for (const BiasWord& known : bias_words) {
+    if (bias == known.bias) return "bias " + std::string(known.word) + "\n";
+  }
+  return "";
+}
 
 bool is_whole_hello(std::string_view text) {
   for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
@@ -312,14 +311,12 @@ Hello parse_hello(std::string_view text, std::uint64_t most) {
 std::string to_text(const Hello& hello) {
   std::string text = "assay " + std::to_string(protocol_version) +
                      (hello.numbers == Numbers::binary ? " binary\n" : " text\n");
-  if (hello.image) text += image_lines(hello);
+  if (hello.image) text += image_lines(*hello.image, hello.channels.front());
   for (std::size_t i = hello.image ? hello.image->elements() : 0; i < hello.channels.size(); ++i) {
     text += channel_line(hello.channels[i]);
   }
   if (hello.nature.averages) text += "averages\n";
-  for (const BiasWord& known : bias_words) {
-    if (hello.nature.bias == known.bias) text += "bias " + std::string(known.word) + "\n";
-  }
+  text += bias_line(hello.nature.bias);
   if (hello.rays) text += "rays\n";
   return text + "ready\n";
 }

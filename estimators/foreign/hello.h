@@ -2,10 +2,16 @@
 
 // What another program says of its estimator before it is asked for numbers, as lines of text:
 //
-//   assay 1 text                      the protocol's version; replies as text or binary
-//   channel area low 0 high 4         one a channel; what is known of it exactly may follow its
-//   name averages                          an observation is the mean of its primaries bias
-//   unbiased                     or primaries, bootstrap, start-up, reconstruction ready
+//   assay 1 text
+//   channel area low 0 high 4
+//   averages
+//   bias unbiased
+//   ready
+//
+// The first line tells the protocol's version and whether replies are `text` or `binary`. There is
+// a line for each channel, with what is known of it exactly after its name. `averages`: an
+// observation is the mean of its primaries. The bias is unbiased, primaries, bootstrap, start-up or
+// reconstruction.
 //
 // Instead of channels, or before channels that are diagnostic, `image 64 48 red green blue` says
 // that an observation is an image, `range LOW HIGH` what no element of it leaves, and `independent`
@@ -64,5 +70,11 @@ Hello parse_hello(std::string_view text, std::uint64_t most = most_numbers);
 
 /// The text that parse_hello() reads.
 std::string to_text(const Hello& hello);
+
+/// Lines of it, each with its end: of a channel; of an image, each of whose elements has the range
+/// of this one; of a bias, none where it is unknown.
+std::string channel_line(const Channel& channel);
+std::string image_lines(const ImageShape& image, const Channel& element);
+std::string bias_line(std::optional<BiasClass> bias);
 
 }  // namespace assay::foreign

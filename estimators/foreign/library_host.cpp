@@ -1,7 +1,6 @@
 #include "estimators/library_host.h"
 
 #include <fcntl.h>
-#include <immintrin.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -16,6 +15,7 @@
 #include <system_error>
 #include <thread>
 
+#include "estimators/flush_denormals.h"
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/library_setup.h"
 #include "estimators/foreign/reply.h"
@@ -30,10 +30,6 @@ using foreign::PreparedLibrary;
 using foreign::Question;
 
 constexpr int failed = 3;
-
-// As the harness draws: _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON. Bits are then the same in a
-// process of its own and in this one.
-constexpr unsigned flush_bits = 0x8040;
 
 std::string& host_program() {
   static std::string program;
@@ -171,7 +167,7 @@ void set_stop_question(bool (*stop)()) { foreign::set_stop_question(stop); }
 int host_library(const std::vector<std::string>& arguments) {
   const Channels channels;
   watch(channels.questions());
-  _mm_setcsr(_mm_getcsr() | flush_bits);
+  const FlushDenormals flush;
   std::unique_ptr<PreparedLibrary> library;
   try {
     library = prepared(arguments);

@@ -1,10 +1,10 @@
 #include "estimators/foreign/library_setup.h"
 
 #include <array>
-#include <charconv>
 #include <filesystem>
 
 #include "estimators/foreign/library_sampler.h"
+#include "estimators/foreign/words.h"
 #include "estimators/parameters.h"
 
 namespace assay::foreign {
@@ -55,11 +55,6 @@ std::vector<ParameterInformation> declared(const AssayEstimator& estimator,
   return all;
 }
 
-std::string number_text(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
-
 /// The values as the library gets them, with the texts that they point to.
 struct Values {
   std::vector<std::string> texts;
@@ -83,7 +78,7 @@ double read(Parameters& given, const ParameterInformation& parameter, std::strin
       text = given.string(parameter.name);
       return 0;
   }
-  text = number_text(number);
+  text = foreign::text_of(number);
   return number;
 }
 
@@ -123,51 +118,48 @@ ImageShape shape_of(const AssayImage& theirs) {
   return shape;
 }
 
-std::string image_lines(const AssayImage& theirs) {
-  const ImageShape shape = shape_of(theirs);
-  std::string text = "image " + std::to_string(shape.width) + " " + std::to_string(shape.height);
-  for (const std::string& component : shape.components) text += " " + component;
-  text += shape.independent ? "\nindependent\n" : "\n";
-  if (!has(theirs.flags, ASSAY_LOW) && !has(theirs.flags, ASSAY_HIGH)) return text;
-  return text + "range " + (has(theirs.flags, ASSAY_LOW) ? number_text(theirs.low) : "-inf") + " " +
-         (has(theirs.flags, ASSAY_HIGH) ? number_text(theirs.high) : "inf") + "\n";
+/// What is known of every element.
+Channel element_of(const AssayImage& theirs) {
+  Channel element;
+  if (has(theirs.flags, ASSAY_LOW)) element.low = theirs.low;
+  if (has(theirs.flags, ASSAY_HIGH)) element.high = theirs.high;
+  return element;
 }
 
-const char* bias_line(std::uint32_t bias) {
-  switch (bias) {
+std::optional<BiasClass> bias_of(std::uint32_t theirs) {
+  switch (theirs) {
     case ASSAY_BIAS_UNKNOWN:
-      return "";
+      return std::nullopt;
     case ASSAY_UNBIASED:
-      return "bias unbiased\n";
+      return BiasClass::unbiased;
     case ASSAY_BIAS_PRIMARIES:
-      return "bias primaries\n";
+      return BiasClass::inverse_primaries;
     case ASSAY_BIAS_BOOTSTRAP:
-      return "bias bootstrap\n";
+      return BiasClass::inverse_bootstrap;
     case ASSAY_BIAS_START_UP:
-      return "bias start-up\n";
+      return BiasClass::start_up;
     case ASSAY_BIAS_RECONSTRUCTION:
-      return "bias reconstruction\n";
+      return BiasClass::reconstruction;
     default:
-      throw LibraryError("declares the bias " + std::to_string(bias) + ", which is none");
+      throw LibraryError("declares the bias " + std::to_string(theirs) + ", which is none");
   }
 }
 
 /// What the library says, in the words of a program, so that both are read by the same rules.
 std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& prepared) {
   std::string text = "assay " + std::to_string(protocol_version) + " binary\n";
-  if (prepared.image != nullptr) text += image_lines(as_known(prepared.image));
+  if (prepared.image != nullptr) {
+    const AssayImage image = as_known(prepared.image);
+    text += image_lines(shape_of(image), element_of(image));
+  }
   if (prepared.channel_count > 0) {
-    Hello channels;
     for (const AssayChannel& c : all_known(prepared.channels, prepared.channel_count)) {
-      channels.channels.push_back(channel_of(c));
+      text += channel_line(channel_of(c));
     }
-    const std::string all = to_text(channels);  // a greeting, the channels, `ready`
-    const std::size_t begin = all.find('\n') + 1;
-    text += all.substr(begin, all.rfind("ready\n") - begin);
   }
   if (has(estimator.flags, ASSAY_AVERAGES)) text += "averages\n";
   if (has(estimator.flags, ASSAY_RAYS)) text += "rays\n";
-  return text + bias_line(estimator.bias) + "ready\n";
+  return text + bias_line(bias_of(estimator.bias)) + "ready\n";
 }
 
 class LibraryEstimator final : public Estimator {

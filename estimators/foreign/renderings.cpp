@@ -15,6 +15,7 @@
 
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/render_seed.h"
+#include "estimators/foreign/words.h"
 
 namespace assay::foreign {
 
@@ -110,12 +111,6 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
-  return out;
-}
-
 /// What programs that no longer run have left unfinished.
 void remove_leftovers(const fs::path& folder) {
   std::error_code ignored;
@@ -156,10 +151,12 @@ std::string with_errors(const std::string& text, Child& child) {
 
 }  // namespace
 
-bool Rendering::takes_several() const {
+bool has_place(const std::vector<std::string>& command, std::string_view place) {
   return std::ranges::any_of(
-      command, [](const std::string& word) { return word.find("{seeds}") != word.npos; });
+      command, [&](const std::string& word) { return word.find(place) != word.npos; });
 }
+
+bool Rendering::takes_several() const { return has_place(command, "{seeds}"); }
 
 Renderings::Renderings(Rendering rendering)
     : rendering_(std::move(rendering)),

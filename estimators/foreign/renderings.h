@@ -8,11 +8,15 @@
 #include <mutex>
 #include <semaphore>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "estimators/stream.h"
 
 namespace assay::foreign {
+
+/// Whether a word of the command has this place, as `{seed}`.
+bool has_place(const std::vector<std::string>& command, std::string_view place);
 
 /// How a file is made. In the words of the command `{seed}`, `{samples}` and `{out}` stand for the
 /// seed, the number of primaries and the file to write. With `{seeds}` one program makes several:

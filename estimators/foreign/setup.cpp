@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "estimators/foreign/words.h"
+
 namespace assay::foreign {
 
 namespace {
@@ -144,12 +146,6 @@ class ForeignEstimator final : public Estimator {
   std::vector<double> numbers_;
 };
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
-  return out;
-}
-
 }  // namespace
 
 std::unique_ptr<Estimator> ForeignSetup::make() const {
@@ -174,26 +170,35 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
   }
 }
 
+ParameterInformation timeout_parameter(const std::string& summary, const std::string& fallback) {
+  return {.name = "timeout",
+          .type = ParameterType::number,
+          .summary = summary,
+          .unit = "s",
+          .fallback = fallback,
+          .low = 0,
+          .high = 1e6,
+          .low_excluded = true,
+          .shapes_draws = false};
+}
+
+ParameterInformation memory_parameter() {
+  return {.name = "memory",
+          .type = ParameterType::number,
+          .summary = "the most address space that the program may take; 0 is no limit",
+          .unit = "MiB",
+          .fallback = "0",
+          .low = 0,
+          .high = 1e9,
+          .shapes_draws = false};
+}
+
 std::vector<ParameterInformation> terms_parameters() {
-  return {
-      {.name = "timeout",
-       .type = ParameterType::number,
-       .summary = "how long a hello or a reply may take; a question is made so large that it is "
-                  "answered in some hundredths of a second, or asks for one observation",
-       .unit = "s",
-       .fallback = "60",
-       .low = 0,
-       .high = 1e6,
-       .low_excluded = true,
-       .shapes_draws = false},
-      {.name = "memory",
-       .type = ParameterType::number,
-       .summary = "the most address space that the program may take; 0 is no limit",
-       .unit = "MiB",
-       .fallback = "0",
-       .low = 0,
-       .high = 1e9,
-       .shapes_draws = false}};
+  return {timeout_parameter("how long a hello or a reply may take; a question is made so large "
+                            "that it is answered in some hundredths of a second, or asks for one "
+                            "observation",
+                            "60"),
+          memory_parameter()};
 }
 
 Terms read_terms(Parameters& parameters) {

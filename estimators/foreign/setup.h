@@ -29,6 +29,10 @@ class ForeignSetup final : public Setup {
 std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
                                    std::string_view name);
 
+/// The limits of any program that is run. `timeout` is in seconds, of what `summary` says.
+ParameterInformation timeout_parameter(const std::string& summary, const std::string& fallback);
+ParameterInformation memory_parameter();
+
 /// What `process` and `library` have in common.
 std::vector<ParameterInformation> terms_parameters();
 /// Reads them.

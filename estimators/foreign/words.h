@@ -3,6 +3,7 @@
 // Lines and words of what programs write to each other.
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -39,6 +40,19 @@ inline std::optional<std::uint64_t> whole_of(std::string_view word) {
   const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
   if (parsed.ec != std::errc{} || parsed.ptr != word.data() + word.size()) return {};
   return value;
+}
+
+/// The shortest text that reads back as this number.
+inline std::string text_of(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+/// With blanks between, as a command is shown.
+inline std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+  return out;
 }
 
 /// The beginning of what a program wrote, fit to be shown in a message.

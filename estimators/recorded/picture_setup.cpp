@@ -94,12 +94,6 @@ std::string observation_file(const Setup& setup, std::uint64_t index) {
   return pictures == nullptr ? "" : pictures->file(index);
 }
 
-std::vector<Channel> element_channels(const ImageShape& shape) {
-  std::vector<Channel> channels(shape.elements());
-  for (std::size_t i = 0; i < channels.size(); ++i) channels[i].name = element_name(shape, i);
-  return channels;
-}
-
 Channel average_channel() { return {.name = "average", .diagnostic = true}; }
 
 void write_observation(std::span<const float> texels, std::span<double> out) {

@@ -19,9 +19,6 @@ std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,
 /// Means with their errors; there is nothing to draw.
 std::shared_ptr<const Setup> reference_setup(PictureMoments moments);
 
-/// Channels under the names of an image's elements, with nothing known of them.
-std::vector<Channel> element_channels(const ImageShape& shape);
-
 /// What follows the elements in an observation: their average, for claims that name it.
 Channel average_channel();
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "estimators/catalogue.h"
+#include "estimators/flush_denormals.h"
 #include "harness/pool.h"
 #include "harness/scheduler.h"
 #include "tests/bench/paired.h"
@@ -26,7 +27,7 @@ std::shared_ptr<const Setup> set_up(const char* plugin) {
 }
 
 double bare(const Setup& setup, std::uint64_t total) {
-  const harness::FlushDenormals flush;
+  const FlushDenormals flush;
   const std::unique_ptr<Estimator> estimator = setup.make();
   std::vector<double> out(setup.channels().size());
   Stream random(stream_key(1, "bench", "", 0), 0);
