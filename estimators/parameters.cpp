@@ -25,9 +25,7 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  if (known.empty()) return "; it has none";
-  const std::string near = nearest(name, known);
-  return near.empty() ? "; it has: " + joined(known) : "; did you mean `" + near + "`?";
+  return did_you_mean(name, known, known.empty() ? "it has none" : "it has: " + joined(known));
 }
 
 std::string shown(double value) {
@@ -144,9 +142,8 @@ double Parameters::in_range(const ParameterInformation& parameter, double number
 void Parameters::one_of(const ParameterInformation& parameter, const std::string& text) const {
   const std::vector<std::string>& choices = parameter.choices;
   if (choices.empty() || std::ranges::find(choices, text) != choices.end()) return;
-  const std::string near = nearest(text, choices);
   refuse(parameter.name, "must be one of " + joined(choices) + ", but it is `" + text + "`" +
-                             (near.empty() ? "" : "; did you mean `" + near + "`?"));
+                             did_you_mean(text, choices));
 }
 
 const ParameterInformation& Parameters::declared(std::string_view name) const {

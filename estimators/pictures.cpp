@@ -112,10 +112,8 @@ std::vector<std::string> matching_channels(const ExrFile& file, const std::strin
       chosen.insert(name);
     }
     if (any) continue;
-    const std::string near = nearest(pattern, names);
-    refuse(file.name(),
-           "no channel matches `" + pattern + "`; " +
-               (near.empty() ? "it has " + listed(names) : "did you mean `" + near + "`?"));
+    refuse(file.name(), "no channel matches `" + pattern + "`" +
+                            did_you_mean(pattern, names, "it has " + listed(names)));
   }
   return {chosen.begin(), chosen.end()};
 }

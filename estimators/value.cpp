@@ -199,4 +199,17 @@ std::string nearest(std::string_view name, const std::vector<std::string>& candi
   return found;
 }
 
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates,
+                         std::string_view otherwise) {
+  const std::string near = nearest(name, candidates);
+  if (!near.empty()) return "; did you mean `" + near + "`?";
+  return otherwise.empty() ? "" : "; " + std::string(otherwise);
+}
+
+std::string quoted(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "`" : ", `") + name + "`";
+  return text;
+}
+
 }  // namespace assay

@@ -15,11 +15,6 @@ namespace {
 
 using Kind = Token::Kind;
 
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string near = nearest(word, candidates);
-  return near.empty() ? "" : fmt::format("; did you mean `{}`?", near);
-}
-
 std::vector<std::string> quantity_words() {
   std::vector<std::string> words;
   for (const QuantityName name : offered_quantities()) words.emplace_back(to_string(name));

@@ -89,9 +89,8 @@ const PreparedEstimator& estimator_of(const Source& source, const Estimators& es
   if (found != estimators.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& [name, unused] : estimators) names.push_back(name);
-  const std::string near = nearest(source.estimator, names);
   throw InputError(source.where, fmt::format("no estimator `{}` in this suite{}", source.estimator,
-                                             near.empty() ? "" : "; did you mean `" + near + "`?"));
+                                             did_you_mean(source.estimator, names)));
 }
 
 Subject estimates(const Source& source, const PreparedEstimator& estimator) {

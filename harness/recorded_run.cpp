@@ -175,24 +175,16 @@ std::vector<std::string> names_in(const reports::Record& record) {
   return {names.begin(), names.end()};
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "`" : ", `") + name + "`";
-  return text;
-}
-
 std::string wanted_estimator(Parameters& parameters, const std::vector<std::string>& names) {
   const std::string name = parameters.string("estimator");
   if (names.empty()) parameters.refuse("run", "is a record without observations");
   if (!parameters.given("estimator")) {
     if (names.size() == 1) return names[0];
-    parameters.refuse("run", "has several estimators; choose one by `estimator`: " + listed(names));
+    parameters.refuse("run", "has several estimators; choose one by `estimator`: " + quoted(names));
   }
   if (std::find(names.begin(), names.end(), name) != names.end()) return name;
-  const std::string near = nearest(name, names);
-  parameters.refuse("estimator", "`" + name + "` is none of the run's; " +
-                                     (near.empty() ? "there is: " + listed(names)
-                                                   : "did you mean `" + near + "`?"));
+  parameters.refuse("estimator", "`" + name + "` is none of the run's" +
+                                     did_you_mean(name, names, "there is: " + quoted(names)));
 }
 
 reports::Record read(Parameters& parameters) {

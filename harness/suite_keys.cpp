@@ -14,9 +14,8 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
-  const std::string near = nearest(name, candidates);
-  if (!near.empty()) return fmt::format("; did you mean `{}`?", near);
-  return candidates.empty() ? "; there is none" : "; there is: " + joined(candidates);
+  return did_you_mean(name, candidates,
+                      candidates.empty() ? "there is none" : "there is: " + joined(candidates));
 }
 
 namespace {

@@ -33,11 +33,10 @@ void require_tests(const std::vector<const TestEntry*>& found, const Value& name
   if (!found.empty()) return;
   std::vector<std::string> names;
   for (const TestEntry& test : tests) names.push_back(test.name);
-  const std::string near = nearest(name.text(), names);
   throw InputError(name.where(),
                    fmt::format("the suite has no test `{}`{}", name.text(),
-                               near.empty() ? "; tests are named by `name`, or else by their claim"
-                                            : fmt::format("; did you mean `{}`?", near)));
+                               did_you_mean(name.text(), names,
+                                            "tests are named by `name`, or else by their claim")));
 }
 
 void require_an_answer(const TestEntry& test, const Location& where) {

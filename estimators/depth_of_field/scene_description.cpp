@@ -155,7 +155,7 @@ SceneDescription read_scene(const Value& value) {
   for (const Named& entry : named) {
     if (name == entry.name) return scene(parse_flow(entry.scene));
   }
-  throw InputError(value.where(), "there is no scene `" + name + "`; " +
+  throw InputError(value.where(), "there is no scene `" + name + "`" +
                                       luminaire::alternatives(name, built_in_scenes()));
 }
 

@@ -92,12 +92,10 @@ const AssayEstimator& SharedObject::find(const std::string& name) const {
     names.emplace_back(estimator.name);
   }
   if (name.empty() && estimators_.size() == 1) return estimators_.front();
-  std::string known;
-  for (const std::string& one : names) known += (known.empty() ? "`" : ", `") + one + "`";
-  if (name.empty()) refuse(file_, "has several estimators; set `estimator` to one of " + known);
-  const std::string near = nearest(name, names);
-  refuse(file_, "has no estimator `" + name + "`; " +
-                    (near.empty() ? "there is " + known : "did you mean `" + near + "`?"));
+  if (name.empty())
+    refuse(file_, "has several estimators; set `estimator` to one of " + quoted(names));
+  refuse(file_, "has no estimator `" + name + "`" +
+                    did_you_mean(name, names, "there is " + quoted(names)));
 }
 
 }  // namespace assay::foreign

@@ -20,11 +20,6 @@ using render::Vector3;
 // seven digits. The irradiance of a bent polygon is that of its edges all the same.
 constexpr double planarity = 1e-6;
 
-const std::string& quoted_list(const std::vector<std::string>& names, std::string& out) {
-  for (const std::string& name : names) out += (out.empty() ? "`" : ", `") + name + "`";
-  return out;
-}
-
 void require_map(const Value& value, const std::string& what) {
   if (value.kind() != Value::Kind::map) throw InputError(value.where(), what + " must be a map");
 }
@@ -176,15 +171,13 @@ SceneDescription named(const Value& value) {
     if (known == name) return scene;
   }
   throw InputError(value.where(),
-                   "there is no scene `" + name + "`; " + alternatives(name, built_in_scenes()));
+                   "there is no scene `" + name + "`" + alternatives(name, built_in_scenes()));
 }
 
 }  // namespace
 
 std::string alternatives(std::string_view name, const std::vector<std::string>& known) {
-  std::string out;
-  const std::string near = nearest(name, known);
-  return near.empty() ? "known are " + quoted_list(known, out) : "did you mean `" + near + "`?";
+  return did_you_mean(name, known, "known are " + quoted(known));
 }
 
 void require_keys(const Value& value, const std::string& what,
@@ -193,7 +186,7 @@ void require_keys(const Value& value, const std::string& what,
   for (const auto& [key, member] : value.members()) {
     if (std::ranges::find(known, key) == known.end()) {
       throw InputError(member.where(),
-                       what + " has no key `" + key + "`; " + alternatives(key, known));
+                       what + " has no key `" + key + "`" + alternatives(key, known));
     }
   }
 }

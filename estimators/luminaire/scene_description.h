@@ -62,7 +62,7 @@ void require_keys(const Value& value, const std::string& what,
                   const std::vector<std::string>& known);
 /// The member of a map; InputError where it is missing.
 const Value& required_key(const Value& value, const std::string& what, const char* key);
-/// What to say of an unknown name: the nearest known one, or all.
+/// How a message about an unknown name ends: the nearest known one, or all.
 std::string alternatives(std::string_view name, const std::vector<std::string>& known);
 
 /// The built-in scenes' names: triangle, cornell_triangle, rectangle.

@@ -238,7 +238,7 @@ SceneDescription named(const Value& value) {
   if (name == "coloured_sphere") return coloured_sphere();
   if (name == "box") return Reader("").scene(parse_flow(box));
   throw InputError(value.where(),
-                   "there is no scene `" + name + "`; " + alternatives(name, built_in_scenes()));
+                   "there is no scene `" + name + "`" + alternatives(name, built_in_scenes()));
 }
 
 }  // namespace

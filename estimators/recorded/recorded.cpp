@@ -82,14 +82,9 @@ Selection select(const recorded::Table& table, Parameters& parameters) {
   if (!parameters.given("column")) return {0, table.columns.size()};
   const auto found = std::ranges::find(table.columns, column);
   if (found == table.columns.end()) {
-    std::string known;
-    for (const std::string& name : table.columns) {
-      known += (known.empty() ? "`" : ", `") + name + "`";
-    }
-    const std::string near = nearest(column, table.columns);
-    parameters.refuse("column",
-                      "must be a column of the file, but it is `" + column + "`; " +
-                          (near.empty() ? "there is: " + known : "did you mean `" + near + "`?"));
+    parameters.refuse(
+        "column", "must be a column of the file, but it is `" + column + "`" +
+                      did_you_mean(column, table.columns, "there is: " + quoted(table.columns)));
   }
   return {static_cast<std::size_t>(found - table.columns.begin()), 1};
 }

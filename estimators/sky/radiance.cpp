@@ -175,9 +175,7 @@ void require_keys(const Value& value, const std::vector<std::string>& keys,
   }
   for (const auto& [key, member] : value.members()) {
     if (std::ranges::find(keys, key) != keys.end()) continue;
-    const std::string near = nearest(key, keys);
-    throw InputError(member.where(), what + " has no key `" + key + "`" +
-                                         (near.empty() ? "" : "; did you mean `" + near + "`?"));
+    throw InputError(member.where(), what + " has no key `" + key + "`" + did_you_mean(key, keys));
   }
   for (const std::string& key : keys) {
     if (!value.find(key)) throw InputError(value.where(), what + " lacks the key `" + key + "`");
@@ -276,10 +274,9 @@ SharedRadiance read_radiance(Parameters& given) {
   if (kind == "harmonics") return read_harmonics(value);
   if (kind == "peak") return read_peak(value);
   if (kind == "map") return read_picture(value, given);
-  const std::string near = nearest(kind, kinds);
-  given.refuse("sky", "there is no sky `" + kind + "`" +
-                          (near.empty() ? "; there are uniform, gradient, harmonics, peak and map"
-                                        : "; did you mean `" + near + "`?"));
+  given.refuse(
+      "sky", "there is no sky `" + kind + "`" +
+                 did_you_mean(kind, kinds, "there are uniform, gradient, harmonics, peak and map"));
 }
 
 }  // namespace assay::sky
