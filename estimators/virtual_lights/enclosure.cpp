@@ -95,13 +95,11 @@ void find_walls(const TriangleMesh& mesh, Enclosure& room) {
     connected.join(side.triangle, other.triangle);
     const double out = height(mesh, side.triangle, mesh.vertices[other.opposite]);
     const double inwards = room.counter_clockwise ? out : -out;
-    // Each edge is met from both of its sides.
-    if (inwards < -tolerance && edge.first < edge.second) ++room.outward_edges;
+    if (inwards < -tolerance) {
+      room.why_not_convex = "its walls turn outwards at an edge";
+      return;
+    }
     if (inwards <= tolerance) walls.join(side.triangle, other.triangle);
-  }
-  if (room.outward_edges > 0) {
-    room.why_not_convex = "its walls turn outwards at an edge";
-    return;
   }
   if (!connected.all_one()) {
     room.why_not_convex = "its walls are not connected";

@@ -16,9 +16,6 @@ struct Enclosure {
   std::string why_open;
   /// Why they do not form one convex room; empty where they do.
   std::string why_not_convex;
-  /// Edges at which the walls of a closed mesh turn outwards; each casts one shadow on a wall at
-  /// most.
-  std::size_t outward_edges = 0;
   /// Whether triangles are seen counter-clockwise from inside.
   bool counter_clockwise = true;
   /// The wall that each triangle is part of, in a convex room: triangles of one plane share a

@@ -32,13 +32,12 @@ class LightsEstimator final : public Estimator {
 };
 
 std::vector<Channel> channels(const Scene& scene, const Recipe& recipe) {
-  const std::optional<Stated> known = twice_reflected(*scene.room);
+  const std::optional<Spectrum> known = twice_reflected(*scene.room);
   std::vector<Channel> all;
   for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
     Channel channel{.name = scene.grey ? "radiance" : colour_names[c], .low = 0};
     if (known) {
-      channel.mean = known->radiance.*colours[c];
-      channel.mean_error = known->error.*colours[c];
+      channel.mean = (*known).*colours[c];
       // Of ratios of sums of thousands of terms.
       channel.rounding = 1e-12 * *channel.mean;
     }
