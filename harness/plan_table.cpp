@@ -209,7 +209,8 @@ void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
   page.paragraph(fmt::format("alpha {}, beta {}, seed {}", suite.alpha, suite.beta, run.seed));
   page.blank();
   if (run.tests.empty()) {
-    page.paragraph("No test of this suite is selected.");
+    page.paragraph(run.skipped.empty() ? "No test of this suite is selected."
+                                       : "Its tests will be skipped: " + run.lack + ".");
     page.blank();
     return;
   }
@@ -298,7 +299,9 @@ std::string plan_text(const PlannedRun& planned, const UnitCosts& costs) {
 int plan_exit_code(const PlannedRun& planned) {
   bool any = false;
   bool bad = false;
+  bool skipped = false;
   for (const auto& run : planned.suites) {
+    skipped = skipped || !run->skipped.empty();
     for (const TestWork& work : run->tests) {
       const TestOutcome& test = work.outcome;
       any = true;
@@ -306,7 +309,8 @@ int plan_exit_code(const PlannedRun& planned) {
             (!test.plan.invalid.empty() && test.question.test->expect != Expectation::invalid);
     }
   }
-  return !any ? 4 : bad ? 1 : 0;
+  if (!any) return skipped ? 77 : 4;
+  return bad ? 1 : 0;
 }
 
 }  // namespace assay::harness

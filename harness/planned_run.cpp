@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "estimators/program_path.h"
 #include "estimators/ready_made.h"
 #include "estimators/text_pattern.h"
 #include "harness/frozen.h"
@@ -148,6 +149,12 @@ void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& us
 }
 
 void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress& progress) {
+  if (!run.lack.empty()) {
+    for (std::size_t i = 0; i < run.suite.tests.size(); ++i) {
+      if (selected(run.suite.tests[i], i, options)) run.skipped.push_back(&run.suite.tests[i]);
+    }
+    return;
+  }
   std::vector<Question> questions;
   std::vector<bool> chosen;
   for (std::size_t i = 0; i < run.suite.tests.size(); ++i) {
@@ -179,10 +186,21 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
 }
 
 /// Everything a user may have got wrong is found here, before anything is sampled.
+/// Why the suite's tests cannot run on this machine; "" where they can.
+std::string lack_of(const Suite& suite) {
+  for (const std::string& program : suite.needs) {
+    if (!program_path(program, suite.folder).empty()) continue;
+    return fmt::format("needs the program `{}`, which is not installed", program);
+  }
+  return "";
+}
+
 std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options) {
   auto run = std::make_unique<SuiteRun>();
   run->suite = adjusted(suite, options);
   run->seed = options.seed.value_or(suite.seed.value_or(1));
+  run->lack = lack_of(suite);
+  if (!run->lack.empty()) return run;
   run->estimators = prepare_all(run->suite);
   for (const TestEntry& test : run->suite.tests) {
     const Question question = ask(test, run->estimators, run->seed);

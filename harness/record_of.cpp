@@ -216,6 +216,27 @@ std::vector<reports::Statement> statements_of(const Suite& suite,
   return statements;
 }
 
+/// What a suite says of a test.
+reports::Test head_of(const TestEntry& entry, const std::string& file) {
+  return {.name = entry.name,
+          .id = entry.id,
+          .claim = entry.claim.text,
+          .file = file,
+          .line = entry.where.line,
+          .tags = entry.tags,
+          .over = over_text(entry),
+          .reference = reference_text(entry),
+          .cost = cost_text(entry),
+          .expected = expected_verdict(entry.expect)};
+}
+
+reports::Test skipped_test(const TestEntry& entry, const SuiteRun& run) {
+  reports::Test test = head_of(entry, run.suite.file);
+  test.verdict = reports::Verdict::skipped;
+  test.message = run.lack;
+  return test;
+}
+
 std::string id_filter(const std::string& id) { return " --filter " + shell_quoted(id); }
 
 }  // namespace
@@ -230,17 +251,8 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   const TestOutcome& outcome = work.outcome;
   const TestEntry& entry = *outcome.question.test;
   const Regions& regions = outcome.plan.regions[0];
-  reports::Test test{.name = entry.name,
-                     .id = entry.id,
-                     .claim = entry.claim.text,
-                     .file = file,
-                     .line = entry.where.line,
-                     .tags = entry.tags,
-                     .over = over_text(entry),
-                     .reference = reference_text(entry),
-                     .cost = cost_text(entry),
-                     .verdict = outcome.verdict,
-                     .expected = expected_verdict(entry.expect)};
+  reports::Test test = head_of(entry, file);
+  test.verdict = outcome.verdict;
   test.ok = test.verdict == test.expected;
   test.method = outcome.plan.method.name;
   const std::size_t worst = outcome.channels.empty() ? 0 : outcome.channels[0].index;
@@ -287,9 +299,12 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
               : options.command + fmt::format(" --seed {}", run->seed) +
                     (run->suite.file.empty() ? "" : id_filter(suite.tests.back().id));
     }
+    for (const TestEntry* entry : run->skipped) {
+      suite.tests.push_back(skipped_test(*entry, *run));
+    }
     suite.statements = statements_of(run->suite, suite.tests);
     suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
-    whole = whole && run->holm;
+    whole = whole && (run->holm || run->skipped.size() == run->suite.tests.size());
     add_pictures(*run, suite);
     record.suites.push_back(std::move(suite));
   }

@@ -29,6 +29,9 @@ struct SuiteRun {
   std::map<std::string, PreparedEstimator> estimators;
   Pilots pilots = {};  ///< of the estimators of the selected tests
   std::vector<TestWork> tests = {};
+  /// Why none of its tests can run, "" where they can, and the selected ones if they cannot.
+  std::string lack = {};
+  std::vector<const TestEntry*> skipped = {};
   std::vector<Picture> pictures = {};
   bool holm = false;  ///< the whole family ran
 };

@@ -18,7 +18,9 @@ namespace {
 std::string digest_of(const SuiteRun& run) {
   std::uint64_t hash = text_hash(run.suite.text);
   for (const EstimatorEntry& entry : run.suite.estimators) {
-    const std::string file = run.estimators.at(entry.name).setup->data_file();
+    const auto prepared = run.estimators.find(entry.name);
+    if (prepared == run.estimators.end()) continue;  // of a suite that is skipped
+    const std::string file = prepared->second.setup->data_file();
     if (file.empty()) continue;
     std::ifstream stream(file, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
@@ -48,16 +50,19 @@ reports::ShardPicture picture_of(const Picture& picture, const SuiteRun& run) {
   return part;
 }
 
+std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
+  return static_cast<std::uint64_t>(&test - suite.tests.data());
+}
+
 reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
   const FamilyMember member = member_of(outcome);
-  reports::ShardTest part{
-      .position = static_cast<std::uint64_t>(outcome.question.test - run.suite.tests.data()),
-      .inside = outcome.place.inside,
-      .weight = member.weight,
-      .untested = member.untested,
-      .log_p = member.log_p,
-      .refuted = {},
-      .compared = compared_by(outcome.question)};
+  reports::ShardTest part{.position = position_of(*outcome.question.test, run.suite),
+                          .inside = outcome.place.inside,
+                          .weight = member.weight,
+                          .untested = member.untested,
+                          .log_p = member.log_p,
+                          .refuted = {},
+                          .compared = compared_by(outcome.question)};
   if (!part.inside || !member.tested() || member.verdict == reports::Verdict::fail) return part;
   for (const ChannelOutcome& channel : outcome.channels) {
     part.refuted.push_back(refuted_effect_of(outcome, channel));
@@ -84,6 +89,9 @@ void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOpti
       suite.pictures.push_back(picture_of(picture, *run));
     }
     for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
+    for (const TestEntry* entry : run->skipped) {
+      suite.results.push_back({.position = position_of(*entry, run->suite)});
+    }
     shard.suites.push_back(std::move(suite));
   }
   record.shard = std::move(shard);

@@ -21,12 +21,22 @@ std::string folder_of(const std::string& file) {
   return folder.empty() ? "." : folder.string();
 }
 
+std::vector<std::string> read_needs(const Value& value) {
+  if (value.kind() != Value::Kind::list || value.items().empty()) {
+    throw InputError(value.where(), "`needs` must be a list of programs: `needs: [blender]`");
+  }
+  std::vector<std::string> programs;
+  for (const Value& program : value.items()) programs.push_back(one_line(program, "a program"));
+  return programs;
+}
+
 void read_head(const Document& document, const Keys& keys, Suite& suite) {
   suite.name = one_line(keys.require("suite"), "`suite`");
   if (const Value* v = keys.find("about")) suite.about = v->string("`about`");
   if (const Value* v = keys.find("alpha")) suite.alpha = error_rate(*v, "`alpha`");
   if (const Value* v = keys.find("beta")) suite.beta = error_rate(*v, "`beta`");
   if (const Value* v = keys.find("seed")) suite.seed = v->count("`seed`");
+  if (const Value* v = keys.find("needs")) suite.needs = read_needs(*v);
   if (const Value* v = keys.find("budget")) suite.budget = read_budget(document, *v);
 }
 
@@ -123,8 +133,8 @@ Suite load_suite(const std::string& file) {
   const std::string text = read_text_file(file);
   const Document document = read_yaml_text(text, file);
   const Keys keys(document, document.root(), "a suite",
-                  {"suite", "about", "alpha", "beta", "seed", "budget", "scenes", "estimators",
-                   "tests", "statements"});
+                  {"suite", "about", "alpha", "beta", "seed", "needs", "budget", "scenes",
+                   "estimators", "tests", "statements"});
   Suite suite;
   suite.file = file;
   suite.text = text;

@@ -16,6 +16,7 @@
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/render_seed.h"
 #include "estimators/foreign/words.h"
+#include "estimators/program_path.h"
 
 namespace assay::foreign {
 
@@ -65,20 +66,6 @@ std::string stamp_of(const fs::path& file, bool program) {
   }
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// Where a shell would find the program; empty where it would not.
-fs::path program_path(const std::string& word, const fs::path& folder) {
-  if (word.find('/') != word.npos) return folder / word;
-  const char* const variable = std::getenv("PATH");
-  std::string rest = variable == nullptr ? "/usr/bin:/bin" : variable;
-  while (!rest.empty()) {
-    const std::size_t colon = std::min(rest.find(':'), rest.size());
-    const fs::path candidate = fs::path(rest.substr(0, colon)) / word;
-    if (access(candidate.c_str(), X_OK) == 0) return candidate;
-    rest.erase(0, colon + 1);
-  }
-  return {};
 }
 
 std::string stamp_of(const Rendering& rendering) {
