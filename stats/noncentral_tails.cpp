@@ -1,8 +1,7 @@
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <numbers>
 #include <numeric>
-#include <vector>
 
 #include "stats/check.h"
 #include "stats/golden_section.h"
@@ -112,12 +111,19 @@ struct UpperIntegrand {
   }
 };
 
-// Near enough for where to begin: within a tenth of what the chi law varies over. The integrand is
+// What the integrand varies over at u: 1 / sqrt(2 nu) by the chi law, 1 in t s by the normal one.
+double scale_at(const UpperIntegrand& f, double u) {
+  return 1 / (std::abs(f.t) * std::exp(u) + std::sqrt(2 * f.parameters.degrees));
+}
+
+// Near enough for where to begin: within a tenth of what the integrand varies over. It is
 // log-concave, and its maximum may lie beyond `high` where it still rises there.
 double maximise(const UpperIntegrand& f, double low, double high) {
-  const double near = 0.1 / std::sqrt(f.parameters.degrees);
-  while (f(high) > f(high - near)) high += high - low;
-  const GoldenSection left = golden_section(f, low, high, near);
+  const double rising = 0.1 / std::sqrt(f.parameters.degrees);
+  while (f(high) > f(high - rising)) high += high - low;
+  const GoldenSection about = golden_section(f, low, high, rising);
+  const GoldenSection left =
+      golden_section(f, about.low, about.high, 0.1 * scale_at(f, about.high));
   return std::midpoint(left.low, left.high);
 }
 
@@ -128,19 +134,36 @@ double support_edge(const UpperIntegrand& f, double centre, double direction) {
   return centre + direction * step;
 }
 
-// The trapezoidal rule converges exponentially for an analytic integrand that decays at both ends.
+// The integral over the maximum from the centre to an edge, by Gauss's rule in panels that begin
+// as wide as what the integrand varies over and double. On the side of small s it falls like e^(nu
+// u), so slowly for few degrees that even steps of the width which the other side wants
+// would be a million.
+double side_over_peak(const UpperIntegrand& f, double centre, double edge) {
+  using Rule = boost::math::quadrature::gauss<double, 20>;
+  const double peak = f(centre);
+  const auto over_peak = [&](double u) { return std::exp(f(u) - peak); };
+  const double whole = std::abs(edge - centre);
+  const double direction = edge > centre ? 1 : -1;
+  double sum = 0;
+  double begin = 0;
+  for (double width = scale_at(f, centre); begin < whole; width *= 2) {
+    const double end = std::min(whole, begin + width);
+    const double from = centre + direction * begin;
+    const double to = centre + direction * end;
+    sum += Rule::integrate(over_peak, std::min(from, to), std::max(from, to));
+    begin = end;
+  }
+  return sum;
+}
+
 double log_noncentral_upper(double t, Noncentral parameters) {
   const UpperIntegrand f{t, parameters};
   const double spread = 60 / std::sqrt(parameters.degrees) + 60 / parameters.degrees;
   const double centre = maximise(f, -spread - std::log1p(std::abs(t)), std::min(spread, 300.0));
-  const double peak = f(centre);
-  const double low = support_edge(f, centre, -1);
-  const double high = support_edge(f, centre, +1);
-  const double step = 0.25 / (std::abs(t) * std::exp(centre) + std::sqrt(2 * parameters.degrees));
-  double sum = 0;
-  for (double u = low; u <= high; u += step) sum += std::exp(f(u) - peak);
+  const double sum = side_over_peak(f, centre, support_edge(f, centre, -1)) +
+                     side_over_peak(f, centre, support_edge(f, centre, +1));
   const double half = parameters.degrees / 2;
-  return std::log(2.0) + special::log_gamma_prefix(half, half) + peak + std::log(sum * step);
+  return std::log(2.0) + special::log_gamma_prefix(half, half) + f(centre) + std::log(sum);
 }
 
 }  // namespace

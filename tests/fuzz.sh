@@ -5,6 +5,7 @@
 # To add a target write tests/fuzz/NAME_fuzz.cpp with LLVMFuzzerTestOneInput() and these lines on top:
 #   // sources: FILE...      what it is linked with, from the root
 #   // libraries: FLAG...    such as -lyaml-cpp, where needed
+#   // options: OPTION...     of libFuzzer, where its own will not do
 # and some inputs to begin with in tests/fuzz/corpus/NAME/.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -36,9 +37,10 @@ for name in "${targets[@]}"; do
     -I. -Iestimators "$file" $(said_in "$file" sources) $(said_in "$file" libraries) \
     -o "$folder/$name"
   echo "$name: fuzzing"
+  # shellcheck disable=SC2046
   "$folder/$name" -max_total_time=60 -max_len=4096 -timeout=10 -rss_limit_mb=2048 \
-    -print_final_stats=1 -artifact_prefix="$folder/" "$@" "$folder/corpus" \
-    "tests/fuzz/corpus/$name" >"$folder/log" 2>&1 || code=1
+    -print_final_stats=1 -artifact_prefix="$folder/" $(said_in "$file" options) "$@" \
+    "$folder/corpus" "tests/fuzz/corpus/$name" >"$folder/log" 2>&1 || code=1
   if [ $code -ne 0 ]; then
     tail -n 40 "$folder/log"
     echo "$name: found something; all of it is in $folder/log"

@@ -15,6 +15,9 @@
 #include <csignal>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -120,18 +123,40 @@ void describe_process(posix_spawnattr_t* attributes) {
         "posix_spawn");
 }
 
+/// Null-terminated pointers to texts, as a program is given its arguments.
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+/// This process's, with the folder that the program runs in as PWD: some programs, Blender among
+/// them, do not ask the system for it.
+std::vector<std::string> environment_of(const Launch& launch) {
+  std::vector<std::string> all;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (launch.folder.empty() || !std::string_view(*variable).starts_with("PWD=")) {
+      all.emplace_back(*variable);
+    }
+  }
+  std::error_code error;
+  const auto folder = std::filesystem::canonical(launch.folder, error);
+  if (!error) all.push_back("PWD=" + folder.string());
+  return all;
+}
+
 pid_t spawn(const Launch& launch, const std::array<int, 3>& standard) {
   Actions files;
   Attributes process;
   describe_files(&files.actions, launch, standard);
   describe_process(&process.attributes);
   std::vector<std::string> words = launch.command;
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = pointers_to(words);
+  std::vector<std::string> variables = environment_of(launch);
   pid_t child = -1;
   check(posix_spawnp(&child, arguments[0], &files.actions, &process.attributes, arguments.data(),
-                     environ),
+                     pointers_to(variables).data()),
         "posix_spawn");
   return child;
 }

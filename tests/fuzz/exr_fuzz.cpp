@@ -2,7 +2,7 @@
 // Whatever the bytes are, the file is read or refused with its name.
 //
 // sources: estimators/render/exr_file.cpp estimators/pictures.cpp
-// sources: estimators/value.cpp estimators/image.cpp
+// sources: estimators/value.cpp estimators/image.cpp estimators/text_pattern.cpp
 // libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 // libraries: -lOpenEXR -lIex -lIlmThread -lImath
 

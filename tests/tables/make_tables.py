@@ -250,7 +250,25 @@ def noncentral_t_rows():
             p = mp.log(total)
             yield [float(t), float(nu), float(delta)] + (
                 [complement(p), p] if side > 0 else [p, complement(p)])
+    yield from noncentral_t_rows_of_few_degrees()
     mp.mp.dps = 40
+
+
+def noncentral_t_rows_of_few_degrees():
+    """The law of s is wide there and P(Z >= t s - delta) falls within 1 / delta of ln s = ln(delta / t)."""
+    for nu, delta, t in [(1, 3000, 3183), (1, 3000, 1e6), (0.5, 3, 5), (2, 40, 41)]:
+        n = mp.mpf(nu)
+
+        def term(u):
+            s = mp.exp(u)
+            log_f = mp.log(2) + n / 2 * mp.log(n / 2) - mp.loggamma(n / 2) + n * u - n * s * s / 2
+            return mp.exp(log_f) * mp.erfc((t * s - delta) / mp.sqrt(2)) / 2
+
+        falls = mp.log(mp.mpf(delta) / t)
+        near = [falls + mp.mpf(k) / delta for k in (-40, -8, -3, 0, 3, 8, 40)]
+        outer = [-160 / n, -80 / n, -20 / n, mp.mpf(5)]
+        p = mp.log(mp.quad(term, sorted(outer + [u for u in near if outer[0] < u < outer[-1]])))
+        yield [float(t), float(nu), float(delta), complement(p), p]
 
 
 def kolmogorov_exact(n, d):

@@ -118,6 +118,12 @@ TEST_F(Commands, RunAgainWhenAFileThatTheyReadHasChanged) {
   EXPECT_EQ(starts(), 6U);
 }
 
+TEST_F(Commands, AreToldTheirFolderByTheirEnvironmentToo) {
+  write_program("grep -z ^PWD= /proc/$$/environ | tr -d '\\0' >where; echo 1 >$3");
+  prepare();
+  EXPECT_EQ(draws::bytes_of(file("where")), "PWD=" + std::filesystem::canonical(folder_).string());
+}
+
 TEST_F(Commands, MayMakeSeveralFilesAtATime) {
   several_ = true;
   write_program("for seed in $(echo $1 | tr , ' '); do echo $seed >$3/$seed.txt; done");

@@ -1,0 +1,109 @@
+// A wave in a curved, rough mirror: frequencies against rays, and rays to first order against rays.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "depth_of_field/curved_mirror.h"
+#include "depth_of_field/exact.h"
+#include "tests/estimators/draws.h"
+
+namespace assay {
+namespace {
+
+using namespace depth_of_field;
+using namespace assay::draws;
+
+Channel stated(const std::string& parameters) {
+  return prepare("depth_of_field/mirror", parameters).setup->channels()[0];
+}
+
+// False-alarm rate 1e-6 each.
+TEST(LensMirror, MomentsByFrequenciesAreThoseOfRays) {
+  for (const char* parameters :
+       {"{}", "{roughness: .01, pixel: .03}", "{curvature: .1, phase: 1}",
+        "{curvature: -.2, roughness: .005, pixel: -.02, distance: .7, beyond: 1.4}"}) {
+    const auto plugin = prepare("depth_of_field/mirror", parameters);
+    const Channel channel = plugin.setup->channels()[0];
+    const Sample sample = observe(plugin, 200000)[0];
+    EXPECT_NEAR(sample.mean(), *channel.mean, five * sample.mean_error()) << parameters;
+    EXPECT_NEAR(sample.variance(), *channel.variance, five * sample.variance_error()) << parameters;
+  }
+}
+
+// Three in front of a flat mirror and one behind it are four away.
+TEST(LensMirror, AFlatOneShowsWhatStandsBehindIt) {
+  for (const char* pixel : {"0", ".05"}) {
+    const Channel seen =
+        prepare("depth_of_field/pixel", std::string("{scene: sinusoid, pixel: [") + pixel + ", 0]}")
+            .setup->channels()[0];
+    const Channel mirrored = stated(std::string("{pixel: ") + pixel + "}");
+    EXPECT_NEAR(*mirrored.mean, *seen.mean, 1e-14);
+    EXPECT_NEAR(*mirrored.variance, *seen.variance, 1e-14);
+  }
+}
+
+// The board's picture in a mirror of curvature c stands beyond / (1 + 2 c beyond) behind it: at the
+// focus for c = 1/3.
+TEST(LensMirror, OneThatBulgesBringsTheBoardIntoFocus) {
+  const Channel sharp = stated("{curvature: .3333333333333333}");
+  EXPECT_NEAR(*sharp.mean, 1, 1e-14);
+  EXPECT_FALSE(sharp.variance);
+  const Channel rough = stated("{curvature: .3333333333333333, roughness: .02}");
+  EXPECT_NEAR(*rough.mean, 0.5 + 0.5 * std::exp(-0.5 * 0.9 * 0.9), 1e-14);  // k beyond s = 0.9
+}
+
+// What is neglected is of the third order in the ray's distance from the axis and its slope.
+TEST(LensMirror, ExactRaysAreLinearInTheLimit) {
+  const Lens lens{.radius = 1, .focus = 2};
+  for (const double curvature : {-.2, 0., .3}) {
+    const CurvedMirror mirror{.distance = .8, .beyond = 1.7, .curvature = curvature};
+    ASSERT_TRUE(mirror.met_by_all(lens, .5));
+    const auto off = [&](double scale) {
+      return std::abs(mirror.exact(lens, .6 * scale, -.5 * scale, 0) -
+                      mirror.linear(lens, .6 * scale, -.5 * scale, 0));
+    };
+    if (curvature == 0) {
+      EXPECT_LT(off(1), 1e-15);
+    } else {
+      EXPECT_NEAR(off(.02) / off(.01), 8, .1) << curvature;
+    }
+  }
+}
+
+// A ray that meets the parabola at (x, z): the angle of incidence is that of reflection.
+TEST(LensMirror, ExactRaysKeepTheLawOfReflection) {
+  const Lens lens{.radius = 1, .focus = 2};
+  const CurvedMirror near{.distance = 1, .beyond = 0, .curvature = .3};
+  const CurvedMirror far{.distance = 1, .beyond = 1, .curvature = .3};
+  for (const double u : {-.7, .1, .9}) {
+    const double pixel = .2;
+    // Without a way to the board's plane through the vertex, two points of the reflected ray.
+    const double slope = far.exact(lens, u, pixel, 0) - near.exact(lens, u, pixel, 0);
+    // Where it was met, by bisection.
+    double low = 0, high = 3;
+    for (int i = 0; i < 200; ++i) {
+      const double z = (low + high) / 2;
+      const double x = u + (pixel - u) * z / lens.focus;
+      (z < 1 + .15 * x * x ? low : high) = z;
+    }
+    const double x = u + (pixel - u) * low / lens.focus;
+    const double arriving = std::atan((pixel - u) / lens.focus);
+    const double normal = std::atan(-.3 * x);  // of the side towards the lens, from -z
+    const double leaving = std::atan(slope);
+    // The normal bisects the way back and the way on.
+    EXPECT_NEAR(leaving + normal, arriving - normal, 1e-12) << u;
+  }
+}
+
+TEST(LensMirror, OneThatRaysMissIsRefused) {
+  try {
+    stated("{rays: exact, radius: 1, curvature: 3}");
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("curvature"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace assay

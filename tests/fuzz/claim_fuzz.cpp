@@ -1,0 +1,40 @@
+// Claims as users type them (harness/claim.h). Whatever the text is, it is a claim or is refused
+// with the column of what cannot be understood; and what was understood is written and read again
+// as the same.
+//
+// sources: harness/claim.cpp harness/claim_lexer.cpp harness/claim_rules.cpp harness/claim_text.cpp
+// sources: harness/laws.cpp harness/suite_keys.cpp harness/yaml.cpp harness/text_file.cpp
+// sources: estimators/value.cpp estimators/value_checks.cpp
+// libraries: -lfmt -lyaml-cpp
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "estimators/value.h"
+#include "harness/claim.h"
+
+namespace {
+
+using namespace assay;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const Location place{.file = "suite.yaml", .line = 7, .column = 3};
+  try {
+    const std::string written = to_string(harness::parse_claim(text, place));
+    require(to_string(harness::parse_claim(written, place)) == written);
+  } catch (const InputError& error) {
+    require(!error.message().empty() && error.where().file == place.file);
+    const int beyond = error.where().column - place.column;
+    require(beyond >= 0 && beyond <= static_cast<int>(size));
+  }
+  return 0;
+}

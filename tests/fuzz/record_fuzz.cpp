@@ -1,0 +1,54 @@
+// Records of runs (reports/read_json.h) and the reports that are made from them. Whatever the bytes
+// are, they are a record or are refused with the file's name; a record is written and read again as
+// the same; and every report can be made from it.
+//
+// options: -max_len=32768
+// sources: reports/*.cpp
+// libraries: -lfmt -lpng
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "reports/annotations.h"
+#include "reports/console.h"
+#include "reports/html.h"
+#include "reports/json.h"
+#include "reports/junit.h"
+#include "reports/markdown.h"
+#include "reports/metrics.h"
+#include "reports/read_json.h"
+
+namespace {
+
+using namespace assay::reports;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+void report(const Record& record) {
+  require(!console(record).empty());
+  require(!html(record).empty());
+  require(!junit(record).empty());
+  require(!markdown(record).empty());
+  require(!metrics(record).empty());
+  annotations(record);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    const Record record = read_json(text, "run.json");
+    const std::string written = json(record);
+    require(json(read_json(written, "run.json")) == written);
+    report(record);
+  } catch (const ReadError& error) {
+    require(std::string_view(error.what()).starts_with("run.json"));
+  }
+  return 0;
+}

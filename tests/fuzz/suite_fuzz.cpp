@@ -1,0 +1,69 @@
+// Suite files (harness/suite.h). Whatever the bytes are, they are a suite or are refused at a place
+// in the file.
+//
+// sources: harness/suite.cpp harness/suite_entries.cpp harness/suite_keys.cpp
+// sources: harness/suite_options.cpp harness/suite_statements.cpp
+// sources: harness/claim.cpp harness/claim_lexer.cpp harness/claim_rules.cpp harness/claim_text.cpp
+// sources: harness/laws.cpp harness/yaml.cpp harness/text_file.cpp
+// sources: estimators/value.cpp estimators/value_checks.cpp estimators/flow.cpp
+// sources: estimators/text_pattern.cpp estimators/catalogue.cpp estimators/parameters.cpp
+// libraries: -lfmt -lyaml-cpp
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "estimators/estimator.h"
+#include "harness/suite.h"
+
+namespace assay::plugins {
+
+/// A suite is checked against names of plugins; nothing is prepared here, so that names will do.
+std::vector<Entry> all() {
+  const auto never = [](Parameters&) -> std::shared_ptr<const Setup> { std::abort(); };
+  std::vector<Entry> entries(2);
+  entries[0].information.name = "analytic/normal";
+  entries[1].information.name = "luminaire/area";
+  for (Entry& entry : entries) {
+    entry.information.parameters = {{.name = "mean", .fallback = "0"},
+                                    {.name = "scene", .type = ParameterType::string}};
+    entry.prepare = never;
+  }
+  return entries;
+}
+
+}  // namespace assay::plugins
+
+namespace {
+
+using namespace assay;
+
+/// A file of this process alone, in memory where the system has such a place.
+std::string own_file() {
+  const bool shared = std::filesystem::is_directory("/dev/shm");
+  return std::string(shared ? "/dev/shm" : "/tmp") + "/assay_suite_fuzz_" +
+         std::to_string(getpid()) + ".yaml";
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::string file = own_file();
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  try {
+    const harness::Suite suite = harness::load_suite(file);
+    if (suite.tests.empty() || suite.estimators.empty()) std::abort();
+  } catch (const InputError& error) {
+    const auto lines = std::count(data, data + size, '\n') + 1;
+    const bool inside = error.where().line >= 0 && error.where().line <= lines + 1;
+    if (error.where().file != file || error.message().empty() || !inside) std::abort();
+  }
+  return 0;
+}
