@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/estimators/draws.h"
+#include "estimators/catalogue.h"
 
 namespace assay {
 namespace {
@@ -41,11 +41,16 @@ TEST(FirstWords, AreReadAsAStreamReads) {
 TEST(FirstWords, GiveALawTheObservationsThatItHasOneByOne) {
   for (const char* law : {"bernoulli(0.3)", "exponential(2)", "lognormal(1, 0.5)", "normal(3, 2)",
                           "student_t(5)", "uniform(-1, 4)", "zero_inflated(0.2)"}) {
-    const draws::Prepared plugin =
-        draws::prepare("analytic/law", "{law: \"" + std::string(law) + "\", shift: 1, scale: 2}");
-    const auto announced = plugin.setup->make();
-    const auto alone = plugin.setup->make();
-    const StreamKey key = plugin.key;
+    const Entry& entry = find_plugin("analytic/law", {});
+    Parameters given("analytic/law", entry.information.parameters,
+                     Value::map({{"law", Value::scalar(law)},
+                                 {"shift", Value::scalar("1")},
+                                 {"scale", Value::scalar("2")}}),
+                     "");
+    const auto setup = entry.prepare(given);
+    const auto announced = setup->make();
+    const auto alone = setup->make();
+    const StreamKey key = stream_key(1, "analytic/law", given.canonical(), 0);
     announced->announce({.key = key, .first = 100, .last = 1000});
     for (const std::uint64_t index : {100U, 101U, 355U, 356U, 611U, 999U, 500U, 99U, 1000U}) {
       double one = 0;
