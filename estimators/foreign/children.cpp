@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 namespace assay::foreign {
 
@@ -12,6 +13,32 @@ constexpr std::chrono::milliseconds farewell{500};
 
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+// Pairs of observations, and how many different ones must be among them, before equality under two
+// keys is no coincidence: of a value with four outcomes, all as likely, it is one in 10^7.
+constexpr std::uint64_t most_pairs = 12;
+constexpr std::size_t least_different = 4;
+
+/// Throws NoAnswer where the same observations come for another key. The first pair that differs
+/// ends it: of continuous values that is the first.
+void require_key_matters(Dialogue& dialogue, Question question, const std::string& name) {
+  const std::uint64_t key = question.key;
+  std::set<std::vector<double>> different;
+  question.count = 1;
+  for (std::uint64_t index = 0; index < most_pairs; ++index) {
+    question.first = index;
+    question.key = key;
+    const std::vector<double> mine = dialogue.ask(question);
+    question.key = ~key;
+    if (!same_bits(dialogue.ask(question), mine)) return;
+    different.insert(mine);
+  }
+  if (different.size() < least_different) return;
+  throw NoAnswer("`" + name +
+                 "` gave the same numbers for two keys: runs of other "
+                 "seeds would repeat each other, and so would estimators that must be independent; "
+                 "seed its random numbers with key and index");
 }
 
 }  // namespace
@@ -49,11 +76,14 @@ void Children::give_back(std::unique_ptr<Dialogue> dialogue) {
 void Children::witness(Dialogue& dialogue, const Question& question,
                        const std::vector<double>& numbers) {
   Witness mine{question, numbers};
+  bool first = false;
   {
     const std::scoped_lock lock(mutex_);
-    if (!witness_) witness_ = mine;
+    first = !witness_;
+    if (first) witness_ = mine;
     mine = *witness_;
   }
+  if (first) require_key_matters(dialogue, question, terms_.name);
   if (same_bits(dialogue.ask(mine.question), mine.numbers)) return;
   throw NoAnswer("`" + terms_.name + "` gave other numbers when it was asked for observation " +
                  std::to_string(mine.question.first) +

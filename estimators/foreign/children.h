@@ -33,7 +33,8 @@ class Children {
 
   /// Draws the numbers of one observation a second time, once for each program: first that which
   /// the first program drew, asked of itself, then the same one asked of every other. Throws
-  /// NoAnswer where the bits differ: an observation is then no function of key and index. `numbers`
+  /// NoAnswer where the bits differ: an observation is then no function of key and index. Of the
+  /// first program it also asks whether another key gives other numbers, else NoAnswer. `numbers`
   /// are those of the question's only observation.
   void witness(Dialogue& dialogue, const Question& question, const std::vector<double>& numbers);
 

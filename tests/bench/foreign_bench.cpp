@@ -53,7 +53,7 @@ int main(void) {
   puts("assay 1 binary\n" SHAPE "\nready");
   double *numbers = malloc(4096 * sizeof(double) * WIDTH);
   for (; !fflush(stdout) && fread(question, 8, 4, stdin) == 4; fwrite(question, 8, 4, stdout)) {
-    for (uint64_t i = 0; i < question[2] * WIDTH; ++i) numbers[i] = (double)(question[1] * WIDTH + i);
+    for (uint64_t i = 0; i < question[2] * WIDTH; ++i) numbers[i] = (double)((question[0] + question[1]) * WIDTH + i);
     fwrite(numbers, sizeof(double), question[2] * WIDTH, stdout);
   }
 }

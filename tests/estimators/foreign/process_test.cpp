@@ -20,10 +20,13 @@ using ::testing::Not;
 
 using Process = Programs;
 
-// Echoes what it is asked: an observation is its index.
+// Echoes what it is asked: an observation is its index. That must depend on the key: under the
+// complement of the tests' own, whose upper half is 1737075661, it is the next one.
 constexpr const char* answers = R"(while read -r high low first count primaries; do
   i=$first
-  while [ "$i" -lt $((first + count)) ]; do echo "$i"; i=$((i + 1)); done
+  while [ "$i" -lt $((first + count)) ]; do
+    echo $((i + (high == 1737075661))); i=$((i + 1))
+  done
   echo "$high $low $first $count $primaries"
 done
 )";
@@ -34,7 +37,7 @@ std::string at_five(const std::string& instead) {
   i=$first
   while [ "$i" -lt $((first + count)) ]; do
     if [ "$i" -eq 5 ]; then )" +
-         instead + R"(; else echo "$i"; fi; i=$((i + 1))
+         instead + R"(; else echo $((i + (high == 1737075661))); fi; i=$((i + 1))
   done
   echo "$high $low $first $count $primaries"
 done
@@ -243,6 +246,22 @@ TEST_F(Process, RefusesWhatIsWrittenWithoutBeingAsked) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   EXPECT_THAT(failure(*setup, 2, 2), HasSubstr("tidying up"));
+}
+
+TEST_F(Process, RefusesObservationsThatAreNoFunctionOfTheirKey) {
+  const auto setup = run_shell(R"(while read -r high low first count primaries; do i=$first
+  while [ $i -lt $((first + count)) ]; do echo $((i % 5)); i=$((i + 1)); done
+  echo "$high $low $first $count $primaries"; done
+)");
+  EXPECT_THAT(failure(*setup, 4, 4), HasSubstr("gave the same numbers for two keys"));
+}
+
+TEST_F(Process, TakesFewOutcomesForACoincidence) {
+  const auto setup = run_shell(R"(while read -r high low first count primaries; do i=$first
+  while [ $i -lt $((first + count)) ]; do echo $((i % 3)); i=$((i + 1)); done
+  echo "$high $low $first $count $primaries"; done
+)");
+  EXPECT_THAT(draw(*setup, 4, 4), ElementsAre(0, 1, 2, 0));
 }
 
 TEST_F(Process, RefusesObservationsThatAreNoFunctionOfTheirIndex) {
