@@ -167,6 +167,9 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   const double start = seconds();
   std::uint64_t index = first;
   GroupVariance groups(grouped_channels_);
+  const bool counts_costs = std::any_of(plan_.begin(), plan_.end(),
+                                        [](const ChannelPlan& each) { return each.with_cost; });
+  ObservationCost cost{};
   const FlushDenormals flush;
   try {
     estimator.announce({.key = key_, .first = first, .last = last});
@@ -186,7 +189,8 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
         block.observations.costs.push_back(spent);
         drawn = block.observations.values.back();
       }
-      intake.take(drawn, index, counted(spent), drawn.data() != out.data());
+      if (counts_costs) cost = counted(spent);
+      intake.take(drawn, index, cost, drawn.data() != out.data());
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
         if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);
       }
