@@ -37,14 +37,22 @@ std::string name_of(const std::string& folder, std::size_t i) {
   return folder + (i < pictures / 2 ? "/a" : "/b") + std::to_string(100 + i) + ".exr";
 }
 
+/// The finaliser of SplitMix64 on a Weyl sequence. A congruential generator of 32 bits, far apart
+/// by a multiple of a power of two as pixels of two pictures are, gives numbers that go together.
+std::uint64_t scattered(std::uint64_t count) {
+  std::uint64_t z = count * 0x9e3779b97f4a7c15;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+  return z ^ (z >> 31);
+}
+
 void write_pictures(const std::string& folder, int width, int height) {
-  std::uint32_t state = 1;
+  std::uint64_t count = 0;
   for (std::size_t i = 0; i < pictures; ++i) {
     draws::Picture picture{width, height, {"R", "G", "B"}, {}};
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < 3 * width; ++x) {
-        state = state * 1664525U + 1013904223U;
-        const float u = static_cast<float>(state >> 8) * 0x1p-24F;
+        const float u = static_cast<float>(scattered(++count) >> 40) * 0x1p-24F;
         picture.values.push_back(
             (0.5F + static_cast<float>(x % width) / static_cast<float>(width)) * (0.8F + 0.4F * u));
       }
