@@ -135,7 +135,7 @@ void variances(const Facts& f, std::vector<Draft>& drafts) {
   drafts.push_back(
       {"chi-square", "variance <= number", against("<=", 1), against("<=", factor), detect});
   drafts.push_back({"F", "variance == variance", "variance(x) == variance(y)",
-                    "variance(scaled) == variance(y)", detect});
+                    fmt::format("variance(x) == {:.17g} * variance(y)", factor), detect});
   drafts.push_back({.method = "log-variance",
                     .question = "variance == number",
                     .true_claim = against("==", 1),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "harness/image_plan.h"
@@ -43,13 +44,28 @@ std::vector<double> pilot_values(const Question& question, std::size_t subject, 
                         averages ? plan.primaries[subject] : 1);
 }
 
+/// Leaves out values that come less often than this: those of a bucket that few fall into, so that
+/// of continuous values hardly any are left to be sorted.
+void drop_rare(std::vector<double>& values, double least) {
+  constexpr int bits = 14;
+  const auto bucket = [](double value) {
+    const auto word = std::bit_cast<std::uint64_t>(value + 0.0);  // of -0 that of 0
+    return static_cast<std::size_t>((word * 0x9E3779B97F4A7C15) >> (64 - bits));
+  };
+  std::vector<std::uint32_t> counts(std::size_t{1} << bits);
+  for (const double value : values) ++counts[bucket(value)];
+  std::erase_if(values, [&](double value) { return counts[bucket(value)] < least; });
+}
+
 std::optional<Atom> most_frequent(std::vector<double> values) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  const auto total = static_cast<double>(values.size());
+  drop_rare(values, least_share * total);
   std::sort(values.begin(), values.end());
   std::optional<Atom> atom;
   for (auto begin = values.begin(); begin != values.end();) {
     const auto end = std::upper_bound(begin, values.end(), *begin);
-    const double share = static_cast<double>(end - begin) / static_cast<double>(values.size());
+    const double share = static_cast<double>(end - begin) / total;
     const bool again = end - begin > 1 && share >= least_share;
     if (again && (!atom || share > atom->share)) atom = Atom{.value = *begin, .share = share};
     begin = end;

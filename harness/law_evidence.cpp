@@ -56,8 +56,7 @@ Evidence with_anderson_darling(Evidence distance, const TestResult& at_null) {
   return distance;
 }
 
-Evidence from_distance(const stats::TwoSampleDistance& distance) {
-  const TestResult at_none = stats::kolmogorov_smirnov(distance);
+Evidence from_distance(const stats::TwoSampleDistance& distance, const TestResult& at_none) {
   return {
       .estimate = distance.distance(),
       .at = [distance, at_none](
@@ -66,6 +65,10 @@ Evidence from_distance(const stats::TwoSampleDistance& distance) {
           [distance](double confidence) { return stats::ks_interval(distance, confidence); },
       .quantity = quantity,
       .distance = true};
+}
+
+Evidence from_distance(const stats::TwoSampleDistance& distance) {
+  return from_distance(distance, stats::kolmogorov_smirnov(distance));
 }
 
 double clamp_unit(double p) { return std::clamp(p, 0.0, 1.0); }
@@ -216,10 +219,11 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel) {
 
 Evidence points_against_law(const Points& points, const DeclaredLaw& declared, PointsTest test) {
   require_points(points);
-  Evidence rest = from_distance(stats::ks_distance(points.sorted, declared.law), declared.error);
+  const std::vector<double> values = stats::probabilities(points.sorted, declared.law);
+  const stats::Probabilities at{values};
+  Evidence rest = from_distance(stats::ks_distance(points.sorted, at), declared.error);
   if (test == PointsTest::anderson_darling) {
-    rest = with_anderson_darling(
-        std::move(rest), stats::anderson_darling(points.sorted, declared.law, declared.error));
+    rest = with_anderson_darling(std::move(rest), stats::anderson_darling(at, declared.error));
   }
   if (declared.missing == 0 && points.missing() == 0) return rest;
   return larger_of(
@@ -239,13 +243,13 @@ Evidence points_split_at(double atom, const Points& x, const Points& y) {
   const Points x_rest = away_from(atom, x);
   const Points y_rest = away_from(atom, y);
   const bool both = !x_rest.sorted.empty() && !y_rest.sorted.empty();
-  Evidence evidence = larger_of(
-      both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted)) : unknown_distance(),
-      from_proportions(x_rest, y_rest));
-  TestResult at_null = evidence.at(0);
+  Evidence evidence =
+      larger_of(both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted), parts.rest)
+                     : unknown_distance(),
+                from_proportions(x_rest, y_rest));
   const bool atom_decides = log_p_two_sided(parts.atom) < parts.rest.log_p_upper;
-  at_null.statistic = atom_decides ? parts.atom.statistic : parts.rest.statistic;
-  at_null.distribution = atom_decides ? parts.atom.distribution : parts.rest.distribution;
+  TestResult at_null = atom_decides ? parts.atom : parts.rest;
+  at_null.log_p_lower = 0;
   at_null.log_p_upper = parts.log_p;
   evidence.at = [at_null, margin = std::move(evidence.at)](double theta) {
     return theta <= 0 ? at_null : margin(theta);

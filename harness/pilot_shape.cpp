@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "harness/assumptions.h"
@@ -15,13 +16,42 @@ namespace {
 
 using stats::GateState;
 
+/// Gates of the last tails asked for: a fit takes some 12,000 logarithms, and the tests of one
+/// estimator, at every level of a calibration, ask for the same tails again.
+class KnownTails {
+ public:
+  stats::Gate gate(std::span<const double> largest, std::size_t count, stats::TailClaim claim) {
+    for (const Entry& entry : entries_) {
+      if (entry.count == count && entry.claim == claim &&
+          std::equal(entry.largest.begin(), entry.largest.end(), largest.begin(), largest.end())) {
+        return entry.gate;
+      }
+    }
+    Entry& entry = entries_[next_++ % entries_.size()];
+    entry = {
+        {largest.begin(), largest.end()}, count, claim, stats::pareto_gate(largest, count, claim)};
+    return entry.gate;
+  }
+
+ private:
+  struct Entry {
+    std::vector<double> largest = {};
+    std::size_t count = 0;
+    stats::TailClaim claim = {};
+    stats::Gate gate = {};
+  };
+  std::array<Entry, 16> entries_{};
+  std::size_t next_ = 0;
+};
+
 /// One tail's gate, from the values signed so that it is the right one; puts them in another order.
 stats::Gate right_tail_gate(std::vector<double>& values, stats::TailClaim claim) {
+  thread_local KnownTails known;
   const std::size_t tail = stats::pareto_tail_size(values.size()) + 1;
   const auto first = values.end() - static_cast<std::ptrdiff_t>(tail);
   std::nth_element(values.begin(), first, values.end());
   std::sort(first, values.end());
-  return stats::pareto_gate(std::span<const double>(values).last(tail), values.size(), claim);
+  return known.gate(std::span<const double>(values).last(tail), values.size(), claim);
 }
 
 /// Whether a tail is seen to its declared end, so that nothing heavier can hide in it.

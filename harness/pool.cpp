@@ -111,14 +111,17 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   const double start = seconds();
   std::uint64_t index = first;
   GroupVariance groups(grouped_channels_);
+  const bool counts_costs = std::any_of(plan_.begin(), plan_.end(),
+                                        [](const ChannelPlan& each) { return each.with_cost; });
+  ObservationCost cost{};
   const FlushDenormals flush;
   try {
     estimator.announce({.key = key_, .first = first, .last = last});
     for (; index < last; ++index) {
       Stream random(key_, index);
-      const Cost before = block.whole.cost;
+      const Cost before = counts_costs ? block.whole.cost : Cost{};
       estimator.secondary(random, primaries_, out, block.whole.cost);
-      const ObservationCost cost = difference(block.whole.cost, before);
+      if (counts_costs) cost = difference(block.whole.cost, before);
       for (std::size_t c = 0; c < out.size(); ++c) {
         add_observation(block.whole.channels[c], out[c], index, cost);
         if (index < plan_[c].keep) block.values[c].push_back(out[c]);

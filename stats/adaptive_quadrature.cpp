@@ -9,7 +9,7 @@
 namespace assay::stats {
 namespace {
 
-using Rule = boost::math::quadrature::gauss<double, 7>;
+using Rule = boost::math::quadrature::gauss<double, AdaptiveQuadrature::nodes>;
 
 // So near to the end of a part that a border of panels lies outside, rounding included.
 constexpr double nudge = 1e-9;
@@ -18,10 +18,13 @@ constexpr double blind_share = 0.0255;
 
 struct Nodes {
   Integral sum;
+  std::array<double, AdaptiveQuadrature::nodes> parts = {};
+  std::size_t count = 0;
   bool some_zero = false;
   bool some_positive = false;
 
   void add(Integral value, double weight) {
+    parts[count++] = weight * value.value;
     sum = sum + Integral{weight * value.value, weight * value.error};
     (value.value > 0 ? some_positive : some_zero) = true;
   }
@@ -57,9 +60,26 @@ Integral AdaptiveQuadrature::counted(double density) {
   return {density, 0};
 }
 
+AdaptiveQuadrature::Sampled AdaptiveQuadrature::sampled(const Function& function, Span span) {
+  const Nodes found = at_nodes(function, span);
+  return {{found.sum.value, found.sum.error + hidden(function, span, found)}, found.parts};
+}
+
 Integral AdaptiveQuadrature::once(const Function& function, Span span) {
-  const Nodes nodes = at_nodes(function, span);
-  return {nodes.sum.value, nodes.sum.error + hidden(function, span, nodes)};
+  return sampled(function, span).integral;
+}
+
+const std::array<double, AdaptiveQuadrature::nodes>& AdaptiveQuadrature::node_places() {
+  static const std::array<double, nodes> places = [] {
+    std::array<double, nodes> all{};
+    const auto& upper = Rule::abscissa();
+    for (std::size_t i = 1; i < upper.size(); ++i) {
+      all[2 * i - 1] = -upper[i];
+      all[2 * i] = upper[i];
+    }
+    return all;
+  }();
+  return places;
 }
 
 Integral AdaptiveQuadrature::over(const Function& function, Span span) {

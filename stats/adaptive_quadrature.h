@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -40,6 +41,7 @@ struct QuadratureLimits {
 class AdaptiveQuadrature {
  public:
   using Function = std::function<Integral(double)>;
+  static constexpr std::size_t nodes = 7;
 
   explicit AdaptiveQuadrature(QuadratureLimits limits) : limits_(limits) {}
 
@@ -47,6 +49,15 @@ class AdaptiveQuadrature {
   // Without halving: the integral and, as error, what the values' own errors and a hidden border
   // of the support may come to.
   Integral once(const Function& function, Span span);
+  // The same, and what it was made of: w_i f(x_i) times half the width at the nodes, in the order
+  // of node_places().
+  struct Sampled {
+    Integral integral;
+    std::array<double, nodes> parts = {};
+  };
+  Sampled sampled(const Function& function, Span span);
+  // The nodes in [-1, 1].
+  static const std::array<double, nodes>& node_places();
   // Values of a density count against the limit; throws as above.
   Integral counted(double density);
   bool exhausted() const { return used_ >= limits_.evaluations; }

@@ -55,20 +55,16 @@ void check_sorted(const char* function, std::span<const double> sorted) {
 }
 
 // A2 with u_i moved towards (2i - 1) / 2n by `error` at most.
-double least_statistic(std::span<const double> sorted, const ContinuousLaw& law, double error) {
-  check::at_least({"anderson_darling", "values"}, sorted.size(), 5);
-  check_sorted("anderson_darling", sorted);
-  if (law.left_limit) {
-    throw std::domain_error("anderson_darling: the law has atoms, must be continuous");
-  }
-  const std::size_t n = sorted.size();
+double least_statistic(std::span<const double> given, double error) {
+  const std::size_t n = given.size();
+  check::at_least({"anderson_darling", "values"}, n, 5);
   const double size = static_cast<double>(n);
   std::vector<double> u;
+  u.reserve(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const double given = law.cdf(sorted[i]);
-    check::unit({"anderson_darling", "cdf"}, given);
+    check::unit({"anderson_darling", "cdf"}, given[i]);
     const double bottom = (2 * static_cast<double>(i) + 1) / (2 * size);
-    u.push_back(std::clamp(bottom, given - error, given + error));
+    u.push_back(std::clamp(bottom, given[i] - error, given[i] + error));
   }
   const auto [lowest, highest] = std::minmax_element(u.begin(), u.end());
   if (*lowest <= 0 || *highest >= 1) return largest_double;
@@ -77,6 +73,16 @@ double least_statistic(std::span<const double> sorted, const ContinuousLaw& law,
     sum += static_cast<double>(2 * i + 1) * (std::log(u[i]) + std::log1p(-u[n - 1 - i]));
   }
   return -size - sum / size;
+}
+
+std::vector<double> continuous_probabilities(std::span<const double> sorted,
+                                             const ContinuousLaw& law) {
+  check::at_least({"anderson_darling", "values"}, sorted.size(), 5);
+  check_sorted("anderson_darling", sorted);
+  if (law.left_limit) {
+    throw std::domain_error("anderson_darling: the law has atoms, must be continuous");
+  }
+  return probabilities(sorted, law);
 }
 
 // The pooled values in order, each with the sample that it came from.
@@ -149,7 +155,7 @@ double log_anderson_darling_upper(double x, std::uint64_t n) {
 }
 
 double anderson_darling_statistic(std::span<const double> sorted, const ContinuousLaw& law) {
-  return least_statistic(sorted, law, 0);
+  return least_statistic(continuous_probabilities(sorted, law), 0);
 }
 
 TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law) {
@@ -158,12 +164,16 @@ TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw&
 
 TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law,
                             double error) {
+  return anderson_darling(Probabilities{continuous_probabilities(sorted, law)}, error);
+}
+
+TestResult anderson_darling(Probabilities at, double error) {
   check::non_negative({"anderson_darling", "error"}, error);
-  const double statistic = least_statistic(sorted, law, error);
+  const double statistic = least_statistic(at.of_values, error);
   return {statistic,
           {"bound", {}},
           0,
-          log_anderson_darling_upper(statistic, sorted.size()),
+          log_anderson_darling_upper(statistic, at.of_values.size()),
           Exactness::asymptotic};
 }
 

@@ -35,6 +35,8 @@ TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw&
 // within error of F(x_i), so p is an upper bound of that of every such law. A2 falls as u_i nears
 // (2i - 1) / 2n, where its term has its only bottom. Throws besides: error negative or not finite.
 TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law, double error);
+// Of values whose F(x_i) are known, in the values' order. Throws as above.
+TestResult anderson_darling(Probabilities at, double error);
 
 // k samples against each other by permutation. `random_below(b)` must return a uniform whole number
 // in [0, b); permutations >= 1.

@@ -24,6 +24,14 @@ double moved_m11(const JointMoments& part, Shift shift) {
 }  // namespace
 
 void JointMoments::add(double value, double its_cost) {
+  if (x.count > 0 && cost.m2 == 0 && its_cost == cost.mean) {
+    // A cost without spread so far, as rays of an estimator that traces none: the sums of its
+    // deviations stay zero, and a fourth of the arithmetic is left.
+    x.add(value);
+    ++cost.count;
+    cost.nonzero += its_cost != 0;
+    return;
+  }
   // One more pair: its own part has no sums, only its distance from the common mean.
   const double share = 1 / (static_cast<double>(x.count) + 1);
   const double dx = x.count == 0 ? 0 : value - x.mean;

@@ -31,6 +31,25 @@ double law_value(const std::function<double(double)>& cdf, double x) {
   return value;
 }
 
+// Of the law that has these probabilities up to each value, and these below it.
+OneSampleDistance largest_gap(std::span<const double> sorted, std::span<const double> at,
+                              std::span<const double> before) {
+  const double n = static_cast<double>(sorted.size());
+  OneSampleDistance result{0, sorted.size(), sorted.front()};
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const double x = sorted[i];
+    const double above = static_cast<double>(i + 1) / n - at[i];
+    const double below = before[i] - static_cast<double>(i) / n;
+    // Within a run of equal values only the last step of F_n counts above, only the first below.
+    const bool last = i + 1 == sorted.size() || sorted[i + 1] != x;
+    const bool first = i == 0 || sorted[i - 1] != x;
+    const double here = std::max(last ? above : 0, first ? below : 0);
+    if (here > result.distance) result = {here, sorted.size(), x};
+  }
+  result.distance = std::min(result.distance, 1.0);
+  return result;
+}
+
 TestResult result_of(double distance, Distribution law, SmirnovTail tail) {
   return {distance, std::move(law), 0, tail.log_p, tail.exactness};
 }
@@ -81,24 +100,28 @@ void check_null(double null_distance) {
 
 }  // namespace
 
+std::vector<double> probabilities(std::span<const double> sorted, const ContinuousLaw& law) {
+  std::vector<double> at;
+  at.reserve(sorted.size());
+  for (const double x : sorted) at.push_back(law_value(law.cdf, x));
+  return at;
+}
+
 OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law) {
   check_sorted(sorted);
-  const double n = static_cast<double>(sorted.size());
-  OneSampleDistance result{0, sorted.size(), sorted.front()};
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const double x = sorted[i];
-    const double at = law_value(law.cdf, x);
-    const double before = law.left_limit ? law_value(law.left_limit, x) : at;
-    const double above = static_cast<double>(i + 1) / n - at;
-    const double below = before - static_cast<double>(i) / n;
-    // Within a run of equal values only the last step of F_n counts above, only the first below.
-    const bool last = i + 1 == sorted.size() || sorted[i + 1] != x;
-    const bool first = i == 0 || sorted[i - 1] != x;
-    const double here = std::max(last ? above : 0, first ? below : 0);
-    if (here > result.distance) result = {here, sorted.size(), x};
+  const std::vector<double> at = probabilities(sorted, law);
+  if (!law.left_limit) return largest_gap(sorted, at, at);
+  return largest_gap(sorted, at, probabilities(sorted, {.cdf = law.left_limit}));
+}
+
+OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at) {
+  check_sorted(sorted);
+  if (at.of_values.size() != sorted.size()) {
+    check::fail({"ks_distance", "number of probabilities"},
+                static_cast<double>(at.of_values.size()), "that of the values");
   }
-  result.distance = std::min(result.distance, 1.0);
-  return result;
+  for (const double value : at.of_values) check::unit({"ks_distance", "probability"}, value);
+  return largest_gap(sorted, at.of_values, at.of_values);
 }
 
 TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const double> sorted_y) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "stats/smirnov.h"
 #include "stats/test_result.h"
@@ -16,6 +17,15 @@ struct ContinuousLaw {
   std::function<double(double)> cdf;
   std::function<double(double)> left_limit = {};
 };
+
+// F(x_i) of a continuous law at the values of a sorted sample, in its order: for whoever has worked
+// them out already.
+struct Probabilities {
+  std::span<const double> of_values;
+};
+
+// F at each of the values. Throws std::domain_error: a value outside [0, 1].
+std::vector<double> probabilities(std::span<const double> sorted, const ContinuousLaw& law);
 
 struct OneSampleDistance {
   double distance = 0;
@@ -35,6 +45,8 @@ struct TwoSampleDistance {
 // (std::sort) and finite. Throws std::domain_error: empty, unsorted, non-finite, cdf outside [0,
 // 1].
 OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law);
+// Throws besides: another number of probabilities than of values.
+OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at);
 
 // One merging pass over two sorted samples; no allocation. Throws as above.
 TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const double> sorted_y);

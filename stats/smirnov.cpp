@@ -60,17 +60,17 @@ Real touching_probability(const LatticeDistance& distance, Real one) {
   std::vector<Real> reciprocal(distance.m + distance.n + 1, Real{0});
   for (std::size_t k = 1; k < reciprocal.size(); ++k) reciprocal[k] = 1 / static_cast<Real>(k);
   for (std::uint64_t i = 0; i <= distance.m; ++i) {
-    std::int64_t gap = static_cast<std::int64_t>(i) * row_step;
-    Real left = 0;
-    for (std::uint64_t j = 0; j <= distance.n; ++j, gap -= column_step) {
-      if (gap >= bound || gap <= -bound) {
-        left = one;
-      } else if (i + j == 0) {
-        left = 0;
-      } else {
-        const Real weight = reciprocal[i + j];
-        left = static_cast<Real>(i) * weight * row[j] + static_cast<Real>(j) * weight * left;
-      }
+    const std::int64_t gap = static_cast<std::int64_t>(i) * row_step;
+    // Columns with |gap - j column_step| < bound. The band only moves to higher columns: beyond it
+    // `row` is still 1, and what it has left behind is not read again.
+    const std::int64_t below = gap - bound;
+    const auto first = static_cast<std::uint64_t>(below < 0 ? 0 : below / column_step + 1);
+    const auto last =
+        std::min(static_cast<std::uint64_t>((gap + bound - 1) / column_step), distance.n);
+    Real left = first == 0 ? Real{0} : one;
+    for (std::uint64_t j = first; j <= last; ++j) {
+      const Real weight = reciprocal[i + j];
+      left = static_cast<Real>(i) * weight * row[j] + static_cast<Real>(j) * weight * left;
       row[j] = left;
     }
   }

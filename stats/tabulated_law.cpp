@@ -8,12 +8,78 @@
 namespace assay::stats {
 namespace {
 
+using Slopes = TabulatedLaw::Slopes;
+
+constexpr std::size_t nodes = AdaptiveQuadrature::nodes;
+constexpr int places_compared = 7;
+
+// P_0 to P_nodes at t, by Bonnet's recursion.
+std::array<double, nodes + 1> legendre(double t) {
+  std::array<double, nodes + 1> p{1, t};
+  for (std::size_t k = 1; k < nodes; ++k) {
+    const double degree = static_cast<double>(k);
+    p[k + 1] = ((2 * degree + 1) * t * p[k] - degree * p[k - 1]) / (degree + 1);
+  }
+  return p;
+}
+
+// P_1 to P_(nodes - 1) at every node.
+const std::array<Slopes, nodes>& legendre_at_nodes() {
+  static const std::array<Slopes, nodes> table = [] {
+    std::array<Slopes, nodes> all{};
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const auto p = legendre(AdaptiveQuadrature::node_places()[i]);
+      std::copy(p.begin() + 1, p.end() - 1, all[i].begin());
+    }
+    return all;
+  }();
+  return table;
+}
+
+// A part's mass and how it is spread: int_-1^t P_k = (P_k+1 - P_k-1) / (2 k + 1), and the k-th
+// coefficient of the interpolant is (2 k + 1) / 2 sum w_i f_i P_k(t_i), exact for degree 6.
+struct Spread {
+  Integral mass;
+  Slopes slopes = {};
+
+  explicit Spread(const AdaptiveQuadrature::Sampled& sampled) : mass(sampled.integral) {
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const Slopes& p = legendre_at_nodes()[i];
+      for (std::size_t k = 0; k < slopes.size(); ++k) slopes[k] += sampled.parts[i] * p[k] / 2;
+    }
+  }
+};
+
+// The mass below t in [-1, 1].
+double mass_below(double t, double mass, const Slopes& slopes) {
+  const auto p = legendre(t);
+  double sum = mass / 2 * (t + 1);
+  for (std::size_t k = 0; k < slopes.size(); ++k) sum += slopes[k] * (p[k + 2] - p[k]);
+  return sum;
+}
+
+double mass_below(double t, const Spread& spread) {
+  return mass_below(t, spread.mass.value, spread.slopes);
+}
+
+// Between what a part says of the law inside it and what its halves do.
+double largest_distance(const Spread& whole, const Spread& first, const Spread& second) {
+  double largest = 0;
+  for (int k = 1; k <= places_compared; ++k) {
+    const double t = 2.0 * k / (places_compared + 1) - 1;
+    const double by_halves =
+        t <= 0 ? mass_below(2 * t + 1, first) : first.mass.value + mass_below(2 * t - 1, second);
+    largest = std::max(largest, std::abs(by_halves - mass_below(t, whole)));
+  }
+  return largest;
+}
+
 struct Part {
   Span span;
-  Integral first;   // of the lower half
-  Integral second;  // of the upper half
+  Spread first;   // of the lower half
+  Spread second;  // of the upper half
   double error = 0;
-  double chord = 0;
+  double departure = 0;
   double badness = 0;  // above 1: to be halved
   int depth = 0;
 
@@ -26,14 +92,14 @@ class Table {
   Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule, TableLimits limits)
       : density_(density), rule_(rule), limits_(limits) {}
 
-  void add(Span span) { add(span, rule_.once(density_, span), {}); }
+  void add(Span span) { add(span, spread(span), {}); }
 
   void refine() {
     while (parts_.front().badness > 1 && !rule_.exhausted()) {
       std::pop_heap(parts_.begin(), parts_.end());
       const Part part = parts_.back();
       parts_.pop_back();
-      const Inherited inherited{part.chord / 4, part.depth + 1};
+      const Inherited inherited{part.departure / 4, part.depth + 1};
       add({part.span.low, part.span.middle()}, part.first, inherited);
       add({part.span.middle(), part.span.high}, part.second, inherited);
     }
@@ -42,46 +108,48 @@ class Table {
   TabulatedLaw result() {
     std::sort(parts_.begin(), parts_.end(),
               [](const Part& a, const Part& b) { return a.span.low < b.span.low; });
-    TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}};
-    double largest_chord = 0;
+    TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}, .slopes = {}};
+    double largest_departure = 0;
     for (const Part& part : parts_) {
-      append(law, part.span.middle(), part.first.value);
-      append(law, part.span.high, part.second.value);
+      append(law, part.span.middle(), part.first);
+      append(law, part.span.high, part.second);
       law.total_error += part.error;
-      largest_chord = std::max(largest_chord, part.chord);
+      largest_departure = std::max(largest_departure, part.departure);
     }
     check::positive({"tabulate", "mass"}, law.total());
-    law.error = (largest_chord + law.total_error) / law.total();
+    law.error = (largest_departure + law.total_error) / law.total();
     return law;
   }
 
  private:
-  // Of the part that this is a half of. Halving takes a chord to a quarter where the density is
-  // smooth; a part with a symmetric peak has halves of equal mass and would show none.
+  // Of the part that this is a half of: two that agree by luck do so once.
   struct Inherited {
-    double chord = 0;
+    double departure = 0;
     int depth = 0;
   };
 
-  void add(Span span, Integral whole, Inherited from) {
+  Spread spread(Span span) { return Spread(rule_.sampled(density_, span)); }
+
+  void add(Span span, const Spread& whole, Inherited from) {
     Part part{.span = span,
-              .first = rule_.once(density_, {span.low, span.middle()}),
-              .second = rule_.once(density_, {span.middle(), span.high}),
+              .first = spread({span.low, span.middle()}),
+              .second = spread({span.middle(), span.high}),
               .depth = from.depth};
-    const Integral sum = part.first + part.second;
-    part.error = std::max(std::abs(sum.value - whole.value), sum.error);
-    part.chord = std::max(std::abs(part.first.value - part.second.value) / 2, from.chord);
+    const Integral sum = part.first.mass + part.second.mass;
+    part.error = std::max(std::abs(sum.value - whole.mass.value), sum.error);
+    part.departure = std::max(largest_distance(whole, part.first, part.second), from.departure);
     if (part.depth < limits_.deepest_bisection) {
-      part.badness = std::max(part.chord / limits_.chord, part.error / rule_.limits().tolerance);
+      part.badness =
+          std::max(part.departure / limits_.departure, part.error / rule_.limits().tolerance);
     }
-    if (part.depth == 0) part.badness = std::max(part.badness, 2.0);  // it has inherited nothing
     parts_.push_back(part);
     std::push_heap(parts_.begin(), parts_.end());
   }
 
-  static void append(TabulatedLaw& law, double place, double mass) {
+  static void append(TabulatedLaw& law, double place, const Spread& part) {
     law.place.push_back(place);
-    law.cumulated.push_back(law.cumulated.back() + mass);
+    law.cumulated.push_back(law.cumulated.back() + part.mass.value);
+    law.slopes.push_back(part.slopes);
   }
 
   const AdaptiveQuadrature::Function& density_;
@@ -97,8 +165,12 @@ double TabulatedLaw::operator()(double x) const {
   if (x >= place.back()) return 1;
   const auto above =
       static_cast<std::size_t>(std::upper_bound(place.begin(), place.end(), x) - place.begin());
-  const double share = (x - place[above - 1]) / (place[above] - place[above - 1]);
-  return std::min(1.0, std::lerp(cumulated[above - 1], cumulated[above], share) / total());
+  const std::size_t part = above - 1;
+  const double share = (x - place[part]) / (place[above] - place[part]);
+  const double mass = cumulated[above] - cumulated[part];
+  // The polynomial may leave its part's range next to a jump.
+  const double within = std::clamp(mass_below(2 * share - 1, mass, slopes[part]), 0.0, mass);
+  return std::min(1.0, (cumulated[part] + within) / total());
 }
 
 TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,

@@ -1,22 +1,28 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "stats/adaptive_quadrature.h"
 
 namespace assay::stats {
 
-// The distribution function of a density as a table, linear between its places, with what the table
-// may be off.
+// The distribution function of a density as a table: between two places the integral of the
+// polynomial through the density at the nodes of the rule there.
 struct TabulatedLaw {
+  // The integral of the interpolant from the part's lower end on, at t in [-1, 1]: w (t + 1 +
+  // sum over k of slope_k (P_k+1(t) - P_k-1(t))), w half the part's mass.
+  using Slopes = std::array<double, AdaptiveQuadrature::nodes - 1>;
+
   std::vector<double> place;      // ascending
   std::vector<double> cumulated;  // mass up to each place, the first 0
+  std::vector<Slopes> slopes;     // of each part, times the mass
   double total_error = 0;         // of the mass, estimated
-  // Estimate of sup |table - law|: the largest chord plus the errors of all masses, over the mass.
-  // The chord is half the difference of the masses of a part's halves, i.e. what the law departs
-  // from a line at the part's middle, and no less than a quarter of the chord of the part that it
-  // is a half of. As the middle is itself a place of the table, what is left is a quarter of the
-  // chord where the density is smooth and about the whole where it jumps.
+  // Estimate of sup |table - law|: the largest departure plus the errors of all masses, over the
+  // mass. The departure of a part is the largest distance, at seven places inside it, of what its
+  // own seven nodes and those of its halves say of the law there, and no less than a quarter of the
+  // departure of the part that it is a half of. The table has the halves, which are nearer: by
+  // 2^-7 where the density is smooth, by about 1/2 where it jumps.
   double error = 0;
 
   double total() const { return cumulated.back(); }
@@ -25,12 +31,12 @@ struct TabulatedLaw {
 };
 
 struct TableLimits {
-  double chord = 4e-6;  // parts are halved until they depart from a line by less
+  double departure = 1e-6;  // parts are halved until what is seen of their error is less
   int deepest_bisection = 24;
 };
 
-// Halves parts where the mass is and where the density bends, the worst first, from `parts` on:
-// contiguous and ascending. The rule stops it when its evaluations are used up. Throws
+// Halves parts where the mass is and where the density is no polynomial, the worst first, from
+// `parts` on: contiguous and ascending. The rule stops it when its evaluations are used up. Throws
 // std::domain_error when there is no mass, or a density is negative or not finite.
 TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,
                       AdaptiveQuadrature& rule, TableLimits limits = {});

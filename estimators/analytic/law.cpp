@@ -10,6 +10,7 @@
 
 #include "analytic/law.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -103,27 +104,41 @@ Law Law::parse(std::string_view text) {
   refuse("no law is named " + quoted(name));
 }
 
-double Law::draw(Stream& random) const {
+auto Law::with_family(const auto& use) const {
   switch (family_) {
     case Family::bernoulli:
-      return random.uniform() < a_ ? 1 : 0;
+      return use([p = a_](auto& random) { return random.uniform() < p ? 1.0 : 0.0; });
     case Family::exponential:
-      return -std::log(random.uniform_open()) / a_;
+      return use([rate = a_](auto& random) { return -std::log(random.uniform_open()) / rate; });
     case Family::lognormal:
-      return std::exp(NormalLaw{a_, b_}(random));
+      return use([normal = NormalLaw{a_, b_}](auto& random) { return std::exp(normal(random)); });
     case Family::normal:
-      return NormalLaw{a_, b_}(random);
-    case Family::student_t: {
+      return use(NormalLaw{a_, b_});
+    case Family::student_t:
       // Bailey (1994): sqrt(nu (u^(-2 / nu) - 1)) cos(2 pi v) has the law, for every nu.
-      const double radius = std::sqrt(a_ * std::expm1(-2 / a_ * std::log(random.uniform_open())));
-      return radius * std::cos(2 * std::numbers::pi * random.uniform());
-    }
+      return use([nu = a_](auto& random) {
+        const double radius = std::sqrt(nu * std::expm1(-2 / nu * std::log(random.uniform_open())));
+        return radius * std::cos(2 * std::numbers::pi * random.uniform());
+      });
     case Family::uniform:
-      return a_ + (b_ - a_) * random.uniform();
+      return use(
+          [low = a_, width = b_ - a_](auto& random) { return low + width * random.uniform(); });
     case Family::zero_inflated:
-      return random.uniform() < a_ ? -std::log(random.uniform_open()) : 0;
+      return use([p = a_](auto& random) {
+        return random.uniform() < p ? -std::log(random.uniform_open()) : 0.0;
+      });
   }
   throw std::logic_error("a law of no family");
+}
+
+double Law::draw(Stream& random) const {
+  return with_family([&](const auto& draw) { return draw(random); });
+}
+
+void Law::draw(std::span<FirstWords> streams, std::span<double> values) const {
+  with_family([&](const auto& draw) {
+    for (std::size_t i = 0; i < streams.size(); ++i) values[i] = draw(streams[i]);
+  });
 }
 
 double Law::density(double x) const {
@@ -232,6 +247,73 @@ struct Variable {
   double operator()(Stream& random) const { return shift + scale * law.draw(random); }
 };
 
+/// Observations of one primary in batches, all others one by one: calibrations draw some millions
+/// of them a second.
+class VariableEstimator final : public Estimator {
+ public:
+  explicit VariableEstimator(const Variable& variable) : variable_(variable), means_(variable) {}
+
+  void announce(const Announcement& next) override {
+    announced_ = next;
+    first_ = last_ = next.first;
+  }
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const std::uint64_t index = random.observation();
+    if (primaries != 1 || !is_announced(random.key(), index)) {
+      means_.secondary(random, primaries, out, cost);
+      return;
+    }
+    if (index < first_ || index >= last_) draw_batch(index);
+    out[0] = values_[index - first_];
+    cost.samples += 1;
+  }
+
+ private:
+  static constexpr std::uint64_t batch = 256;
+
+  bool is_announced(StreamKey key, std::uint64_t index) const {
+    return key == announced_.key && index >= announced_.first && index < announced_.last;
+  }
+
+  void draw_batch(std::uint64_t from) {
+    first_ = from;
+    last_ = std::min(from + batch, announced_.last);
+    const std::span words = std::span(words_).first(last_ - first_);
+    first_words(announced_.key, first_, words);
+    variable_.law.draw(words, values_);
+    for (double& value : std::span(values_).first(words.size())) {
+      value = variable_.shift + variable_.scale * value;
+    }
+  }
+
+  Variable variable_;
+  AveragingEstimator<Variable> means_;
+  Announcement announced_{};
+  std::uint64_t first_ = 0;  // of those in `values_`
+  std::uint64_t last_ = 0;
+  std::array<FirstWords, batch> words_{};
+  std::array<double, batch> values_{};
+};
+
+class VariableSetup final : public Setup {
+ public:
+  VariableSetup(Channel channel, const Variable& variable, std::vector<NamedSampler> samplers)
+      : channel_(std::move(channel)), variable_(variable), samplers_(std::move(samplers)) {}
+
+  std::vector<Channel> channels() const override { return {channel_}; }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<VariableEstimator>(variable_);
+  }
+  std::vector<NamedSampler> samplers() const override { return samplers_; }
+
+ private:
+  Channel channel_;
+  Variable variable_;
+  std::vector<NamedSampler> samplers_;
+};
+
 /// Draws of X with its density, on an interval of 12 standard deviations about the mean or what the
 /// range leaves of it; what falls outside is missing mass.
 class VariableSampler final : public Sampler {
@@ -283,7 +365,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   if (law.has_density() && law.variance()) {
     samplers.push_back({"x", std::make_shared<VariableSampler>(variable)});
   }
-  return averaging(channel, variable, samplers);
+  return std::make_shared<const VariableSetup>(channel, variable, samplers);
 }
 
 }  // namespace

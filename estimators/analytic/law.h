@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "estimators/first_words.h"
 #include "estimators/stream.h"
 
 namespace assay::analytic {
@@ -26,6 +28,8 @@ class Law {
   static Law parse(std::string_view text);
 
   double draw(Stream& random) const;
+  /// draw() of each stream of which these are the first words: no law takes more than two.
+  void draw(std::span<FirstWords> streams, std::span<double> values) const;
   /// dP/dx where the law has a density.
   double density(double x) const;
   bool has_density() const;
@@ -38,6 +42,9 @@ class Law {
  private:
   Law(Family family, const std::vector<double>& numbers)
       : family_(family), a_(numbers[0]), b_(numbers.size() > 1 ? numbers[1] : 0) {}
+
+  /// What use(draw) gives, `draw` a function of a Stream or of its first words.
+  auto with_family(const auto& use) const;
 
   Family family_;
   double a_;

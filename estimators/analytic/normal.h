@@ -13,8 +13,8 @@ struct NormalLaw {
   double mean = 0;
   double deviation = 1;
 
-  /// Box & Muller (1958), the cosine of the pair.
-  double operator()(Stream& random) const {
+  /// Box & Muller (1958), the cosine of the pair. `random` is a Stream or reads as one.
+  double operator()(auto& random) const {
     const double radius = std::sqrt(-2 * std::log(random.uniform_open()));
     return mean + deviation * radius * std::cos(2 * std::numbers::pi * random.uniform());
   }

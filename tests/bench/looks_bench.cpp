@@ -1,13 +1,23 @@
-// What the engine takes for itself between looks: gates, evidence, verdicts, intervals. Of each
-// suite that is named, run on one thread, the CPU time of sampling in looks without that of the
-// draws, as a share of the draws.
+// What the engine takes for itself. Of each suite that is named, run on one thread as `assay run`
+// runs it (budgets in seconds apart), CPU seconds of
+//   set-up    plugins' scenes, tables and references
+//   pilots    drawing them
+//   plans     methods, sizes, the densities' masses in cells
+//   tables    distribution functions of densities, once a run
+//   draws     all observations
+//   looks     all that happens between one round of draws and the next, and after the last:
+//             gates, evidence, verdicts, effects, sentences
+//   record    what the reports draw
+// then, as shares of the draws, the looks, and all that is the engine's: plans, tables, looks,
+// record.
 //   looks_bench SUITE...
 
 #include <cstdio>
 #include <ctime>
 
-#include "harness/looks.h"
+#include "harness/law_evidence.h"
 #include "harness/planned_run.h"
+#include "harness/scheduler.h"
 
 namespace {
 
@@ -19,26 +29,99 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-void report(const char* file) {
+/// Since when, and then for how long.
+class Clock {
+ public:
+  double lap() {
+    const double before = since_;
+    since_ = processor_seconds();
+    return since_ - before;
+  }
+
+ private:
+  double since_ = processor_seconds();
+};
+
+/// The time before, in and after the phase of pilots.
+class Phases final : public harness::Progress {
+ public:
+  void begin(const std::string&, std::uint64_t) override { before += clock_.lap(); }
+  void advance(std::uint64_t) override {}
+  void end() override { inside += clock_.lap(); }
+  double after() { return clock_.lap(); }
+
+  double before = 0;
+  double inside = 0;
+
+ private:
+  Clock clock_;
+};
+
+void make_tables(const std::vector<harness::TestWork*>& tests) {
+  for (const harness::TestWork* work : tests) {
+    const harness::Question& question = work->outcome.question;
+    if (question.kind != harness::QuestionKind::fit_to_density ||
+        work->outcome.plan.method.keeps != harness::Keeps::values) {
+      continue;
+    }
+    for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+      harness::declared_law(question, channel);
+    }
+  }
+}
+
+struct Rounds {
+  double draws = 0;
+  double looks = 0;
+};
+
+Rounds sample(std::vector<harness::TestWork*> open,
+              const std::vector<std::shared_ptr<harness::Pool>>& pools) {
   harness::Silence silence;
+  Rounds seconds;
+  Clock clock;
+  while (!open.empty()) {
+    for (harness::TestWork* work : open) {
+      for (const auto& pool : work->pools) pool->request(work->outcome.secondaries());
+    }
+    harness::draw_all(pools, {.threads = 1}, silence);
+    seconds.draws += clock.lap();
+    std::erase_if(open, [](harness::TestWork* work) {
+      harness::take_look(*work, true);
+      if (!work->outcome.decided) ++work->outcome.look;
+      return work->outcome.decided;
+    });
+    seconds.looks += clock.lap();
+  }
+  return seconds;
+}
+
+void report(const char* file) {
+  const harness::RunOptions options{.threads = 1};
+  Phases phases;
   const harness::PlannedRun planned =
-      harness::plan_run({harness::load_suite(file)}, {.threads = 1}, silence);
+      harness::plan_run({harness::load_suite(file)}, options, phases);
+  const double plans = phases.after();
+  Clock clock;
   std::vector<harness::TestWork*> tests;
   for (harness::TestWork& work : planned.suites[0]->tests) tests.push_back(&work);
-  const double start = processor_seconds();
-  harness::sample_in_looks(tests, planned.pools.all(), 1, silence);
-  const double whole = processor_seconds() - start;
-  double drawing = 0;
-  for (const auto& pool : planned.pools.all()) {
-    const std::uint64_t most = pool->largest_prefix();
-    if (most > 0) drawing += pool->prefix(most).seconds;
-  }
-  std::printf("%-32s %3zu tests: draws %.3f s, the engine %.3f s, %.2f %%\n", file, tests.size(),
-              drawing, whole - drawing, 100 * (whole - drawing) / drawing);
+  make_tables(tests);
+  const double tables = clock.lap();
+  const Rounds rounds = sample(tests, planned.pools.all());
+  clock.lap();
+  harness::record_of(planned.suites, options);
+  const double record = clock.lap();
+  const double engine = plans + tables + rounds.looks + record;
+  std::printf("%-36s %5zu %7.3f %7.3f %7.3f %7.3f %8.3f %7.3f %7.3f %8.2f %% %8.2f %%\n", file,
+              tests.size(), phases.before, phases.inside, plans, tables, rounds.draws, rounds.looks,
+              record, 100 * rounds.looks / rounds.draws, 100 * engine / rounds.draws);
+  std::fflush(stdout);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::printf("%-36s %5s %7s %7s %7s %7s %8s %7s %7s %10s %10s\n", "CPU seconds", "tests", "set-up",
+              "pilots", "plans", "tables", "draws", "looks", "record", "looks", "engine");
   for (int i = 1; i < argc; ++i) report(argv[i]);
 }

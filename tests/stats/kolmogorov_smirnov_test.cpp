@@ -94,6 +94,16 @@ TEST(KolmogorovSmirnov, IntervalEndsAreJustRejected) {
   EXPECT_EQ(ks_interval(OneSampleDistance{.9, 5, 0}, .98).high, 1);
 }
 
+TEST(KolmogorovSmirnov, TakesProbabilitiesInPlaceOfALaw) {
+  const std::vector<double> x = sorted(golden_x);
+  const std::vector<double> at = probabilities(x, exponential);
+  EXPECT_EQ(ks_distance(x, Probabilities{at}).distance, ks_distance(x, exponential).distance);
+  EXPECT_EQ(ks_distance(x, Probabilities{at}).location, ks_distance(x, exponential).location);
+  EXPECT_THROW(ks_distance(x, Probabilities{std::span(at).first(1)}), std::domain_error);
+  const std::vector<double> beyond(x.size(), 1.5);
+  EXPECT_THROW(ks_distance(x, Probabilities{beyond}), std::domain_error);
+}
+
 TEST(KolmogorovSmirnov, BadSamplesThrow) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "estimators/stream.h"
+
+namespace assay {
+
+/// The first two words of a stream, read as a Stream reads them.
+class FirstWords {
+ public:
+  FirstWords() = default;
+  FirstWords(std::uint64_t first, std::uint64_t second) : words_{first, second} {}
+
+  std::uint64_t operator()() { return words_[next_++ & 1]; }
+  double uniform() { return to_double((*this)() >> 11) * 0x1p-53; }
+  double uniform_open() { return (to_double((*this)() >> 12) + 0.5) * 0x1p-52; }
+
+ private:
+  static double to_double(std::uint64_t word) {
+    return static_cast<double>(static_cast<std::int64_t>(word));
+  }
+
+  std::array<std::uint64_t, 2> words_{};
+  std::uint32_t next_ = 0;
+};
+
+/// The first words of the streams of consecutive observations of one key, from `first` on: those of
+/// Stream(key, first + i), bit by bit. Ten rounds of Philox one after the other wait for each
+/// other's products, 20 ns a stream; eight streams side by side take 5 ns each.
+void first_words(StreamKey key, std::uint64_t first, std::span<FirstWords> words);
+
+}  // namespace assay
