@@ -8,6 +8,7 @@
 #include "estimators/ready_made.h"
 #include "estimators/text_pattern.h"
 #include "harness/frozen.h"
+#include "harness/image_memory.h"
 #include "harness/interrupt.h"
 #include "harness/plan.h"
 #include "stats/image.h"
@@ -184,6 +185,7 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
   run->suite = adjusted(suite, options);
   run->seed = options.seed.value_or(suite.seed.value_or(1));
   run->estimators = prepare_all(run->suite);
+  require_memory(run->estimators, available_bytes());
   for (const TestEntry& test : run->suite.tests) {
     const Question question = ask(test, run->estimators, run->seed);
     if (test.method) find_method(question, *test.method);

@@ -1,11 +1,12 @@
 // `assay images` on 64 + 64 OpenEXR pictures, beside the bare decoding of the same files by the
 // library on as many threads.
-//   pictures_bench ASSAY [WIDTH HEIGHT]      ASSAY the program; default 480 270
+//   pictures_bench ASSAY [WIDTH HEIGHT [REPETITIONS]]      ASSAY the program; default 480 270 3
 // The pictures are 32-bit R, G and B, compressed by ZIP, of one law: a ramp with noise.
 
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <cstdint>
@@ -24,7 +25,13 @@ namespace {
 using namespace assay;
 
 constexpr std::size_t pictures = 128;
-constexpr int repetitions = 3;
+
+/// Of the largest program run so far, in GB.
+double most_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024e-9;
+}
 
 std::string name_of(const std::string& folder, std::size_t i) {
   return folder + (i < pictures / 2 ? "/a" : "/b") + std::to_string(100 + i) + ".exr";
@@ -75,12 +82,13 @@ void decode_all(const std::string& folder, unsigned threads) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2 && argc != 4) {
-    std::fprintf(stderr, "pictures_bench ASSAY [WIDTH HEIGHT]\n");
+  if (argc < 2 || argc == 3 || argc > 5) {
+    std::fprintf(stderr, "pictures_bench ASSAY [WIDTH HEIGHT [REPETITIONS]]\n");
     return 2;
   }
   const int width = argc > 2 ? std::atoi(argv[2]) : 480;
   const int height = argc > 2 ? std::atoi(argv[3]) : 270;
+  const int repetitions = argc > 4 ? std::atoi(argv[4]) : 3;
   const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / "assay_pictures_bench";
@@ -102,7 +110,7 @@ int main(int argc, char** argv) {
   const double whole = bench::median(testing);
   std::printf(
       "64 + 64 pictures of %d x %d, %u threads: decoding %.3f s, assay images %.3f s, %.2f "
-      "times (wait status %d)\n",
-      width, height, threads, bare, whole, whole / bare, code);
+      "times, %.2f GB (wait status %d)\n",
+      width, height, threads, bare, whole, whole / bare, most_memory(), code);
   return code == 0 ? 0 : 1;
 }
