@@ -360,8 +360,8 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
     data.push_back({.primaries = work.outcome.plan.primaries[subject],
                     .moments = summary.moments,
                     .values = work.pools[subject]->values(index, work.outcome.secondaries()),
-                    .cells = summary.cells,
-                    .with_cost = summary.with_cost,
+                    .cells = summary.details().cells,
+                    .with_cost = summary.details().with_cost,
                     .group_variances = summary_of(work, subject).group_variances});
     if (work.outcome.plan.method.keeps == Keeps::points) {
       for (const std::size_t each : work.outcome.question.subjects[subject].channels) {

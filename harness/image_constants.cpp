@@ -18,13 +18,18 @@ struct Span {
   bool constant(double rounding) const { return high - low <= 2 * rounding; }
 };
 
-Span span_of(const stats::ImageStack<double>& stack, std::size_t element) {
-  Span span{stack.images[0][element], stack.images[0][element]};
+/// Of every element, image by image: they are read from end to end.
+std::vector<Span> spans_of(const stats::ImageStack<double>& stack) {
+  std::vector<Span> spans;
+  spans.reserve(stack.extent.elements());
+  for (const double value : stack.images[0]) spans.push_back({value, value});
   for (const std::span<const double> image : stack.images) {
-    span.low = std::min(span.low, image[element]);
-    span.high = std::max(span.high, image[element]);
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+      spans[i].low = std::min(spans[i].low, image[i]);
+      spans[i].high = std::max(spans[i].high, image[i]);
+    }
   }
-  return span;
+  return spans;
 }
 
 /// Where one number is to stand in every image of a stack.
@@ -47,11 +52,21 @@ stats::ImageStack<double> replaced(const stats::ImageStack<double>& stack,
   return out;
 }
 
-std::vector<Channel> channels_of(const Subject& subject) {
+/// What a channel declares of its values.
+struct Declared {
+  double low;
+  double high;
+  double rounding;
+};
+
+std::vector<Declared> declared_by(const Subject& subject) {
   const std::vector<Channel> all = subject.setup->channels();
-  std::vector<Channel> channels;
-  for (const std::size_t channel : subject.channels) channels.push_back(all[channel]);
-  return channels;
+  std::vector<Declared> declared;
+  declared.reserve(subject.channels.size());
+  for (const std::size_t channel : subject.channels) {
+    declared.push_back({all[channel].low, all[channel].high, all[channel].rounding});
+  }
+  return declared;
 }
 
 /// What a constant can have missed: its value, and the range of the law it is of.
@@ -82,13 +97,12 @@ Constant mean_of(const stats::ImageStack<double>& stack, std::size_t element) {
 }
 
 /// Of factor x + offset.
-Channel mapped(Channel channel, const Question& question) {
+Declared mapped(const Declared& channel, const Question& question) {
   const double low = question.factor * channel.low + question.offset;
   const double high = question.factor * channel.high + question.offset;
-  channel.low = std::min(low, high);
-  channel.high = std::max(low, high);
-  channel.rounding *= std::abs(question.factor);
-  return channel;
+  return {.low = std::min(low, high),
+          .high = std::max(low, high),
+          .rounding = channel.rounding * std::abs(question.factor)};
 }
 
 }  // namespace
@@ -114,10 +128,11 @@ void VaryingPart::settle_against_reference(const Question& question, const Image
   const stats::ImageReference reference = pair.reference();
   value_.assign(reference.value.begin(), reference.value.end());
   error_.assign(reference.standard_error.begin(), reference.standard_error.end());
-  const std::vector<Channel> channels = channels_of(question.subjects[0]);
+  const std::vector<Declared> channels = declared_by(question.subjects[0]);
+  const std::vector<Span> spans = spans_of(first_);
   std::vector<Replacement> replacements;
   for (std::size_t i = 0; i < value_.size(); ++i) {
-    const Span span = span_of(first_, i);
+    const Span span = spans[i];
     if (!span.constant(channels[i].rounding)) continue;
     ++constants_;
     const double constant = first_.images[0][i];
@@ -135,14 +150,16 @@ void VaryingPart::settle_against_reference(const Question& question, const Image
 }
 
 void VaryingPart::settle_two(const Question& question) {
-  const std::vector<Channel> one = channels_of(question.subjects[0]);
-  std::vector<Channel> two = channels_of(question.subjects[1]);
-  for (Channel& channel : two) channel = mapped(channel, question);
+  const std::vector<Declared> one = declared_by(question.subjects[0]);
+  std::vector<Declared> two = declared_by(question.subjects[1]);
+  for (Declared& channel : two) channel = mapped(channel, question);
   std::vector<Replacement> of_first;
   std::vector<Replacement> of_second;
+  const std::vector<Span> first_spans = spans_of(first_);
+  const std::vector<Span> second_spans = spans_of(second_);
   for (std::size_t i = 0; i < one.size(); ++i) {
-    const bool first_constant = span_of(first_, i).constant(one[i].rounding);
-    const bool second_constant = span_of(second_, i).constant(two[i].rounding);
+    const bool first_constant = first_spans[i].constant(one[i].rounding);
+    const bool second_constant = second_spans[i].constant(two[i].rounding);
     if (!first_constant && !second_constant) continue;
     const double a = first_.images[0][i];
     const double b = second_.images[0][i];
@@ -153,7 +170,7 @@ void VaryingPart::settle_two(const Question& question) {
       of_second.push_back({i, equal ? a : b});
       continue;
     }
-    const Channel& channel = first_constant ? one[i] : two[i];
+    const Declared& channel = first_constant ? one[i] : two[i];
     const stats::ImageStack<double>& constant = first_constant ? first_ : second_;
     const Constant mean = mean_of(first_constant ? second_ : first_, i);
     const Missing missing{first_constant ? a : b, channel.low, channel.high,

@@ -54,11 +54,13 @@ stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Image
 }
 
 stats::FlipMatrix flips_of(const stats::ImageStack<double>& a, const stats::ImageReference& b) {
+  if (a.images.size() <= most_flipped) return stats::flip_matrix(a, b);
   const Images first = grouped(a, most_flipped);
   return stats::flip_matrix(stack_of(a.extent, first), b);
 }
 
 stats::FlipMatrix flips_of(const stats::ImageStack<double>& a, const stats::ImageStack<double>& b) {
+  if (std::max(a.images.size(), b.images.size()) <= most_flipped) return stats::flip_matrix(a, b);
   const Images first = grouped(a, most_flipped);
   const Images second = grouped(b, most_flipped);
   return stats::flip_matrix(stack_of(a.extent, first), stack_of(b.extent, second));

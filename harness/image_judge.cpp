@@ -19,15 +19,9 @@ ImageTest image_test(const TestWork& work) {
           .flips = work.pools[0]->key()};
 }
 
-std::vector<std::vector<double>> images_of(const TestWork& work, std::size_t subject) {
-  const std::vector<std::size_t>& elements = work.outcome.question.subjects[subject].channels;
-  std::vector<std::vector<double>> images;
-  for (const auto& whole : work.pools[subject]->observations(work.outcome.secondaries())) {
-    std::vector<double>& image = images.emplace_back();
-    image.reserve(elements.size());
-    for (const std::size_t channel : elements) image.push_back(whole[channel]);
-  }
-  return images;
+ImageViews images_of(const TestWork& work, std::size_t subject) {
+  return {work.pools[subject]->observations(work.outcome.secondaries()),
+          work.outcome.question.subjects[subject].channels};
 }
 
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,

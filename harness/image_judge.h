@@ -14,7 +14,7 @@ namespace assay::harness {
 ImageTest image_test(const TestWork& work);
 
 /// The observations of this look, the subject's elements of each.
-std::vector<std::vector<double>> images_of(const TestWork& work, std::size_t subject);
+ImageViews images_of(const TestWork& work, std::size_t subject);
 
 /// The difference that a test of this size would find by the sum over the whole image, were it the
 /// same everywhere; nullopt where the claim allows a difference.

@@ -5,20 +5,16 @@
 namespace assay::harness {
 namespace {
 
-using Images = std::vector<std::vector<double>>;
-
-stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Images& images) {
-  stats::ImageStack<double> stack{extent, {}};
-  for (const std::vector<double>& image : images) stack.images.emplace_back(image);
-  return stack;
-}
+using Views = std::vector<std::span<const double>>;
 
 /// c y + b: what E x is compared with.
-Images mapped(Images images, double factor, double offset) {
-  for (std::vector<double>& image : images) {
-    for (double& value : image) value = factor * value + offset;
+ImageViews mapped(const Views& images, double factor, double offset) {
+  std::vector<std::vector<double>> copies;
+  for (const std::span<const double> image : images) {
+    std::vector<double>& copy = copies.emplace_back(image.begin(), image.end());
+    for (double& value : copy) value = factor * value + offset;
   }
-  return images;
+  return ImageViews(std::move(copies));
 }
 
 }  // namespace
@@ -28,11 +24,12 @@ stats::ImageExtent extent_of(const ImageShape& shape) {
 }
 
 ImagePair::ImagePair(const Question& question, std::span<const ChannelData> data)
-    : extent_(extent_of(*question.subjects[0].image)), first_(stack_of(extent_, data[0].images)) {
+    : extent_(extent_of(*question.subjects[0].image)), first_{extent_, data[0].images.images()} {
   if (question.of_two()) {
     const bool as_drawn = question.factor == 1 && question.offset == 0;
-    if (!as_drawn) scaled_ = mapped(data[1].images, question.factor, question.offset);
-    second_ = stack_of(extent_, as_drawn ? data[1].images : scaled_);
+    const Views& drawn = data[1].images.images();
+    if (!as_drawn) scaled_ = mapped(drawn, question.factor, question.offset);
+    second_ = stats::ImageStack<double>{extent_, as_drawn ? drawn : scaled_.images()};
     return;
   }
   for (const Constant& reference : question.references) {

@@ -37,7 +37,7 @@ class ImagePair {
  private:
   stats::ImageExtent extent_;
   stats::ImageStack<double> first_;
-  std::vector<std::vector<double>> scaled_;  // of the second, where a factor is not 1
+  ImageViews scaled_;  // of the second, where a factor is not 1
   std::optional<stats::ImageStack<double>> second_;
   std::vector<double> value_;
   std::vector<double> error_;

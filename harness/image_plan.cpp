@@ -7,6 +7,7 @@
 
 #include "harness/critical.h"
 #include "harness/frozen.h"
+#include "harness/image_views.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "stats/image_cell_skewness.h"
@@ -15,8 +16,6 @@
 
 namespace assay::harness {
 namespace {
-
-using Images = std::vector<std::vector<double>>;
 
 constexpr double level_factor = 1.25;
 // Of one replicate's pixels, against an exact reference: false alarms at .01 were .007 at a
@@ -96,16 +95,6 @@ void judge_skewness(const Question& question, const Pilots& pilots, Plan& plan) 
 
 // ---- Cells
 
-/// The images of a pilot, the subject's elements of each.
-Images images_of(const Subject& subject, const Pilot& pilot) {
-  Images images;
-  for (const std::vector<double>& whole : pilot.images) {
-    std::vector<double>& image = images.emplace_back();
-    for (const std::size_t channel : subject.channels) image.push_back(whole[channel]);
-  }
-  return images;
-}
-
 std::string cells_text(std::uint32_t size, const ImageShape& shape) {
   if (size == 1) return "single pixels";
   if (size >= std::max(shape.width, shape.height)) return "the whole image";
@@ -141,13 +130,11 @@ class PilotSides {
   PilotSides(const Question& question, const Plan& plan, const Pilots& pilots) {
     for (std::size_t s = 0; s < question.subjects.size(); ++s) {
       const Subject& subject = question.subjects[s];
-      images_.push_back(images_of(subject, pilot_at(question, s, pilots)));
+      images_.emplace_back(pilot_at(question, s, pilots).images, subject.channels);
       averaged_.push_back(averaged(question, plan, s));
-      stats::CellPilot side{.stack = {extent_of(*subject.image), {}},
-                            .factor = factor_of(question, s),
-                            .replicates = averaged_.back()};
-      for (const std::vector<double>& image : images_.back()) side.stack.images.emplace_back(image);
-      sides_.push_back(std::move(side));
+      sides_.push_back({.stack = {extent_of(*subject.image), images_.back().images()},
+                        .factor = factor_of(question, s),
+                        .replicates = averaged_.back()});
     }
   }
   PilotSides(const PilotSides&) = delete;  // spans point inside
@@ -161,7 +148,7 @@ class PilotSides {
   std::span<const stats::CellPilot> sides() const { return sides_; }
 
  private:
-  std::vector<Images> images_;
+  std::vector<ImageViews> images_;
   std::vector<double> averaged_;  // primaries of an image's pixel
   std::vector<stats::CellPilot> sides_;
 };
@@ -199,7 +186,8 @@ struct PilotImage {
 /// The two halves of a pilot have one law: their squared bias is noise alone, of the covariance
 /// C (2 / R + 2 / R) in all.
 PilotImage pilot_image(const Subject& subject, const Pilot& pilot) {
-  const Images images = images_of(subject, pilot);
+  const ImageViews views(pilot.images, subject.channels);
+  const std::vector<std::span<const double>>& images = views.images();
   const stats::ImageExtent extent = extent_of(*subject.image);
   stats::ImageStack<double> halves[2] = {{extent, {}}, {extent, {}}};
   for (std::size_t r = 0; r < images.size() / 2 * 2; ++r) halves[r % 2].images.push_back(images[r]);

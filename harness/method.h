@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/evidence.h"
+#include "harness/image_views.h"
 #include "harness/question.h"
 #include "harness/summary.h"
 #include "stats/sampled_cells.h"
@@ -32,7 +33,7 @@ struct ChannelData {
   std::span<const std::uint64_t> cells = {};
   std::span<const stats::JointMoments> with_cost = {};  ///< by CountedCost
   stats::Moments group_variances = {};
-  std::vector<std::vector<double>> images = {};  ///< observations, the subject's elements of each
+  ImageViews images = {};  ///< observations, the subject's elements of each
   std::vector<Replicate> replicates = {};
 };
 

@@ -19,16 +19,24 @@ constexpr std::uint64_t least_images = 2 * stats::least_replicates;
 // Of an image's thousands of channels only the moments are kept.
 constexpr std::size_t kept_channels = 64;
 
+/// Images that a pilot takes of an estimator of them.
+std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
+  const auto image = setup.image();
+  if (!image) return std::nullopt;
+  return std::clamp(image_elements / (image->elements() * primaries), least_images,
+                    other_observations);
+}
+
 std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
   const bool averages = estimator.nature().averages;
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
   auto pool =
       std::make_shared<Pool>(estimator.setup, key_of(estimator, seed, 0, "pilot"), primaries);
   std::uint64_t usual = averages ? averaging_observations : other_observations;
-  if (const auto image = estimator.setup->image()) {
-    usual = std::clamp(image_elements / (image->elements() * primaries), least_images,
-                       other_observations);
-    pool->keep_observations(usual);
+  if (const auto images = usual_images(*estimator.setup, primaries)) {
+    usual = *images;
+    // Those of files are the test's own and are not read twice.
+    pool->keep_observations(estimator.setup->observations().value_or(usual));
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
   if (pool->plan().size() <= kept_channels) {
@@ -58,11 +66,8 @@ stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
 }
 
 Pilot read(const Pool& pool) {
-  Pilot pilot{.channels = {},
-              .primaries = pool.primaries(),
-              .with_cost = {},
-              .images = {},
-              .trouble = pool.trouble()};
+  Pilot pilot{
+      .channels = {}, .primaries = pool.primaries(), .with_cost = {}, .trouble = pool.trouble()};
   if (!pilot.trouble.empty()) return pilot;
   const std::vector<ChannelSummary>& channels = pool.prefix(pool.requested()).channels;
   const RecordedRun* run = as_recorded_run(*pool.setup());
@@ -70,12 +75,12 @@ Pilot read(const Pool& pool) {
     const bool averaged = run != nullptr && run->entry().information.averages;
     pilot.channels.push_back(averaged ? of_primaries(channels[i].moments, run->primaries())
                                       : channels[i].moments);
-    pilot.with_cost.push_back(channels[i].with_cost);
+    pilot.with_cost.push_back(channels[i].details().with_cost);
     const std::span<const double> kept = pool.values(i, pool.requested());
     if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
   }
-  const auto images = pool.observations(pool.requested());
-  pilot.images.assign(images.begin(), images.end());
+  pilot.kept = pool.kept();
+  pilot.images = pool.observations(usual_images(*pool.setup(), pool.primaries()).value_or(0));
   return pilot;
 }
 

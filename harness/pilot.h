@@ -23,8 +23,10 @@ struct Pilot {
   std::uint64_t primaries = 1;
   /// By channel, then CountedCost; empty where not wanted.
   std::vector<std::vector<stats::JointMoments>> with_cost = {};
-  std::vector<std::vector<double>> images = {};  ///< of an image: whole observations
-  std::string trouble = "";                      ///< why there are no numbers: the estimator threw
+  /// Of an image: whole observations, and whose they are.
+  std::span<const std::vector<double>> images = {};
+  std::shared_ptr<const KeptObservations> kept = {};
+  std::string trouble = "";  ///< why there are no numbers: the estimator threw
 };
 
 /// By pilot_name. Averaging estimators at one primary, others at the suite's `primaries`. Of

@@ -9,6 +9,7 @@
 #include "estimators/ready_made.h"
 #include "estimators/text_pattern.h"
 #include "harness/frozen.h"
+#include "harness/image_memory.h"
 #include "harness/interrupt.h"
 #include "harness/plan.h"
 #include "stats/image.h"
@@ -202,6 +203,7 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
   run->lack = lack_of(suite);
   if (!run->lack.empty()) return run;
   run->estimators = prepare_all(run->suite);
+  require_memory(run->estimators, available_bytes());
   for (const TestEntry& test : run->suite.tests) {
     const Question question = ask(test, run->estimators, run->seed);
     if (test.method) find_method(question, *test.method);

@@ -46,9 +46,62 @@ const Summary* ready_made(const Setup& setup) {
   return run == nullptr ? nullptr : &run->summary();
 }
 
-ObservationCost difference(const Cost& after, const Cost& before) {
-  return {static_cast<double>(after.rays() - before.rays()),
-          static_cast<double>(after.samples - before.samples)};
+ObservationCost counted(const Cost& cost) {
+  return {static_cast<double>(cost.rays()), static_cast<double>(cost.samples)};
+}
+
+// Of so many channels the sums of all do not stay in a cache from one observation to the next.
+constexpr std::size_t many_channels = 4096;
+
+/// Takes the observations of a block into its sums, in order. Of an image those that stay where
+/// they are wait, and then some channels of all of them are taken before the next: each channel's
+/// sums are as if they had been taken one by one.
+class Intake {
+ public:
+  explicit Intake(std::vector<ChannelSummary>& channels)
+      : channels_(channels), together_(channels.size() > many_channels) {}
+
+  void take(std::span<const double> values, std::uint64_t index, const ObservationCost& cost,
+            bool stays) {
+    if (together_ && stays) {
+      waiting_.push_back({values, index, cost});
+      return;
+    }
+    take_waiting();
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      add_observation(channels_[c], values[c], index, cost);
+    }
+  }
+  void take_waiting() {
+    if (waiting_.empty()) return;
+    constexpr std::size_t at_a_time = 512;
+    for (std::size_t first = 0; first < channels_.size(); first += at_a_time) {
+      const std::size_t last = std::min(first + at_a_time, channels_.size());
+      for (const Waiting& each : waiting_) {
+        for (std::size_t c = first; c < last; ++c) {
+          add_observation(channels_[c], each.values[c], each.index, each.cost);
+        }
+      }
+    }
+    waiting_.clear();
+  }
+
+ private:
+  struct Waiting {
+    std::span<const double> values;
+    std::uint64_t index;
+    ObservationCost cost;
+  };
+  std::vector<ChannelSummary>& channels_;
+  bool together_;
+  std::vector<Waiting> waiting_;
+};
+
+/// Observations below it have channels whose values are kept.
+std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
+  std::uint64_t most = 0;
+  for (const ChannelPlan& channel : plan) most = std::max(most, channel.keep);
+  return most;
 }
 
 }  // namespace
@@ -92,7 +145,8 @@ std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) c
 }
 
 std::span<const std::vector<double>> Pool::observations(std::uint64_t count) const {
-  return std::span(observations_).first(std::min<std::size_t>(observations_.size(), count));
+  const std::vector<std::vector<double>>& kept = (known_ ? known_ : kept_)->values;
+  return std::span(kept).first(std::min<std::size_t>(kept.size(), count));
 }
 
 std::uint64_t Pool::block_end(std::uint64_t first) const {
@@ -106,6 +160,8 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
               .partial = {},
               .trouble = {}};
   std::vector<double> out(plan_.size());
+  Intake intake(block.whole.channels);
+  const std::uint64_t values_kept = most_kept(plan_);
   auto mark = prefixes_.upper_bound(first);
   const auto seconds = [&estimator] { return thread_seconds() + estimator.seconds_elsewhere(); };
   const double start = seconds();
@@ -119,17 +175,29 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
     estimator.announce({.key = key_, .first = first, .last = last});
     for (; index < last; ++index) {
       Stream random(key_, index);
-      const Cost before = counts_costs ? block.whole.cost : Cost{};
-      estimator.secondary(random, primaries_, out, block.whole.cost);
-      if (counts_costs) cost = difference(block.whole.cost, before);
-      for (std::size_t c = 0; c < out.size(); ++c) {
-        add_observation(block.whole.channels[c], out[c], index, cost);
-        if (index < plan_[c].keep) block.values[c].push_back(out[c]);
+      Cost spent;
+      std::span<const double> drawn = out;
+      if (known_ && index < known_->values.size()) {
+        drawn = known_->values[index];
+        spent = known_->costs[index];
+      } else {
+        estimator.secondary(random, primaries_, out, spent);
       }
-      if (index < kept_observations_) block.observations.push_back(out);
-      if (const auto variance = groups.add(out)) block.whole.group_variances.add(*variance);
+      block.whole.cost += spent;
+      if (!known_ && index < kept_observations_) {
+        block.observations.values.push_back(out);
+        block.observations.costs.push_back(spent);
+        drawn = block.observations.values.back();
+      }
+      if (counts_costs) cost = counted(spent);
+      intake.take(drawn, index, cost, drawn.data() != out.data());
+      for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
+        if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);
+      }
+      if (const auto variance = groups.add(drawn)) block.whole.group_variances.add(*variance);
       ++block.whole.count;
       if (mark != prefixes_.end() && index + 1 == mark->first) {
+        intake.take_waiting();
         block.partial.emplace_back(mark->first, block.whole);
         block.partial.back().second.seconds = seconds() - start;
         ++mark;
@@ -140,6 +208,7 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   } catch (const std::exception& error) {
     block.trouble = fmt::format("observation {}: {}", index, error.what());
   }
+  intake.take_waiting();
   block.whole.seconds = seconds() - start;
   return block;
 }
@@ -161,8 +230,8 @@ void Pool::fold(Block&& block) {
   for (std::size_t c = 0; c < values_.size(); ++c) {
     values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
   }
-  std::move(block.observations.begin(), block.observations.end(),
-            std::back_inserter(observations_));
+  std::ranges::move(block.observations.values, std::back_inserter(kept_->values));
+  std::ranges::move(block.observations.costs, std::back_inserter(kept_->costs));
   trouble_ = std::move(block.trouble);
 }
 

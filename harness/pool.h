@@ -20,6 +20,12 @@ namespace assay::harness {
 /// those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);
 
+/// Observations whole, as they were drawn.
+struct KeptObservations {
+  std::vector<std::vector<double>> values = {};
+  std::vector<Cost> costs = {};
+};
+
 class Pool {
  public:
   Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries);
@@ -44,6 +50,12 @@ class Pool {
   void keep_observations(std::uint64_t count) {
     kept_observations_ = std::max(kept_observations_, count);
   }
+
+  /// The observations that were kept, to share with another pool.
+  std::shared_ptr<const KeptObservations> kept() const { return kept_; }
+  /// Not to draw these but to take them: rows of files, which are the same whoever reads them.
+  /// Before anything is drawn.
+  void take_known(std::shared_ptr<const KeptObservations> known) { known_ = std::move(known); }
 
   /// Observations [0, count) may be read as a prefix. std::logic_error once they are drawn.
   void mark(std::uint64_t count);
@@ -84,8 +96,8 @@ class Pool {
   /// A drawn block, and copies of it at the marked counts that lie inside.
   struct Block {
     Summary whole;
-    std::vector<std::vector<double>> values;        ///< of each channel, where they are kept
-    std::vector<std::vector<double>> observations;  ///< whole, where they are kept
+    std::vector<std::vector<double>> values;  ///< of each channel, where they are kept
+    KeptObservations observations;            ///< where they are kept
     std::vector<std::pair<std::uint64_t, Summary>> partial;
     std::string trouble;
   };
@@ -109,7 +121,8 @@ class Pool {
   Summary running_;
   std::vector<std::vector<double>> values_;
   std::vector<std::size_t> grouped_channels_;
-  std::vector<std::vector<double>> observations_;
+  std::shared_ptr<KeptObservations> kept_ = std::make_shared<KeptObservations>();
+  std::shared_ptr<const KeptObservations> known_;
   std::uint64_t kept_observations_ = 0;
   bool keeps_blocks_ = false;
   std::vector<BlockSums> blocks_;

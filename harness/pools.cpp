@@ -107,6 +107,12 @@ std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t se
   std::shared_ptr<Pool>& pool = pools_[identity];
   if (pool) return pool;
   pool = std::make_shared<Pool>(wanted.setup, key, wanted.primaries);
+  const auto piloted = pilots.find(wanted.estimator.name);
+  const auto rows = wanted.setup->observations();
+  if (rows && piloted != pilots.end() && piloted->second.kept &&
+      piloted->second.kept->values.size() == *rows) {
+    pool->take_known(piloted->second.kept);
+  }
   const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());
   pool->plan() =
       draws != nullptr ? sampler_plan(*draws) : estimator_plan(*pool, wanted.estimator, pilots);

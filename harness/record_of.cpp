@@ -52,6 +52,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
   const Summary& summary = work.pools[subject]->prefix(count);
   const ChannelSummary& kept = summary.channels[index];
   const stats::Moments& moments = kept.moments;
+  const ChannelDetails& details = kept.details();
   const bool spread = moments.count > 1 && moments.m2 > 0;
   reports::Sample sample{.estimator = side.estimator->listed,
                          .plugin = side.estimator->entry->information.name,
@@ -64,8 +65,8 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
   sample.cost = cost_of(summary);
   // Another test on the same observations may have kept them: a record must not tell.
   const bool costs = work.outcome.plan.method.keeps == Keeps::costs;
-  for (std::size_t i = 0; costs && i < kept.with_cost.size(); ++i) {
-    const stats::JointMoments& joint = kept.with_cost[i];
+  for (std::size_t i = 0; costs && i < details.with_cost.size(); ++i) {
+    const stats::JointMoments& joint = details.with_cost[i];
     sample.with_cost.push_back({.kind = i == rays_cost ? "rays" : "samples",
                                 .mean = joint.cost.mean,
                                 .m2 = joint.cost.m2,
@@ -73,7 +74,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
                                 .m21 = joint.m21});
   }
   // The number of a cell is a name: it has no mean.
-  if (!kept.cells.empty()) return sample;
+  if (!details.cells.empty()) return sample;
   if (moments.count > 0) {
     sample.mean = number(moments.mean);
     sample.minimum = number(moments.minimum);
@@ -84,7 +85,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
     sample.skewness = number(moments.skewness());
     sample.kurtosis = number(moments.kurtosis());
   }
-  sample.histogram = histogram_of(kept.histogram);
+  sample.histogram = histogram_of(details.histogram);
   if (spread && !work.pools[subject]->is_ready_made()) {
     sample.quantiles =
         quantile_points(work.pools[subject]->values(index, std::min(count, plotted_values)));

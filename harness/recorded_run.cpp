@@ -151,7 +151,7 @@ RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite)
     for (const CountedCost kind : {rays_cost, samples_cost}) {
       const auto joint = joint_of(*sample, kind);
       contents.knows_cost[kind] = contents.knows_cost[kind] && joint;
-      channel.with_cost.push_back(joint.value_or(stats::JointMoments()));
+      channel.rare.made().with_cost.push_back(joint.value_or(stats::JointMoments()));
     }
   }
   for (const reports::EstimatorSummary& row : suite.estimators) {

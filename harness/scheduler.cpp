@@ -73,6 +73,15 @@ class Workers {
   tbb::enumerable_thread_specific<std::vector<std::unique_ptr<Estimator>>> estimators_;
 };
 
+/// Blocks under way at a time. Each has sums of every channel: of large images only as many as
+/// there are workers.
+std::size_t under_way(const std::vector<std::shared_ptr<Pool>>& pools, unsigned workers) {
+  constexpr std::size_t many_channels = std::size_t{1} << 16;
+  const bool large = std::ranges::any_of(
+      pools, [](const auto& pool) { return pool->plan().size() > many_channels; });
+  return large ? workers : std::size_t{8} * workers;
+}
+
 std::uint64_t work(const Pool& pool, std::uint64_t observations) {
   return observations * pool.primaries();
 }
@@ -111,9 +120,10 @@ void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& dr
   tbb::task_arena arena(static_cast<int>(count));
   arena.execute([&] {
     tbb::parallel_pipeline(
-        8 * count, tbb::make_filter<void, Task>(tbb::filter_mode::serial_in_order, hand_out) &
-                       tbb::make_filter<Task, Drawn>(tbb::filter_mode::parallel, draw) &
-                       tbb::make_filter<Drawn, void>(tbb::filter_mode::serial_in_order, fold));
+        under_way(pools, count),
+        tbb::make_filter<void, Task>(tbb::filter_mode::serial_in_order, hand_out) &
+            tbb::make_filter<Task, Drawn>(tbb::filter_mode::parallel, draw) &
+            tbb::make_filter<Drawn, void>(tbb::filter_mode::serial_in_order, fold));
   });
   progress.end();
 }

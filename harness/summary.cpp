@@ -10,17 +10,42 @@ void Histogram::merge(const Histogram& other) {
   above += other.above;
 }
 
+void add_details(ChannelDetails& details, double value, const ObservationCost& cost) {
+  if (!details.histogram.counts.empty()) details.histogram.add(value);
+  for (std::size_t k = 0; k < details.with_cost.size(); ++k) {
+    details.with_cost[k].add(value, cost[k]);
+  }
+  if (!details.cells.empty()) ++details.cells[static_cast<std::size_t>(value)];
+}
+
 Summary::Summary(std::span<const ChannelPlan> plan) : channels(plan.size()) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    channels[i].cells.resize(plan[i].cells);
-    if (plan[i].with_cost) channels[i].with_cost.resize(counted_costs);
-    if (plan[i].histogram_low < plan[i].histogram_high) {
-      channels[i].histogram.low = plan[i].histogram_low;
-      channels[i].histogram.high = plan[i].histogram_high;
-      channels[i].histogram.counts.resize(histogram_bins);
+    const bool binned = plan[i].histogram_low < plan[i].histogram_high;
+    if (!binned && plan[i].cells == 0 && !plan[i].with_cost) continue;
+    ChannelDetails& details = channels[i].rare.made();
+    details.cells.resize(plan[i].cells);
+    if (plan[i].with_cost) details.with_cost.resize(counted_costs);
+    if (binned) {
+      details.histogram.low = plan[i].histogram_low;
+      details.histogram.high = plan[i].histogram_high;
+      details.histogram.counts.resize(histogram_bins);
     }
   }
 }
+
+namespace {
+
+void merge(ChannelDetails& ours, const ChannelDetails& theirs) {
+  ours.histogram.merge(theirs.histogram);
+  for (std::size_t cell = 0; cell < ours.cells.size(); ++cell) {
+    ours.cells[cell] += theirs.cells[cell];
+  }
+  for (std::size_t k = 0; k < ours.with_cost.size(); ++k) {
+    ours.with_cost[k].merge(theirs.with_cost[k]);
+  }
+}
+
+}  // namespace
 
 void Summary::append(const Summary& next) {
   count += next.count;
@@ -31,13 +56,7 @@ void Summary::append(const Summary& next) {
     ChannelSummary& ours = channels[i];
     const ChannelSummary& theirs = next.channels[i];
     ours.moments.merge(theirs.moments);
-    ours.histogram.merge(theirs.histogram);
-    for (std::size_t cell = 0; cell < ours.cells.size(); ++cell) {
-      ours.cells[cell] += theirs.cells[cell];
-    }
-    for (std::size_t k = 0; k < ours.with_cost.size(); ++k) {
-      ours.with_cost[k].merge(theirs.with_cost[k]);
-    }
+    if (ours.rare) merge(ours.rare.made(), theirs.details());
     ours.nonfinite += theirs.nonfinite;
     ours.first_nonfinite = std::min(ours.first_nonfinite, theirs.first_nonfinite);
   }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -49,14 +50,51 @@ struct ChannelPlan {
 
 inline constexpr std::size_t histogram_bins = 60;
 
-/// One channel of a run of consecutive observations.
-struct ChannelSummary {
-  stats::Moments moments = {};  ///< of the finite values
+/// What is kept of a channel beside its moments.
+struct ChannelDetails {
   Histogram histogram = {};
   std::vector<std::uint64_t> cells = {};
   std::vector<stats::JointMoments> with_cost = {};  ///< by CountedCost, where they are kept
+};
+
+/// The details of a channel that has any, copied with it: the millions of channels of an image have
+/// none and take no room for them.
+class RareDetails {
+ public:
+  RareDetails() = default;
+  RareDetails(const RareDetails& other)
+      : details_(other ? std::make_unique<ChannelDetails>(*other) : nullptr) {}
+  RareDetails(RareDetails&&) noexcept = default;
+  RareDetails& operator=(RareDetails other) noexcept {
+    details_ = std::move(other.details_);
+    return *this;
+  }
+  ~RareDetails() = default;
+
+  explicit operator bool() const { return details_ != nullptr; }
+  const ChannelDetails& operator*() const { return *details_; }
+  /// Made where there are none yet.
+  ChannelDetails& made() {
+    if (!details_) details_ = std::make_unique<ChannelDetails>();
+    return *details_;
+  }
+
+ private:
+  std::unique_ptr<ChannelDetails> details_;
+};
+
+/// One channel of a run of consecutive observations.
+struct ChannelSummary {
+  stats::Moments moments = {};  ///< of the finite values
   std::uint64_t nonfinite = 0;
   std::uint64_t first_nonfinite = std::numeric_limits<std::uint64_t>::max();
+  RareDetails rare = {};
+
+  /// Empty ones where there are none.
+  const ChannelDetails& details() const {
+    static const ChannelDetails none;
+    return rare ? *rare : none;
+  }
 };
 
 /// What an observation cost, as far as it is counted: the index of a channel's joint moments.
@@ -77,6 +115,9 @@ struct Summary {
   void append(const Summary& next);
 };
 
+/// Takes a finite value and what its observation cost.
+void add_details(ChannelDetails& details, double value, const ObservationCost& cost);
+
 /// Takes one channel's value of observation `index` into the summary.
 inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index,
                             const ObservationCost& cost = {}) {
@@ -84,11 +125,7 @@ inline void add_observation(ChannelSummary& summary, double value, std::uint64_t
     if (summary.nonfinite++ == 0) summary.first_nonfinite = index;
   } else {
     summary.moments.add(value);
-    if (!summary.histogram.counts.empty()) summary.histogram.add(value);
-    for (std::size_t k = 0; k < summary.with_cost.size(); ++k) {
-      summary.with_cost[k].add(value, cost[k]);
-    }
-    if (!summary.cells.empty()) ++summary.cells[static_cast<std::size_t>(value)];
+    if (summary.rare) add_details(summary.rare.made(), value, cost);
   }
 }
 

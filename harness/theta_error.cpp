@@ -1,6 +1,7 @@
 #include "harness/theta_error.h"
 
 #include <cmath>
+#include <optional>
 
 #include "harness/constant.h"
 #include "harness/method.h"
@@ -55,7 +56,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
   // A sampler's draws are not what its estimator's pilot is of.
   if (!question.of_means() && !question.of_variances()) return std::nullopt;
   std::vector<ChannelData> data(question.subjects.size());
-  const ChannelData* known = nullptr;
+  std::optional<std::size_t> known;
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Subject& side = question.subjects[i];
     if (side.setup->observations()) continue;
@@ -66,11 +67,13 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
     const double averaged = side.averaged(test.plan.primaries[i]);
     data[i] = {.primaries = test.plan.primaries[i],
                .moments = scaled(pilot, averaged, secondaries)};
-    known = &data[i];
+    known = i;
   }
-  if (known == nullptr) return std::nullopt;
+  if (!known) return std::nullopt;
   for (std::size_t i = 0; i < data.size(); ++i) {
-    if (question.subjects[i].setup->observations()) data[i] = *known;
+    if (!question.subjects[i].setup->observations()) continue;
+    data[i].primaries = data[*known].primaries;
+    data[i].moments = data[*known].moments;
   }
   return data;
 }

@@ -3,6 +3,7 @@
 # estimators/README.md and stats/README.md.
 #   bash tests/bench.sh            engine, rays, Kolmogorov-Smirnov, images, pictures, p-values, other programs
 #   bash tests/bench.sh build      a clean build, and the rebuild after touching one estimator
+#   bash tests/bench.sh suites     the engine's own time in every suite that is shipped (some minutes)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source suites/install.sh
@@ -20,6 +21,11 @@ if [ "${1:-}" = build ]; then
   touch estimators/luminaire/area.cpp
   echo "rebuild of assay after touching one estimator:"
   time cmake --build "$folder" --target assay >/dev/null
+  exit
+fi
+if [ "${1:-}" = suites ]; then
+  build_project build looks_bench
+  for suite in suites/*.yaml; do build/tests/bench/looks_bench "$suite"; done
   exit
 fi
 build_project build assay foreign_bench engine_bench ks_bench rays_bench image_bench tails_bench \

@@ -73,7 +73,7 @@ Information of_weighted(const char* name, const char* defect) {
 
 Information of_classic(const char* name, const char* defect) {
   Information information = described(name, "virtual_lights/classic", defect);
-  information.parameters = {scene_parameter()};
+  information.parameters = room_parameters();
   return information;
 }
 

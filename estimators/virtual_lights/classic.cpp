@@ -25,7 +25,8 @@ Spectrum gathered(const Room& room, bool sampled, Stream& random, Cost& cost) {
   const paths::MeshWorld& world = room.world();
   const Vertex first = world.reflected(room.receiver(), random, cost);
   if (!first.surface) return {};
-  const Spectrum& albedo = room.receiver().surface->diffuse;
+  const double lobe = room.lobe(dot(first.arriving, room.receiver().normal));
+  const Spectrum albedo = lobe * room.receiver().surface->diffuse;
   if (sampled) {
     return albedo * world.direct_light(first, paths::Direct::sampled, random, cost);
   }
@@ -49,6 +50,18 @@ std::shared_ptr<const Setup> gather(Parameters& parameters) {
   return setup(scene, {sums, [](const Sums& all, double n) { return 1 / n * all.full; }});
 }
 
+std::vector<ParameterInformation> gather_parameters() {
+  std::vector<ParameterInformation> all = room_parameters();
+  all.push_back({.name = "direct",
+                 .type = ParameterType::string,
+                 .summary =
+                     "how y1 learns of emitted light: by a ray that arrives at what emits, or "
+                     "by a shadow ray to a point of it",
+                 .fallback = "hit",
+                 .choices = {"hit", "sampled"}});
+  return all;
+}
+
 }  // namespace
 
 std::vector<Entry> virtual_lights_classic() {
@@ -57,7 +70,8 @@ std::vector<Entry> virtual_lights_classic() {
         .summary = "Light after two reflections by virtual lights.",
         .description =
             "The radiance along the camera's ray of light that has been reflected exactly twice, "
-            "at y1 and then at the receiver that the camera sees; all surfaces diffuse. A primary "
+            "at y1 and then at the receiver that the camera sees; all surfaces diffuse but for the "
+            "receiver, where `shininess` says otherwise. A primary "
             "shoots light from a point y0 of what emits along a cosine-distributed direction to "
             "y1 and connects: X = Phi (a1 / pi) (a / pi) cos cos' V / r^2, Phi = pi sum of area x "
             "emitted radiance (Keller 1997). Unbiased; near corners rare primaries are large. In "
@@ -65,7 +79,7 @@ std::vector<Entry> virtual_lights_classic() {
             "where all have the albedo a. Cost: a closest-hit ray, and a shadow ray where both "
             "cosines are positive. Channels: `radiance`, or `red`, `green`, `blue`. Sampler: "
             "direction.",
-        .parameters = {scene_parameter()}},
+        .parameters = room_parameters()},
        classic},
       {{.name = "virtual_lights/gather",
         .summary = "Light after two reflections by gathering: the trusted reference.",
@@ -74,13 +88,7 @@ std::vector<Entry> virtual_lights_classic() {
             "cosine-distributed ray to y1, and from there either another one, X = a a1 Le, or a "
             "shadow ray to a point of what emits. Unbiased; without spikes by `hit`, whose primary "
             "is a^2 Le always in a furnace.",
-        .parameters = {scene_parameter(),
-                       {.name = "direct",
-                        .type = ParameterType::string,
-                        .summary = "how y1 learns of emitted light: by a ray that arrives at what "
-                                   "emits, or by a shadow ray to a point of it",
-                        .fallback = "hit",
-                        .choices = {"hit", "sampled"}}}},
+        .parameters = gather_parameters()},
        gather}};
 }
 

@@ -24,6 +24,9 @@ bool even_albedo(const Room& room) {
 
 Known target_integral(const Room& room, Weighting weighting) {
   if (weighting == Weighting::marginal && room.even_emission()) return {1};
+  if (room.shininess() > 0) {
+    return {{}, "known of a glossy receiver only with marginal weights where emission is even"};
+  }
   const Enclosure& walls = room.walls();
   if (!walls.why_open.empty()) {
     return {{}, "known only in a closed room, and this one is open: " + walls.why_open};
@@ -47,7 +50,7 @@ std::optional<Spectrum> twice_reflected(const Room& room) {
   const Spectrum first = room.receiver().surface->diffuse * *room.even_emission();
   if (even_albedo(room)) return first * world.surface(0).diffuse;
   const Enclosure& walls = room.walls();
-  if (!walls.why_not_convex.empty()) return {};
+  if (room.shininess() > 0 || !walls.why_not_convex.empty()) return {};
   const std::uint32_t own = walls.wall_of[room.receiver().patch / 2];
   Spectrum seen;
   for (std::size_t i = 0; i < walls.wall_of.size(); ++i) {

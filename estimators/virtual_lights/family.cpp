@@ -90,6 +90,18 @@ void require_receiver(Parameters& parameters, const paths::MeshWorld& world) {
   }
 }
 
+double read_shininess(Parameters& parameters, const paths::MeshWorld& world) {
+  const double shininess = parameters.number("shininess");
+  Cost uncounted;
+  const Vertex seen = world.camera(uncounted);
+  // To the rounding of a direction that is given in decimals.
+  if (shininess > 0 && dot(seen.arriving, seen.normal) > -1 + 1e-9) {
+    parameters.refuse("shininess",
+                      "a glossy receiver must be seen along its normal, which its lobe is about");
+  }
+  return shininess;
+}
+
 double given_target_integral(Parameters& parameters, const Room& room, Weighting weighting) {
   const Value& value = parameters.structure("target_integral");
   if (value.kind() == Value::Kind::scalar && value.string("target_integral") == "exact") {
@@ -116,7 +128,8 @@ Scene read_room(Parameters& parameters) {
   if (!world) parameters.refuse("scene", "virtual lights need triangles: a furnace or surfaces");
   require_diffuse(parameters, **world);
   require_receiver(parameters, **world);
-  return {std::make_shared<const Room>(*world), scene.grey};
+  const double shininess = read_shininess(parameters, **world);
+  return {std::make_shared<const Room>(*world, shininess), scene.grey};
 }
 
 Weighted read_weighted(Parameters& parameters, SharedRoom room) {
@@ -129,27 +142,35 @@ Weighted read_weighted(Parameters& parameters, SharedRoom room) {
   return {{std::move(room)}, weighting, integral};
 }
 
-ParameterInformation scene_parameter() {
-  return {.name = "scene",
-          .type = ParameterType::structure,
-          .summary = "furnace or box, or a camera and one of furnace and surfaces",
-          .fallback = "furnace"};
+std::vector<ParameterInformation> room_parameters() {
+  return {{.name = "scene",
+           .type = ParameterType::structure,
+           .summary = "furnace or box, or a camera and one of furnace and surfaces",
+           .fallback = "furnace"},
+          {.name = "shininess",
+           .summary = "m of the receiver, which reflects a (m + 2) / (2 pi) cos^m towards a camera "
+                      "straight above it; 0 is diffuse",
+           .fallback = "0",
+           .low = 0,
+           .high = 1e6}};
 }
 
 std::vector<ParameterInformation> weighted_parameters() {
-  return {
-      scene_parameter(),
-      {.name = "weighting",
-       .type = ParameterType::string,
-       .summary = "the shooting density that the target is divided by: of the virtual light given "
-                  "where the light comes from, or whatever that is",
-       .fallback = "conditional",
-       .choices = {"conditional", "marginal"}},
-      {.name = "target_integral",
-       .type = ParameterType::structure,
-       .summary = "G, the integral of the target over what the shooting can reach: exact (closed "
-                  "rooms, convex or, marginal, of even emission) or a number in (0, 1]",
-       .fallback = "exact"}};
+  std::vector<ParameterInformation> all = room_parameters();
+  all.insert(
+      all.end(),
+      {{.name = "weighting",
+        .type = ParameterType::string,
+        .summary = "the shooting density that the target is divided by: of the virtual light given "
+                   "where the light comes from, or whatever that is",
+        .fallback = "conditional",
+        .choices = {"conditional", "marginal"}},
+       {.name = "target_integral",
+        .type = ParameterType::structure,
+        .summary = "G, the integral of the target over what the shooting can reach: exact (closed "
+                   "rooms, convex or, marginal, of even emission) or a number in (0, 1]",
+        .fallback = "exact"}});
+  return all;
 }
 
 std::shared_ptr<const Setup> setup(const Scene& scene, Recipe recipe) {

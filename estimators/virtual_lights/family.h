@@ -16,15 +16,17 @@ struct Scene {
   bool grey = true;
 };
 
-/// Reads `scene`. InputError there for a sphere of zones, a mirror, a camera that sees nothing or
-/// something black, and for a scene without light.
+/// Reads `scene` and `shininess`. InputError at the first for a sphere of zones, a mirror, a camera
+/// that sees nothing or something black, and for a scene without light; at the second where a
+/// glossy receiver is not seen from straight above.
 Scene read_room(Parameters&);
 
 /// Reads `weighting` and `target_integral`. InputError at the first where the marginal density is
 /// not known, at the second where `exact` is asked for and not known, saying why.
 Weighted read_weighted(Parameters&, SharedRoom);
 
-ParameterInformation scene_parameter();
+/// `scene` and `shininess`.
+std::vector<ParameterInformation> room_parameters();
 std::vector<ParameterInformation> weighted_parameters();
 
 /// Writes one observation of `primaries` light paths.

@@ -43,8 +43,9 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& sides)
 
 }  // namespace
 
-Room::Room(paths::SharedMesh world)
+Room::Room(paths::SharedMesh world, double shininess)
     : world_(std::move(world)),
+      shininess_(shininess),
       receiver_(seen_by_camera(*world_)),
       enclosure_(enclosure(world_->mesh(), receiver_.position)),
       sides_(emitting_sides(*world_, enclosure_)),
@@ -84,7 +85,8 @@ double Room::geometry(const Vertex& light) const {
   const double square = squared_length(way);
   const double here = dot(way, receiver_.normal);
   const double there = -dot(way, light.normal);
-  return here > 0 && there > 0 ? here * there / (square * square) : 0;
+  if (!(here > 0 && there > 0)) return 0;
+  return here * there / (square * square) * lobe(here / std::sqrt(square));
 }
 
 Spectrum Room::reflected(const LightPath& path, double geometry) const {

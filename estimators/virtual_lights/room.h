@@ -2,6 +2,7 @@
 
 // A scene of triangles as a source of virtual lights, and the receiver that a camera sees in it.
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,8 +33,8 @@ struct LightPath {
 class Room {
  public:
   /// What emits does so on both sides, in a closed room on the inner side alone. `world` must have
-  /// light, its camera see a surface.
-  explicit Room(paths::SharedMesh world);
+  /// light, its camera see a surface. The receiver has the lobe of exponent `shininess`.
+  explicit Room(paths::SharedMesh world, double shininess = 0);
 
   const paths::MeshWorld& world() const { return *world_; }
   const Vertex& receiver() const { return receiver_; }
@@ -41,7 +42,16 @@ class Room {
 
   LightPath shoot(Stream& random, Cost& cost) const;
 
-  /// cos+ cos+' / r^2 between the receiver and a virtual light, whatever stands between.
+  /// What a receiver of exponent m reflects towards a viewer straight above it, of light at the
+  /// cosine c to its normal, over what a diffuse one does: (m + 2) / 2 c^m, so that the albedo is
+  /// the same (Lafortune and Willems 1994, the mirror's direction being the normal).
+  double lobe(double cosine) const {
+    return shininess_ == 0 ? 1 : (shininess_ + 2) / 2 * std::pow(cosine, shininess_);
+  }
+  double shininess() const { return shininess_; }
+
+  /// cos+ cos+' / r^2 between the receiver and a virtual light, whatever stands between, times the
+  /// receiver's lobe.
   double geometry(const Vertex& light) const;
   bool sees(const Vertex& light, Cost& cost) const { return world_->sees(receiver_, light, cost); }
   /// The radiance that the receiver reflects of one virtual light that it sees.
@@ -69,6 +79,7 @@ class Room {
   }
 
   paths::SharedMesh world_;
+  double shininess_;
   Vertex receiver_;
   Enclosure enclosure_;
   std::vector<std::uint32_t> sides_;  // that emit: patches of the world

@@ -1,11 +1,12 @@
 // Virtual lights by weighted importance sampling: I^ = G sum (f / p) / sum (g / p).
 //
-// The target g is the density by area with which a diffuse reflection at the receiver would choose
-// the virtual light, cos cos' V / (pi r^2) (Balazs, Szirmay-Kalos and Antal 2003, "Weighted
-// importance sampling in shooting algorithms"). It has the spikes of f, so that the ratio has none.
-// p is the shooting density, of y1 given y0 or marginal; G is the integral of g over what is shot
-// at: less than 1 where virtual lights cannot be, as on the lamp's own plane. The bias is
-// (I Var(g/p) / G^2 - Cov(f/p, g/p) / G) / M to first order where the variance of g/p exists.
+// The target g is the density by area with which a reflection at the receiver would choose the
+// virtual light, of a diffuse one cos cos' V / (pi r^2), times its lobe of a glossy one (Balazs,
+// Szirmay-Kalos and Antal 2003, "Weighted importance sampling in shooting algorithms"). It has the
+// spikes of f, so that the ratio has none. p is the shooting density, of y1 given y0 or marginal; G
+// is the integral of g over what is shot at: less than 1 where virtual lights cannot be, as on the
+// lamp's own plane. The bias is (I Var(g/p) / G^2 - Cov(f/p, g/p) / G) / M to first order where the
+// variance of g/p exists.
 
 #include "virtual_lights/family.h"
 
@@ -29,7 +30,8 @@ std::vector<Entry> virtual_lights_weighted() {
         .description =
             "The integral of virtual_lights/classic as G sum (f / p) / sum (g / p) over M light "
             "paths: f / p is its primary, g = cos cos' V / (pi r^2) the density with which the "
-            "receiver would choose the virtual light y1, p the density with which it was shot: "
+            "receiver would choose the virtual light y1 (times its lobe if it is glossy), p the "
+            "density with which it was shot: "
             "conditional, cos0 cos1 / (pi r0^2) given the point y0 of what emits, or marginal, "
             "the irradiance of y1 over all power, by Lambert's formula. (Balazs, Szirmay-Kalos "
             "and Antal 2003.) G is the integral of g over what can be shot at: 5/6 in a cube "

@@ -1,11 +1,12 @@
 // `assay images` on 64 + 64 OpenEXR pictures, beside the bare decoding of the same files by the
 // library on as many threads.
-//   pictures_bench ASSAY [WIDTH HEIGHT]      ASSAY the program; default 480 270
+//   pictures_bench ASSAY [WIDTH HEIGHT [REPETITIONS]]      ASSAY the program; default 480 270 3
 // The pictures are 32-bit R, G and B, compressed by ZIP, of one law: a ramp with noise.
 
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <cstdint>
@@ -24,20 +25,34 @@ namespace {
 using namespace assay;
 
 constexpr std::size_t pictures = 128;
-constexpr int repetitions = 3;
+
+/// Of the largest program run so far, in GB.
+double most_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024e-9;
+}
 
 std::string name_of(const std::string& folder, std::size_t i) {
   return folder + (i < pictures / 2 ? "/a" : "/b") + std::to_string(100 + i) + ".exr";
 }
 
+/// The finaliser of SplitMix64 on a Weyl sequence. A congruential generator of 32 bits, far apart
+/// by a multiple of a power of two as pixels of two pictures are, gives numbers that go together.
+std::uint64_t scattered(std::uint64_t count) {
+  std::uint64_t z = count * 0x9e3779b97f4a7c15;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+  return z ^ (z >> 31);
+}
+
 void write_pictures(const std::string& folder, int width, int height) {
-  std::uint32_t state = 1;
+  std::uint64_t count = 0;
   for (std::size_t i = 0; i < pictures; ++i) {
     draws::Picture picture{width, height, {"R", "G", "B"}, {}};
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < 3 * width; ++x) {
-        state = state * 1664525U + 1013904223U;
-        const float u = static_cast<float>(state >> 8) * 0x1p-24F;
+        const float u = static_cast<float>(scattered(++count) >> 40) * 0x1p-24F;
         picture.values.push_back(
             (0.5F + static_cast<float>(x % width) / static_cast<float>(width)) * (0.8F + 0.4F * u));
       }
@@ -75,12 +90,13 @@ void decode_all(const std::string& folder, unsigned threads) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2 && argc != 4) {
-    std::fprintf(stderr, "pictures_bench ASSAY [WIDTH HEIGHT]\n");
+  if (argc < 2 || argc == 3 || argc > 5) {
+    std::fprintf(stderr, "pictures_bench ASSAY [WIDTH HEIGHT [REPETITIONS]]\n");
     return 2;
   }
   const int width = argc > 2 ? std::atoi(argv[2]) : 480;
   const int height = argc > 2 ? std::atoi(argv[3]) : 270;
+  const int repetitions = argc > 4 ? std::atoi(argv[4]) : 3;
   const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / "assay_pictures_bench";
@@ -102,7 +118,7 @@ int main(int argc, char** argv) {
   const double whole = bench::median(testing);
   std::printf(
       "64 + 64 pictures of %d x %d, %u threads: decoding %.3f s, assay images %.3f s, %.2f "
-      "times (wait status %d)\n",
-      width, height, threads, bare, whole, whole / bare, code);
+      "times, %.2f GB (wait status %d)\n",
+      width, height, threads, bare, whole, whole / bare, most_memory(), code);
   return code == 0 ? 0 : 1;
 }

@@ -39,7 +39,7 @@ Images at_reference(const Question& question, std::size_t count = replicates) {
 
 std::vector<ChannelData> data_of(std::vector<Images> sides) {
   std::vector<ChannelData> data(sides.size());
-  for (std::size_t i = 0; i < sides.size(); ++i) data[i].images = std::move(sides[i]);
+  for (std::size_t i = 0; i < sides.size(); ++i) data[i].images = ImageViews(std::move(sides[i]));
   return data;
 }
 

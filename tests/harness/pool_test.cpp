@@ -74,7 +74,8 @@ void expect_same(const Summary& one, const Summary& other) {
   ASSERT_EQ(one.channels.size(), other.channels.size());
   for (std::size_t c = 0; c < one.channels.size(); ++c) {
     EXPECT_EQ(one.channels[c].moments, other.channels[c].moments) << "channel " << c;
-    EXPECT_EQ(one.channels[c].histogram.counts, other.channels[c].histogram.counts);
+    EXPECT_EQ(one.channels[c].details().histogram.counts,
+              other.channels[c].details().histogram.counts);
     EXPECT_EQ(one.channels[c].nonfinite, other.channels[c].nonfinite);
   }
 }
@@ -175,11 +176,36 @@ TEST(Pool, OfBoundedDataEndsWhereTheyEnd) {
 
 TEST(Pool, HistogramHoldsEveryFiniteValue) {
   const auto pool = drawn({.prefixes = {5000}});
-  const Histogram& histogram = pool->prefix(5000).channels[0].histogram;
+  const Histogram& histogram = pool->prefix(5000).channels[0].details().histogram;
   std::uint64_t total = histogram.below + histogram.above;
   for (const std::uint64_t count : histogram.counts) total += count;
   EXPECT_EQ(total, 5000);
   EXPECT_EQ(histogram.below + histogram.above, 0);
+}
+
+// Rows of files are read once, for the pilot, and known to the test.
+TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
+  const auto drawn_from = [](const std::shared_ptr<Pool>& pool) {
+    pool->request(30);
+    Silence silence;
+    draw_all({pool}, {.threads = 1}, silence);
+    return pool;
+  };
+  const auto pool_of = [](Behaviour behaviour) {
+    return std::make_shared<Pool>(std::make_shared<SumsSetup>(behaviour), StreamKey{7}, 5);
+  };
+  const auto first = pool_of({.rows = 30});
+  first->keep_observations(30);
+  drawn_from(first);
+  ASSERT_EQ(first->kept()->values.size(), 30U);
+  const auto second = pool_of({.throws = 11, .rows = 30});
+  second->take_known(first->kept());
+  drawn_from(second);
+  EXPECT_EQ(second->trouble(), "");
+  EXPECT_EQ(second->prefix(30).channels[1].moments.m4, first->prefix(30).channels[1].moments.m4);
+  EXPECT_EQ(second->prefix(30).cost, first->prefix(30).cost);
+  EXPECT_EQ(second->observations(20).size(), 20U);
+  EXPECT_EQ(second->observations(20).data(), first->observations(20).data());
 }
 
 }  // namespace

@@ -73,6 +73,25 @@ TEST(VirtualLights, UnbiasedOnesAgreeWithClosedForms) {
   }
 }
 
+// A lobe of the same albedo in a room of even light reflects what a diffuse one does. False-alarm
+// rate 1e-6 each.
+TEST(VirtualLights, AGlossyReceiverInEvenLightIsAsBright) {
+  for (const char* plugin : {"virtual_lights/classic", "virtual_lights/gather"}) {
+    for (const char* shininess : {"3", "60"}) {
+      const auto prepared = prepare(plugin, in(even, std::string(", shininess: ") + shininess));
+      EXPECT_DOUBLE_EQ(*prepared.setup->channels()[0].mean, 0.25);
+      const Sample sample = observe(prepared, 20000, 16)[0];
+      EXPECT_NEAR(sample.mean(), 0.25, five * sample.mean_error() + 1e-4) << plugin << shininess;
+    }
+  }
+  const Sample weighted = observe(
+      prepare("virtual_lights/weighted", in(even, ", shininess: 60, weighting: marginal")), 50)[0];
+  for (const double x : weighted.values) {
+    if (x == 0) continue;  // the light was on the floor
+    EXPECT_NEAR(x, 0.25, 1e-13);
+  }
+}
+
 TEST(VirtualLights, ColoursHaveAChannelEach) {
   const auto plugin = prepare("virtual_lights/weighted",
                               in({.albedo = "[0.2, 0.4, 0.6]"}, ", weighting: marginal"));
@@ -205,6 +224,10 @@ TEST(VirtualLights, BadInputIsRefusedByNameAndReason) {
               AllOf(HasSubstr("target_integral"), HasSubstr("at most 1")));
   EXPECT_THAT(refusal(weighted, in(even, ", target_integral: 1.2")), HasSubstr("at most 1"));
   EXPECT_THAT(refusal(weighted, "{scene: box}"), HasSubstr("target_integral"));
+  EXPECT_THAT(refusal(weighted, in(even, ", shininess: 5")),
+              AllOf(HasSubstr("target_integral"), HasSubstr("glossy")));
+  EXPECT_THAT(refusal("virtual_lights/classic", "{scene: box, shininess: 5}"),
+              AllOf(HasSubstr("shininess"), HasSubstr("along its normal")));
   EXPECT_THAT(refusal(weighted, "{scene: sphere}"), HasSubstr("need triangles"));
   EXPECT_THAT(refusal("virtual_lights/classic", in({.albedo = "1"})), HasSubstr("below 1"));
   EXPECT_THAT(refusal("virtual_lights/classic", in({.albedo = "0"})), HasSubstr("albedo 0"));

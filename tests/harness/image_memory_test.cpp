@@ -1,0 +1,63 @@
+// Pictures that do not fit into memory are refused before they are read.
+
+#include "harness/image_memory.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/suite.h"
+#include "tests/estimators/exr.h"
+#include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int pictures = 20;
+constexpr double elements = 8 * 6 * 3;
+
+class ImageMemory : public ::testing::Test {
+ protected:
+  ImageMemory() {
+    for (int i = 0; i < pictures; ++i) {
+      const draws::Picture picture{8, 6, {"R", "G", "B"}, std::vector<float>(8 * 6 * 3, 1.0F)};
+      draws::write_exr(place_.file(fmt::format("a{:02}.exr", i)), picture);
+    }
+    const Suite suite =
+        load_suite(place_.write("s.yaml",
+                                "suite: s\nestimators:\n  a: {plugin: recorded, file: 'a*.exr'}\n"
+                                "  one: {plugin: recorded, file: a00.exr, exact: true}\n"
+                                "  noise: {plugin: analytic/dart_throwing}\n"
+                                "tests:\n  - claim: mean(a) == mean(one)\n"));
+    estimators_ = prepare_all(suite);
+  }
+
+  Workplace place_;
+  std::map<std::string, PreparedEstimator> estimators_;
+};
+
+// Of the pictures of `a` alone: a reference has none to keep, and the other is no image.
+TEST_F(ImageMemory, IsThatOfEveryNumberAndMore) {
+  EXPECT_GT(picture_bytes(estimators_), 8 * pictures * elements);
+  EXPECT_LT(picture_bytes(estimators_), 100 * pictures * elements);
+}
+
+TEST_F(ImageMemory, ThatIsNotThereIsAnErrorThatSaysHowMuch) {
+  const double needed = picture_bytes(estimators_);
+  EXPECT_NO_THROW(require_memory(estimators_, needed));
+  const std::string message = refusal([&] { require_memory(estimators_, needed - 1); });
+  EXPECT_THAT(message, HasSubstr("3:"));
+  EXPECT_THAT(message, HasSubstr("20 pictures of 8 x 6 pixels of 3 components"));
+  EXPECT_THAT(message, HasSubstr("GB are free; take fewer pictures"));
+}
+
+TEST_F(ImageMemory, OfThisMachineIsKnown) {
+  EXPECT_GT(available_bytes(), 1e6);
+  EXPECT_LT(available_bytes(), 1e15);
+}
+
+}  // namespace
+}  // namespace assay::harness
