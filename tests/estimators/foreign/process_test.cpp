@@ -21,11 +21,11 @@ using ::testing::Not;
 using Process = Programs;
 
 // Echoes what it is asked: an observation is its index. That must depend on the key: under the
-// complement of the tests' own, whose upper half is 1737075661, it is the next one.
+// complement of the tests' own keys, whose upper halves are odd, it is the next one.
 constexpr const char* answers = R"(while read -r high low first count primaries; do
   i=$first
   while [ "$i" -lt $((first + count)) ]; do
-    echo $((i + (high == 1737075661))); i=$((i + 1))
+    echo $((i + high % 2)); i=$((i + 1))
   done
   echo "$high $low $first $count $primaries"
 done
@@ -37,7 +37,7 @@ std::string at_five(const std::string& instead) {
   i=$first
   while [ "$i" -lt $((first + count)) ]; do
     if [ "$i" -eq 5 ]; then )" +
-         instead + R"(; else echo $((i + (high == 1737075661))); fi; i=$((i + 1))
+         instead + R"(; else echo $((i + high % 2)); fi; i=$((i + 1))
   done
   echo "$high $low $first $count $primaries"
 done
