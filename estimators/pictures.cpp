@@ -225,6 +225,9 @@ bool names_pictures(const std::string& file) {
 
 std::vector<std::string> files_of(const std::string& pattern) {
   std::error_code ignored;
+  if (std::filesystem::is_directory(pattern, ignored)) {
+    refuse(pattern, "is a folder; name its pictures, as in `" + pattern + "/*.exr`");
+  }
   if (std::filesystem::exists(pattern, ignored)) return {pattern};
   std::vector<std::string> files;
   glob_t found{};

@@ -38,7 +38,10 @@ void refuse_extras(const CLI::App& sub) {
   for (const std::string& extra : sub.remaining()) {
     const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
     if (!extra.starts_with("-")) {
-      usage_error(fmt::format("`{}` is one argument too many; {}", extra, help));
+      const bool picture = extra.ends_with(".exr");
+      usage_error(
+          fmt::format("`{}` is one argument too many; {}", extra,
+                      picture ? "quote a pattern, so that the shell leaves it alone" : help));
     }
     const std::string name = extra.substr(0, extra.find('='));
     const std::string near = nearest(name, option_names(sub));

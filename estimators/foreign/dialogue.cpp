@@ -126,7 +126,8 @@ std::vector<double> Dialogue::hear(const Question& question) {
     }
   } catch (const TimeOut&) {
     give_up("did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
-            " (parameter `timeout`); " + reply.so_far());
+            " (parameter `timeout`; does it flush its output after each reply?); " +
+            reply.so_far());
   }
   return reply.numbers();
 }

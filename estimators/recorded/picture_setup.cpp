@@ -4,14 +4,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "estimators/recorded/seen_pictures.h"
+
 namespace assay::recorded {
 
 namespace {
 
 class Picture final : public Estimator {
  public:
-  Picture(std::shared_ptr<const PictureStack> stack, std::size_t elements)
-      : stack_(std::move(stack)), texels_(elements) {}
+  Picture(std::shared_ptr<const PictureStack> stack, std::shared_ptr<SeenPictures> seen,
+          std::size_t elements)
+      : stack_(std::move(stack)), seen_(std::move(seen)), texels_(elements) {}
 
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
                  Cost& cost) override {
@@ -22,12 +25,24 @@ class Picture final : public Estimator {
                               std::to_string(stack_->files.size()) + " files");
     }
     stack_->read(random.observation(), texels_);
+    refuse_a_copy(random.observation());
     write_observation(texels_, out);
     cost.samples += 1;
   }
 
  private:
+  /// Copies are no independent observations: they would make the variance too small.
+  void refuse_a_copy(std::uint64_t index) {
+    const auto other = seen_->note({.index = index}, texels_);
+    if (!other) return;
+    const auto [first, second] = std::minmax(other->index, index);
+    throw InputError({.file = stack_->files[second]},
+                     "is the same picture as `" + stack_->files[first] +
+                         "`, bit for bit: give each render a seed of its own, or leave it out");
+  }
+
   std::shared_ptr<const PictureStack> stack_;
+  std::shared_ptr<SeenPictures> seen_;
   std::vector<float> texels_;  // scratch
 };
 
@@ -45,7 +60,7 @@ class PictureSetup final : public Setup {
   }
   std::optional<ImageShape> image() const override { return shape_; }
   std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<Picture>(stack_, shape_.elements());
+    return std::make_unique<Picture>(stack_, seen_, shape_.elements());
   }
   std::optional<std::uint64_t> observations() const override { return stack_->files.size(); }
   std::string data_file() const override { return data_file_; }
@@ -55,6 +70,7 @@ class PictureSetup final : public Setup {
 
  private:
   std::shared_ptr<const PictureStack> stack_;
+  std::shared_ptr<SeenPictures> seen_ = std::make_shared<SeenPictures>();
   ImageShape shape_;
   std::string data_file_;
 };

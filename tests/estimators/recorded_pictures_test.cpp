@@ -123,6 +123,28 @@ TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
   EXPECT_TRUE(pictures.setup->channels()[1].diagnostic);
 }
 
+TEST_F(Pictures, ThatAreCopiesAreRefusedByName) {
+  write_texel("a.exr", {"R", "G", "B"}, {1, 2, 3});
+  write_texel("b.exr", {"R", "G", "B"}, {1, 2, 4});
+  write_texel("c.exr", {"R", "G", "B"}, {1, 2, 3});
+  const draws::Prepared pictures = prepare("{file: *.exr}");
+  draws::observe(pictures, 2);
+  draws::observe(pictures, 2);
+  try {
+    draws::observe(pictures, 3);
+    ADD_FAILURE() << "a copy was taken for an observation";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.where().file, file("c.exr"));
+    EXPECT_THAT(error.message(), HasSubstr("is the same picture as `" + file("a.exr") + "`"));
+  }
+}
+
+TEST_F(Pictures, OfOneValueThroughoutMayBeEqual) {
+  write_texel("a.exr", {"R", "G", "B"}, {0, 0, 0});
+  write_texel("b.exr", {"R", "G", "B"}, {0, 0, 0});
+  EXPECT_EQ(draws::observe(prepare("{file: *.exr}"), 2)[0].values.size(), 2u);
+}
+
 TEST_F(Pictures, OfUnequalSizesAreRefusedByName) {
   draws::write_scan_lines(file("a.exr"), {.width = 4, .channels = {"Y"}});
   draws::write_scan_lines(file("b.exr"), {.width = 5, .channels = {"Y"}});

@@ -1,0 +1,31 @@
+#include "estimators/recorded/seen_pictures.h"
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+
+namespace assay::recorded {
+
+namespace {
+
+/// Fowler, Noll and Vo's hash (FNV-1a, 64 bits), a texel at a time.
+std::uint64_t digest_of(std::span<const float> texels) {
+  std::uint64_t digest = 0xcbf29ce484222325;
+  for (const float texel : texels) {
+    digest = (digest ^ std::bit_cast<std::uint32_t>(texel)) * 0x100000001b3;
+    digest ^= digest >> 32;  // the product alone never carries a high bit down
+  }
+  return digest;
+}
+
+}  // namespace
+
+std::optional<PictureName> SeenPictures::note(PictureName name, std::span<const float> texels) {
+  if (std::ranges::adjacent_find(texels, std::not_equal_to<>()) == texels.end()) return {};
+  const std::uint64_t digest = digest_of(texels);
+  const std::scoped_lock lock(mutex_);
+  const PictureName& first = by_digest_.try_emplace(digest, name).first->second;
+  return first == name ? std::nullopt : std::optional(first);
+}
+
+}  // namespace assay::recorded
