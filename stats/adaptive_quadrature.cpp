@@ -13,8 +13,7 @@ using Rule = boost::math::quadrature::gauss<double, AdaptiveQuadrature::nodes>;
 
 // So near to the end of a part that a border of panels lies outside, rounding included.
 constexpr double nudge = 1e-9;
-// Share of a part that lies beyond the outermost node, on one side.
-constexpr double blind_share = 0.0255;
+constexpr double blind_share = AdaptiveQuadrature::blind_share;
 
 struct Nodes {
   Integral sum;
@@ -43,10 +42,10 @@ Nodes at_nodes(const AdaptiveQuadrature::Function& function, Span span) {
   return nodes;
 }
 
-double hidden(const AdaptiveQuadrature::Function& function, Span span, const Nodes& nodes) {
+// Mass that a border of the support may hide beyond the outermost nodes, from the densities at the
+// part's ends.
+double hidden(Span span, const Nodes& nodes, double low, double high) {
   if (nodes.some_zero && nodes.some_positive) return 0;  // the border is seen
-  const double low = function(span.low + nudge * span.width()).value;
-  const double high = function(span.high - nudge * span.width()).value;
   if (nodes.some_zero) return blind_share * span.width() * (low + high);
   return blind_share * nodes.sum.value * ((low > 0 ? 0 : 1) + (high > 0 ? 0 : 1));
 }
@@ -62,7 +61,11 @@ Integral AdaptiveQuadrature::counted(double density) {
 
 AdaptiveQuadrature::Sampled AdaptiveQuadrature::sampled(const Function& function, Span span) {
   const Nodes found = at_nodes(function, span);
-  return {{found.sum.value, found.sum.error + hidden(function, span, found)}, found.parts};
+  const double low = function(span.low + nudge * span.width()).value;
+  const double high = function(span.high - nudge * span.width()).value;
+  return {{found.sum.value, found.sum.error + hidden(span, found, low, high)},
+          found.parts,
+          {low, high}};
 }
 
 Integral AdaptiveQuadrature::once(const Function& function, Span span) {

@@ -50,11 +50,14 @@ class AdaptiveQuadrature {
   // of the support may come to.
   Integral once(const Function& function, Span span);
   // The same, and what it was made of: w_i f(x_i) times half the width at the nodes, in the order
-  // of node_places().
+  // of node_places(), and f at the ends, just inside.
   struct Sampled {
     Integral integral;
     std::array<double, nodes> parts = {};
+    std::array<double, 2> ends = {};
   };
+  // Share of a part that lies beyond the outermost node, on one side.
+  static constexpr double blind_share = 0.0255;
   Sampled sampled(const Function& function, Span span);
   // The nodes in [-1, 1].
   static const std::array<double, nodes>& node_places();

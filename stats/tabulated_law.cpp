@@ -41,12 +41,31 @@ const std::array<Slopes, nodes>& legendre_at_nodes() {
 struct Spread {
   Integral mass;
   Slopes slopes = {};
+  // Mass that a jump beyond the outermost nodes, where neither the part nor its halves look, may
+  // add or take: the density at the ends is then not what the interpolant goes on to.
+  double unseen = 0;
 
-  explicit Spread(const AdaptiveQuadrature::Sampled& sampled) : mass(sampled.integral) {
+  Spread(const AdaptiveQuadrature::Sampled& sampled, double width) : mass(sampled.integral) {
     for (std::size_t i = 0; i < nodes; ++i) {
       const Slopes& p = legendre_at_nodes()[i];
       for (std::size_t k = 0; k < slopes.size(); ++k) slopes[k] += sampled.parts[i] * p[k] / 2;
     }
+    for (const int end : {-1, 1}) {
+      const double there = width * sampled.ends[end < 0 ? 0 : 1];
+      unseen += AdaptiveQuadrature::blind_share * std::abs(there - 2 * density_at(end));
+    }
+  }
+
+ private:
+  // The interpolant at t = -1 or 1, whose integral over t is the mass: P_k(1) = 1, P_k(-1) =
+  // (-1)^k.
+  double density_at(int end) const {
+    double sum = mass.value / 2;
+    double sign = end;
+    for (std::size_t k = 0; k < slopes.size(); ++k, sign *= end) {
+      sum += slopes[k] * (2.0 * static_cast<double>(k) + 3) * sign;
+    }
+    return sum;
   }
 };
 
@@ -128,7 +147,7 @@ class Table {
     int depth = 0;
   };
 
-  Spread spread(Span span) { return Spread(rule_.sampled(density_, span)); }
+  Spread spread(Span span) { return {rule_.sampled(density_, span), span.width()}; }
 
   void add(Span span, const Spread& whole, Inherited from) {
     Part part{.span = span,
@@ -137,7 +156,8 @@ class Table {
               .depth = from.depth};
     const Integral sum = part.first.mass + part.second.mass;
     part.error = std::max(std::abs(sum.value - whole.mass.value), sum.error);
-    part.departure = std::max(largest_distance(whole, part.first, part.second), from.departure);
+    const double seen = largest_distance(whole, part.first, part.second);
+    part.departure = std::max(seen + part.first.unseen + part.second.unseen, from.departure);
     if (part.depth < limits_.deepest_bisection) {
       part.badness =
           std::max(part.departure / limits_.departure, part.error / rule_.limits().tolerance);

@@ -10,8 +10,8 @@ namespace assay::stats {
 // The distribution function of a density as a table: between two places the integral of the
 // polynomial through the density at the nodes of the rule there.
 struct TabulatedLaw {
-  // The integral of the interpolant from the part's lower end on, at t in [-1, 1]: w (t + 1 +
-  // sum over k of slope_k (P_k+1(t) - P_k-1(t))), w half the part's mass.
+  // The integral of the interpolant from the part's lower end on, at t in [-1, 1]: mass / 2 (t + 1)
+  // + sum over k >= 1 of slope_(k-1) (P_(k+1)(t) - P_(k-1)(t)).
   using Slopes = std::array<double, AdaptiveQuadrature::nodes - 1>;
 
   std::vector<double> place;      // ascending
@@ -20,8 +20,9 @@ struct TabulatedLaw {
   double total_error = 0;         // of the mass, estimated
   // Estimate of sup |table - law|: the largest departure plus the errors of all masses, over the
   // mass. The departure of a part is the largest distance, at seven places inside it, of what its
-  // own seven nodes and those of its halves say of the law there, and no less than a quarter of the
-  // departure of the part that it is a half of. The table has the halves, which are nearer: by
+  // own seven nodes and those of its halves say of the law there, plus what a jump beyond the
+  // outermost nodes may hide, and no less than a quarter of the departure of the part that it is a
+  // half of. The table has the halves, which are nearer: by
   // 2^-7 where the density is smooth, by about 1/2 where it jumps.
   double error = 0;
 
