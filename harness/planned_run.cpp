@@ -186,7 +186,6 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   plan_picture(run, used, primaries, pilots, pools);
 }
 
-/// Everything a user may have got wrong is found here, before anything is sampled.
 /// Why the suite's tests cannot run on this machine; "" where they can.
 std::string lack_of(const Suite& suite) {
   for (const std::string& program : suite.needs) {
@@ -196,6 +195,8 @@ std::string lack_of(const Suite& suite) {
   return "";
 }
 
+/// Everything a user may have got wrong is found here, before anything is sampled; but of a suite
+/// that is skipped nothing is prepared.
 std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options) {
   auto run = std::make_unique<SuiteRun>();
   run->suite = adjusted(suite, options);

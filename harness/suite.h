@@ -77,7 +77,7 @@ struct Suite {
   double alpha = 0.01;
   double beta = 0.01;
   std::optional<std::uint64_t> seed = {};
-  /// Programs without any of which its tests are skipped.
+  /// Programs; where one of them is missing, its tests are skipped.
   std::vector<std::string> needs = {};
   /// Of all tests together; see README.md of the suites.
   std::optional<Budget> budget = {};

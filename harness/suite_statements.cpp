@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "estimators/text_pattern.h"
-#include "harness/run.h"
 #include "harness/suite_keys.h"
 
 namespace assay::harness {

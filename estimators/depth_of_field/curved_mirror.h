@@ -41,11 +41,25 @@ struct CurvedMirror {
     return x + (beyond + curvature * x * x / 2) * (slope + turned);
   }
 
-  /// Whether every ray from a lens of this radius to this pixel is sure to meet the mirror: the
-  /// discriminant of the equation above is focus^2 - 2 curvature w (u focus + w distance).
-  bool met_by_all(const Lens& lens, double pixel) const {
-    const double w = std::abs(pixel) + lens.radius;
-    return 2 * curvature * w * (lens.radius * lens.focus + w * distance) < lens.focus * lens.focus;
+  /// Whether the ray from x = u of the lens to this pixel meets the mirror, in front of the lens,
+  /// and is sent back: of the quantities in exact(), focus (nx^2 - 1) + 2 w nx < 0.
+  bool returns(const Lens& lens, double u, double pixel) const {
+    const double w = pixel - u;
+    const double a = curvature * w * w / 2;
+    const double b = lens.focus - curvature * u * w;
+    const double c = distance + curvature * u * u / 2;
+    const double discriminant = b * b - 4 * a * c;
+    if (c <= 0 || discriminant < 0 || b + std::sqrt(discriminant) <= 0) return false;
+    const double nx = curvature * (u + w * 2 * c / (b + std::sqrt(discriminant)));
+    return lens.focus * (nx * nx - 1) + 2 * w * nx < 0;
+  }
+
+  /// Whether all do that start at 129 places of the lens; what they depend on is smooth in u.
+  bool returns_all(const Lens& lens, double pixel) const {
+    for (int i = -64; i <= 64; ++i) {
+      if (!returns(lens, lens.radius * i / 64, pixel)) return false;
+    }
+    return true;
   }
 };
 

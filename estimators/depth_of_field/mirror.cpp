@@ -76,8 +76,9 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
                 .frequency = 2 * std::numbers::pi / given.number("wavelength"),
                 .phase = given.number("phase")},
       .exact = given.string("rays") == "exact"};
-  if (reflection.exact && !reflection.mirror.met_by_all(reflection.lens, reflection.pixel)) {
-    given.refuse("curvature", "rays from the lens may miss a mirror that bulges so much");
+  if (reflection.exact && !reflection.mirror.returns_all(reflection.lens, reflection.pixel)) {
+    given.refuse("curvature",
+                 "rays from the lens may miss so curved a mirror, or not come back from it");
   }
   return averaging(channel(reflection), reflection, lens_samplers());
 }

@@ -16,7 +16,8 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // Pairs of observations, and how many different ones must be among them, before equality under two
-// keys is no coincidence: of a value with four outcomes, all as likely, it is one in 10^7.
+// keys is no coincidence: of a value with four outcomes it is at most some 3 in
+// 10^6 (probabilities 3/4 and three of 1/12).
 constexpr std::uint64_t most_pairs = 12;
 constexpr std::size_t least_different = 4;
 

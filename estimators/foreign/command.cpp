@@ -12,7 +12,6 @@
 #include "estimators/foreign/renderings.h"
 #include "estimators/foreign/setup.h"
 #include "recorded/picture_setup.h"
-#include "recorded/seen_pictures.h"
 #include "recorded/table.h"
 
 namespace assay::plugins {
@@ -53,11 +52,8 @@ void read_file(const Contents& contents, const std::string& file, std::vector<fl
 
 class Command final : public Estimator {
  public:
-  Command(std::shared_ptr<foreign::Renderings> renderings, std::shared_ptr<const Contents> contents,
-          std::shared_ptr<recorded::SeenPictures> seen)
-      : renderings_(std::move(renderings)),
-        contents_(std::move(contents)),
-        seen_(std::move(seen)) {}
+  Command(std::shared_ptr<foreign::Renderings> renderings, std::shared_ptr<const Contents> contents)
+      : renderings_(std::move(renderings)), contents_(std::move(contents)) {}
 
   void announce(const Announcement& what) override { announced_ = what; }
 
@@ -72,18 +68,12 @@ class Command final : public Estimator {
       announced_.last = index;  // once a block
     }
     read_file(*contents_, renderings_->file(random.key(), index, primaries), texels_, out);
-    if (contents_->shape && seen_->note({random.key().bits, index}, texels_)) {
-      throw std::runtime_error(
-          "the program wrote a picture that it had written for another seed, bit for bit: it must "
-          "draw its random numbers from the seed that it is given");
-    }
     cost.samples += primaries * (contents_->shape ? contents_->shape->pixels() : 1);
   }
 
  private:
   std::shared_ptr<foreign::Renderings> renderings_;
   std::shared_ptr<const Contents> contents_;
-  std::shared_ptr<recorded::SeenPictures> seen_;
   Announcement announced_;
   std::vector<float> texels_;  // scratch
 };
@@ -105,13 +95,12 @@ class CommandSetup final : public Setup {
   }
   std::optional<ImageShape> image() const override { return contents_->shape; }
   std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<Command>(renderings_, contents_, seen_);
+    return std::make_unique<Command>(renderings_, contents_);
   }
 
  private:
   std::shared_ptr<foreign::Renderings> renderings_;
   std::shared_ptr<const Contents> contents_;
-  std::shared_ptr<recorded::SeenPictures> seen_ = std::make_shared<recorded::SeenPictures>();
 };
 
 struct Look {

@@ -33,9 +33,9 @@ class Picture final : public Estimator {
  private:
   /// Copies are no independent observations: they would make the variance too small.
   void refuse_a_copy(std::uint64_t index) {
-    const auto other = seen_->note({.index = index}, texels_);
+    const auto other = seen_->note(index, texels_);
     if (!other) return;
-    const auto [first, second] = std::minmax(other->index, index);
+    const auto [first, second] = std::minmax(*other, index);
     throw InputError({.file = stack_->files[second]},
                      "is the same picture as `" + stack_->files[first] +
                          "`, bit for bit: give each render a seed of its own, or leave it out");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <functional>
 
 namespace assay::recorded {
@@ -20,12 +21,15 @@ std::uint64_t digest_of(std::span<const float> texels) {
 
 }  // namespace
 
-std::optional<PictureName> SeenPictures::note(PictureName name, std::span<const float> texels) {
+std::optional<std::uint64_t> SeenPictures::note(std::uint64_t index,
+                                                std::span<const float> texels) {
+  const auto finite = [](float texel) { return std::isfinite(texel); };
+  if (!std::ranges::all_of(texels, finite)) return {};
   if (std::ranges::adjacent_find(texels, std::not_equal_to<>()) == texels.end()) return {};
   const std::uint64_t digest = digest_of(texels);
   const std::scoped_lock lock(mutex_);
-  const PictureName& first = by_digest_.try_emplace(digest, name).first->second;
-  return first == name ? std::nullopt : std::optional(first);
+  const std::uint64_t first = by_digest_.try_emplace(digest, index).first->second;
+  return first == index ? std::nullopt : std::optional(first);
 }
 
 }  // namespace assay::recorded

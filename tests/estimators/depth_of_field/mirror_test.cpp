@@ -58,7 +58,7 @@ TEST(LensMirror, ExactRaysAreLinearInTheLimit) {
   const Lens lens{.radius = 1, .focus = 2};
   for (const double curvature : {-.2, 0., .3}) {
     const CurvedMirror mirror{.distance = .8, .beyond = 1.7, .curvature = curvature};
-    ASSERT_TRUE(mirror.met_by_all(lens, .5));
+    ASSERT_TRUE(mirror.returns_all(lens, .5));
     const auto off = [&](double scale) {
       return std::abs(mirror.exact(lens, .6 * scale, -.5 * scale, 0) -
                       mirror.linear(lens, .6 * scale, -.5 * scale, 0));
@@ -98,11 +98,21 @@ TEST(LensMirror, ExactRaysKeepTheLawOfReflection) {
 
 TEST(LensMirror, OneThatRaysMissIsRefused) {
   try {
-    stated("{rays: exact, radius: 1, curvature: 3}");
+    stated("{rays: exact, radius: 1, curvature: 3, pixel: 2}");
     FAIL() << "not refused";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("curvature"), std::string::npos) << error.what();
   }
+}
+
+// A hollow mirror that the ray misses, and a bulging one that sends it on instead of back.
+TEST(CurvedMirror, IsRefusedWhereARayMayBeLost) {
+  EXPECT_FALSE((CurvedMirror{.distance = 1, .beyond = 1, .curvature = -3})
+                   .returns_all({.radius = 1, .focus = 2}, 0));
+  EXPECT_FALSE((CurvedMirror{.distance = 1.8, .beyond = 1, .curvature = .2})
+                   .returns_all({.radius = .2, .focus = 2}, 2));
+  EXPECT_TRUE((CurvedMirror{.distance = 1, .beyond = 1, .curvature = -.1})
+                  .returns_all({.radius = .2, .focus = 2}, .5));
 }
 
 }  // namespace
