@@ -19,25 +19,6 @@ struct Span {
   bool constant(double rounding) const { return high - low <= 2 * rounding; }
 };
 
-/// Of every element; some of all images at a time, so that what was found so far stays near by.
-std::vector<Span> spans_of(const stats::ImageStack<double>& stack) {
-  constexpr std::size_t at_a_time = 1024;
-  std::vector<Span> spans(stack.extent.elements());
-  for (std::size_t first = 0; first < spans.size(); first += at_a_time) {
-    const std::size_t last = std::min(first + at_a_time, spans.size());
-    for (std::size_t i = first; i < last; ++i) {
-      spans[i] = {stack.images[0][i], stack.images[0][i]};
-    }
-    for (const std::span<const double> image : stack.images) {
-      for (std::size_t i = first; i < last; ++i) {
-        spans[i].low = std::min(spans[i].low, image[i]);
-        spans[i].high = std::max(spans[i].high, image[i]);
-      }
-    }
-  }
-  return spans;
-}
-
 /// Where one number is to stand in every image of a stack.
 struct Replacement {
   std::size_t element;
@@ -78,6 +59,31 @@ std::vector<Declared> declared_by(const Subject& subject) {
     declared.push_back({all[channel].low, all[channel].high, all[channel].rounding});
   }
   return declared;
+}
+
+/// Of every element; of one that is no constant it ends where that shows. Some elements of all
+/// images at a time: nearly always the second image tells that none of them is a constant.
+std::vector<Span> spans_of(const stats::ImageStack<double>& stack,
+                           const std::vector<Declared>& channels) {
+  constexpr std::size_t at_a_time = 256;
+  std::vector<Span> spans(stack.extent.elements());
+  for (std::size_t first = 0; first < spans.size(); first += at_a_time) {
+    const std::size_t last = std::min(first + at_a_time, spans.size());
+    for (std::size_t i = first; i < last; ++i) {
+      spans[i] = {stack.images[0][i], stack.images[0][i]};
+    }
+    bool constants = true;
+    for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
+      const std::span<const double> image = stack.images[r];
+      constants = false;
+      for (std::size_t i = first; i < last; ++i) {
+        spans[i].low = std::min(spans[i].low, image[i]);
+        spans[i].high = std::max(spans[i].high, image[i]);
+        constants |= spans[i].constant(channels[i].rounding);
+      }
+    }
+  }
+  return spans;
 }
 
 /// What a constant can have missed: its value, and the range of the law it is of.
@@ -140,7 +146,7 @@ void VaryingPart::settle_against_reference(const Question& question, const Image
   value_.assign(reference.value.begin(), reference.value.end());
   error_.assign(reference.standard_error.begin(), reference.standard_error.end());
   const std::vector<Declared> channels = declared_by(question.subjects[0]);
-  const std::vector<Span> spans = spans_of(first_);
+  const std::vector<Span> spans = spans_of(first_, channels);
   std::vector<Replacement> replacements;
   for (std::size_t i = 0; i < value_.size(); ++i) {
     const Span span = spans[i];
@@ -166,8 +172,8 @@ void VaryingPart::settle_two(const Question& question) {
   for (Declared& channel : two) channel = mapped(channel, question);
   std::vector<Replacement> of_first;
   std::vector<Replacement> of_second;
-  const std::vector<Span> first_spans = spans_of(first_);
-  const std::vector<Span> second_spans = spans_of(second_);
+  const std::vector<Span> first_spans = spans_of(first_, one);
+  const std::vector<Span> second_spans = spans_of(second_, two);
   for (std::size_t i = 0; i < one.size(); ++i) {
     const bool first_constant = first_spans[i].constant(one[i].rounding);
     const bool second_constant = second_spans[i].constant(two[i].rounding);

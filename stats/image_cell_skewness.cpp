@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "stats/check.h"
+#include "stats/image_cell_moments.h"
 #include "stats/image_family.h"
 #include "stats/image_halves.h"
 #include "stats/image_moments.h"
 #include "stats/image_windows.h"
-#include "stats/moments.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
@@ -22,12 +22,6 @@ using Groups = std::vector<WindowGroup>;
 // Choices of weights that are looked at, where the pilot has so many.
 constexpr std::size_t most_choices = 8;
 
-std::size_t count_of(const Groups& groups) {
-  std::size_t windows = 0;
-  for (const WindowGroup& group : groups) windows += group.windows.size();
-  return windows;
-}
-
 // Of the numerator of a studentised sum.
 struct Cumulants {
   double variance = 0;
@@ -35,15 +29,17 @@ struct Cumulants {
   double third_variance = 0;  // of the estimate of `third`, were the law normal
 };
 
-void add_side(std::vector<Cumulants>& cells, const std::vector<Moments>& pilot,
+void add_side(std::vector<Cumulants>& cells, const std::vector<CellMoments>& pilot,
               const CellPilot& side) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (!(pilot[i].m2 > 0)) continue;
-    const double deviation = side.factor * pilot[i].standard_deviation();
+    const auto& [count, m2, m3] = pilot[i];
+    if (!(m2 > 0)) continue;
+    const double deviation = side.factor * std::sqrt(m2 / (count - 1));
+    const double skewness = std::sqrt(count / m2) * (m3 / m2);
     const double scale = deviation * deviation * deviation / (side.replicates * side.replicates);
     cells[i].variance += deviation * deviation / side.replicates;
-    cells[i].third += scale * pilot[i].skewness();
-    cells[i].third_variance += 6 / static_cast<double>(pilot[i].count) * scale * scale;
+    cells[i].third += scale * skewness;
+    cells[i].third_variance += 6 / count * scale * scale;
   }
 }
 
@@ -86,31 +82,6 @@ struct Weights {
   std::span<const double> value;
   std::optional<std::size_t> choice;  // of the images they come from; none: from elsewhere
 };
-
-// Windows of all groups in a row, of one channel and one side.
-std::vector<Moments> window_moments(const CellPilot& side, const Groups& groups,
-                                    const Weights& weights, std::size_t channel) {
-  const ImageExtent& extent = side.stack.extent;
-  const std::size_t step = step_of(side);
-  std::vector<Moments> moments(count_of(groups));
-  WindowSums sums(extent);
-  std::vector<double> values(extent.width * extent.height);
-  for (std::size_t r = 0; r < side.stack.images.size(); ++r) {
-    if (r % step == weights.choice) continue;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const std::size_t e = i * extent.channels + channel;
-      values[i] = weights.value[e] * (side.stack.images[r][e] - side.stack.images[0][e]);
-    }
-    sums.load(values);
-    std::size_t window = 0;
-    for (const WindowGroup& group : groups) {
-      for (std::size_t i = 0; i < group.windows.size(); ++i) {
-        moments[window++].add(sums.of(group, i));
-      }
-    }
-  }
-  return moments;
-}
 
 // Whether anything varied in them; counted in integers, where sums leave no rounding.
 std::vector<bool> varied_windows(const ImageExtent& extent, const Groups& groups,
@@ -197,7 +168,8 @@ class FactorMeans {
     const std::vector<bool> varied = varied_windows(extent_, groups_, weights.value, channel);
     std::vector<Cumulants> cells(varied.size());
     for (const CellPilot& side : sides) {
-      add_side(cells, window_moments(side, groups_, weights, channel), side);
+      const WeightedImages images{side.stack, weights.value, step_of(side), weights.choice};
+      add_side(cells, cell_moments(images, groups_, channel), side);
     }
     std::size_t window = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "stats/image_windows.h"
+
+namespace assay::stats {
+
+// Internal to cell_tails: second and third moments of the weighted sums over aligned cells, over
+// the images of a stack. Sums of powers of deviations from the mean, as in Moments, with its bits.
+struct CellMoments {
+  double count = 0;
+  double m2 = 0;
+  double m3 = 0;
+};
+
+struct WeightedImages {
+  const ImageStack<double>& stack;
+  std::span<const double> weights;
+  std::size_t step = 1;  // every step-th image, from `left_out` on, is left out
+  std::optional<std::size_t> left_out = {};
+};
+
+// Of all windows of the groups, which are aligned, in a row; of one channel. Each sum is of
+// weight (x - x of the first image). Cells of sides up to 64 tile by tile over all images, so that
+// what is known of them stays in the cache; larger ones from the sums over tiles.
+std::vector<CellMoments> cell_moments(const WeightedImages& images,
+                                      const std::vector<WindowGroup>& groups, std::size_t channel);
+
+}  // namespace assay::stats
