@@ -283,7 +283,7 @@ Command list_command(const Given& given, const CLI::App& sub) {
 
 Command replay_command(const Given& given, const CLI::App& sub) {
   require(given.record, "a saved run", sub);
-  require(given.test, "a test", sub);
+  require(given.test, "a test, as `assay list tests SUITE` prints them", sub);
   return ReplayArguments{given.record, given.test,
                          count_if_given(given.observation, "the observation", 0)};
 }
