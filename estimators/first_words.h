@@ -8,21 +8,18 @@
 
 namespace assay {
 
-/// The first two words of a stream, read as a Stream reads them.
+/// The first two words of a stream, read as a Stream reads them. There is no third: who draws more
+/// takes the Stream.
 class FirstWords {
  public:
   FirstWords() = default;
   FirstWords(std::uint64_t first, std::uint64_t second) : words_{first, second} {}
 
   std::uint64_t operator()() { return words_[next_++ & 1]; }
-  double uniform() { return to_double((*this)() >> 11) * 0x1p-53; }
-  double uniform_open() { return (to_double((*this)() >> 12) + 0.5) * 0x1p-52; }
+  double uniform() { return word::uniform((*this)()); }
+  double uniform_open() { return word::uniform_open((*this)()); }
 
  private:
-  static double to_double(std::uint64_t word) {
-    return static_cast<double>(static_cast<std::int64_t>(word));
-  }
-
   std::array<std::uint64_t, 2> words_{};
   std::uint32_t next_ = 0;
 };

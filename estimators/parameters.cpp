@@ -18,14 +18,8 @@ std::vector<std::string> names_of(const std::vector<ParameterInformation>& decla
   return names;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
-}
-
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  return did_you_mean(name, known, known.empty() ? "it has none" : "it has: " + joined(known));
+  return did_you_mean(name, known, known.empty() ? "it has none" : "it has: " + listed(known));
 }
 
 std::string shown(double value) {
@@ -142,7 +136,7 @@ double Parameters::in_range(const ParameterInformation& parameter, double number
 void Parameters::one_of(const ParameterInformation& parameter, const std::string& text) const {
   const std::vector<std::string>& choices = parameter.choices;
   if (choices.empty() || std::ranges::find(choices, text) != choices.end()) return;
-  refuse(parameter.name, "must be one of " + joined(choices) + ", but it is `" + text + "`" +
+  refuse(parameter.name, "must be one of " + listed(choices) + ", but it is `" + text + "`" +
                              did_you_mean(text, choices));
 }
 

@@ -24,6 +24,22 @@ struct StreamKey {
 StreamKey stream_key(std::uint64_t seed, std::string_view plugin, std::string_view parameters,
                      std::uint32_t copy);
 
+/// How a word of 64 random bits is read as a number.
+namespace word {
+
+/// Processors convert signed integers in one instruction, unsigned ones in a branch. word < 2^63.
+inline double to_double(std::uint64_t word) {
+  return static_cast<double>(static_cast<std::int64_t>(word));
+}
+
+/// Uniform in [0, 1): a multiple of 2^-53.
+inline double uniform(std::uint64_t word) { return to_double(word >> 11) * 0x1p-53; }
+
+/// Uniform in (0, 1): the midpoints of 2^52 cells, for logarithms and quantiles.
+inline double uniform_open(std::uint64_t word) { return (to_double(word >> 12) + 0.5) * 0x1p-52; }
+
+}  // namespace word
+
 /// The random numbers of one observation. A uniform_random_bit_generator of 64-bit words.
 /// Philox4x32-10 (Salmon et al. 2011): counter = draw, substream, observation (two words).
 class Stream {
@@ -41,10 +57,10 @@ class Stream {
   }
 
   /// Uniform in [0, 1): a multiple of 2^-53.
-  double uniform() { return to_double((*this)() >> 11) * 0x1p-53; }
+  double uniform() { return word::uniform((*this)()); }
 
   /// Uniform in (0, 1): the midpoints of 2^52 cells, for logarithms and quantiles.
-  double uniform_open() { return (to_double((*this)() >> 12) + 0.5) * 0x1p-52; }
+  double uniform_open() { return word::uniform_open((*this)()); }
 
   /// The family it is of: with the observation's index all that another program needs to draw it.
   StreamKey key() const { return {key_[0] | static_cast<std::uint64_t>(key_[1]) << 32}; }
@@ -63,11 +79,6 @@ class Stream {
       : key_{{static_cast<std::uint32_t>(key.bits), static_cast<std::uint32_t>(key.bits >> 32)}},
         counter_{{0, substream, static_cast<std::uint32_t>(observation),
                   static_cast<std::uint32_t>(observation >> 32)}} {}
-
-  // Processors convert signed integers in one instruction, unsigned ones in a branch. word < 2^63.
-  static double to_double(std::uint64_t word) {
-    return static_cast<double>(static_cast<std::int64_t>(word));
-  }
 
   void refill() {
     const PhiloxCounter block = philox(counter_, key_);

@@ -110,6 +110,12 @@ InputError::InputError(Location where, const std::string& what)
       where_(std::move(where)),
       message_(what) {}
 
+Value::Value(const Value&) = default;
+Value::Value(Value&&) noexcept = default;
+Value& Value::operator=(const Value&) = default;
+Value& Value::operator=(Value&&) noexcept = default;
+Value::~Value() = default;
+
 Value Value::scalar(std::string text, Location where) {
   Value value;
   value.kind_ = Kind::scalar;
@@ -214,6 +220,12 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
   const std::string near = nearest(name, candidates);
   if (!near.empty()) return "; did you mean `" + near + "`?";
   return otherwise.empty() ? "" : "; " + std::string(otherwise);
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
 }
 
 std::string quoted(const std::vector<std::string>& names) {

@@ -46,6 +46,13 @@ class Value {
   using Member = std::pair<std::string, Value>;
 
   Value() = default;
+  // Written out in one place, as nearly every file copies and destroys some.
+  Value(const Value&);
+  Value(Value&&) noexcept;
+  Value& operator=(const Value&);
+  Value& operator=(Value&&) noexcept;
+  ~Value();
+
   static Value scalar(std::string text, Location where = {});
   static Value list(std::vector<Value> items, Location where = {});
   static Value map(std::vector<Member> members, Location where = {});
@@ -85,6 +92,9 @@ std::string nearest(std::string_view name, const std::vector<std::string>& candi
 /// "; " and `otherwise`, or nothing where that is empty.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates,
                          std::string_view otherwise = "");
+
+/// "a, b".
+std::string listed(const std::vector<std::string>& names);
 
 /// "`a`, `b`".
 std::string quoted(const std::vector<std::string>& names);

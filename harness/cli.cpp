@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <set>
 
-#include "harness/cli_help.h"
 #include "harness/cli_options.h"
 #include "harness/cli_values.h"
 #include "harness/shell.h"
@@ -18,58 +16,9 @@ namespace assay::harness {
 
 namespace {
 
-Texts option_names(const CLI::App& app) {
-  Texts names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
-  return names;
-}
-
-Texts subcommand_names(const CLI::App& app) {
-  Texts names;
-  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
-  return names;
-}
-
-[[noreturn]] void usage_error(const std::string& why) { throw InputError({}, why); }
-
-void refuse_extras(const CLI::App& sub) {
-  for (const std::string& extra : sub.remaining()) {
-    const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
-    if (!extra.starts_with("-")) {
-      const bool picture = extra.ends_with(".exr");
-      usage_error(
-          fmt::format("`{}` is one argument too many; {}", extra,
-                      picture ? "quote a pattern, so that the shell leaves it alone" : help));
-    }
-    const std::string name = extra.substr(0, extra.find('='));
-    const std::string near = nearest(name, option_names(sub));
-    usage_error(fmt::format("`assay {}` has no option `{}`; {}", sub.get_name(), name,
-                            near.empty() ? help : fmt::format("did you mean `{}`?", near)));
-  }
-}
-
-const CLI::App& chosen(const CLI::App& app) {
-  const auto parsed = app.get_subcommands();
-  for (const std::string& extra : app.remaining()) {
-    if (extra.starts_with("-")) {
-      usage_error(
-          fmt::format("unknown option `{}`; options stand after the command, see `assay "
-                      "--help`",
-                      extra));
-    }
-    usage_error(
-        fmt::format("unknown command `{}`{}", extra, suggestion(extra, subcommand_names(app))));
-  }
-  if (parsed.empty()) usage_error("no command; see `assay --help`");
-  return *parsed.front();
-}
-
-void require(const std::string& value, const char* what, const CLI::App& sub) {
+void require(const std::string& value, const char* what, const std::string& name) {
   if (value.empty()) {
-    usage_error(fmt::format("`assay {}` needs {}; see `assay {} --help`", sub.get_name(), what,
-                            sub.get_name()));
+    usage_error(fmt::format("`assay {}` needs {}; see `assay {} --help`", name, what, name));
   }
 }
 
@@ -175,29 +124,29 @@ std::string replayable_images(const Given& given) {
   return line.text();
 }
 
-void require_suites(const Given& given, const CLI::App& sub) {
-  require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
+void require_suites(const Given& given, const std::string& name) {
+  require(given.suites.empty() ? "" : given.suites[0], "a suite file", name);
   for (const std::string& suite : given.suites) {
     if (suite.ends_with(".json"))
       usage_error("a suite is a YAML file; a saved run is shown by `assay report " + suite + "`");
   }
 }
 
-Command run_command(const Given& given, const CLI::App& sub) {
-  require_suites(given, sub);
+Command run_command(const Given& given, const std::string& name) {
+  require_suites(given, name);
   RunCommand command{given.suites, given.sets, options(given), output(given)};
   command.options.ledger = given.ledger;
   command.options.command = replayable_run(given);
   return command;
 }
 
-Command plan_command(const Given& given, const CLI::App& sub) {
-  require_suites(given, sub);
+Command plan_command(const Given& given, const std::string& name) {
+  require_suites(given, name);
   return PlanCommand{given.suites, given.sets, options(given), given.quiet};
 }
 
-Command check_command(const Given& given, const CLI::App& sub) {
-  require(given.claim, "a claim", sub);
+Command check_command(const Given& given, const std::string& name) {
+  require(given.claim, "a claim", name);
   if (given.claim.ends_with(".yaml"))
     usage_error("`assay check` tests one claim; a suite is run by `assay run " + given.claim + "`");
   // Assigned, not initialised in one expression: GCC 12 destroys the members of a nested aggregate
@@ -221,9 +170,9 @@ Command check_command(const Given& given, const CLI::App& sub) {
   return command;
 }
 
-Command images_command(const Given& given, const CLI::App& sub) {
-  require(given.candidate, "--candidate, a pattern of OpenEXR files", sub);
-  require(given.pictures, "--reference, a pattern of OpenEXR files or one file", sub);
+Command images_command(const Given& given, const std::string& name) {
+  require(given.candidate, "--candidate, a pattern of OpenEXR files", name);
+  require(given.pictures, "--reference, a pattern of OpenEXR files or one file", name);
   ImagesCommand command;
   command.options = options(given);
   command.output = output(given);
@@ -264,8 +213,8 @@ Command calibrate_command(const Given& given) {
   return command;
 }
 
-Command sample_command(const Given& given, const CLI::App& sub) {
-  require(given.source, "an estimator", sub);
+Command sample_command(const Given& given, const std::string& name) {
+  require(given.source, "an estimator", name);
   SampleArguments arguments{.source = given.source, .estimators = given.estimators};
   arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 1);
   arguments.primaries = count_if_given(given.primaries, "--primaries", 1).value_or(1);
@@ -273,110 +222,57 @@ Command sample_command(const Given& given, const CLI::App& sub) {
   return arguments;
 }
 
-Command list_command(const Given& given, const CLI::App& sub) {
-  require(given.what, "`plugins` or `tests`", sub);
+Command list_command(const Given& given, const std::string& name) {
+  require(given.what, "`plugins` or `tests`", name);
   const bool tests = choice(Value::scalar(given.what), "what is listed", {"plugins", "tests"}) == 1;
-  if (tests) require(given.suites.empty() ? "" : given.suites[0], "a suite file", sub);
+  if (tests) require(given.suites.empty() ? "" : given.suites[0], "a suite file", name);
   if (!tests && !given.suites.empty()) usage_error("`assay list plugins` takes no suite");
   return ListCommand{tests, given.suites};
 }
 
-Command replay_command(const Given& given, const CLI::App& sub) {
-  require(given.record, "a saved run", sub);
-  require(given.test, "a test, as `assay list tests SUITE` prints them", sub);
+Command replay_command(const Given& given, const std::string& name) {
+  require(given.record, "a saved run", name);
+  require(given.test, "a test, as `assay list tests SUITE` prints them", name);
   return ReplayArguments{given.record, given.test,
                          count_if_given(given.observation, "the observation", 0)};
 }
 
-Command report_command(const Given& given, const CLI::App& sub) {
-  require(given.record, "a saved run", sub);
+Command report_command(const Given& given, const std::string& name) {
+  require(given.record, "a saved run", name);
   return ReportCommand{given.record, output(given)};
 }
 
-Command merge_command(const Given& given, const CLI::App& sub) {
-  require(given.records.empty() ? "" : given.records[0], "the records of all shards", sub);
+Command merge_command(const Given& given, const std::string& name) {
+  require(given.records.empty() ? "" : given.records[0], "the records of all shards", name);
   return MergeCommand{{given.records}, output(given)};
 }
 
-Command describe_command(const Given& given, const CLI::App& sub) {
-  require(given.plugin, "a plugin", sub);
+Command describe_command(const Given& given, const std::string& name) {
+  require(given.plugin, "a plugin", name);
   return DescribeCommand{given.plugin};
 }
 
-Command command_of(const Given& given, const CLI::App& sub) {
-  const std::string& name = sub.get_name();
-  if (name == "run") return run_command(given, sub);
-  if (name == "plan") return plan_command(given, sub);
-  if (name == "check") return check_command(given, sub);
-  if (name == "images") return images_command(given, sub);
+Command command_of(const Given& given, const std::string& name) {
+  if (name == "run") return run_command(given, name);
+  if (name == "plan") return plan_command(given, name);
+  if (name == "check") return check_command(given, name);
+  if (name == "images") return images_command(given, name);
   if (name == "calibrate") return calibrate_command(given);
-  if (name == "sample") return sample_command(given, sub);
-  if (name == "list") return list_command(given, sub);
-  if (name == "describe") return describe_command(given, sub);
-  if (name == "replay") return replay_command(given, sub);
-  if (name == "merge") return merge_command(given, sub);
-  return report_command(given, sub);
-}
-
-/// Arguments are asked for by our own messages; that most must be there is for the usage line
-/// alone.
-std::string help(CLI::App& app) {
-  const auto parsed = app.get_subcommands();
-  if (parsed.empty()) return general_help();
-  CLI::App& sub = *parsed.front();
-  sub.set_help_flag("-h,--help", "this text");
-  for (CLI::Option* option : sub.get_options()) {
-    const std::string name = option->get_name(true);
-    const bool optional =
-        name == "OBSERVATION" || name == "METHOD" || (name == "SUITE" && sub.get_name() == "list");
-    if (option->get_positional() && !optional) option->required();
-  }
-  return wrapped_options(sub.help("assay"));
-}
-
-/// `assay help` is `assay --help`, `assay help run` is `assay run --help`.
-Texts without_help_command(const Texts& arguments, const CLI::App& app) {
-  if (arguments.empty() || arguments.front() != "help") return arguments;
-  if (arguments.size() == 1) return {"--help"};
-  Texts asked(arguments.begin() + 1, arguments.end());
-  const Texts names = subcommand_names(app);
-  // Of a command that there is not: the words alone, so that they are refused.
-  if (std::find(names.begin(), names.end(), asked.front()) != names.end()) {
-    asked.emplace_back("--help");
-  }
-  return asked;
-}
-
-/// What CLI11 refuses, with the methods where one was to be named.
-std::string in_words(const CLI::ParseError& error) {
-  std::string text = error.what();
-  if (text.starts_with("--test:")) text += "; METHOD is one of " + joined(method_names());
-  return text;
+  if (name == "sample") return sample_command(given, name);
+  if (name == "list") return list_command(given, name);
+  if (name == "describe") return describe_command(given, name);
+  if (name == "replay") return replay_command(given, name);
+  if (name == "merge") return merge_command(given, name);
+  return report_command(given, name);
 }
 
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
-  Given given;
-  CLI::App app("", "assay");
-  app.require_subcommand(0, 1);
-  app.allow_extras();
-  bool version_asked = false;
-  app.add_flag("--version", version_asked);
-  define_options(app, given);
-  try {
-    const Texts words = without_help_command(arguments, app);
-    // CLI11 takes the words from the back.
-    app.parse(Texts(words.rbegin(), words.rend()));
-  } catch (const CLI::CallForHelp&) {
-    return TextCommand{help(app)};
-  } catch (const CLI::ParseError& e) {
-    usage_error(in_words(e));
-  }
-  if (version_asked) return TextCommand{fmt::format("assay {} ({})\n", version(), commit())};
-  const CLI::App& sub = chosen(app);
-  refuse_extras(sub);
-  return command_of(given, sub);
+  const SortedWords words = sorted_words(arguments);
+  if (words.version) return TextCommand{fmt::format("assay {} ({})\n", version(), commit())};
+  if (words.command.empty()) return TextCommand{words.help};
+  return command_of(words.given, words.command);
 }
 
 }  // namespace assay::harness

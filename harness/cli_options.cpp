@@ -1,5 +1,10 @@
 #include "harness/cli_options.h"
 
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
 #include "harness/cli_help.h"
 #include "harness/suite_entries.h"
 #include "harness/suite_keys.h"
@@ -113,7 +118,7 @@ void define_check(CLI::App& app, Given& given) {
   one(sub, "--allow", given.allow, "X",
       "the effect that may be there, as 0.5% or 0.002; default 0");
   one(sub, "--test", given.method, "METHOD",
-      "force a method, one of " + joined(method_names()) + "; default chosen from the pilot");
+      "force a method, one of " + listed(method_names()) + "; default chosen from the pilot");
   one(sub, "--over", given.over, "SWEEP",
       "of a slope: a parameter and its values, as '{primaries: [8, 16, 32]}'; default none");
   one(sub, "--reference", given.reference, "R",
@@ -211,14 +216,122 @@ void define_others(CLI::App& app, Given& given) {
   add_output(report, given);
 }
 
-}  // namespace
-
 void define_options(CLI::App& app, Given& given) {
   define_run(app, given);
   define_plan(app, given);
   define_check(app, given);
   define_images(app, given);
   define_others(app, given);
+}
+
+Texts option_names(const CLI::App& app) {
+  Texts names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+Texts subcommand_names(const CLI::App& app) {
+  Texts names;
+  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+  return names;
+}
+
+void refuse_extras(const CLI::App& sub) {
+  for (const std::string& extra : sub.remaining()) {
+    const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
+    if (!extra.starts_with("-")) {
+      const bool picture = extra.ends_with(".exr");
+      usage_error(
+          fmt::format("`{}` is one argument too many; {}", extra,
+                      picture ? "quote a pattern, so that the shell leaves it alone" : help));
+    }
+    const std::string name = extra.substr(0, extra.find('='));
+    const std::string near = nearest(name, option_names(sub));
+    usage_error(fmt::format("`assay {}` has no option `{}`; {}", sub.get_name(), name,
+                            near.empty() ? help : fmt::format("did you mean `{}`?", near)));
+  }
+}
+
+const CLI::App& chosen(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  for (const std::string& extra : app.remaining()) {
+    if (extra.starts_with("-")) {
+      usage_error(
+          fmt::format("unknown option `{}`; options stand after the command, see `assay "
+                      "--help`",
+                      extra));
+    }
+    usage_error(
+        fmt::format("unknown command `{}`{}", extra, suggestion(extra, subcommand_names(app))));
+  }
+  if (parsed.empty()) usage_error("no command; see `assay --help`");
+  return *parsed.front();
+}
+
+/// Arguments are asked for by our own messages; that most must be there is for the usage line
+/// alone.
+std::string help_text(CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  if (parsed.empty()) return general_help();
+  CLI::App& sub = *parsed.front();
+  sub.set_help_flag("-h,--help", "this text");
+  for (CLI::Option* option : sub.get_options()) {
+    const std::string name = option->get_name(true);
+    const bool optional =
+        name == "OBSERVATION" || name == "METHOD" || (name == "SUITE" && sub.get_name() == "list");
+    if (option->get_positional() && !optional) option->required();
+  }
+  return wrapped_options(sub.help("assay"));
+}
+
+/// `assay help` is `assay --help`, `assay help run` is `assay run --help`.
+Texts without_help_command(const Texts& arguments, const CLI::App& app) {
+  if (arguments.empty() || arguments.front() != "help") return arguments;
+  if (arguments.size() == 1) return {"--help"};
+  Texts asked(arguments.begin() + 1, arguments.end());
+  const Texts names = subcommand_names(app);
+  // Of a command that there is not: the words alone, so that they are refused.
+  if (std::find(names.begin(), names.end(), asked.front()) != names.end()) {
+    asked.emplace_back("--help");
+  }
+  return asked;
+}
+
+/// What CLI11 refuses, with the methods where one was to be named.
+std::string in_words(const CLI::ParseError& error) {
+  std::string text = error.what();
+  if (text.starts_with("--test:")) text += "; METHOD is one of " + listed(method_names());
+  return text;
+}
+
+}  // namespace
+
+void usage_error(const std::string& why) { throw InputError({}, why); }
+
+SortedWords sorted_words(const Texts& arguments) {
+  SortedWords sorted;
+  CLI::App app("", "assay");
+  app.require_subcommand(0, 1);
+  app.allow_extras();
+  app.add_flag("--version", sorted.version);
+  define_options(app, sorted.given);
+  try {
+    const Texts words = without_help_command(arguments, app);
+    // CLI11 takes the words from the back.
+    app.parse(Texts(words.rbegin(), words.rend()));
+  } catch (const CLI::CallForHelp&) {
+    sorted.help = help_text(app);
+    return sorted;
+  } catch (const CLI::ParseError& e) {
+    usage_error(in_words(e));
+  }
+  if (sorted.version) return sorted;
+  const CLI::App& sub = chosen(app);
+  refuse_extras(sub);
+  sorted.command = sub.get_name();
+  return sorted;
 }
 
 }  // namespace assay::harness

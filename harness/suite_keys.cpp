@@ -7,15 +7,9 @@
 
 namespace assay::harness {
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
-}
-
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
   return did_you_mean(name, candidates,
-                      candidates.empty() ? "there is none" : "there is: " + joined(candidates));
+                      candidates.empty() ? "there is none" : "there is: " + listed(candidates));
 }
 
 namespace {

@@ -28,9 +28,6 @@ class Keys {
   std::string what_;
 };
 
-/// "a, b, c".
-std::string joined(const std::vector<std::string>& names);
-
 /// "; did you mean `x`?", or "; " and the candidates where none is near.
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
 

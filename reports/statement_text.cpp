@@ -18,8 +18,12 @@ constexpr std::size_t findings_shown = 2;
 std::string evidence_of(const Test& test) {
   if (!is_evidence(test)) return {};
   const Effect effect = deciding_channel(test).effect;
-  const std::string text = named_effect_text(effect);
-  return text.empty() ? headline_p(test).text() : effect_name(effect) + " " + text;
+  const std::string interval = named_effect_text(effect);
+  const std::string text =
+      interval.empty() ? headline_p(test).text() : effect_name(effect) + " " + interval;
+  // A pass that rests on a margin must not read as one without.
+  const double allowed = test.allow.value_or(0);
+  return allowed == 0 ? text : text + ", " + margin_text(allowed, effect) + " allowed";
 }
 
 }  // namespace

@@ -59,6 +59,7 @@ Channel channel(const Reflection& reflection) {
   out.mean = 0.5 + 0.5 * wave;
   // (1 + cos 2) / 8 of the square, less the square of the mean.
   const double variance = (1 + reflection.left(2)) / 8 - wave * wave / 4;
+  // Numbers near 1/4 cancel to an error of 1e-16: below 1e-7 the ninth digit would be rounding.
   if (variance > 1e-7) out.variance = variance;
   return out;
 }

@@ -19,6 +19,7 @@
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/library_setup.h"
 #include "estimators/foreign/reply.h"
+#include "estimators/foreign/streams_ahead.h"
 #include "estimators/foreign/words.h"
 
 namespace assay {
@@ -28,6 +29,7 @@ namespace {
 using foreign::Hello;
 using foreign::PreparedLibrary;
 using foreign::Question;
+using foreign::StreamsAhead;
 
 constexpr int failed = 3;
 
@@ -115,9 +117,12 @@ void answer(const PreparedLibrary& library, const Channels& channels, const Ques
   const Hello& hello = library.hello();
   const std::size_t width = hello.width();
   std::vector<double> numbers(static_cast<std::size_t>(question.count) * width);
+  const StreamKey key{question.key};
+  StreamsAhead streams;
+  streams.announce({.key = key, .first = question.first, .last = question.first + question.count});
   for (std::uint64_t i = 0; i < question.count; ++i) {
     const std::span<double> row = std::span(numbers).subspan(i * width, width);
-    AssayStream random = assay_stream(question.key, question.first + i);
+    AssayStream random = streams.of(key, question.first + i);
     try {
       const std::uint64_t rays =
           library.observe(random, question.primaries, row.first(hello.channels.size()));

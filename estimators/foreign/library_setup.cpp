@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "estimators/foreign/library_sampler.h"
+#include "estimators/foreign/streams_ahead.h"
 #include "estimators/foreign/words.h"
 #include "estimators/parameters.h"
 
@@ -168,9 +169,11 @@ class LibraryEstimator final : public Estimator {
       : library_(std::move(library)),
         elements_(library_->hello().image ? library_->hello().image->elements() : 1) {}
 
+  void announce(const Announcement& next) override { streams_.announce(next); }
+
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
                  Cost& cost) override {
-    AssayStream theirs = assay_stream(random.key().bits, random.observation());
+    AssayStream theirs = streams_.of(random.key(), random.observation());
     cost.closest_hit_rays += library_->observe(theirs, primaries, out);
     cost.samples += primaries * elements_;
   }
@@ -178,6 +181,7 @@ class LibraryEstimator final : public Estimator {
  private:
   std::shared_ptr<const PreparedLibrary> library_;
   std::uint64_t elements_;
+  StreamsAhead streams_;
 };
 
 class LibrarySetup final : public Setup {

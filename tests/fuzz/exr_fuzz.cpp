@@ -6,29 +6,19 @@
 // libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 // libraries: -lOpenEXR -lIex -lIlmThread -lImath
 
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "estimators/pictures.h"
 #include "estimators/value.h"
+#include "tests/fuzz/case.h"
 
 namespace {
 
 using namespace assay;
-
-/// A file of this process alone, in memory where the system has such a place.
-std::string own_file() {
-  const bool shared = std::filesystem::is_directory("/dev/shm");
-  return std::string(shared ? "/dev/shm" : "/tmp") + "/assay_exr_fuzz_" + std::to_string(getpid()) +
-         ".exr";
-}
 
 void read_all(const std::string& file) {
   const ExrFile picture(file);
@@ -55,9 +45,7 @@ void guarded(const std::string& file, const Work& work) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::string file = own_file();
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  const std::string file = fuzz::written(data, size, ".exr");
   guarded(file, [&] { read_all(file); });
   guarded(file, [&] { recorded::open_stack({file}, "usual"); });
   guarded(file, [&] { recorded::open_stack({file}, "*.R,?"); });

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -14,14 +13,12 @@
 #include <vector>
 
 #include "estimators/foreign/reply.h"
+#include "tests/fuzz/case.h"
 
 namespace {
 
 using namespace assay::foreign;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using assay::fuzz::require;
 
 void hello(std::string_view text) {
   is_whole_hello(text);

@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -20,14 +19,12 @@
 #include "reports/markdown.h"
 #include "reports/metrics.h"
 #include "reports/read_json.h"
+#include "tests/fuzz/case.h"
 
 namespace {
 
 using namespace assay::reports;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using assay::fuzz::require;
 
 void report(const Record& record) {
   require(!console(record).empty());

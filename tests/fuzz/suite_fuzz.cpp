@@ -9,18 +9,15 @@
 // sources: estimators/text_pattern.cpp estimators/catalogue.cpp estimators/parameters.cpp
 // libraries: -lfmt -lyaml-cpp
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "estimators/estimator.h"
 #include "harness/suite.h"
+#include "tests/fuzz/case.h"
 
 namespace assay::plugins {
 
@@ -40,23 +37,10 @@ std::vector<Entry> all() {
 
 }  // namespace assay::plugins
 
-namespace {
-
 using namespace assay;
 
-/// A file of this process alone, in memory where the system has such a place.
-std::string own_file() {
-  const bool shared = std::filesystem::is_directory("/dev/shm");
-  return std::string(shared ? "/dev/shm" : "/tmp") + "/assay_suite_fuzz_" +
-         std::to_string(getpid()) + ".yaml";
-}
-
-}  // namespace
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::string file = own_file();
-  std::ofstream(file, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  const std::string file = fuzz::written(data, size, ".yaml");
   try {
     const harness::Suite suite = harness::load_suite(file);
     if (suite.tests.empty() || suite.estimators.empty()) std::abort();

@@ -17,8 +17,9 @@ namespace {
 using reports::Verdict;
 using testing::HasSubstr;
 
-// Statements whose tests are of several shards, an estimator without a test, two of one plugin, a mutant, an image, several channels, a law, and
-// an estimator that a test's own observations do not show (its draws alone are tested).
+// Statements whose tests are of several shards, an estimator without a test, two of one plugin, a
+// mutant, an image, several channels, a law, and an estimator that a test's own observations do not
+// show (its draws alone are tested).
 constexpr const char* suite = R"(suite: good
 estimators:
   uniform: {plugin: analytic/exponential_uniform, primaries: 64}
@@ -52,10 +53,6 @@ tests:
 /// As it is written and read again.
 reports::Record saved(const reports::Record& record) {
   return reports::read_json(reports::json(record), "record");
-}
-
-std::string numbers_of(const reports::Record& record) {
-  return reports::json(reports::without_times(record));
 }
 
 std::vector<ShardFile> shards_of(const std::vector<std::string>& files, unsigned count,

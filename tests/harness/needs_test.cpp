@@ -36,10 +36,6 @@ tests:
   - {claim: mean(normal) == 0}
 )";
 
-std::string numbers_of(const reports::Record& record) {
-  return reports::json(reports::without_times(record));
-}
-
 TEST(Needs, SkipTheTestsOfASuiteThatLacksAProgram) {
   const reports::Record record = run_text(renderer);
   ASSERT_EQ(record.suites[0].tests.size(), 2u);

@@ -39,10 +39,6 @@ constexpr const char* tests = R"(  - {claim: mean(uniform) == analytic, detect: 
 
 std::string good() { return std::string(estimators) + tests; }
 
-std::string numbers_of(const reports::Record& record) {
-  return reports::json(reports::without_times(record));
-}
-
 /// A test alone, without what belongs to the run (Holm, times, the file it stood in).
 reports::Test raw(reports::Test test) {
   test.file.clear();

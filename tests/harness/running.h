@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/run.h"
+#include "reports/json.h"
 
 namespace assay::harness {
 
@@ -47,6 +48,11 @@ inline reports::Record run_files(const std::vector<std::string>& files,
 inline reports::Record run_text(const std::string& text, const RunOptions& options = {}) {
   const Workplace place;
   return run_files({place.write("suite.yaml", text)}, options);
+}
+
+/// All that a run says but when and how long: equal runs have equal texts.
+inline std::string numbers_of(const reports::Record& record) {
+  return reports::json(reports::without_times(record));
 }
 
 /// The only test of a suite given as text, run on one thread.

@@ -44,6 +44,24 @@ Answer answer_to(const Names& holds, const Names& fails = {}) {
   return answer(suite_of_verdicts(), {.holds = holds, .fails = fails});
 }
 
+TEST(Statements, SayOfAFindingHowMuchWasAllowed) {
+  reports::Suite suite;
+  reports::Test test = test_of("near", Verdict::pass);
+  test.channels.resize(1);
+  test.channels[0].effect = {.quantity = "relative difference of means",
+                             .estimate = 0.003,
+                             .low = 0.002,
+                             .high = 0.004,
+                             .confidence = 0.99,
+                             .relative = true};
+  suite.tests = {test};
+  const std::string strict = findings(suite, {"near"});
+  EXPECT_NE(strict.find("+0.3\u00A0%"), std::string::npos) << strict;
+  EXPECT_EQ(strict.find("allowed"), std::string::npos) << strict;
+  suite.tests[0].allow = 0.005;
+  EXPECT_EQ(findings(suite, {"near"}), strict + ", 0.5\u00A0% allowed");
+}
+
 TEST(Statements, HoldWhereEveryTestIsAsExpected) {
   EXPECT_EQ(answer_to({"pass"}), Answer::yes);
   EXPECT_EQ(answer_to({"pass", "kill"}), Answer::yes);

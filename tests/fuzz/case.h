@@ -1,0 +1,32 @@
+#pragma once
+
+// What the fuzz targets share: a promise that ends the program where it is broken, and a case as a
+// file.
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace assay::fuzz {
+
+inline void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+/// Writes a case to a file of this process alone, in memory where the system has such a place, and
+/// names it. `ending` as ".yaml".
+inline std::string written(const std::uint8_t* data, std::size_t size, const std::string& ending) {
+  static const std::string file =
+      std::string(std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : "/tmp") +
+      "/assay_fuzz_" + std::to_string(getpid()) + ending;
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  return file;
+}
+
+}  // namespace assay::fuzz
