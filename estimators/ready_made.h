@@ -2,6 +2,7 @@
 
 // What is asked of set-ups whose numbers another program made.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,6 +15,10 @@ namespace assay::recorded {
 /// Whether the means of a set-up's channels, with their errors, are all there is: nothing can be
 /// drawn.
 bool is_reference(const Setup& setup);
+
+/// Of pictures as observations: the number of channels, of which nothing but the names is known.
+/// nullopt for other set-ups. Millions of names need not be made where nobody asks for them.
+std::optional<std::size_t> unknown_channels(const Setup& setup);
 
 /// The file that holds observation `index` of a set-up alone, or "".
 std::string observation_file(const Setup& setup, std::uint64_t index);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimators/ready_made.h"
 #include "stats/constant_sample.h"
 #include "stats/moments.h"
 #include "stats/tails.h"
@@ -18,15 +19,20 @@ struct Span {
   bool constant(double rounding) const { return high - low <= 2 * rounding; }
 };
 
-/// Of every element, image by image: they are read from end to end.
+/// Of every element; some of all images at a time, so that what was found so far stays near by.
 std::vector<Span> spans_of(const stats::ImageStack<double>& stack) {
-  std::vector<Span> spans;
-  spans.reserve(stack.extent.elements());
-  for (const double value : stack.images[0]) spans.push_back({value, value});
-  for (const std::span<const double> image : stack.images) {
-    for (std::size_t i = 0; i < spans.size(); ++i) {
-      spans[i].low = std::min(spans[i].low, image[i]);
-      spans[i].high = std::max(spans[i].high, image[i]);
+  constexpr std::size_t at_a_time = 1024;
+  std::vector<Span> spans(stack.extent.elements());
+  for (std::size_t first = 0; first < spans.size(); first += at_a_time) {
+    const std::size_t last = std::min(first + at_a_time, spans.size());
+    for (std::size_t i = first; i < last; ++i) {
+      spans[i] = {stack.images[0][i], stack.images[0][i]};
+    }
+    for (const std::span<const double> image : stack.images) {
+      for (std::size_t i = first; i < last; ++i) {
+        spans[i].low = std::min(spans[i].low, image[i]);
+        spans[i].high = std::max(spans[i].high, image[i]);
+      }
     }
   }
   return spans;
@@ -60,6 +66,11 @@ struct Declared {
 };
 
 std::vector<Declared> declared_by(const Subject& subject) {
+  if (recorded::unknown_channels(*subject.setup)) {
+    const Channel unknown;
+    return std::vector<Declared>(subject.channels.size(),
+                                 {unknown.low, unknown.high, unknown.rounding});
+  }
   const std::vector<Channel> all = subject.setup->channels();
   std::vector<Declared> declared;
   declared.reserve(subject.channels.size());

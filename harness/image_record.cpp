@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "estimators/map_file.h"
+#include "estimators/ready_made.h"
 #include "harness/picture.h"
 #include "harness/question_image.h"
 #include "harness/text_hash.h"
@@ -244,18 +245,19 @@ reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, do
 reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary,
                                         ImagePicture picture) {
   const ImageShape shape = *setup.image();
-  const std::vector<Channel> channels = setup.channels();
+  const bool unknown = recorded::unknown_channels(setup).has_value();
+  const std::vector<Channel> channels = unknown ? std::vector<Channel>() : setup.channels();
   const double elements = static_cast<double>(shape.elements());
   double mean = 0;
   double variance = 0;
   double reference = 0;
-  bool known = true;
+  bool known = !unknown;
   for (std::size_t i = 0; i < shape.elements(); ++i) {
     const stats::Moments& moments = summary.channels[i].moments;
     mean += moments.mean / elements;
     if (moments.count > 1) variance += picture.averaged * moments.variance() / elements;
     known = known && channels[i].mean.has_value();
-    reference += channels[i].mean.value_or(0) / elements;
+    if (known) reference += *channels[i].mean / elements;
   }
   reports::EstimatorChannel row{.name = image_name(shape),
                                 .mean = image_mean(shape, summary, mean, picture.confidence),

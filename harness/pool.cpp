@@ -10,7 +10,9 @@
 #include <stdexcept>
 
 #include "estimators/flush_denormals.h"
+#include "estimators/ready_made.h"
 #include "harness/group_variance.h"
+#include "harness/kept_sums.h"
 #include "harness/recorded_run.h"
 
 namespace assay::harness {
@@ -44,6 +46,16 @@ std::uint64_t primaries_of(const Setup& setup, std::uint64_t primaries) {
 const Summary* ready_made(const Setup& setup) {
   const RecordedRun* run = as_recorded_run(setup);
   return run == nullptr ? nullptr : &run->summary();
+}
+
+std::size_t channels_of(const Setup& setup) {
+  const std::optional<std::size_t> unknown = recorded::unknown_channels(setup);
+  return unknown ? *unknown : setup.channels().size();
+}
+
+bool is_plain(const ChannelPlan& plan) {
+  return !(plan.histogram_low < plan.histogram_high) && plan.keep == 0 && plan.cells == 0 &&
+         !plan.with_cost;
 }
 
 ObservationCost counted(const Cost& cost) {
@@ -116,10 +128,10 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
       key_(key),
       primaries_(primaries),
       block_size_(block_size_of(primaries_of(*setup_, primaries))),
-      plan_(setup_->channels().size()) {}
+      plan_(channels_of(*setup_)) {}
 
 void Pool::mark(std::uint64_t count) {
-  const bool known = !prefixes_.try_emplace(count).second;
+  const bool known = !prefixes_.try_emplace(count, std::make_shared<const Summary>()).second;
   if (!known && count <= drawn()) throw std::logic_error("a prefix was marked after it was drawn");
 }
 
@@ -129,7 +141,7 @@ void Pool::request(std::uint64_t count) {
 }
 
 const Summary& Pool::prefix(std::uint64_t count) const {
-  return is_ready_made() ? *ready_made_ : prefixes_.at(count);
+  return is_ready_made() ? *ready_made_ : *prefixes_.at(count);
 }
 
 std::uint64_t Pool::largest_prefix() const {
@@ -140,6 +152,7 @@ std::uint64_t Pool::largest_prefix() const {
 
 std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
   if (is_ready_made()) return {};
+  if (sums_later_) return {};
   const std::vector<double>& kept = values_.at(channel);
   return {kept.data(), std::min<std::size_t>(kept.size(), count)};
 }
@@ -154,8 +167,8 @@ std::uint64_t Pool::block_end(std::uint64_t first) const {
 }
 
 Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const {
-  Block block{.whole = Summary(plan_),
-              .values = std::vector<std::vector<double>>(plan_.size()),
+  Block block{.whole = Summary(sums_later_ ? std::span<const ChannelPlan>() : plan_),
+              .values = std::vector<std::vector<double>>(sums_later_ ? 0 : plan_.size()),
               .observations = {},
               .partial = {},
               .trouble = {}};
@@ -190,7 +203,7 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
         drawn = block.observations.values.back();
       }
       if (counts_costs) cost = counted(spent);
-      intake.take(drawn, index, cost, drawn.data() != out.data());
+      if (!sums_later_) intake.take(drawn, index, cost, drawn.data() != out.data());
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
         if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);
       }
@@ -213,16 +226,45 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   return block;
 }
 
+bool Pool::sums_later() const {
+  if (is_ready_made() || !setup_->image() || !setup_->observations()) return false;
+  const std::uint64_t pictures = *setup_->observations();
+  const bool kept = known_ ? known_->values.size() >= pictures : kept_observations_ >= pictures;
+  return kept && grouped_channels_.empty() && !keeps_blocks_ &&
+         std::ranges::all_of(plan_, is_plain);
+}
+
+void Pool::begin_drawing() {
+  if (!started_) sums_later_ = sums_later();
+}
+
+void Pool::end_drawing() {
+  if (!sums_later_) return;
+  const std::shared_ptr<const KeptObservations> kept = known_ ? known_ : kept_;
+  for (auto& [count, prefix] : prefixes_) {
+    if (count > drawn() || count == 0 || !prefix->channels.empty()) continue;
+    const auto shared = kept->sums.find(count);
+    if (shared != kept->sums.end()) {
+      prefix = shared->second;
+      continue;
+    }
+    auto summed = std::make_shared<Summary>(*prefix);
+    summed->channels = sums_of_kept(observations(count));
+    prefix = std::move(summed);
+    if (!known_) kept_->sums[count] = prefix;
+  }
+}
+
 void Pool::fold(Block&& block) {
   if (!started_) {
-    running_ = Summary(plan_);
-    values_.resize(plan_.size());
+    running_ = Summary(sums_later_ ? std::span<const ChannelPlan>() : plan_);
+    if (!sums_later_) values_.resize(plan_.size());
     started_ = true;
   }
   if (!trouble_.empty()) return;
   for (auto& [count, partial] : block.partial) {
-    Summary prefix = running_;
-    prefix.append(partial);
+    auto prefix = std::make_shared<Summary>(running_);
+    prefix->append(partial);
     prefixes_.at(count) = std::move(prefix);
   }
   running_.append(block.whole);

@@ -24,6 +24,8 @@ std::uint64_t block_size_of(std::uint64_t primaries);
 struct KeptObservations {
   std::vector<std::vector<double>> values = {};
   std::vector<Cost> costs = {};
+  /// Of the first so many of them, where they were summed after all were there.
+  std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
 };
 
 class Pool {
@@ -105,6 +107,11 @@ class Pool {
   Block draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const;
   /// Takes the next block, in order.
   void fold(Block&& block);
+  /// Before the first block and after the last one that is drawn for now, by one thread: pictures
+  /// of files, which are kept anyway, are summed when all are there, an element over all of them at
+  /// a time instead of picture by picture (kept_sums.h). The second uses all threads.
+  void begin_drawing();
+  void end_drawing();
   std::uint64_t drawn() const { return running_.count; }
   /// Moments of an earlier run: nothing is drawn, and every prefix is the whole.
   bool is_ready_made() const { return ready_made_ != nullptr; }
@@ -116,7 +123,9 @@ class Pool {
   std::uint64_t primaries_;
   std::uint64_t block_size_;
   std::vector<ChannelPlan> plan_;
-  std::map<std::uint64_t, Summary> prefixes_;
+  bool sums_later() const;
+
+  std::map<std::uint64_t, std::shared_ptr<const Summary>> prefixes_;
   std::uint64_t requested_ = 0;
   Summary running_;
   std::vector<std::vector<double>> values_;
@@ -125,6 +134,7 @@ class Pool {
   std::shared_ptr<const KeptObservations> known_;
   std::uint64_t kept_observations_ = 0;
   bool keeps_blocks_ = false;
+  bool sums_later_ = false;
   std::vector<BlockSums> blocks_;
   bool started_ = false;
   std::string trouble_;

@@ -61,11 +61,9 @@ std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
 std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimator& estimator,
                                         const Pilots& pilots) {
   std::vector<ChannelPlan> plan;
-  const std::vector<Channel> channels = pool.setup()->channels();
   // An image is drawn as maps: no histogram of each pixel.
-  if (pool.is_ready_made() || pool.setup()->image()) {
-    return std::vector<ChannelPlan>(channels.size());
-  }
+  if (pool.is_ready_made() || pool.setup()->image()) return pool.plan();
+  const std::vector<Channel> channels = pool.setup()->channels();
   if (const auto rows = pool.setup()->observations()) {
     for (const Range& range : data_ranges(*pool.setup(), *rows)) {
       plan.push_back(with_histogram(range));

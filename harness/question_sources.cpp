@@ -94,18 +94,18 @@ const PreparedEstimator& estimator_of(const Source& source, const Estimators& es
 }
 
 Subject estimates(const Source& source, const PreparedEstimator& estimator) {
-  const std::vector<Channel> channels = estimator.setup->channels();
   Subject subject{.estimator = &estimator,
                   .setup = estimator.setup,
-                  .channels = source.part.empty() ? tested_channels(channels)
-                                                  : channels_named(channels, source.part),
+                  .channels = {},
                   .averages = estimator.nature().averages};
   if (auto image = estimator.setup->image()) {
-    std::vector<std::size_t> elements = elements_named(*image, source.part);
-    if (!elements.empty()) {
-      subject.channels = std::move(elements);
-      subject.image = std::move(image);
-    }
+    subject.channels = elements_named(*image, source.part);
+    if (!subject.channels.empty()) subject.image = std::move(image);
+  }
+  if (subject.channels.empty()) {
+    const std::vector<Channel> channels = estimator.setup->channels();
+    subject.channels =
+        source.part.empty() ? tested_channels(channels) : channels_named(channels, source.part);
   }
   if (subject.channels.empty()) no_such_part(source, estimator);
   return subject;

@@ -98,6 +98,7 @@ void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& dr
   for (const auto& pool : pools) total += work(*pool, pool->requested() - pool->drawn());
   progress.begin(drawing.phase, total);
 
+  for (const auto& pool : pools) pool->begin_drawing();
   TaskList tasks(pools);
   Workers workers(pools);
   std::uint64_t done = 0;
@@ -124,6 +125,7 @@ void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& dr
         tbb::make_filter<void, Task>(tbb::filter_mode::serial_in_order, hand_out) &
             tbb::make_filter<Task, Drawn>(tbb::filter_mode::parallel, draw) &
             tbb::make_filter<Drawn, void>(tbb::filter_mode::serial_in_order, fold));
+    for (const auto& pool : pools) pool->end_drawing();
   });
   progress.end();
 }

@@ -64,6 +64,7 @@ class PictureSetup final : public Setup {
   }
   std::optional<std::uint64_t> observations() const override { return stack_->files.size(); }
   std::string data_file() const override { return data_file_; }
+  std::size_t channel_count() const { return shape_.elements() + 1; }
   std::string file(std::uint64_t index) const {
     return index < stack_->files.size() ? stack_->files[index] : "";
   }
@@ -109,6 +110,12 @@ class ReferenceSetup final : public Setup {
 
 bool is_reference(const Setup& setup) {
   return dynamic_cast<const ReferenceSetup*>(&setup) != nullptr;
+}
+
+std::optional<std::size_t> unknown_channels(const Setup& setup) {
+  const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
+  if (pictures == nullptr) return std::nullopt;
+  return pictures->channel_count();
 }
 
 std::string observation_file(const Setup& setup, std::uint64_t index) {

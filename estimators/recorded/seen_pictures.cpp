@@ -1,34 +1,57 @@
 #include "estimators/recorded/seen_pictures.h"
 
-#include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
-#include <functional>
 
 namespace assay::recorded {
 
 namespace {
 
 /// Fowler, Noll and Vo's hash (FNV-1a, 64 bits), a texel at a time.
-std::uint64_t digest_of(std::span<const float> texels) {
-  std::uint64_t digest = 0xcbf29ce484222325;
-  for (const float texel : texels) {
-    digest = (digest ^ std::bit_cast<std::uint32_t>(texel)) * 0x100000001b3;
-    digest ^= digest >> 32;  // the product alone never carries a high bit down
+std::uint64_t step(std::uint64_t digest, std::uint64_t value) {
+  digest = (digest ^ value) * 0x100000001b3;
+  return digest ^ digest >> 32;  // the product alone never carries a high bit down
+}
+
+struct Digest {
+  std::uint64_t value = 0xcbf29ce484222325;
+  bool finite = true;
+  bool one_value = true;
+};
+
+/// In one pass. Every fourth texel goes to a digest of its own, so that none waits for the last.
+Digest digest_of(std::span<const float> texels) {
+  constexpr std::size_t lanes = 4;
+  Digest whole;
+  std::array<std::uint64_t, lanes> digests;
+  digests.fill(whole.value);
+  bool finite = true;
+  bool differs = false;
+  std::size_t i = 0;
+  const auto take = [&](std::size_t lane) {
+    const float texel = texels[i + lane];
+    digests[lane] = step(digests[lane], std::bit_cast<std::uint32_t>(texel));
+    finite &= texel - texel == 0;
+    differs |= texel != texels[0];
+  };
+  for (; i + lanes <= texels.size(); i += lanes) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) take(lane);
   }
-  return digest;
+  for (std::size_t lane = 0; i + lane < texels.size(); ++lane) take(lane);
+  for (const std::uint64_t digest : digests) whole.value = step(whole.value, digest);
+  whole.finite = finite;
+  whole.one_value = !differs;
+  return whole;
 }
 
 }  // namespace
 
 std::optional<std::uint64_t> SeenPictures::note(std::uint64_t index,
                                                 std::span<const float> texels) {
-  const auto finite = [](float texel) { return std::isfinite(texel); };
-  if (!std::ranges::all_of(texels, finite)) return {};
-  if (std::ranges::adjacent_find(texels, std::not_equal_to<>()) == texels.end()) return {};
-  const std::uint64_t digest = digest_of(texels);
+  const Digest digest = digest_of(texels);
+  if (!digest.finite || digest.one_value) return {};
   const std::scoped_lock lock(mutex_);
-  const std::uint64_t first = by_digest_.try_emplace(digest, index).first->second;
+  const std::uint64_t first = by_digest_.try_emplace(digest.value, index).first->second;
   return first == index ? std::nullopt : std::optional(first);
 }
 

@@ -17,6 +17,7 @@ struct Behaviour {
   std::optional<std::uint64_t> not_a_number = {};
   std::optional<std::uint64_t> throws = {};
   std::optional<std::uint64_t> rows = {};
+  bool image = false;
 };
 
 class Sums final : public Estimator {
@@ -45,6 +46,10 @@ class SumsSetup final : public Setup {
   std::vector<Channel> channels() const override { return {{.name = "sum"}, {.name = "log"}}; }
   std::unique_ptr<Estimator> make() const override { return std::make_unique<Sums>(behaviour_); }
   std::optional<std::uint64_t> observations() const override { return behaviour_.rows; }
+  std::optional<ImageShape> image() const override {
+    if (!behaviour_.image) return std::nullopt;
+    return ImageShape{.width = 2, .height = 1};
+  }
 
  private:
   Behaviour behaviour_;
@@ -206,6 +211,47 @@ TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
   EXPECT_EQ(second->prefix(30).cost, first->prefix(30).cost);
   EXPECT_EQ(second->observations(20).size(), 20U);
   EXPECT_EQ(second->observations(20).data(), first->observations(20).data());
+}
+
+// Pictures of files are summed when all are there, once for the pilot and the test.
+TEST(Pool, PicturesOfFilesHaveTheSumsOfOneByOne) {
+  const auto drawn_from = [](const std::shared_ptr<Pool>& pool, unsigned threads) {
+    for (const std::uint64_t count : {20U, 30U}) pool->request(count);
+    Silence silence;
+    draw_all({pool}, {.threads = threads}, silence);
+    return pool;
+  };
+  const auto pool_of = [](Behaviour behaviour) {
+    return std::make_shared<Pool>(std::make_shared<SumsSetup>(behaviour), StreamKey{7}, 5);
+  };
+  const Behaviour pictures{.not_a_number = 11, .rows = 30, .image = true};
+  const auto one_by_one = drawn_from(pool_of(pictures), 1);
+  const auto kept = pool_of(pictures);
+  kept->keep_observations(30);
+  drawn_from(kept, 1);
+  const auto two_threads = pool_of(pictures);
+  two_threads->keep_observations(30);
+  drawn_from(two_threads, 2);
+  for (const std::uint64_t count : {20U, 30U}) {
+    const Summary& expected = one_by_one->prefix(count);
+    const Summary& sums = kept->prefix(count);
+    EXPECT_EQ(sums.count, count);
+    EXPECT_EQ(sums.cost, expected.cost);
+    ASSERT_EQ(sums.channels.size(), 2U);
+    for (std::size_t c = 0; c < 2; ++c) {
+      const stats::Moments& moments = sums.channels[c].moments;
+      EXPECT_EQ(moments.count, expected.channels[c].moments.count);
+      EXPECT_NEAR(moments.mean / expected.channels[c].moments.mean, 1, 1e-14);
+      EXPECT_NEAR(moments.m4 / expected.channels[c].moments.m4, 1, 1e-12);
+      EXPECT_EQ(sums.channels[c].nonfinite, expected.channels[c].nonfinite);
+      EXPECT_EQ(sums.channels[c].first_nonfinite, expected.channels[c].first_nonfinite);
+    }
+    expect_same(sums, two_threads->prefix(count));
+  }
+  const auto known = pool_of(pictures);
+  known->take_known(kept->kept());
+  drawn_from(known, 1);
+  EXPECT_EQ(&known->prefix(30), &kept->prefix(30)) << "sums are shared";
 }
 
 }  // namespace

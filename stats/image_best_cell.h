@@ -1,0 +1,21 @@
+#pragma once
+
+#include "stats/image_family.h"
+#include "stats/t_to_z.h"
+
+namespace assay::stats {
+
+// Internal to image_pyramid: the largest |z| of a group of cells so far, and
+// how many cells it was chosen from. Of equal ones the first by channel, row
+// and column, in whichever order they come.
+struct BestCell {
+  ImageFinding finding;
+  StudentValue value;
+  double windows = 0;
+};
+
+// A cell's candidate without its z, which is worked out from `value` where it
+// can be the largest.
+void offer(BestCell& best, const ImageFinding& candidate, StudentValue value);
+
+}  // namespace assay::stats

@@ -1,0 +1,344 @@
+#include "stats/image_fine_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "stats/image_tile.h"
+#include "stats/vector_copies.h"
+
+namespace assay::stats {
+namespace {
+
+ASSAY_VECTOR_COPIES void weigh(const float* value, const float* centre, const double* weight,
+                               std::span<double> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = weight[i] * (static_cast<double>(value[i]) - static_cast<double>(centre[i]));
+  }
+}
+ASSAY_VECTOR_COPIES void weigh(const float* value, const double* centre, const double* weight,
+                               std::span<double> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = weight[i] * (static_cast<double>(value[i]) - centre[i]);
+  }
+}
+ASSAY_VECTOR_COPIES void weigh(const double* value, const double* centre, const double* weight,
+                               std::span<double> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = weight[i] * (value[i] - centre[i]);
+}
+
+// Calls fill(first element, where to) for each row of the tile that the image
+// has, zeros elsewhere.
+template <class Fill>
+void fill_tile(const Tile& tile, std::span<double> values, const Fill& fill) {
+  const ImageExtent& extent = tile.extent;
+  const std::size_t stride = tile.stride();
+  const std::size_t size = std::min(stride, (extent.width - tile.x) * extent.channels);
+  for (std::size_t row = 0; row < tile.height() + Tile::halo; ++row) {
+    const std::span<double> line = values.subspan(row * stride, stride);
+    const bool there = tile.y + row < extent.height;
+    if (there) {
+      fill(((tile.y + row) * extent.width + tile.x) * extent.channels, line.first(size));
+    }
+    std::ranges::fill(line.subspan(there ? size : 0), 0.0);
+  }
+}
+
+struct Updated {
+  const double* sum;
+  double* mean;
+  double* m2;
+};
+
+ASSAY_VECTOR_COPIES void update(const Updated& row, double inverse_count, std::size_t size) {
+  const double* const sum = row.sum;
+  double* const __restrict mean = row.mean;
+  double* const __restrict m2 = row.m2;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double delta = sum[i] - mean[i];
+    mean[i] += delta * inverse_count;
+    m2[i] += delta * (sum[i] - mean[i]);
+  }
+}
+
+// Of the squares of one side that begin in a tile: as in WindowMoments of
+// image_pyramid.
+struct SquareMoments {
+  std::vector<double> mean;
+  std::vector<double> m2;
+  std::vector<double> effect;
+  std::vector<double> variance;
+  std::vector<double> reciprocal_degrees;
+
+  void clear(std::size_t size) {
+    for (std::vector<double>* each : {&mean, &m2, &effect, &variance, &reciprocal_degrees}) {
+      each->assign(size, 0.0);
+    }
+  }
+  void finish_part(double count, double factor) {
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const double part = factor * factor * m2[i] / (count * (count - 1));
+      effect[i] += factor * mean[i];
+      variance[i] += part;
+      reciprocal_degrees[i] += part * part / (count - 1);
+    }
+    std::ranges::fill(mean, 0.0);
+    std::ranges::fill(m2, 0.0);
+  }
+};
+
+// The group of aligned and the group of shifted cells of one side, where there
+// are any.
+struct GroupsOfSide {
+  std::optional<std::size_t> aligned;
+  std::optional<std::size_t> shifted;
+};
+
+GroupsOfSide groups_of_side(const std::vector<WindowGroup>& groups, std::uint32_t side) {
+  GroupsOfSide found;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (!is_fine(groups[g]) || groups[g].size != side) continue;
+    (groups[g].grid == Grid::aligned ? found.aligned : found.shifted) = g;
+  }
+  return found;
+}
+
+template <class Real>
+class FineTiles {
+ public:
+  FineTiles(const FineCells<Real>& cells, std::vector<BestCell>& best, CoarseImages& coarse)
+      : cells_(cells),
+        extent_(cells.pair.a.extent),
+        best_(best),
+        coarse_(coarse),
+        sums_(extent_),
+        column_sums_(Tile{extent_}.stride()),
+        signed_column_sums_(column_sums_.size()) {
+    for (std::size_t k = 0; k < fine_squares.size(); ++k) {
+      groups_[k] = groups_of_side(cells.groups, fine_squares[k].side);
+    }
+  }
+
+  void take(const Tile& tile) {
+    const std::size_t size = Tile::rows * tile.stride();
+    for (std::size_t k = 0; k < fine_squares.size(); ++k) {
+      moments_[k].clear(size / (fine_squares[k].step * fine_squares[k].step));
+    }
+    for (std::size_t h = 0; h < halves; ++h) {
+      take_half(tile, cells_.pair.a, {h, 0}, 0.5);
+      if (cells_.pair.b != nullptr) take_half(tile, *cells_.pair.b, {h, 1}, -0.5);
+      count_varied(tile, h);
+    }
+    if (!coarse_.squared_error.blocks.empty()) add_reference_error(tile);
+    for (std::size_t k = 0; k < fine_squares.size(); ++k) offer_squares(tile, k);
+  }
+
+ private:
+  struct Part {
+    std::size_t half;
+    std::size_t side;
+  };
+
+  void take_half(const Tile& tile, const ImageStack<Real>& stack, Part part, double factor) {
+    const std::vector<double>& weight = cells_.half[1 - part.half].weight;
+    std::vector<BlockSums>& kept = coarse_.images[part.half][part.side];
+    double count = 0;
+    for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
+      fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
+        const Real* const value = stack.images[r].data() + first;
+        if (cells_.pair.b != nullptr) {
+          weigh(value, cells_.pair.b->images[0].data() + first, weight.data() + first, out);
+        } else {
+          weigh(value, cells_.pair.reference->value.data() + first, weight.data() + first, out);
+        }
+      });
+      sums_.add_up(tile);
+      const double inverse = 1 / ++count;
+      for (std::size_t k = 0; k < fine_squares.size(); ++k) update_squares(tile, k, inverse);
+      BlockSums& blocks = kept[r / halves];
+      keep_blocks(tile, blocks);
+      add_alternating(tile, blocks);
+    }
+    for (SquareMoments& moments : moments_) moments.finish_part(count, factor);
+  }
+
+  void update_squares(const Tile& tile, std::size_t k, double inverse) {
+    const std::size_t step = fine_squares[k].step;
+    const std::size_t stride = tile.stride() / step;
+    for (std::size_t row = 0; row < tile.height() / step; ++row) {
+      update({sums_.of(k).data() + row * stride, moments_[k].mean.data() + row * stride,
+              moments_[k].m2.data() + row * stride},
+             inverse, tile.width() / step * extent_.channels);
+    }
+  }
+
+  // Calls visit(index of the block, of its sum) for the first channel of each
+  // block of the tile.
+  template <class Visit>
+  void for_each_block(const Tile& tile, const Visit& visit) const {
+    for (std::size_t y = 0; y < tile.height() && tile.y + y < extent_.height; y += block_side) {
+      for (std::size_t x = 0; x < tile.width() && tile.x + x < extent_.width; x += block_side) {
+        const std::size_t row = (tile.y + y) / block_side;
+        const std::size_t block = row * coarse_.extent.width + (tile.x + x) / block_side;
+        visit(block * extent_.channels, y * tile.stride() + x * extent_.channels);
+      }
+    }
+  }
+  void keep_blocks(const Tile& tile, BlockSums& to) const {
+    const double* const sums = sums_.of(1).data();
+    for_each_block(tile, [&](std::size_t block, std::size_t sum) {
+      std::copy_n(sums + sum, extent_.channels, to.blocks.data() + block);
+    });
+  }
+
+  void add_alternating(const Tile& tile, BlockSums& to) {
+    const std::size_t size = tile.width() * extent_.channels;
+    std::fill_n(column_sums_.begin(), size, 0.0);
+    std::fill_n(signed_column_sums_.begin(), size, 0.0);
+    const double* row = sums_.values().data();
+    for (std::size_t y = 0; y < tile.height(); ++y, row += tile.stride()) {
+      const double sign = y % 2 == 0 ? 1 : -1;
+      for (std::size_t i = 0; i < size; ++i) {
+        column_sums_[i] += row[i];
+        signed_column_sums_[i] += sign * row[i];
+      }
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      const double sign = i / extent_.channels % 2 == 0 ? 1 : -1;
+      double* const channel = to.alternating.data() + i % extent_.channels * alternations;
+      channel[0] += sign * column_sums_[i];
+      channel[1] += signed_column_sums_[i];
+      channel[2] += sign * signed_column_sums_[i];
+    }
+  }
+
+  // Sums of squares of that side did not vary where none of their elements did:
+  // they are the same in every replicate, to the last bit. Those of larger
+  // cells need the count.
+  void count_varied(const Tile& tile, std::size_t h) {
+    const std::vector<double>& weight = cells_.half[1 - h].weight;
+    const std::vector<unsigned char>& varied = cells_.half[h].varied;
+    fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i] = weight[first + i] > 0 && varied[first + i] > 0 ? 1 : 0;
+      }
+    });
+    sums_.add_up(tile);
+    keep_blocks(tile, coarse_.varied[h]);
+  }
+
+  // A reference's error is one for both halves, independent between elements,
+  // and has no degrees of freedom to lose. A sum that did not vary stays
+  // without variance, untested: the error is not what values never seen could
+  // add.
+  void add_reference_error(const Tile& tile) {
+    fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        const std::size_t e = first + i;
+        const double weight = (cells_.half[0].weight[e] + cells_.half[1].weight[e]) / 2;
+        const double error = weight * cells_.pair.reference->standard_error[e];
+        out[i] = error * error;
+      }
+    });
+    sums_.add_up(tile);
+    keep_blocks(tile, coarse_.squared_error);
+    for (std::size_t k = 0; k < fine_squares.size(); ++k) {
+      std::vector<double>& variance = moments_[k].variance;
+      for (std::size_t i = 0; i < variance.size(); ++i) {
+        if (variance[i] > 0) variance[i] += sums_.of(k)[i];
+      }
+    }
+  }
+
+  void offer_squares(const Tile& tile, std::size_t k) {
+    const auto [side, step] = fine_squares[k];
+    const std::size_t stride = tile.stride() / step;
+    for (std::size_t row = 0; row < tile.height() / step; ++row) {
+      for (std::size_t column = 0; column < tile.width() / step; ++column) {
+        const Rectangle square{static_cast<std::uint32_t>(tile.x + column * step),
+                               static_cast<std::uint32_t>(tile.y + row * step), side, side};
+        offer_square(square, k, row * stride + column * extent_.channels);
+      }
+    }
+  }
+
+  void offer_square(Rectangle square, std::size_t k, std::size_t first) {
+    const auto width = static_cast<std::uint32_t>(extent_.width);
+    const auto height = static_cast<std::uint32_t>(extent_.height);
+    if (square.x >= width || square.y >= height) return;
+    const bool aligned = square.x % square.width == 0 && square.y % square.height == 0;
+    const std::optional<std::size_t> group = aligned ? groups_[k].aligned : groups_[k].shifted;
+    if (!group) return;
+    const std::uint32_t wide = std::min(square.width, width);
+    const std::uint32_t high = std::min(square.height, height);
+    if (!aligned && (square.x + wide > width || square.y + high > height)) return;
+    square.width = std::min(wide, width - square.x);
+    square.height = std::min(high, height - square.y);
+    const SquareMoments& moments = moments_[k];
+    for (std::size_t c = 0; c < extent_.channels; ++c) {
+      const double variance = moments.variance[first + c];
+      if (!(variance > 0)) continue;
+      const StudentValue value{moments.effect[first + c] / std::sqrt(variance),
+                               variance * variance / moments.reciprocal_degrees[first + c]};
+      offer(best_[*group], {ImageStatistic::window, cells_.groups[*group].size, square, c, 0, 0, 0},
+            value);
+    }
+  }
+
+  const FineCells<Real>& cells_;
+  const ImageExtent& extent_;
+  std::vector<BestCell>& best_;
+  CoarseImages& coarse_;
+  TileSums sums_;
+  std::vector<double> column_sums_;
+  std::vector<double> signed_column_sums_;
+  std::array<SquareMoments, fine_squares.size()> moments_;
+  std::array<GroupsOfSide, fine_squares.size()> groups_;
+};
+
+std::size_t blocks_of(std::size_t count) { return (count + block_side - 1) / block_side; }
+
+template <class Real>
+CoarseImages empty_blocks(const ImagePair<Real>& pair) {
+  const ImageExtent& extent = pair.a.extent;
+  CoarseImages coarse;
+  coarse.extent = {blocks_of(extent.width), blocks_of(extent.height), extent.channels};
+  const BlockSums none{std::vector<double>(coarse.extent.elements()),
+                       std::vector<double>(extent.channels * alternations)};
+  const auto per_half = [](const ImageStack<Real>& stack, std::size_t h) {
+    return (stack.images.size() + 1 - h) / halves;
+  };
+  for (std::size_t h = 0; h < halves; ++h) {
+    coarse.images[h][0].assign(per_half(pair.a, h), none);
+    if (pair.b != nullptr) coarse.images[h][1].assign(per_half(*pair.b, h), none);
+    coarse.varied[h] = none;
+  }
+  if (pair.reference != nullptr && !pair.reference->standard_error.empty()) {
+    coarse.squared_error = none;
+  }
+  return coarse;
+}
+
+}  // namespace
+
+bool is_fine(const WindowGroup& group) {
+  return group.grid != Grid::alternating &&
+         std::ranges::any_of(fine_squares,
+                             [&](const Squares& squares) { return squares.side == group.size; });
+}
+
+template <class Real>
+CoarseImages offer_fine_cells(const FineCells<Real>& cells, std::vector<BestCell>& best) {
+  const ImageExtent& extent = cells.pair.a.extent;
+  CoarseImages coarse = empty_blocks(cells.pair);
+  FineTiles<Real> tiles(cells, best, coarse);
+  for (std::size_t y = 0; y < extent.height; y += Tile::rows) {
+    for (std::size_t x = 0; x < extent.width; x += Tile::columns) tiles.take({extent, x, y});
+  }
+  return coarse;
+}
+
+template CoarseImages offer_fine_cells(const FineCells<float>&, std::vector<BestCell>&);
+template CoarseImages offer_fine_cells(const FineCells<double>&, std::vector<BestCell>&);
+
+}  // namespace assay::stats

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "stats/image_best_cell.h"
+#include "stats/image_halves.h"
+#include "stats/image_windows.h"
+
+namespace assay::stats {
+
+// Internal to image_pyramid. Nearly all cells are small, and an image has many
+// replicates: cells of sides 2, 4 and 8 are tested tile by tile, each tile over
+// all replicates while what is known of its cells stays in the cache. Sums of
+// larger cells are taken from those of blocks of 4 x 4, which are left behind.
+
+inline constexpr std::size_t sides_of_pair = 2;  // a and b
+inline constexpr std::size_t alternations = 3;   // by column, by row, checkerboard
+inline constexpr std::uint32_t block_side = 4;
+
+// Whether the cells of a group are tested here.
+bool is_fine(const WindowGroup& group);
+
+// One image's weighted sums over blocks of 4 x 4 elements, the last ones cut
+// off at the edge, and those with alternating signs over all of it,
+// `alternations` a channel.
+struct BlockSums {
+  std::vector<double> blocks;
+  std::vector<double> alternating;
+};
+
+struct CoarseImages {
+  ImageExtent extent;  // in blocks
+  // [half][side][replicate of the half]
+  std::array<std::array<std::vector<BlockSums>, sides_of_pair>, halves> images;
+  std::array<BlockSums, halves> varied;  // how many elements vary and have a weight
+  BlockSums squared_error;               // of a reference, weighted; empty where it has none
+};
+
+// The means over the replicates of one half of one side, as WindowMoments of
+// image_pyramid has them: what the halves' and sides' parts add up to.
+template <class Real>
+struct FineCells {
+  const ImagePair<Real>& pair;
+  const std::array<Half, halves>& half;
+  const std::vector<WindowGroup>& groups;
+};
+
+// Offers every fine cell to the best of its group, `best` by group, and returns
+// the blocks.
+template <class Real>
+CoarseImages offer_fine_cells(const FineCells<Real>& cells, std::vector<BestCell>& best);
+
+}  // namespace assay::stats
