@@ -23,4 +23,12 @@ struct Cost {
   bool operator==(const Cost&) const = default;
 };
 
+/// What was added to `before`.
+inline Cost operator-(const Cost& after, const Cost& before) {
+  return {.camera_rays = after.camera_rays - before.camera_rays,
+          .closest_hit_rays = after.closest_hit_rays - before.closest_hit_rays,
+          .shadow_rays = after.shadow_rays - before.shadow_rays,
+          .samples = after.samples - before.samples};
+}
+
 }  // namespace assay

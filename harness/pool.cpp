@@ -188,21 +188,24 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
     estimator.announce({.key = key_, .first = first, .last = last});
     for (; index < last; ++index) {
       Stream random(key_, index);
-      Cost spent;
       std::span<const double> drawn = out;
+      // Counted where the sum stands: to load as a whole what an estimator has just stored in parts
+      // would hold up every observation.
+      const bool kept = !known_ && index < kept_observations_;
+      Cost before;
+      if (kept || counts_costs) before = block.whole.cost;
       if (known_ && index < known_->values.size()) {
         drawn = known_->values[index];
-        spent = known_->costs[index];
+        block.whole.cost += known_->costs[index];
       } else {
-        estimator.secondary(random, primaries_, out, spent);
+        estimator.secondary(random, primaries_, out, block.whole.cost);
       }
-      block.whole.cost += spent;
-      if (!known_ && index < kept_observations_) {
+      if (kept) {
         block.observations.values.push_back(out);
-        block.observations.costs.push_back(spent);
+        block.observations.costs.push_back(block.whole.cost - before);
         drawn = block.observations.values.back();
       }
-      if (counts_costs) cost = counted(spent);
+      if (counts_costs) cost = counted(block.whole.cost - before);
       if (!sums_later_) intake.take(drawn, index, cost, drawn.data() != out.data());
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
         if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);
