@@ -192,6 +192,16 @@ std::string Value::canonical() const {
 }
 
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
+  // What was cut short: the shortest that begins so.
+  constexpr std::size_t least_beginning = 3;
+  const auto by_size = [](const std::string& a, const std::string& b) {
+    return a.size() < b.size();
+  };
+  std::vector<std::string> begun;
+  for (const std::string& candidate : candidates) {
+    if (name.size() >= least_beginning && candidate.starts_with(name)) begun.push_back(candidate);
+  }
+  if (!begun.empty()) return *std::ranges::min_element(begun, by_size);
   // One slip for every three letters, at least one: `sceen` suggests `scene`, `x` suggests nothing.
   std::size_t best = std::min(std::max<std::size_t>(1, name.size() / 3) + 1, name.size());
   std::string found;

@@ -78,6 +78,7 @@ class Parser {
 
   void end(const char* what) {
     const Token token = lexer_.next();
+    if (token.is("*")) fail(token.where, "a factor stands before its quantity: `0.5 * mean(b)`");
     if (token.kind != Kind::end) {
       fail(token.where, fmt::format("{} is over before {}", what, shown(token)));
     }
@@ -166,6 +167,10 @@ class Parser {
     const Token token = lexer_.peek();
     if (token.is("*")) {
       lexer_.next();
+      const Token factor = lexer_.peek();
+      if (factor.kind == Kind::number) {
+        fail(factor.where, "a claim has no arithmetic; write the product as one number");
+      }
       return ScaledQuantity{number, quantity()};
     }
     if (token.is("%")) fail(token.where, "a per cent needs a margin: `within 0.5% of …`");
@@ -193,6 +198,11 @@ class Parser {
 
   /// The commonest slips: an estimator without its quantity, and the two sides exchanged.
   [[noreturn]] void no_quantity(const Token& name) {
+    for (const char* of_spread : {"stddev", "std", "deviation", "standard_deviation", "sd"}) {
+      if (name.text != of_spread) continue;
+      fail(name.where,
+           fmt::format("there is no quantity `{}`; square it: `variance(…)`", name.text));
+    }
     const std::string near = did_you_mean(name.text, quantity_words());
     if (near.empty() && stands_on_the_right(name.text)) {
       fail(name.where, fmt::format("`{}` stands on the right, as in `mean(area) == analytic` or "

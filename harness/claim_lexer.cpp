@@ -97,7 +97,8 @@ Token Lexer::symbol() {
     std::string_view written, advice;
   };
   static constexpr std::string_view no_arithmetic =
-      "a claim has no arithmetic; compare two quantities, as in `mean(a) == 2 * mean(b)`";
+      "a claim has no arithmetic; compare two quantities, as in `mean(a) == mean(b)` or "
+      "`mean(a) == 2 * mean(b)`";
   static constexpr std::array habits{
       Habit{"!=", "a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`"},
       Habit{"~", "write `==`, or `within 1% of` for what need only be close"},

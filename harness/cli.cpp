@@ -232,7 +232,7 @@ Command list_command(const Given& given, const std::string& name) {
 
 Command replay_command(const Given& given, const std::string& name) {
   require(given.record, "a saved run", name);
-  require(given.test, "a test", name);
+  require(given.test, "a test, as `assay list tests SUITE` prints them", name);
   return ReplayArguments{given.record, given.test,
                          count_if_given(given.observation, "the observation", 0)};
 }

@@ -136,6 +136,17 @@ bool meets_forbidden(const Span& theta, const Regions& regions) {
   return theta.high >= regions.within || theta.low <= -regions.within;
 }
 
+/// The commonest cause of numbers that should vary and do not.
+std::string seeds(const Question& question) {
+  for (const Subject& subject : question.subjects) {
+    if (subject.setup->observations()) return "; if they should vary, has each a seed of its own?";
+    if (subject.estimator->entry->information.says_nature) {
+      return "; if they should vary, does the program use the index of the observation?";
+    }
+  }
+  return "";
+}
+
 ConstantVerdict agreeing(const Difference& at_beta, const Regions& regions, double beta) {
   if (!regions.has_forbidden()) {
     return {Verdict::pass,
@@ -176,14 +187,14 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
   const double mean = data[0].moments.mean;
   if (!meets_claimed(theta_of(at_alpha), regions)) {
     return {Verdict::fail, fmt::format("every observation is {:.10g}, and with the declared range "
-                                       "values never seen cannot make up the difference",
-                                       mean)};
+                                       "values never seen cannot make up the difference{}",
+                                       mean, seeds(question))};
   }
   return {Verdict::invalid,
           fmt::format("every observation is {:.10g}, which differs from the reference by {:.3g}; "
                       "without a spread there is no test, and a rare value may be unseen: declare "
-                      "the range, or take more observations",
-                      mean, at_alpha.value)};
+                      "the range, or take more observations{}",
+                      mean, at_alpha.value, seeds(question))};
 }
 
 }  // namespace assay::harness

@@ -39,7 +39,8 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, std::siz
       "{} of {} observations of `{}`{} are not finite, the first is observation {}",
       summary.nonfinite, outcome.secondaries(), side.estimator->name, at, summary.first_nonfinite);
   const auto file = recorded::observation_file(*side.setup, summary.first_nonfinite);
-  return text + (file.empty() ? fmt::format("; `assay replay RUN.json '{}' {}` draws it again",
+  return text + (file.empty() ? fmt::format("; `assay replay RUN.json '{}' {}` draws it again, "
+                                            "where `--report json=RUN.json` saved the run",
                                             outcome.question.test->id, summary.first_nonfinite)
                               : ", `" + file + "`");
 }
@@ -266,8 +267,10 @@ std::string first_contradiction(const TestWork& work) {
   }
   const auto first = first_inconsistent(*work.pools[0], outcome.secondaries());
   if (!first) return "";
-  return fmt::format("; the first is observation {}: `assay replay RUN.json {} {}` draws it again",
-                     *first, shell_quoted(outcome.question.test->id), *first);
+  return fmt::format(
+      "; the first is observation {}: `assay replay RUN.json {} {}` draws it again, "
+      "where `--report json=RUN.json` saved the run",
+      *first, shell_quoted(outcome.question.test->id), *first);
 }
 
 void require_activation(TestWork& work) {

@@ -342,15 +342,14 @@ std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place
 
 std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
                             const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  const std::uint64_t used = std::min(most, question.test->secondaries.value_or(most));
+  if (has_rows(question)) require_independent_sides(question, pilots, used);
   if (std::string reason = unusable_pilot(question, pilots); !reason.empty()) {
     plan.invalid = std::move(reason);
     return least_secondaries;
   }
   const std::uint64_t least = choose_by_shape(question, place, pilots, most, plan);
-  if (has_rows(question)) {
-    judge_independence(question, pilots, std::min(most, question.test->secondaries.value_or(most)),
-                       plan);
-  }
+  if (has_rows(question)) judge_independence(question, pilots, used, plan);
   return least;
 }
 

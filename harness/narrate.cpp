@@ -71,6 +71,31 @@ double excluded_beyond(const ChannelOutcome& channel) {
   return farther(interval.low, interval.high, channel.evidence);
 }
 
+/// The place of a channel among the references; nullopt but for a mean against a number.
+std::optional<std::size_t> reference_index(const TestOutcome& outcome,
+                                           const ChannelOutcome& channel) {
+  const Question& question = outcome.question;
+  if (question.kind != QuestionKind::mean_of_one) return {};
+  for (std::size_t i = 0; i < question.channel_count(); ++i) {
+    if (question.channel_name(i) == channel.name) return i;
+  }
+  return {};
+}
+
+/// `detect: 5` where 5 % was meant excludes next to nothing. An absolute margin beyond the
+/// reference may be meant all the same, of a reference near zero: it is said, and no mistake.
+std::string wide_margin(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const std::optional<Margin>& detect = outcome.question.test->detect;
+  const auto index = reference_index(outcome, channel);
+  if (!detect || detect->relative || !index) return "";
+  const double size = std::abs(outcome.question.references[*index].value);
+  if (!(size > 0) || detect->value <= size) return "";
+  return fmt::format(
+      "; `detect` is absolute, {:.3g} times the reference: {:g} per cent is written "
+      "`{:g}%`",
+      detect->value / size, detect->value, detect->value);
+}
+
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (!channel.regions.has_forbidden()) {
     std::string text = "no evidence against the claim";
@@ -90,8 +115,9 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
                        reports::size_text(excluded, channel.effect), interval);
   }
-  return fmt::format("no evidence against the claim; {} or more is excluded by {}",
-                     reports::size_text(excluded, channel.effect), interval);
+  return fmt::format("no evidence against the claim; {} or more is excluded by {}{}",
+                     reports::size_text(excluded, channel.effect), interval,
+                     wide_margin(outcome, channel));
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -144,15 +170,11 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
 
 /// The standard error of the reference on theta's scale: what no number of samples takes away.
 double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const Question& question = outcome.question;
-  if (question.kind != QuestionKind::mean_of_one) return 0;
-  for (std::size_t i = 0; i < question.channel_count(); ++i) {
-    if (question.channel_name(i) != channel.name) continue;
-    const Constant& reference = question.references[i];
-    const double unit = is_relative(question, i) ? std::abs(reference.value) : 1;
-    return reference.standard_error / unit;
-  }
-  return 0;
+  const auto index = reference_index(outcome, channel);
+  if (!index) return 0;
+  const Constant& reference = outcome.question.references[*index];
+  const bool relative = is_relative(outcome.question, *index);
+  return reference.standard_error / (relative ? std::abs(reference.value) : 1);
 }
 
 /// n grows with the square of how much narrower the interval must become.

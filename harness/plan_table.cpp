@@ -276,7 +276,7 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
                              tests == 1 ? "" : "s", total_text(separate)));
   page.paragraph(fmt::format(
       "Tests of one estimator share observations, so a run draws at most {}; most tests end at an "
-      "earlier look: about {} if every claim holds with theta = 0 (tests whose share is not known "
+      "earlier look: about {} if every claim holds exactly (tests whose share is not known "
       "counted in full).",
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(
@@ -284,7 +284,8 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
       "looks. in all, rays, CPU time: primaries of all sources up to the last look, and what they "
       "cost. "
       "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
-      "beta. if true: the share of the last look that is drawn on average if theta = 0, at most.");
+      "beta. if true: the share of the last look that is drawn on average if the claim holds "
+      "exactly, at most.");
 }
 
 }  // namespace

@@ -196,10 +196,6 @@ void check_margins(const Question& question) {
   const TestEntry& test = *question.test;
   std::optional<Margin> within;
   if (test.claim.relation == Relation::within) within = test.claim.margin;
-  if (test.detect && test.allow && test.allow->value > 0 &&
-      test.detect->relative != test.allow->relative) {
-    throw InputError(test.where, "`detect` and `allow` must both be in per cent or both absolute");
-  }
   for (const auto& margin : {test.detect, test.allow, within}) {
     if (question.of_draws()) require_absolute(margin, test, "this is a probability");
     if (test.claim.left.name == QuantityName::distribution) {

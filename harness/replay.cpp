@@ -328,6 +328,11 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
 }  // namespace
 
 reports::Record read_record(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    throw InputError({.file = file},
+                     "there is no such file; `--report json=FILE` saves a run that can be read");
+  }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();

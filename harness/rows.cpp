@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
+#include "estimators/ready_made.h"
 #include "harness/assumptions.h"
 #include "harness/constant.h"
 #include "harness/exact_size.h"
 #include "stats/dependence.h"
 #include "stats/independence_gates.h"
 #include "stats/quantisation_gate.h"
+#include "stats/repeated_run.h"
 #include "stats/unpiloted_gates.h"
 
 namespace assay::harness {
@@ -27,6 +30,8 @@ constexpr std::size_t fewest_batches = 20;
 
 /// One channel of a recorded subject, as far as the test reads it.
 struct Rows {
+  std::size_t subject;
+  std::size_t channel;
   std::string label;
   std::span<const double> values;
 };
@@ -46,7 +51,10 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
         continue;
       const std::string part =
           side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";
-      all.push_back({"rows of " + side.estimator->name + part, data.values.first(used)});
+      all.push_back({.subject = subject,
+                     .channel = channel,
+                     .label = "rows of " + side.estimator->name + part,
+                     .values = data.values.first(used)});
     }
   }
   return all;
@@ -66,12 +74,83 @@ std::string dependent(const Rows& rows) {
       rows.label, rows.values.size(), worth, std::ceil(10 * time), fewest_batches);
 }
 
+/// No run of chance is so long: any is too long.
+Gate repetition_gate(const stats::RepeatedRun& again) {
+  const auto length = static_cast<double>(again.length);
+  return {.name = "longest repetition",
+          .value = length,
+          .low = length,
+          .limit = 0,
+          .state = GateState::red};
+}
+
+std::string from_to(std::size_t first, std::size_t length) {
+  return fmt::format("{} to {}", first + 1, first + length);
+}
+
+std::string repeated(const Rows& rows, const stats::RepeatedRun& again) {
+  return fmt::format(
+      "of the {} those from {} are those from {} again, bit for bit: they are no observations of "
+      "their own; give each run of the program that writes them a seed of its own",
+      rows.label, from_to(again.second, again.length), from_to(again.first, again.length));
+}
+
+/// Two samples that are held against each other.
+struct Pair {
+  const Subject& first;
+  const Subject& second;
+};
+
+[[noreturn]] void refuse(const Question& question, const Pair& pair, const std::string& why) {
+  throw InputError(
+      question.test->claim.left.where,
+      fmt::format("`{}` and `{}` are no independent samples: {}, bit for bit; give the "
+                  "two sides seeds of their own, none of them twice",
+                  pair.first.estimator->name, pair.second.estimator->name, why));
+}
+
+void refuse_shared_pictures(const Question& question) {
+  for (const Subject& first : question.subjects) {
+    for (const Subject& second : std::span(&first + 1, std::to_address(question.subjects.end()))) {
+      if (const auto files = recorded::shared_picture(*first.setup, *second.setup)) {
+        refuse(question, {first, second},
+               fmt::format("`{}` and `{}` are the same picture", files->first, files->second));
+      }
+    }
+  }
+}
+
+void refuse_shared_rows(const Question& question, const Rows& one, const Rows& two) {
+  const Subject& first = question.subjects[one.subject];
+  const Subject& second = question.subjects[two.subject];
+  if (const auto run = stats::common_run(one.values, two.values)) {
+    refuse(question, {first, second},
+           fmt::format("rows {} of `{}` are rows {} of `{}`", from_to(run->first, run->length),
+                       first.setup->data_file(), from_to(run->second, run->length),
+                       second.setup->data_file()));
+  }
+}
+
 }  // namespace
 
 bool is_recorded(const Subject& subject) { return subject.setup->observations().has_value(); }
 
 bool has_rows(const Question& question) {
   return std::any_of(question.subjects.begin(), question.subjects.end(), is_recorded);
+}
+
+void require_independent_sides(const Question& question, const Pilots& pilots,
+                               std::uint64_t count) {
+  if (question.subjects.size() < 2) return;
+  refuse_shared_pictures(question);
+  const std::vector<Rows> all = rows_of(question, pilots, count);
+  for (const Rows& one : all) {
+    for (const Rows& two : all) {
+      if (one.subject < two.subject && one.channel == two.channel) {
+        refuse_shared_rows(question, one, two);
+      }
+    }
+  }
 }
 
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
@@ -82,6 +161,10 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   std::string reason;
   bool answered = false;
   for (const Rows& rows : rows_of(question, pilots, count)) {
+    if (const auto again = stats::repeated_run(rows.values)) {
+      plan.gates.push_back(gate_of(repetition_gate(*again), ", " + rows.label));
+      if (reason.empty()) reason = repeated(rows, *again);
+    }
     std::vector<Gate> gates{stats::lag_one_gate(rows.values), stats::batch_gate(rows.values)};
     const bool red = std::any_of(gates.begin(), gates.end(),
                                  [](const Gate& gate) { return gate.state == GateState::red; });

@@ -92,6 +92,11 @@ void check_margins(const TestEntry& test, const Refuse& refuse) {
   }
   const bool comparable =
       test.detect && test.allow && test.detect->relative == test.allow->relative;
+  if (test.detect && test.allow && test.allow->value > 0 && !comparable) {
+    refuse("allow", fmt::format("`detect` ({}) and `allow` ({}) must both be in per cent or both "
+                                "absolute",
+                                to_string(*test.detect), to_string(*test.allow)));
+  }
   if (comparable && test.allow->value >= test.detect->value) {
     refuse("allow", fmt::format("`detect` ({}) must be above `allow` ({})", to_string(*test.detect),
                                 to_string(*test.allow)));

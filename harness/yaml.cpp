@@ -19,6 +19,9 @@ namespace {
 constexpr std::size_t deepest = 64;
 
 /// yaml-cpp's messages name the state of its scanner; these say what to do.
+constexpr std::string_view no_aliases =
+    "anchors and aliases are not read; write the value out, or name a scene under `scenes:`";
+
 std::string readable(const std::string& message) {
   struct Translation {
     std::string_view terse, plain;
@@ -43,6 +46,7 @@ std::string readable(const std::string& message) {
       Translation{YAML::ErrorMsg::TAB_IN_INDENTATION, "indent with spaces, not with a tab"},
       Translation{YAML::ErrorMsg::EOF_IN_SCALAR, "a quote is opened and never closed"},
       Translation{YAML::ErrorMsg::DOC_IN_SCALAR, "a quote is opened and never closed"},
+      Translation{YAML::ErrorMsg::UNKNOWN_ANCHOR, no_aliases},
       Translation{YAML::ErrorMsg::UNKNOWN_TOKEN,
                   "text cannot begin with this character; put it in quotes"},
   };
@@ -210,9 +214,7 @@ class DocumentBuilder final : public YAML::EventHandler {
   }
 
   [[noreturn]] void refuse_alias(const YAML::Mark& mark) const {
-    refuse(
-        place(mark),
-        "anchors and aliases are not read; write the value out, or name a scene under `scenes:`");
+    refuse(place(mark), std::string(no_aliases));
   }
 
   [[noreturn]] void refuse(const Location& where, const std::string& why) const {

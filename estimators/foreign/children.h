@@ -34,16 +34,19 @@ class Children {
   /// Draws the numbers of one observation a second time, once for each program: first that which
   /// the first program drew, asked of itself, then the same one asked of every other. Throws
   /// NoAnswer where the bits differ: an observation is then no function of key and index. Of the
-  /// first program it also asks whether another key gives other numbers, else NoAnswer. `numbers`
-  /// are those of the question's only observation.
+  /// first program it also asks whether another key gives other numbers and, of means, whether
+  /// another index does, else NoAnswer. `numbers` are those of the question's only observation.
   void witness(Dialogue& dialogue, const Question& question, const std::vector<double>& numbers);
 
   /// That observation `index` of a stream could not be had. Those after it need not be tried.
   void note_failure(const Question& at, const std::string& why);
-  /// Throws NoAnswer where an earlier observation of the same stream could not be had.
+  /// Throws NoAnswer where an earlier observation of the same stream could not be had, or where
+  /// witness() found that the program ignores key or index.
   void refuse_after_failure(const Question& question) const;
 
  private:
+  void examine(Dialogue& dialogue, const Question& question);
+
   struct Witness {
     Question question;
     std::vector<double> numbers;
@@ -60,6 +63,7 @@ class Children {
   std::vector<std::unique_ptr<Dialogue>> idle_;
   std::optional<Witness> witness_;
   std::map<StreamName, Failure> failures_;
+  std::string unfit_ = "";  ///< why no observation of any stream is worth anything
 };
 
 }  // namespace assay::foreign

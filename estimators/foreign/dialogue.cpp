@@ -69,7 +69,7 @@ void Dialogue::hear_hello() {
     const std::size_t count = child_.receive(buffer, end);
     if (count == 0) {
       const std::string said = text.empty() ? "" : "; it said `" + shown(text) + "`";
-      give_up(child_.ending() + " before its hello was whole" + said);
+      give_up(child_.ending() + " before it had said its whole hello" + said);
     }
     text.append(buffer.data(), count);
     if (text.size() > longest_hello) throw ProtocolError("its hello has no end");

@@ -159,7 +159,7 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
   try {
     return std::make_shared<ForeignSetup>(std::make_shared<Children>(std::move(terms)));
   } catch (const NoAnswer& failure) {
-    parameters.refuse(name, std::string("is of no use: ") + failure.what());
+    parameters.refuse(name, std::string("starts no estimator: ") + failure.what());
   } catch (const std::system_error& failure) {
     const bool is_word = program.find('/') == std::string::npos;
     parameters.refuse(

@@ -13,7 +13,8 @@ const ParameterInformation scene_parameter = {
     .type = ParameterType::structure,
     .summary =
         "a built-in scene (triangle, cornell_triangle, rectangle), or receiver, light and "
-        "occluders",
+        "occluders: `{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {obj: lamp.obj}, "
+        "occluders: [{obj: chair.obj}]}`",
     .fallback = "triangle"};
 
 std::optional<double> variance(double mean, const std::optional<double>& second_moment) {

@@ -75,7 +75,9 @@ TriangleMesh mesh(const Value& value, const std::string& what, const std::string
   } catch (const InputError& error) {
     // A file that is not there is a mistake of the scene, what stands in it one of the file.
     if (error.where().line != 0) throw;
-    throw InputError(value.where(), what + " `" + error.where().file + "`: " + error.message());
+    const bool is_there = std::filesystem::exists(file);
+    throw InputError(value.where(), what + " `" + error.where().file + "`: " + error.message() +
+                                        (is_there ? "" : "; it is sought from the suite's folder"));
   }
 }
 

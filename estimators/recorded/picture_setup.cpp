@@ -68,6 +68,12 @@ class PictureSetup final : public Setup {
   std::string file(std::uint64_t index) const {
     return index < stack_->files.size() ? stack_->files[index] : "";
   }
+  std::optional<std::pair<std::string, std::string>> shared_with(const PictureSetup& other) const {
+    if (seen_ == other.seen_) return {};
+    const auto indices = seen_->shared_with(*other.seen_);
+    if (!indices) return {};
+    return std::pair(file(indices->first), other.file(indices->second));
+  }
 
  private:
   std::shared_ptr<const PictureStack> stack_;
@@ -115,6 +121,13 @@ std::optional<std::size_t> unknown_channels(const Setup& setup) {
 std::string observation_file(const Setup& setup, std::uint64_t index) {
   const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
   return pictures == nullptr ? "" : pictures->file(index);
+}
+
+std::optional<std::pair<std::string, std::string>> shared_picture(const Setup& first,
+                                                                  const Setup& second) {
+  const auto* const one = dynamic_cast<const PictureSetup*>(&first);
+  const auto* const two = dynamic_cast<const PictureSetup*>(&second);
+  return one == nullptr || two == nullptr ? std::nullopt : one->shared_with(*two);
 }
 
 Channel average_channel() { return {.name = "average", .diagnostic = true}; }

@@ -55,4 +55,16 @@ std::optional<std::uint64_t> SeenPictures::note(std::uint64_t index,
   return first == index ? std::nullopt : std::optional(first);
 }
 
+std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::shared_with(
+    const SeenPictures& other) const {
+  const std::scoped_lock lock(mutex_, other.mutex_);
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> found;
+  for (const auto& [digest, index] : other.by_digest_) {
+    const auto mine = by_digest_.find(digest);
+    if (mine == by_digest_.end() || (found && found->second < index)) continue;
+    found.emplace(mine->second, index);
+  }
+  return found;
+}
+
 }  // namespace assay::recorded

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace assay::recorded {
 
@@ -18,8 +19,14 @@ class SeenPictures {
   /// an error in itself. Thread-safe.
   std::optional<std::uint64_t> note(std::uint64_t index, std::span<const float> texels);
 
+  /// Indices of a picture here and of one there that had the same digest, the first there; nullopt
+  /// where no two do. Of what was noted so far: pictures of one value throughout, which are all
+  /// alike without noise, count for nothing.
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> shared_with(
+      const SeenPictures& other) const;
+
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<std::uint64_t, std::uint64_t> by_digest_;
 };
 

@@ -1,7 +1,10 @@
 // The Wavefront OBJ reader behind read_obj().
 
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <fstream>
+#include <string>
 #include <string_view>
 
 #include "estimators/value.h"
@@ -32,7 +35,11 @@ bool parse(std::string_view word, Number& number) {
 class ObjReader {
  public:
   explicit ObjReader(const std::string& file) : file_(file), stream_(file) {
-    if (!stream_) throw InputError({file_, 0, 0}, "cannot open the OBJ file");
+    if (!stream_) {
+      const int why = errno;
+      throw InputError({file_, 0, 0},
+                       std::string("cannot open the OBJ file: ") + std::strerror(why));
+    }
   }
 
   TriangleMesh read() {

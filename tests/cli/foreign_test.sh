@@ -188,7 +188,7 @@ plugin: library, file: other.so, parameters: {rate: 2}|has no parameter `rate`
 plugin: library, file: loud.so|the library printed `welcome`
 plugin: process, command: [no_such_program]|cannot be started: No such file or directory
 plugin: process, command: python3|must be a list of texts
-plugin: process, command: [sh, none.sh]|before its hello was whole
+plugin: process, command: [sh, none.sh]|before it had said its whole hello
 plugin: process, command: [echo, hello]|the first is `assay 1 text`
 plugin: process, command: [sh, none.sh], timeout: 0|must be above 0
 LINES

@@ -89,6 +89,13 @@ TEST(Nearest, SuggestsWhatIsOneSlipAway) {
   EXPECT_EQ(nearest("scene", {}), "");
 }
 
+TEST(Nearest, SuggestsTheShortestThatBeginsSo) {
+  const std::vector<std::string> known = {"luminaire/area", "luminaire/hemispheres",
+                                          "luminaire/hemisphere"};
+  EXPECT_EQ(nearest("luminaire/hemi", known), "luminaire/hemisphere");
+  EXPECT_EQ(nearest("lu", known), "");
+}
+
 TEST(Flow, ReadsScalarsListsAndMaps) {
   EXPECT_EQ(parse_flow("triangle").text(), "triangle");
   EXPECT_EQ(parse_flow("null").kind(), Value::Kind::null);

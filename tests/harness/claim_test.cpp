@@ -133,8 +133,14 @@ TEST(Claim, KnowsTheHabitsOfOtherLanguages) {
             "1:9: write `==`, or `within 1% of` for what need only be close");
   EXPECT_EQ(refused("mean(a) == \"analytic\""), "1:12: no quotes inside a claim");
   EXPECT_EQ(refused("mean(a) - mean(b) == 0"),
-            "1:9: a claim has no arithmetic; compare two quantities, as in `mean(a) == 2 * "
-            "mean(b)`");
+            "1:9: a claim has no arithmetic; compare two quantities, as in `mean(a) == mean(b)` "
+            "or `mean(a) == 2 * mean(b)`");
+  EXPECT_EQ(refused("variance(a) < variance(b) * 0.5"),
+            "1:27: a factor stands before its quantity: `0.5 * mean(b)`");
+  EXPECT_EQ(refused("mean(a) == 2 * 0.24"),
+            "1:16: a claim has no arithmetic; write the product as one number");
+  EXPECT_EQ(refused("stddev(a) == 1"),
+            "1:1: there is no quantity `stddev`; square it: `variance(…)`");
   EXPECT_EQ(refused("mean(a) ≤ 1"), "1:9: write `<=` for `≤`");
   EXPECT_EQ(refused("mean(a) == 1 ± 2"), "1:14: write `+-` for `±`");
   EXPECT_EQ(refused("mean(a.) == 1"), "1:7: the name of a part must follow the `.` at once");

@@ -211,7 +211,8 @@ TEST(CommandLine, NamesWhatIsMissingOrTooMuch) {
   EXPECT_EQ(refused({"list", "plugins", "a.yaml"}), "`assay list plugins` takes no suite");
   EXPECT_EQ(refused({"describe"}), "`assay describe` needs a plugin; see `assay describe --help`");
   EXPECT_EQ(refused({"replay", "r.json"}),
-            "`assay replay` needs a test; see `assay replay --help`");
+            "`assay replay` needs a test, as `assay list tests SUITE` prints them; see `assay "
+            "replay --help`");
   EXPECT_EQ(refused({"--seed", "3", "run", "a.yaml"}),
             "unknown option `--seed`; options stand after the command, see `assay --help`");
   EXPECT_THAT(refused({"run", "a.yaml", "--seed"}), HasSubstr("--seed"));

@@ -35,6 +35,13 @@ TEST(Narrate, PassSaysWhatIsExcluded) {
   expect_said(test, Verdict::pass, " % or more is excluded");
 }
 
+TEST(Narrate, PassByAnAbsoluteMarginBeyondTheReferenceSaysSo) {
+  expect_said(told("claim: mean(normal) == 2, detect: 5"), Verdict::pass,
+              "; `detect` is absolute, 2.5 times the reference: 5 per cent is written `5%`");
+  const reports::Test near = told("claim: mean(normal) == 2, detect: 0.5");
+  EXPECT_EQ(near.message.find("absolute"), std::string::npos) << near.message;
+}
+
 TEST(Narrate, ClassicalPassSaysWhatWouldHaveBeenFound) {
   expect_said(told("claim: mean(normal) == 2"), Verdict::pass,
               "or more would have been found with probability 0.99");

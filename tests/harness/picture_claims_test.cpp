@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <vector>
 
 #include "tests/estimators/exr.h"
 #include "tests/harness/refusal.h"
@@ -65,6 +67,36 @@ TEST(PictureClaims, StacksOfOneLawPass) {
   EXPECT_EQ(test.image->replicates, 24u);
   EXPECT_EQ(test.image->components, (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_FALSE(test.maps.empty());
+}
+
+TEST(PictureClaims, CopiesOnTheOtherSideAreRefusedWithTheirNames) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2});
+  std::filesystem::copy_file(place.file("a03.exr"), place.file("b24.exr"));
+  for (const char* claim : {"mean(a) == mean(b)", "mean(a.average) == mean(b.average)"}) {
+    const std::string why =
+        refusal([&] { run_files({place.write("s.yaml", suite_text(stack_b, claim))}); });
+    EXPECT_THAT(why, HasSubstr("`a` and `b` are no independent samples: `"));
+    EXPECT_THAT(why, HasSubstr("a03.exr` and `"));
+    EXPECT_THAT(why, HasSubstr("b24.exr` are the same picture"));
+  }
+}
+
+// Without noise all are alike: that is judged, and not refused.
+TEST(PictureClaims, PicturesOfOneValueAreNoCopies) {
+  const Workplace place;
+  for (int i = 0; i < 20; ++i) {
+    for (const char* side : {"a", "b"}) {
+      const draws::Picture grey{
+          width, height, {"R", "G", "B"}, std::vector<float>(3 * width * height, 0.5f)};
+      draws::write_exr(place.file(fmt::format("{}{:02}.exr", side, i)), grey);
+    }
+  }
+  const auto record = run_files({place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"))});
+  const reports::Test& test = record.suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("every replicate of both images is the same"));
 }
 
 TEST(PictureClaims, ADefectIsFoundWhereItIs) {

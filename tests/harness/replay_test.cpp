@@ -198,6 +198,11 @@ TEST(Replay, SuggestsTheTestThatWasMeant) {
   EXPECT_NE(text.find("did you mean `suite/mean`?"), std::string::npos) << text;
 }
 
+TEST(Replay, SaysThatARunIsNotThere) {
+  EXPECT_EQ(refusal([] { replay({.record = "none.json", .test = "suite/mean"}); }),
+            "there is no such file; `--report json=FILE` saves a run that can be read");
+}
+
 TEST(Replay, NamesTestsWhereNoneIsNear) {
   const Workplace place;
   const std::string file = recorded(place);

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "many_seeds.h"
+#include "refusal.h"
 #include "tests/philox.h"
 #include "tests/stats/laws.h"
 
@@ -15,6 +16,7 @@ namespace assay::harness {
 namespace {
 
 using reports::Verdict;
+using testing::AllOf;
 using testing::HasSubstr;
 using tests::Philox;
 namespace laws = tests::laws;
@@ -143,6 +145,55 @@ TEST(Rows, BeyondWhatDoublesHoldAreInvalidInWords) {
     EXPECT_EQ(test.verdict, Verdict::invalid);
     EXPECT_THAT(test.message, HasSubstr("in another unit"));
   }
+}
+
+// Ten times the same 100 rows failed true claims: their standard error is too small by sqrt(10).
+TEST(Rows, ThatOccurAgainInBlocksAreInvalidAndSayWhich) {
+  const std::vector<double> block = rows_of(100, 10, normal);
+  std::vector<double> rows;
+  for (int i = 0; i < 10; ++i) rows.insert(rows.end(), block.begin(), block.end());
+  for (const char* claim : {"claim: mean(rows) == 0", "claim: variance(rows) <= 2",
+                            "claim: 'distribution(rows) == normal(0, 1)'"}) {
+    const reports::Test test = judged(rows, claim);
+    EXPECT_EQ(test.verdict, Verdict::invalid);
+    EXPECT_THAT(test.message, HasSubstr("of the rows of rows those from 101 to 1000 are those from "
+                                        "1 to 900 again, bit for bit"));
+  }
+}
+
+TEST(Rows, WithoutASpreadAskForTheirSeeds) {
+  const reports::Test test = judged(std::vector<double>(60, 0.5), "claim: mean(rows) == 0.25");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("if they should vary, has each a seed of its own?"));
+}
+
+std::string refusal_of_two(const std::vector<double>& left, const std::vector<double>& right,
+                           const std::string& claim) {
+  const Workplace place;
+  place.write("left.txt", file_of(left));
+  place.write("right.txt", file_of(right));
+  return refusal([&] {
+    run_files({place.write("suite.yaml",
+                           "suite: rows\nestimators:\n  a: {plugin: recorded, file: left.txt}\n"
+                           "  b: {plugin: recorded, file: right.txt}\n"
+                           "  c: {plugin: recorded, file: left.txt}\n"
+                           "tests:\n  - {claim: " +
+                               claim + "}\n")});
+  });
+}
+
+TEST(Rows, OfBothSidesMustNotBeTheSame) {
+  const std::vector<double> left = rows_of(100, 11, normal);
+  std::vector<double> right = rows_of(60, 12, normal);
+  right.insert(right.end(), left.begin(), left.begin() + 40);
+  for (const char* claim : {"mean(a) == mean(b)", "distribution(a) == distribution(b)"}) {
+    EXPECT_THAT(refusal_of_two(left, right, claim),
+                AllOf(HasSubstr("`a` and `b` are no independent samples: rows 1 to 40 of `"),
+                      HasSubstr("left.txt` are rows 61 to 100 of `"), HasSubstr("right.txt`")));
+  }
+  // What is not held against each other may be the same.
+  EXPECT_EQ(refusal_of_two(left, right, "mean(a) == 0}\n  - {claim: mean(c) == 0"),
+            "(nothing was refused)");
 }
 
 /// How often a true mean fails, of `runs` files.

@@ -79,6 +79,8 @@ TEST(Yaml, BombsAreRefusedAtOnce) {
     aliases += std::string(1, c) + ": &" + c + " [" + all + all + all + all + "]\n";
   }
   EXPECT_EQ(refused(aliases).substr(0, 27), "1:4: anchors and aliases ar");
+  // An alias of nothing is met before it is known for one.
+  EXPECT_EQ(refused("a: *b\n").substr(4), refused("a: &b c\n").substr(4));
 }
 
 TEST(Yaml, DeepestNestingThatIsAllowedIsRead) {

@@ -16,7 +16,7 @@ import yaml
 # Rules of YAML itself that python3-yaml is lax about, of numbers written as text, of the claim
 # language, of plugins, and between keys.
 BEYOND_A_SCHEMA = """
-allow_above_detect allow_in_a_proof anchor claim_block claim_distribution claim_folded claim_law
+allow_above_detect allow_absolute allow_in_a_proof anchor claim_block claim_distribution claim_folded claim_law
 claim_mixed claim_quoted claim_two_lines cost_of_a_mean detect_zero duplicate_estimator
 duplicate_key duplicate_name duplicate_nested_key merge_key over_not_ascending
 over_unknown_parameter over_without_slope reference_of_a_mean reference_text reference_unknown

@@ -1,0 +1,113 @@
+#include "stats/repeated_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/philox.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::Philox;
+using tests::sample_of;
+
+std::vector<double> uniform_values(std::size_t n, std::uint32_t stream) {
+  Philox random(stream);
+  return sample_of(n, [&] { return random.uniform(); });
+}
+
+std::vector<double> joined(std::vector<double> values, const std::vector<double>& more) {
+  values.insert(values.end(), more.begin(), more.end());
+  return values;
+}
+
+TEST(RepeatedRun, FindsBlocksThatOccurAgainWholly) {
+  const std::vector<double> block = uniform_values(100, 1);
+  std::vector<double> values = block;
+  for (int i = 1; i < 10; ++i) values = joined(values, block);
+  const auto run = repeated_run(values);
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->first, 0u);
+  EXPECT_EQ(run->second, 100u);
+  EXPECT_EQ(run->length, 900u);
+}
+
+TEST(RepeatedRun, FindsTheSecondOfTwoFarApart) {
+  const std::vector<double> block = uniform_values(60, 2);
+  const auto values = joined(joined(joined(uniform_values(37, 3), block), uniform_values(500, 4)),
+                             joined(block, uniform_values(11, 5)));
+  const auto run = repeated_run(values);
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->first, 37u);
+  EXPECT_EQ(run->second, 597u);
+  EXPECT_EQ(run->length, 60u);
+}
+
+// 4 values over and over: nothing that 60 draws from four values would do.
+TEST(RepeatedRun, FindsAShortPatternThatGoesOn) {
+  std::vector<double> values;
+  for (int i = 0; i < 60; ++i) values.push_back(std::sqrt(1 + i % 4));
+  const auto run = repeated_run(values);
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->second - run->first, 4u);
+  EXPECT_EQ(run->length, 56u);
+}
+
+TEST(RepeatedRun, NeedsAsManyChangesAsChanceDoesNotMake) {
+  // log2(100^2 / 1e-5) = 29.9: 31 values have the 30 changes, 29 have not.
+  for (const std::size_t length : {29u, 31u}) {
+    const auto block = uniform_values(length, 6);
+    const auto one = joined(block, uniform_values(100 - length, 7));
+    const auto two = joined(uniform_values(100 - length, 8), block);
+    EXPECT_EQ(common_run(one, two).has_value(), length == 31) << length;
+  }
+}
+
+TEST(RepeatedRun, OfTwoSamplesSaysWhereInEach) {
+  const auto block = uniform_values(50, 9);
+  const auto run =
+      common_run(joined(block, uniform_values(20, 10)), joined(uniform_values(30, 11), block));
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->first, 0u);
+  EXPECT_EQ(run->second, 30u);
+  EXPECT_EQ(run->length, 50u);
+  EXPECT_FALSE(common_run(uniform_values(1000, 12), uniform_values(1000, 13)));
+}
+
+// Laws of few values, where runs repeat soonest: the header's bound is 0.016 for all samples together;
+// of three equal values a change that matches has probability 1/4 for each before it, and chance is
+// below 1e-13, less for the others.
+TEST(RepeatedRun, IsNotFoundInIndependentValues) {
+  Philox random(14);
+  const auto coin = [&] { return std::floor(2 * random.uniform()); };
+  const auto die = [&] { return std::floor(3 * random.uniform()); };
+  const auto spike = [&] { return random.uniform() < 0.02 ? std::floor(3 * random.uniform()) : 5; };
+  const auto hundredths = [&] { return std::round(100 * random.uniform()) / 100; };
+  for (int i = 0; i < 400; ++i) {
+    EXPECT_FALSE(repeated_run(sample_of(2000, coin)));
+    EXPECT_FALSE(repeated_run(sample_of(2000, die)));
+    EXPECT_FALSE(repeated_run(sample_of(2000, spike)));
+    EXPECT_FALSE(repeated_run(sample_of(2000, hundredths)));
+  }
+}
+
+// What depends is not repeated for all that.
+TEST(RepeatedRun, IsNotFoundInChains) {
+  Philox random(15);
+  double place = 0;
+  const auto walk = [&] { return place += random.uniform() < 0.5 ? -1 : 1; };
+  const auto lazy = [&] { return random.uniform() < 0.9 ? place : walk(); };
+  const auto two_states = [&] { return place = random.uniform() < 0.05 ? 1 - place : place; };
+  EXPECT_FALSE(repeated_run(sample_of(20000, walk)));
+  EXPECT_FALSE(repeated_run(sample_of(20000, lazy)));
+  place = 0;
+  EXPECT_FALSE(repeated_run(sample_of(20000, two_states)));
+  EXPECT_FALSE(repeated_run(std::vector<double>(1000, 0.25)));
+  EXPECT_FALSE(repeated_run({}));
+}
+
+}  // namespace
+}  // namespace assay::stats
