@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/ready_made.h"
 #include "harness/activation.h"
 #include "harness/assumptions.h"
-#include "harness/consistency_setup.h"
 #include "harness/constant.h"
 #include "harness/gate_text.h"
 #include "harness/image_judge.h"
 #include "harness/narrate.h"
+#include "harness/observation_faults.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
-#include "harness/shell.h"
 
 namespace assay::harness {
 namespace {
@@ -30,39 +28,6 @@ void settle(TestOutcome& outcome, Verdict verdict, std::string message) {
 
 const Summary& summary_of(const TestWork& work, std::size_t subject) {
   return work.pools[subject]->prefix(work.outcome.secondaries());
-}
-
-std::string not_finite(const TestOutcome& outcome, const Subject& side, std::size_t channel,
-                       const ChannelSummary& summary) {
-  const auto at = side.image ? " at pixel " + element_name(*side.setup->image(), channel) : "";
-  const std::string text = fmt::format(
-      "{} of {} observations of `{}`{} are not finite, the first is observation {}",
-      summary.nonfinite, outcome.secondaries(), side.estimator->name, at, summary.first_nonfinite);
-  const auto file = recorded::observation_file(*side.setup, summary.first_nonfinite);
-  return text + (file.empty() ? fmt::format("; `assay replay RUN.json '{}' {}` draws it again, "
-                                            "where `--report json=RUN.json` saved the run",
-                                            outcome.question.test->id, summary.first_nonfinite)
-                              : ", `" + file + "`");
-}
-
-/// Whether the observations are all there and finite; the verdict is `error` where not.
-bool could_be_drawn(TestWork& work) {
-  for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
-    const Subject& side = work.outcome.question.subjects[subject];
-    const Pool& pool = *work.pools[subject];
-    if (!pool.has(work.outcome.secondaries())) {
-      settle(work.outcome, Verdict::error,
-             fmt::format("`{}` stopped at {}", side.estimator->name, pool.trouble()));
-      return false;
-    }
-    for (const std::size_t channel : side.channels) {
-      const ChannelSummary& summary = summary_of(work, subject).channels[channel];
-      if (summary.nonfinite == 0) continue;
-      settle(work.outcome, Verdict::error, not_finite(work.outcome, side, channel, summary));
-      return false;
-    }
-  }
-  return true;
 }
 
 /// A density whose integral exceeds 1 is none, whatever its samples do.
@@ -259,20 +224,6 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
   }
 }
 
-/// Which draw was the first to contradict its sampler, where some did.
-std::string first_contradiction(const TestWork& work) {
-  const TestOutcome& outcome = work.outcome;
-  if (outcome.question.kind != QuestionKind::inconsistency || outcome.verdict != Verdict::fail) {
-    return "";
-  }
-  const auto first = first_inconsistent(*work.pools[0], outcome.secondaries());
-  if (!first) return "";
-  return fmt::format(
-      "; the first is observation {}: `assay replay RUN.json {} {}` draws it again, "
-      "where `--report json=RUN.json` saved the run",
-      *first, shell_quoted(outcome.question.test->id), *first);
-}
-
 void require_activation(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   if (outcome.question.test->expect != Expectation::fail) return;
@@ -385,7 +336,11 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
 void take_look(TestWork& work, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   outcome.decided = true;
-  if (!could_be_drawn(work) || !density_is_proper(outcome)) return;
+  if (std::string why = undrawable(work); !why.empty()) {
+    settle(outcome, Verdict::error, std::move(why));
+    return;
+  }
+  if (!density_is_proper(outcome)) return;
   judge(work);
   const bool last = outcome.look + 1 == outcome.plan.looks.sizes.size();
   const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;

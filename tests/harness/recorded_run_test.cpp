@@ -203,7 +203,7 @@ TEST_F(RecordedRunTest, NamesWhatIsWrongWithTheRunOrTheEstimator) {
   const auto refused_as = [&](const std::string& parameters) {
     return refused("  old: {plugin: recorded, " + parameters + "}\n", "claim: mean(old) == 2");
   };
-  EXPECT_THAT(refused_as("run: none.json"), HasSubstr("cannot be read"));
+  EXPECT_THAT(refused_as("run: none.json"), HasSubstr("there is no such file"));
   EXPECT_THAT(refused_as("run: suite.yaml"), HasSubstr("no saved run but a suite"));
   EXPECT_THAT(refused_as("run: run.json"), HasSubstr("has several estimators"));
   EXPECT_THAT(refused_as("run: run.json, estimator: norml"), HasSubstr("did you mean `normal`?"));

@@ -1,0 +1,61 @@
+#include "harness/observation_faults.h"
+
+#include <fmt/format.h>
+
+#include "estimators/ready_made.h"
+#include "harness/consistency_setup.h"
+#include "harness/pool.h"
+#include "harness/shell.h"
+
+namespace assay::harness {
+namespace {
+
+/// How to look at one observation again.
+std::string replay_line(const TestOutcome& outcome, std::uint64_t observation) {
+  return fmt::format(
+      "`assay replay RUN.json {} {}` draws it again, where `--report json=RUN.json` saved the run",
+      shell_quoted(outcome.question.test->id), observation);
+}
+
+std::string not_finite(const TestOutcome& outcome, const Subject& side, std::size_t channel,
+                       const ChannelSummary& summary) {
+  const auto at = side.image ? " at pixel " + element_name(*side.setup->image(), channel) : "";
+  const std::string text = fmt::format(
+      "{} of {} observations of `{}`{} are not finite, the first is observation {}",
+      summary.nonfinite, outcome.secondaries(), side.estimator->name, at, summary.first_nonfinite);
+  const auto file = recorded::observation_file(*side.setup, summary.first_nonfinite);
+  return text +
+         (file.empty() ? "; " + replay_line(outcome, summary.first_nonfinite) : ", `" + file + "`");
+}
+
+}  // namespace
+
+std::string undrawable(const TestWork& work) {
+  const TestOutcome& outcome = work.outcome;
+  for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
+    const Subject& side = outcome.question.subjects[subject];
+    const Pool& pool = *work.pools[subject];
+    if (!pool.has(outcome.secondaries())) {
+      return fmt::format("`{}` stopped at {}", side.estimator->name, pool.trouble());
+    }
+    const Summary& drawn = pool.prefix(outcome.secondaries());
+    for (const std::size_t channel : side.channels) {
+      const ChannelSummary& summary = drawn.channels[channel];
+      if (summary.nonfinite > 0) return not_finite(outcome, side, channel, summary);
+    }
+  }
+  return "";
+}
+
+std::string first_contradiction(const TestWork& work) {
+  const TestOutcome& outcome = work.outcome;
+  if (outcome.question.kind != QuestionKind::inconsistency ||
+      outcome.verdict != reports::Verdict::fail) {
+    return "";
+  }
+  const auto first = first_inconsistent(*work.pools[0], outcome.secondaries());
+  if (!first) return "";
+  return fmt::format("; the first is observation {}: {}", *first, replay_line(outcome, *first));
+}
+
+}  // namespace assay::harness
