@@ -13,7 +13,7 @@ if [ "${1:-}" = build ]; then
   folder=$(mktemp -d)
   trap 'rm -rf "$folder"' EXIT
   export CCACHE_DISABLE=1
-  cmake -G Ninja -S . -B "$folder" -DCMAKE_CXX_COMPILER_LAUNCHER= >/dev/null
+  cmake -G Ninja -S . -B "$folder" -DASSAY_TESTS=ON -DCMAKE_CXX_COMPILER_LAUNCHER= >/dev/null
   echo "clean build of assay, without ccache:"
   time cmake --build "$folder" --target assay >/dev/null
   echo "the tests after it:"
@@ -24,12 +24,12 @@ if [ "${1:-}" = build ]; then
   exit
 fi
 if [ "${1:-}" = suites ]; then
-  build_project build looks_bench
+  build_project build looks_bench -- -DASSAY_TESTS=ON
   for suite in suites/*.yaml; do build/tests/bench/looks_bench "$suite"; done
   exit
 fi
 build_project build assay foreign_bench engine_bench ks_bench rays_bench image_bench tails_bench \
-  looks_bench pictures_bench
+  looks_bench pictures_bench -- -DASSAY_TESTS=ON
 build/tests/bench/engine_bench
 build/tests/estimators/rays_bench
 build/tests/bench/ks_bench

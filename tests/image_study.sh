@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 source suites/install.sh
 
 install_packages suites/packages.txt tests/packages.txt
-build_project build image_power
+build_project build image_power -- -DASSAY_TESTS=ON
 build/tests/bench/image_power known "${1:-2000}"
 build/tests/bench/image_power stacks "${2:-100}"
 build/tests/bench/image_power level "${3:-20000}"

@@ -6,5 +6,5 @@ cd "$(dirname "$0")/.."
 source suites/install.sh
 
 install_packages suites/packages.txt tests/packages.txt
-build_project build all -- ${CI:+-DASSAY_WERROR=ON}
+build_project build all -- -DASSAY_TESTS=ON ${CI:+-DASSAY_WERROR=ON}
 ctest --test-dir build --output-on-failure --no-tests=error -j "$(nproc)" "$@"
