@@ -16,6 +16,7 @@
 #include <map>
 
 #include "estimators/value.h"
+#include "render/exr_header.h"
 
 namespace assay {
 
@@ -182,6 +183,7 @@ ExrFile::ExrFile(const std::string& file) : parts_(std::make_unique<Parts>()) {
   if (std::filesystem::is_directory(file, ignored)) refuse(file, "it is a folder, not a picture");
   if (!std::ifstream(file)) refuse(file, std::string("it does not open: ") + std::strerror(errno));
   if (!is_exr(file)) refuse(file, "it is no OpenEXR picture; convert it to OpenEXR");
+  render::require_sound_headers(file);
   in_our_words(file, [&] { parts_->open(); });
 }
 

@@ -149,6 +149,18 @@ TEST_F(ExrFiles, RefusesAPictureCutShortAnywhere) {
   }
 }
 
+// The library's classes would make room for the text of an attribute before they read it.
+TEST_F(ExrFiles, RefusesAnAttributeLongerThanTheFileBeforeMakingRoomForIt) {
+  write_scan_lines(file_, {.channels = {"R"}, .name = "beauty"});
+  std::string bytes = bytes_of(file_);
+  const std::string key = std::string("name") + '\0' + "string" + '\0';
+  const std::size_t size = bytes.find(key) + key.size();
+  ASSERT_EQ(bytes[size], 6);
+  bytes[size + 3] = 0x6f;
+  write_bytes(file_, bytes);
+  expect_refused("Invalid size");
+}
+
 // The data window's last corner is four integers into its attribute: any number may stand there.
 TEST_F(ExrFiles, RefusesAHeaderThatPromisesMoreThanTheFileCanHold) {
   write_scan_lines(file_, {.channels = {"R"}});

@@ -102,6 +102,17 @@ TEST_F(Exr, RefusesTruncatedFiles) {
   }
 }
 
+TEST_F(Exr, RefusesAnAttributeLongerThanTheFile) {
+  write({"Y"}, {1, 1});
+  std::string file = bytes();
+  const std::string key("channels\0chlist\0", 16);
+  const std::size_t at = file.find(key);
+  ASSERT_NE(at, file.npos);
+  file[at + key.size() + 3] = 0x6f;
+  write_bytes(file);
+  expect_refused("Invalid size");
+}
+
 TEST_F(Exr, RefusesOtherFiles) {
   expect_refused("cannot be read as OpenEXR");  // not there
   write_bytes("P6 1 1 255 ...");

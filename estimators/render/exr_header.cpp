@@ -1,0 +1,35 @@
+#include "render/exr_header.h"
+
+#include <openexr.h>
+
+#include "estimators/value.h"
+
+namespace assay::render {
+
+namespace {
+
+// Keeps the first message, that of the cause.
+void keep_message(exr_const_context_t context, exr_result_t, const char* message) {
+  void* first = nullptr;
+  if (exr_get_user_data(context, &first) != EXR_ERR_SUCCESS || first == nullptr) return;
+  std::string& kept = *static_cast<std::string*>(first);
+  if (kept.empty()) kept = message;
+}
+
+}  // namespace
+
+void require_sound_headers(const std::string& file) {
+  std::string message;
+  exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  settings.user_data = &message;
+  settings.error_handler_fn = keep_message;
+  exr_context_t context = nullptr;
+  const exr_result_t result = exr_start_read(&context, file.c_str(), &settings);
+  if (result == EXR_ERR_SUCCESS) exr_finish(&context);
+  if (result == EXR_ERR_SUCCESS && message.empty()) return;
+  if (message.empty()) message = exr_get_default_error_message(result);
+  throw InputError({.file = file},
+                   "it cannot be read as OpenEXR, damaged or cut short: " + message);
+}
+
+}  // namespace assay::render
