@@ -1,9 +1,8 @@
 """The area of the unit disc by darts, as an estimator for Assay's plugin `process`."""
 import random
 import struct
-import sys
 
-questions, replies = sys.stdin.buffer, sys.stdout.buffer
+questions, replies = open(0, "rb"), open(1, "wb")  # buffered, where sys.stdout need not be
 replies.write(b"assay 1 binary\nchannel area low 0 high 4\naverages\nbias unbiased\nready\n")
 replies.flush()
 while question := questions.read(32):
