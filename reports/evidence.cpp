@@ -67,6 +67,14 @@ std::string over_looks(const Test& test, Number Look::*log10_p) {
   return fmt::format(" over {} looks ({} at the last)", test.looks.size(), p_text({}, at_last));
 }
 
+// ", 1 after Holm", where the family changes what is written: of a single test it does not.
+std::string after_holm(const Channel& channel) {
+  if (!channel.p_adjusted && !channel.log10_p_adjusted) return {};
+  const std::string adjusted = p_text(channel.p_adjusted, channel.log10_p_adjusted);
+  if (adjusted == p_text(channel.p_value, channel.log10_p)) return {};
+  return fmt::format(", {} after Holm", adjusted);
+}
+
 // "(welch, two-sided), 1 after Holm; its share of alpha is 0.00125".
 std::string about_the_claim(const Test& test) {
   const Channel channel = worst_channel(test);
@@ -74,8 +82,7 @@ std::string about_the_claim(const Test& test) {
   if (!test.tail.empty()) how += how.empty() ? test.tail : ", " + test.tail;
   text += over_looks(test, &Look::log10_p);
   if (!how.empty()) text += fmt::format(" ({})", how);
-  if (channel.p_adjusted || channel.log10_p_adjusted)
-    text += fmt::format(", {} after Holm", p_text(channel.p_adjusted, channel.log10_p_adjusted));
+  text += after_holm(channel);
   if (test.alpha) text += fmt::format("; its share of alpha is {}", human(*test.alpha, 3));
   return text;
 }

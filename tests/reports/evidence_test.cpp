@@ -89,5 +89,18 @@ TEST(Evidence, WhatUnderflowedAfterHolmIsWrittenFromItsLogarithm) {
   EXPECT_NE(evidence_text(test).find("3.2e-800 after Holm"), std::string::npos);
 }
 
+TEST(Evidence, HolmIsNamedOnlyWhereItChangesWhatIsWritten) {
+  reports::Test test = proof(Verdict::fail);
+  test.channels[0].p_value = 0.03;
+  test.channels[0].log10_p = std::log10(0.03);
+  test.channels[0].p_adjusted = test.channels[0].p_value;
+  test.channels[0].log10_p_adjusted = test.channels[0].log10_p;
+  EXPECT_EQ(evidence_text(test).find("Holm"), std::string::npos);
+  test.channels[0].p_adjusted = 0.06;
+  test.channels[0].log10_p_adjusted = std::log10(0.06);
+  EXPECT_NE(evidence_text(test).find("= 0.03 (F, upper), 0.06 after Holm"), std::string::npos)
+      << evidence_text(test);
+}
+
 }  // namespace
 }  // namespace assay::reports
