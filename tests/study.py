@@ -54,8 +54,9 @@ def tests_on_fixed_shares(assay, suite, seed):
     return record_of(assay, [suite], seed, "--shard", "1/1")["suites"][0]["tests"]
 
 
-def true_claims(suite, folder, budget):
-    """A copy of the suite with only the tests that are expected to pass, each within the budget.
+def true_claims(suite, folder, budget, coarsen):
+    """A copy of the suite with only the tests that are expected to pass, each within the budget, and with
+    so many times fewer secondaries, at least 100, where their number is fixed: `--coarsen` leaves it.
 
     What stands beside it and one folder up is linked, so that its files are where it looks for them."""
     import yaml  # here, because studies that take only limits from this file run without it
@@ -73,6 +74,9 @@ def true_claims(suite, folder, budget):
     for test in content["tests"]:
         if budget and test.get("cost") != "seconds":  # which is timed on whole replicates
             test.setdefault("budget", budget)
+        fixed = float(test.get("secondaries", 0))  # which YAML 1.1 reads as a text where it is 1e6
+        if fixed > 100:
+            test["secondaries"] = max(100, round(fixed / coarsen))
     copy = place / suite.name
     copy.write_text(yaml.safe_dump(content, sort_keys=False, width=100000), encoding="utf-8")
     return copy
@@ -126,7 +130,7 @@ def main():
           "verdicts of true claims |\n|---|---|---|---|---|")
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(arguments.workers) as pool):
-        kept = [study(arguments, true_claims(suite, pathlib.Path(folder), arguments.budget), pool)
+        kept = [study(arguments, true_claims(suite, pathlib.Path(folder), arguments.budget, arguments.coarsen), pool)
                 for suite in arguments.suites]
     return 0 if all(kept) else 1
 
