@@ -192,14 +192,15 @@ std::string Value::canonical() const {
 }
 
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
-  // What was cut short: the shortest that begins so.
+  // What was cut short: the shortest that begins so. An option's dashes tell nothing.
   constexpr std::size_t least_beginning = 3;
+  const std::size_t letters = name.size() - std::min(name.find_first_not_of('-'), name.size());
   const auto by_size = [](const std::string& a, const std::string& b) {
     return a.size() < b.size();
   };
   std::vector<std::string> begun;
   for (const std::string& candidate : candidates) {
-    if (name.size() >= least_beginning && candidate.starts_with(name)) begun.push_back(candidate);
+    if (letters >= least_beginning && candidate.starts_with(name)) begun.push_back(candidate);
   }
   if (!begun.empty()) return *std::ranges::min_element(begun, by_size);
   // One slip for every three letters, at least one: `sceen` suggests `scene`, `x` suggests nothing.

@@ -18,10 +18,10 @@ namespace {
 
 constexpr std::size_t deepest = 64;
 
-/// yaml-cpp's messages name the state of its scanner; these say what to do.
 constexpr std::string_view no_aliases =
     "anchors and aliases are not read; write the value out, or name a scene under `scenes:`";
 
+/// yaml-cpp's messages name the state of its scanner; these say what to do.
 std::string readable(const std::string& message) {
   struct Translation {
     std::string_view terse, plain;

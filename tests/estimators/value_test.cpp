@@ -94,6 +94,8 @@ TEST(Nearest, SuggestsTheShortestThatBeginsSo) {
                                           "luminaire/hemisphere"};
   EXPECT_EQ(nearest("luminaire/hemi", known), "luminaire/hemisphere");
   EXPECT_EQ(nearest("lu", known), "");
+  EXPECT_EQ(nearest("--s", {"--set", "--seed"}), "") << "dashes are no letters";
+  EXPECT_EQ(nearest("--thr", {"--set", "--threads"}), "--threads");
 }
 
 TEST(Flow, ReadsScalarsListsAndMaps) {

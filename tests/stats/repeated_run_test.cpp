@@ -94,6 +94,25 @@ TEST(RepeatedRun, IsNotFoundInIndependentValues) {
   }
 }
 
+// Values that stay count for their length: runs of the common value have many lengths, between two
+// rare values that have few.
+TEST(RepeatedRun, StaysOfDifferentLengthsDiffer) {
+  Philox random(16);
+  const auto rare = [&] {
+    const double u = random.uniform();
+    return u < 0.9 ? 0.0 : u < 0.998 ? 1.0 : 2.0;
+  };
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(repeated_run(sample_of(20000, rare)));
+}
+
+// Its stays are short and alike: nothing but that it has two values alone tells it.
+TEST(RepeatedRun, IsNotFoundInTwoStatesThatHardlyStay) {
+  Philox random(17);
+  double state = 0;
+  const auto restless = [&] { return state = random.uniform() < 0.97 ? 1 - state : state; };
+  EXPECT_FALSE(repeated_run(sample_of(4000, restless)));
+}
+
 // What depends is not repeated for all that.
 TEST(RepeatedRun, IsNotFoundInChains) {
   Philox random(15);
