@@ -63,12 +63,16 @@ Cumulants cumulants_of(const stats::Moments& pilot, double primaries, double fac
 /// Mean over the elements of |skewness of one replicate's difference|.
 double mean_skewness(const Question& question, const Plan& plan, const Pilots& pilots) {
   const std::size_t elements = question.subjects[0].channels.size();
+  std::vector<const Pilot*> sides;
+  for (std::size_t s = 0; s < question.subjects.size(); ++s) {
+    sides.push_back(&pilot_at(question, s, pilots));
+  }
   double sum = 0;
   for (std::size_t i = 0; i < elements; ++i) {
     Cumulants total;
     for (std::size_t s = 0; s < question.subjects.size(); ++s) {
       const Subject& side = question.subjects[s];
-      const Cumulants part = cumulants_of(pilot_at(question, s, pilots).channels[side.channels[i]],
+      const Cumulants part = cumulants_of(sides[s]->moments(side.channels[i]),
                                           averaged(question, plan, s), factor_of(question, s));
       total.variance += part.variance;
       total.third += part.third;

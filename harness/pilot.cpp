@@ -65,17 +65,22 @@ stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
   return means;
 }
 
-Pilot read(const Pool& pool) {
-  Pilot pilot{
-      .channels = {}, .primaries = pool.primaries(), .with_cost = {}, .trouble = pool.trouble()};
-  if (!pilot.trouble.empty()) return pilot;
-  const std::vector<ChannelSummary>& channels = pool.prefix(pool.requested()).channels;
+/// The sums of a pilot pool, as of single primaries where a recorded run has means of several.
+std::shared_ptr<const Summary> sums_of(const Pool& pool) {
   const RecordedRun* run = as_recorded_run(*pool.setup());
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    const bool averaged = run != nullptr && run->entry().information.averages;
-    pilot.channels.push_back(averaged ? of_primaries(channels[i].moments, run->primaries())
-                                      : channels[i].moments);
-    pilot.with_cost.push_back(channels[i].details().with_cost);
+  if (run == nullptr || !run->entry().information.averages) return pool.shared(pool.requested());
+  auto sums = std::make_shared<Summary>(pool.prefix(pool.requested()));
+  for (ChannelSummary& channel : sums->channels) {
+    channel.moments = of_primaries(channel.moments, run->primaries());
+  }
+  return sums;
+}
+
+Pilot read(const Pool& pool) {
+  Pilot pilot{.primaries = pool.primaries(), .trouble = pool.trouble()};
+  if (!pilot.trouble.empty()) return pilot;
+  pilot.sums = sums_of(pool);
+  for (std::size_t i = 0; i < pool.plan().size() && pool.plan()[i].keep > 0; ++i) {
     const std::span<const double> kept = pool.values(i, pool.requested());
     if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
   }
@@ -95,14 +100,17 @@ const Pilot* pilot_of(const Subject& subject, const Pilots& pilots) {
   return found != pilots.end() && found->second.trouble.empty() ? &found->second : nullptr;
 }
 
+PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel) {
+  const std::size_t index = subject.channels[channel];
+  return {.moments = pilot.moments(index),
+          .values = index < pilot.values.size() ? std::span<const double>(pilot.values[index])
+                                                : std::span<const double>()};
+}
+
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots) {
   const Subject& side = question.subjects[subject];
-  const Pilot& pilot = pilots.at(pilot_name(side));
-  const std::size_t index = side.channels[channel];
-  return {.moments = pilot.channels[index],
-          .values = index < pilot.values.size() ? std::span<const double>(pilot.values[index])
-                                                : std::span<const double>()};
+  return pilot_channel(side, pilots.at(pilot_name(side)), channel);
 }
 
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,

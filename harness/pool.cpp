@@ -140,9 +140,12 @@ void Pool::request(std::uint64_t count) {
   if (!is_ready_made()) requested_ = std::max(requested_, count);
 }
 
-const Summary& Pool::prefix(std::uint64_t count) const {
-  return is_ready_made() ? *ready_made_ : *prefixes_.at(count);
+std::shared_ptr<const Summary> Pool::shared(std::uint64_t count) const {
+  if (is_ready_made()) return {setup_, ready_made_};  // as long as its set-up
+  return prefixes_.at(count);
 }
+
+const Summary& Pool::prefix(std::uint64_t count) const { return *shared(count); }
 
 std::uint64_t Pool::largest_prefix() const {
   if (is_ready_made()) return ready_made_->count;

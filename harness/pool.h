@@ -70,6 +70,7 @@ class Pool {
 
   /// The summary of the first `count` observations, once drawn; `count` as marked.
   const Summary& prefix(std::uint64_t count) const;
+  std::shared_ptr<const Summary> shared(std::uint64_t count) const;
   /// The largest marked count that is drawn; 0 where none is.
   std::uint64_t largest_prefix() const;
   /// The first values of a channel, at most `count` and as many as were to be kept.

@@ -74,10 +74,10 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   const Pilot pilot = found != pilots.end() ? found->second : Pilot{.trouble = "no pilot"};
   const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!pilot.trouble.empty() || pilot.channels[i].count < 2) {
+    if (!pilot.trouble.empty() || pilot.moments(i).count < 2) {
       plan.push_back({.keep = plotted_values});
     } else {
-      plan.push_back(with_histogram(expected_range(channels[i], pilot.channels[i], averaged)));
+      plan.push_back(with_histogram(expected_range(channels[i], pilot.moments(i), averaged)));
     }
   }
   return plan;
