@@ -19,21 +19,22 @@ struct Span {
   bool constant(double rounding) const { return high - low <= 2 * rounding; }
 };
 
-/// Where one number is to stand in every image of a stack.
+/// Where one number, itself of one of the images, is to stand in every image of a stack.
 struct Replacement {
   std::size_t element;
   double value;
 };
 
 /// The stack with these elements replaced; images that change are kept in `copies`.
-stats::ImageStack<double> replaced(const stats::ImageStack<double>& stack,
-                                   const std::vector<Replacement>& replacements,
-                                   std::vector<std::vector<double>>& copies) {
+template <class Real>
+stats::ImageStack<Real> replaced(const stats::ImageStack<Real>& stack,
+                                 const std::vector<Replacement>& replacements,
+                                 std::vector<std::vector<Real>>& copies) {
   if (replacements.empty()) return stack;
-  stats::ImageStack<double> out{stack.extent, {}};
-  for (const std::span<const double> image : stack.images) {
-    std::vector<double>& copy = copies.emplace_back(image.begin(), image.end());
-    for (const Replacement& each : replacements) copy[each.element] = each.value;
+  stats::ImageStack<Real> out{stack.extent, {}};
+  for (const std::span<const Real> image : stack.images) {
+    std::vector<Real>& copy = copies.emplace_back(image.begin(), image.end());
+    for (const Replacement& each : replacements) copy[each.element] = static_cast<Real>(each.value);
     out.images.emplace_back(copy);
   }
   return out;
@@ -63,7 +64,8 @@ std::vector<Declared> declared_by(const Subject& subject) {
 
 /// Of every element; of one that is no constant it ends where that shows. Some elements of all
 /// images at a time: nearly always the second image tells that none of them is a constant.
-std::vector<Span> spans_of(const stats::ImageStack<double>& stack,
+template <class Real>
+std::vector<Span> spans_of(const stats::ImageStack<Real>& stack,
                            const std::vector<Declared>& channels) {
   constexpr std::size_t at_a_time = 256;
   std::vector<Span> spans(stack.extent.elements());
@@ -74,11 +76,12 @@ std::vector<Span> spans_of(const stats::ImageStack<double>& stack,
     }
     bool constants = true;
     for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
-      const std::span<const double> image = stack.images[r];
+      const std::span<const Real> image = stack.images[r];
       constants = false;
       for (std::size_t i = first; i < last; ++i) {
-        spans[i].low = std::min(spans[i].low, image[i]);
-        spans[i].high = std::max(spans[i].high, image[i]);
+        const double value = image[i];
+        spans[i].low = std::min(spans[i].low, value);
+        spans[i].high = std::max(spans[i].high, value);
         constants |= spans[i].constant(channels[i].rounding);
       }
     }
@@ -107,9 +110,10 @@ struct Missing {
   }
 };
 
-Constant mean_of(const stats::ImageStack<double>& stack, std::size_t element) {
+template <class Real>
+Constant mean_of(const stats::ImageStack<Real>& stack, std::size_t element) {
   stats::Moments moments;
-  for (const std::span<const double> image : stack.images) moments.add(image[element]);
+  for (const std::span<const Real> image : stack.images) moments.add(image[element]);
   return {moments.mean, moments.standard_error()};
 }
 
@@ -131,7 +135,8 @@ double z_of(const UnseenElement& unseen) {
   return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
 }
 
-VaryingPart::VaryingPart(const Question& question, const ImagePair& pair)
+template <class Real>
+VaryingPart<Real>::VaryingPart(const Question& question, const ImagePair<Real>& pair)
     : of_two_(pair.of_two()), first_(pair.first()) {
   if (of_two_) {
     second_ = pair.second();
@@ -141,7 +146,9 @@ VaryingPart::VaryingPart(const Question& question, const ImagePair& pair)
   }
 }
 
-void VaryingPart::settle_against_reference(const Question& question, const ImagePair& pair) {
+template <class Real>
+void VaryingPart<Real>::settle_against_reference(const Question& question,
+                                                 const ImagePair<Real>& pair) {
   const stats::ImageReference reference = pair.reference();
   value_.assign(reference.value.begin(), reference.value.end());
   error_.assign(reference.standard_error.begin(), reference.standard_error.end());
@@ -166,7 +173,8 @@ void VaryingPart::settle_against_reference(const Question& question, const Image
   first_ = replaced(first_, replacements, settled_);
 }
 
-void VaryingPart::settle_two(const Question& question) {
+template <class Real>
+void VaryingPart<Real>::settle_two(const Question& question) {
   const std::vector<Declared> one = declared_by(question.subjects[0]);
   std::vector<Declared> two = declared_by(question.subjects[1]);
   for (Declared& channel : two) channel = mapped(channel, question);
@@ -188,7 +196,7 @@ void VaryingPart::settle_two(const Question& question) {
       continue;
     }
     const Declared& channel = first_constant ? one[i] : two[i];
-    const stats::ImageStack<double>& constant = first_constant ? first_ : second_;
+    const stats::ImageStack<Real>& constant = first_constant ? first_ : second_;
     const Constant mean = mean_of(first_constant ? second_ : first_, i);
     const Missing missing{first_constant ? a : b, channel.low, channel.high,
                           constant.images.size()};
@@ -201,5 +209,8 @@ void VaryingPart::settle_two(const Question& question) {
   first_ = replaced(first_, of_first, settled_);
   second_ = replaced(second_, of_second, settled_);
 }
+
+template class VaryingPart<float>;
+template class VaryingPart<double>;
 
 }  // namespace assay::harness

@@ -91,7 +91,8 @@ reports::Map map_of(const char* name, const ImageShape& shape, const std::vector
 }
 
 /// z of every element: Welch's, or that of the bound for elements that never varied.
-std::vector<double> z_map(const Question& question, const ImagePair& pair) {
+template <class Real>
+std::vector<double> z_map(const Question& question, const ImagePair<Real>& pair) {
   const VaryingPart varying(question, pair);
   std::vector<double> z(pair.extent().elements());
   varying.with([&](const auto& a, const auto& b) { stats::welch_z(a, b, 0, z); });
@@ -135,17 +136,20 @@ void add_maps(const TestWork& work, const ImageOutcome& outcome, reports::Test& 
   const Question& question = work.outcome.question;
   const ImageShape& shape = *question.subjects[0].image;
   const std::vector<ChannelData> data = data_of(work, 0);
-  const ImagePair pair(question, data);
-  const std::vector<double> z = z_map(question, pair);
+  const std::vector<double> z =
+      with_pair(question, data, [&](const auto& pair) { return z_map(question, pair); });
   const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
   test.maps.push_back(map_of("z", shape, z));
   test.maps.push_back(map_of("p_adjusted", shape, adjusted_map(z, tested)));
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     add_moments(work, subject, test);
   }
-  if (pair.of_two()) return;
-  const std::span<const double> reference = pair.reference().value;
-  test.maps.push_back(map_of("reference", shape, {reference.begin(), reference.end()}));
+  if (question.of_two()) return;
+  std::vector<double> reference;
+  for (const Constant& each : question.references) {
+    reference.push_back(each.value + question.offset);
+  }
+  test.maps.push_back(map_of("reference", shape, reference));
 }
 
 /// A file name of letters, digits, `-` and `_`, different for different tests.

@@ -23,10 +23,13 @@ struct Pilot {
   std::vector<std::vector<double>> values = {};  ///< of the first channels, as drawn
   std::uint64_t primaries = 1;
   /// Of an image: whole observations, and whose they are.
-  std::span<const std::vector<double>> images = {};
+  Observations images = {};
   std::shared_ptr<const KeptObservations> kept = {};
   std::string trouble = "";  ///< why there are no numbers: the estimator threw
 
+  std::size_t image_count() const {
+    return std::visit([](const auto& each) { return each.size(); }, images);
+  }
   const stats::Moments& moments(std::size_t channel) const {
     return sums->channels[channel].moments;
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "estimators/estimator.h"
+#include "harness/image_views.h"
 #include "harness/summary.h"
 
 namespace assay::harness {
@@ -20,12 +21,20 @@ namespace assay::harness {
 /// those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);
 
-/// Observations whole, as they were drawn.
+/// Observations whole.
 struct KeptObservations {
-  std::vector<std::vector<double>> values = {};
+  std::vector<std::vector<double>> values = {};       ///< as they were drawn; of pictures none
+  std::vector<std::unique_ptr<float[]>> texels = {};  ///< of pictures of files
+  std::vector<std::span<const float>> pictures = {};  ///< the same, without their averages
   std::vector<Cost> costs = {};
   /// Of the first so many of them, where they were summed after all were there.
   std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
+
+  std::size_t size() const { return costs.size(); }
+  /// The first of them, at most `count`.
+  Observations first(std::uint64_t count) const;
+  /// Takes those that follow.
+  void append(KeptObservations&& next);
 };
 
 class Pool {
@@ -76,7 +85,7 @@ class Pool {
   /// The first values of a channel, at most `count` and as many as were to be kept.
   std::span<const double> values(std::size_t channel, std::uint64_t count) const;
   /// The first observations, all channels, at most `count` and as many as were to be kept.
-  std::span<const std::vector<double>> observations(std::uint64_t count) const;
+  Observations observations(std::uint64_t count) const;
   /// A whole block by itself.
   struct BlockSums {
     std::uint64_t count = 0;
@@ -125,6 +134,10 @@ class Pool {
   std::uint64_t block_size_;
   std::vector<ChannelPlan> plan_;
   bool sums_later() const;
+  std::span<const double> observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
+                                  Block& block) const;
+  std::span<const double> keep_picture(Estimator& estimator, std::uint64_t index,
+                                       std::span<double> out, Block& block) const;
 
   std::map<std::uint64_t, std::shared_ptr<const Summary>> prefixes_;
   std::uint64_t requested_ = 0;

@@ -108,7 +108,7 @@ std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t se
   const auto piloted = pilots.find(wanted.estimator.name);
   const auto rows = wanted.setup->observations();
   if (rows && piloted != pilots.end() && piloted->second.kept &&
-      piloted->second.kept->values.size() == *rows) {
+      piloted->second.kept->size() == *rows) {
     pool->take_known(piloted->second.kept);
   }
   const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());

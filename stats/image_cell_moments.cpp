@@ -64,9 +64,11 @@ void double_side(const std::vector<double>& from, std::vector<double>& to, std::
 
 std::size_t tiles_in(std::size_t count, std::size_t side) { return (count + side - 1) / side; }
 
+template <class Real>
 class Cells {
  public:
-  Cells(const WeightedImages& images, const std::vector<WindowGroup>& groups, std::size_t channel)
+  Cells(const WeightedImages<Real>& images, const std::vector<WindowGroup>& groups,
+        std::size_t channel)
       : images_(images),
         groups_(groups),
         extent_(images.stack.extent),
@@ -104,13 +106,14 @@ class Cells {
 
   void load(std::size_t image, std::size_t left, std::size_t top) {
     std::vector<double>& values = levels_[0].sum;
-    const std::span<const double> value = images_.stack.images[image];
-    const std::span<const double> first = images_.stack.images[0];
+    const std::span<const Real> value = images_.stack.images[image];
+    const std::span<const Real> first = images_.stack.images[0];
     const std::size_t width = std::min(side_, extent_.width - left);
     for (std::size_t y = 0; y < side_ && top + y < extent_.height; ++y) {
       std::size_t e = ((top + y) * extent_.width + left) * extent_.channels + channel_;
       for (std::size_t x = 0; x < width; ++x, e += extent_.channels) {
-        values[y * side_ + x] = images_.weights[e] * (value[e] - first[e]);
+        values[y * side_ + x] =
+            images_.weights[e] * (static_cast<double>(value[e]) - static_cast<double>(first[e]));
       }
     }
   }
@@ -170,7 +173,7 @@ class Cells {
     }
   }
 
-  const WeightedImages& images_;
+  const WeightedImages<Real>& images_;
   const std::vector<WindowGroup>& groups_;
   const ImageExtent& extent_;
   std::size_t channel_;
@@ -185,9 +188,15 @@ class Cells {
 
 }  // namespace
 
-std::vector<CellMoments> cell_moments(const WeightedImages& images,
+template <class Real>
+std::vector<CellMoments> cell_moments(const WeightedImages<Real>& images,
                                       const std::vector<WindowGroup>& groups, std::size_t channel) {
-  return Cells(images, groups, channel).moments();
+  return Cells<Real>(images, groups, channel).moments();
 }
+
+template std::vector<CellMoments> cell_moments(const WeightedImages<float>&,
+                                               const std::vector<WindowGroup>&, std::size_t);
+template std::vector<CellMoments> cell_moments(const WeightedImages<double>&,
+                                               const std::vector<WindowGroup>&, std::size_t);
 
 }  // namespace assay::stats

@@ -209,8 +209,9 @@ TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
   EXPECT_EQ(second->trouble(), "");
   EXPECT_EQ(second->prefix(30).channels[1].moments.m4, first->prefix(30).channels[1].moments.m4);
   EXPECT_EQ(second->prefix(30).cost, first->prefix(30).cost);
-  EXPECT_EQ(second->observations(20).size(), 20U);
-  EXPECT_EQ(second->observations(20).data(), first->observations(20).data());
+  const auto drawn = std::get<0>(second->observations(20));
+  EXPECT_EQ(drawn.size(), 20U);
+  EXPECT_EQ(drawn.data(), std::get<0>(first->observations(20)).data());
 }
 
 // Pictures of files are summed when all are there, once for the pilot and the test.

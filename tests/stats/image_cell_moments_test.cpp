@@ -18,7 +18,7 @@ std::vector<WindowGroup> aligned_groups(const ImageExtent& extent) {
   return groups;
 }
 
-double sum_over(const WeightedImages& images, std::size_t image, const Rectangle& window,
+double sum_over(const WeightedImages<double>& images, std::size_t image, const Rectangle& window,
                 std::size_t channel) {
   const ImageExtent& extent = images.stack.extent;
   double sum = 0;
