@@ -39,8 +39,8 @@ struct CoarseImages {
   BlockSums squared_error;               // of a reference, weighted; empty where it has none
 };
 
-// The means over the replicates of one half of one side, as WindowMoments of
-// image_pyramid has them: what the halves' and sides' parts add up to.
+// What fine cells are tested on: the replicates, their halves with the weights
+// that each gives the other, and the groups of cells.
 template <class Real>
 struct FineCells {
   const ImagePair<Real>& pair;
