@@ -20,6 +20,7 @@ namespace {
 using Groups = std::vector<WindowGroup>;
 
 constexpr const char* function_name = "image_pyramid";
+
 double two_sided(LogTails tails) {
   return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
 }
