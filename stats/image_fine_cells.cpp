@@ -1,10 +1,10 @@
 #include "stats/image_fine_cells.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "stats/image_tile.h"
+#include "stats/image_welch_cells.h"
 #include "stats/vector_copies.h"
 
 namespace assay::stats {
@@ -61,32 +61,6 @@ ASSAY_VECTOR_COPIES void update(const Updated& row, double inverse_count, std::s
   }
 }
 
-// Of the squares of one side that begin in a tile: as in WindowMoments of
-// image_pyramid.
-struct SquareMoments {
-  std::vector<double> mean;
-  std::vector<double> m2;
-  std::vector<double> effect;
-  std::vector<double> variance;
-  std::vector<double> reciprocal_degrees;
-
-  void clear(std::size_t size) {
-    for (std::vector<double>* each : {&mean, &m2, &effect, &variance, &reciprocal_degrees}) {
-      each->assign(size, 0.0);
-    }
-  }
-  void finish_part(double count, double factor) {
-    for (std::size_t i = 0; i < mean.size(); ++i) {
-      const double part = factor * factor * m2[i] / (count * (count - 1));
-      effect[i] += factor * mean[i];
-      variance[i] += part;
-      reciprocal_degrees[i] += part * part / (count - 1);
-    }
-    std::ranges::fill(mean, 0.0);
-    std::ranges::fill(m2, 0.0);
-  }
-};
-
 // The group of aligned and the group of shifted cells of one side, where there
 // are any.
 struct GroupsOfSide {
@@ -122,7 +96,7 @@ class FineTiles {
   void take(const Tile& tile) {
     const std::size_t size = Tile::rows * tile.stride();
     for (std::size_t k = 0; k < fine_squares.size(); ++k) {
-      moments_[k].clear(size / (fine_squares[k].step * fine_squares[k].step));
+      moments_[k].start(size / (fine_squares[k].step * fine_squares[k].step));
     }
     for (std::size_t h = 0; h < halves; ++h) {
       take_half(tile, cells_.pair.a, {h, 0}, 0.5);
@@ -159,7 +133,7 @@ class FineTiles {
       keep_blocks(tile, blocks);
       add_alternating(tile, blocks);
     }
-    for (SquareMoments& moments : moments_) moments.finish_part(count, factor);
+    for (WelchCells& moments : moments_) moments.finish_part(count, factor);
   }
 
   void update_squares(const Tile& tile, std::size_t k, double inverse) {
@@ -274,14 +248,11 @@ class FineTiles {
     if (!aligned && (square.x + wide > width || square.y + high > height)) return;
     square.width = std::min(wide, width - square.x);
     square.height = std::min(high, height - square.y);
-    const SquareMoments& moments = moments_[k];
+    const WelchCells& moments = moments_[k];
     for (std::size_t c = 0; c < extent_.channels; ++c) {
-      const double variance = moments.variance[first + c];
-      if (!(variance > 0)) continue;
-      const StudentValue value{moments.effect[first + c] / std::sqrt(variance),
-                               variance * variance / moments.reciprocal_degrees[first + c]};
+      if (!moments.varied(first + c)) continue;
       offer(best_[*group], {ImageStatistic::window, cells_.groups[*group].size, square, c, 0, 0, 0},
-            value);
+            moments.value(first + c));
     }
   }
 
@@ -292,11 +263,9 @@ class FineTiles {
   TileSums sums_;
   std::vector<double> column_sums_;
   std::vector<double> signed_column_sums_;
-  std::array<SquareMoments, fine_squares.size()> moments_;
+  std::array<WelchCells, fine_squares.size()> moments_;  // of the squares that begin in the tile
   std::array<GroupsOfSide, fine_squares.size()> groups_;
 };
-
-std::size_t blocks_of(std::size_t count) { return (count + block_side - 1) / block_side; }
 
 template <class Real>
 CoarseImages empty_blocks(const ImagePair<Real>& pair) {

@@ -19,6 +19,8 @@ namespace assay::stats {
 inline constexpr std::size_t sides_of_pair = 2;  // a and b
 inline constexpr std::size_t alternations = 3;   // by column, by row, checkerboard
 inline constexpr std::uint32_t block_side = 4;
+// That cover so many elements of a row or column.
+inline std::size_t blocks_of(std::size_t count) { return (count + block_side - 1) / block_side; }
 
 // Whether the cells of a group are tested here.
 bool is_fine(const WindowGroup& group);
