@@ -39,8 +39,8 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
     pool->keep_observations(estimator.setup->observations().value_or(usual));
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
-  if (pool->plan().size() <= kept_channels) {
-    for (ChannelPlan& channel : pool->plan()) channel.keep = count;
+  if (pool->channels() <= kept_channels) {
+    for (ChannelPlan& channel : pool->plans()) channel.keep = count;
   }
   pool->request(count);
   return pool;
@@ -49,7 +49,7 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
 std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
   auto pool = std::make_shared<Pool>(
       subject.setup, key_of(*subject.estimator, seed, 0, subject.purpose + " pilot"), 1);
-  for (ChannelPlan& channel : pool->plan()) channel.keep = averaging_observations;
+  for (ChannelPlan& channel : pool->plans()) channel.keep = averaging_observations;
   pool->request(averaging_observations);
   return pool;
 }
@@ -121,7 +121,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
     names.push_back(estimator->name);
     pools.push_back(pilot_pool(*estimator, run.seed));
     if (!run.with_cost.contains(estimator->name)) continue;
-    for (ChannelPlan& channel : pools.back()->plan()) channel.with_cost = true;
+    for (ChannelPlan& channel : pools.back()->plans()) channel.with_cost = true;
   }
   for (const Subject* subject : run.draws) {
     names.push_back(pilot_name(*subject));

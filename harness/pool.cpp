@@ -135,7 +135,14 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
       key_(key),
       primaries_(primaries),
       block_size_(block_size_of(primaries_of(*setup_, primaries))),
-      plan_(channels_of(*setup_)) {}
+      channels_(channels_of(*setup_)) {}
+
+std::vector<ChannelPlan>& Pool::plans() {
+  plan_.resize(channels_);
+  return plan_;
+}
+
+Summary Pool::no_sums() const { return sums_later_ ? Summary() : Summary(channels_, plan_); }
 
 void Pool::mark(std::uint64_t count) {
   const bool known = !prefixes_.try_emplace(count, std::make_shared<const Summary>()).second;
@@ -162,7 +169,7 @@ std::uint64_t Pool::largest_prefix() const {
 
 std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
   if (is_ready_made()) return {};
-  if (sums_later_) return {};
+  if (values_.empty()) return {};
   const std::vector<double>& kept = values_.at(channel);
   return {kept.data(), std::min<std::size_t>(kept.size(), count)};
 }
@@ -192,7 +199,7 @@ void KeptObservations::append(KeptObservations&& next) {
 /// of it at once.
 std::span<const double> Pool::keep_picture(Estimator& estimator, std::uint64_t index,
                                            std::span<double> out, Block& block) const {
-  const std::size_t elements = plan_.size() - 1;
+  const std::size_t elements = channels_ - 1;
   auto texels = std::make_unique_for_overwrite<float[]>(elements);
   const std::span<float> picture(texels.get(), elements);
   recorded::read_picture(estimator, index, picture, block.whole.cost);
@@ -227,14 +234,15 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
 }
 
 Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const {
-  Block block{.whole = Summary(sums_later_ ? std::span<const ChannelPlan>() : plan_),
-              .values = std::vector<std::vector<double>>(sums_later_ ? 0 : plan_.size()),
+  const std::uint64_t values_kept = most_kept(plan_);
+  Block block{.whole = no_sums(),
+              .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .observations = {},
               .partial = {},
               .trouble = {}};
-  std::vector<double> out(plan_.size());
+  const bool in_place = sums_later_ && recorded::unknown_channels(*setup_);
+  std::vector<double> out(in_place ? 0 : channels_);
   Intake intake(block.whole.channels);
-  const std::uint64_t values_kept = most_kept(plan_);
   auto mark = prefixes_.upper_bound(first);
   const auto seconds = [&estimator] { return thread_seconds() + estimator.seconds_elsewhere(); };
   const double start = seconds();
@@ -305,8 +313,8 @@ void Pool::end_drawing() {
 
 void Pool::fold(Block&& block) {
   if (!started_) {
-    running_ = Summary(sums_later_ ? std::span<const ChannelPlan>() : plan_);
-    if (!sums_later_) values_.resize(plan_.size());
+    running_ = no_sums();
+    if (most_kept(plan_) > 0) values_.resize(channels_);
     started_ = true;
   }
   if (!trouble_.empty()) return;

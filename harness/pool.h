@@ -45,10 +45,13 @@ class Pool {
   StreamKey key() const { return key_; }
   std::uint64_t primaries() const { return primaries_; }
 
-  /// What to keep; before anything is drawn.
+  std::size_t channels() const { return channels_; }
+  /// What to keep of each channel, before anything is drawn; none: of no channel more than its
+  /// moments, and an image's millions need no plans.
   void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
-  std::vector<ChannelPlan>& plan() { return plan_; }
   const std::vector<ChannelPlan>& plan() const { return plan_; }
+  /// One for each channel, to be changed.
+  std::vector<ChannelPlan>& plans();
 
   /// To sum the variances of these channels in groups; before anything is drawn.
   void keep_group_variances(std::vector<std::size_t> channels) {
@@ -132,8 +135,10 @@ class Pool {
   StreamKey key_;
   std::uint64_t primaries_;
   std::uint64_t block_size_;
+  std::size_t channels_;
   std::vector<ChannelPlan> plan_;
   bool sums_later() const;
+  Summary no_sums() const;
   std::span<const double> observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
                                   Block& block) const;
   std::span<const double> keep_picture(Estimator& estimator, std::uint64_t index,
