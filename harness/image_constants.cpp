@@ -1,6 +1,7 @@
 #include "harness/image_constants.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -47,46 +48,57 @@ struct Declared {
   double rounding;
 };
 
-std::vector<Declared> declared_by(const Subject& subject) {
-  if (recorded::unknown_channels(*subject.setup)) {
-    const Channel unknown;
-    return std::vector<Declared>(subject.channels.size(),
-                                 {unknown.low, unknown.high, unknown.rounding});
+/// Of every element; of pictures of files one for all.
+class DeclaredElements {
+ public:
+  explicit DeclaredElements(const Subject& subject) {
+    if (recorded::unknown_channels(*subject.setup)) return;
+    const std::vector<Channel> all = subject.setup->channels();
+    each_.reserve(subject.channels.size());
+    for (const std::size_t channel : subject.channels) {
+      each_.push_back({all[channel].low, all[channel].high, all[channel].rounding});
+    }
   }
-  const std::vector<Channel> all = subject.setup->channels();
-  std::vector<Declared> declared;
-  declared.reserve(subject.channels.size());
-  for (const std::size_t channel : subject.channels) {
-    declared.push_back({all[channel].low, all[channel].high, all[channel].rounding});
+  const Declared& operator[](std::size_t element) const {
+    return each_.empty() ? any_ : each_[element];
   }
-  return declared;
-}
+  template <class Map>
+  void map(const Map& mapped) {
+    any_ = mapped(any_);
+    for (Declared& channel : each_) channel = mapped(channel);
+  }
 
-/// Of every element; of one that is no constant it ends where that shows. Some elements of all
-/// images at a time: nearly always the second image tells that none of them is a constant.
+ private:
+  Declared any_{Channel().low, Channel().high, Channel().rounding};
+  std::vector<Declared> each_;
+};
+
+constexpr std::size_t at_a_time = 256;
+using Spans = std::array<Span, at_a_time>;
+
+/// Of the elements from `first` on, as many as there are; of one that is no constant it ends where
+/// that shows: nearly always the second image tells that none of them is a constant. Whether any
+/// may be.
 template <class Real>
-std::vector<Span> spans_of(const stats::ImageStack<Real>& stack,
-                           const std::vector<Declared>& channels) {
-  constexpr std::size_t at_a_time = 256;
-  std::vector<Span> spans(stack.extent.elements());
-  for (std::size_t first = 0; first < spans.size(); first += at_a_time) {
-    const std::size_t last = std::min(first + at_a_time, spans.size());
-    for (std::size_t i = first; i < last; ++i) {
-      spans[i] = {stack.images[0][i], stack.images[0][i]};
-    }
-    bool constants = true;
-    for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
-      const std::span<const Real> image = stack.images[r];
-      constants = false;
-      for (std::size_t i = first; i < last; ++i) {
-        const double value = image[i];
-        spans[i].low = std::min(spans[i].low, value);
-        spans[i].high = std::max(spans[i].high, value);
-        constants |= spans[i].constant(channels[i].rounding);
-      }
+bool find_spans(const stats::ImageStack<Real>& stack, const DeclaredElements& channels,
+                std::size_t first, Spans& spans) {
+  const std::size_t size = std::min(at_a_time, stack.extent.elements() - first);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double value = stack.images[0][first + i];
+    spans[i] = {value, value};
+  }
+  bool constants = true;
+  for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
+    const Real* const image = stack.images[r].data() + first;
+    constants = false;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double value = image[i];
+      spans[i].low = std::min(spans[i].low, value);
+      spans[i].high = std::max(spans[i].high, value);
+      constants |= spans[i].constant(channels[first + i].rounding);
     }
   }
-  return spans;
+  return constants;
 }
 
 /// What a constant can have missed: its value, and the range of the law it is of.
@@ -152,11 +164,14 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
   const stats::ImageReference reference = pair.reference();
   value_.assign(reference.value.begin(), reference.value.end());
   error_.assign(reference.standard_error.begin(), reference.standard_error.end());
-  const std::vector<Declared> channels = declared_by(question.subjects[0]);
-  const std::vector<Span> spans = spans_of(first_, channels);
+  const DeclaredElements channels(question.subjects[0]);
+  Spans spans;
+  bool constants = false;
   std::vector<Replacement> replacements;
   for (std::size_t i = 0; i < value_.size(); ++i) {
-    const Span span = spans[i];
+    if (i % at_a_time == 0) constants = find_spans(first_, channels, i, spans);
+    if (!constants) continue;
+    const Span span = spans[i % at_a_time];
     if (!span.constant(channels[i].rounding)) continue;
     ++constants_;
     const double constant = first_.images[0][i];
@@ -175,16 +190,22 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
 
 template <class Real>
 void VaryingPart<Real>::settle_two(const Question& question) {
-  const std::vector<Declared> one = declared_by(question.subjects[0]);
-  std::vector<Declared> two = declared_by(question.subjects[1]);
-  for (Declared& channel : two) channel = mapped(channel, question);
+  const DeclaredElements one(question.subjects[0]);
+  DeclaredElements two(question.subjects[1]);
+  two.map([&](const Declared& channel) { return mapped(channel, question); });
   std::vector<Replacement> of_first;
   std::vector<Replacement> of_second;
-  const std::vector<Span> first_spans = spans_of(first_, one);
-  const std::vector<Span> second_spans = spans_of(second_, two);
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    const bool first_constant = first_spans[i].constant(one[i].rounding);
-    const bool second_constant = second_spans[i].constant(two[i].rounding);
+  Spans first_spans;
+  Spans second_spans;
+  bool constants = false;
+  for (std::size_t i = 0; i < first_.extent.elements(); ++i) {
+    if (i % at_a_time == 0) {
+      constants = find_spans(first_, one, i, first_spans);
+      constants |= find_spans(second_, two, i, second_spans);
+    }
+    if (!constants) continue;
+    const bool first_constant = first_spans[i % at_a_time].constant(one[i].rounding);
+    const bool second_constant = second_spans[i % at_a_time].constant(two[i].rounding);
     if (!first_constant && !second_constant) continue;
     const double a = first_.images[0][i];
     const double b = second_.images[0][i];
