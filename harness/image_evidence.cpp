@@ -10,6 +10,7 @@
 #include "stats/image_equivalence.h"
 #include "stats/image_pyramid.h"
 #include "stats/image_sign_flip.h"
+#include "stats/image_sums.h"
 #include "stats/moments.h"
 #include "stats/tails.h"
 
@@ -97,8 +98,9 @@ std::optional<double> flipped_energy(const VaryingPart<Real>& varying, const Ima
 template <class Real>
 stats::ImageFamily family_of(const VaryingPart<Real>& varying, const ImageTest& test,
                              ImageOutcome& outcome) {
+  outcome.z.resize(varying.first().extent.elements());
   stats::PyramidOptions options{
-      .energy_log_p = {}, .smallest = test.smallest_cell, .weights = test.weights};
+      .energy_log_p = {}, .smallest = test.smallest_cell, .weights = test.weights, .z = outcome.z};
   if (!test.independent) {
     const std::optional<double> log_p = flipped_energy(varying, test);
     outcome.by_sign_flips = true;
@@ -148,17 +150,17 @@ stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative) {
   return distance;
 }
 
-template <class Real>
-double mean_over(std::span<const Real> image) {
+double mean_over(std::span<const double> image) {
   double sum = 0;
-  for (const Real value : image) sum += value;
+  for (const double value : image) sum += value;
   return sum / static_cast<double>(image.size());
 }
 
 template <class Real>
 stats::Moments means_of(const stats::ImageStack<Real>& stack) {
+  const double elements = static_cast<double>(stack.extent.elements());
   stats::Moments moments;
-  for (const auto& image : stack.images) moments.add(mean_over(image));
+  for (const double sum : stats::image_sums(stack)) moments.add(sum / elements);
   return moments;
 }
 
@@ -226,6 +228,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   outcome.replicates = pair.replicates();
   outcome.smallest_cell = test.smallest_cell;
   outcome.family = family_of(varying, test, outcome);
+  for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(pair.extent(), outcome);
   outcome.uniform_error = uniform_error(pair, relative);
   return distance;

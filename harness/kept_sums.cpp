@@ -3,10 +3,11 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "estimators/ready_made.h"
 #include "stats/image_element_moments.h"
+#include "stats/image_sums.h"
 
 namespace assay::harness {
 namespace {
@@ -52,14 +53,27 @@ std::vector<ChannelSummary> sums_of(std::span<const std::vector<double>> observa
   return sums;
 }
 
+std::vector<double> averages_of(std::span<const std::span<const float>> pictures) {
+  constexpr std::size_t at_a_time = 8;
+  const std::size_t elements = pictures.front().size();
+  std::vector<double> averages(pictures.size());
+  tbb::parallel_for(std::size_t{0}, pictures.size(), at_a_time, [&](std::size_t first) {
+    const auto some = pictures.subspan(first, std::min(at_a_time, pictures.size() - first));
+    const std::vector<double> sums = stats::image_sums(
+        stats::ImageStack<float>{{.width = elements, .height = 1}, {some.begin(), some.end()}});
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      averages[first + i] = sums[i] / static_cast<double>(elements);
+    }
+  });
+  return averages;
+}
+
 std::vector<ChannelSummary> sums_of(std::span<const std::span<const float>> pictures) {
   const std::size_t elements = pictures.front().size();
   std::vector<ChannelSummary> sums(elements + 1);
   take_all<float>({{.width = elements, .height = 1}, {pictures.begin(), pictures.end()}},
                   std::span(sums).first(elements));
-  std::vector<double> averages(pictures.size());
-  tbb::parallel_for(std::size_t{0}, pictures.size(),
-                    [&](std::size_t i) { averages[i] = recorded::average_of(pictures[i]); });
+  const std::vector<double> averages = averages_of(pictures);
   stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
   for (const double& average : averages) stack.images.emplace_back(&average, 1);
   take_all(stack, std::span(sums).last(1));
