@@ -61,6 +61,36 @@ ASSAY_VECTOR_COPIES void update(const Updated& row, double inverse_count, std::s
   }
 }
 
+struct ColumnSums {
+  const double* row;
+  double* sum;
+  double* signed_sum;
+};
+
+ASSAY_VECTOR_COPIES void add_row(const ColumnSums& to, double sign, std::size_t size) {
+  const double* const row = to.row;
+  double* const __restrict sum = to.sum;
+  double* const __restrict signed_sum = to.signed_sum;
+  for (std::size_t i = 0; i < size; ++i) {
+    sum[i] += row[i];
+    signed_sum[i] += sign * row[i];
+  }
+}
+
+// Asks for the rows of a tile before they are needed: a tile's rows are too short for the machine
+// to see that more of them follow.
+template <class Real>
+void fetch_ahead(const Tile& tile, const Real* image) {
+  constexpr std::size_t line = 64 / sizeof(Real);
+  const ImageExtent& extent = tile.extent;
+  const std::size_t size = std::min(tile.stride(), (extent.width - tile.x) * extent.channels);
+  const std::size_t rows = std::min(tile.height() + Tile::halo, extent.height - tile.y);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Real* const first = image + ((tile.y + row) * extent.width + tile.x) * extent.channels;
+    for (std::size_t i = 0; i < size; i += line) __builtin_prefetch(first + i);
+  }
+}
+
 // The group of aligned and the group of shifted cells of one side, where there
 // are any.
 struct GroupsOfSide {
@@ -118,6 +148,7 @@ class FineTiles {
     std::vector<BlockSums>& kept = coarse_.images[part.half][part.side];
     double count = 0;
     for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
+      if (r + halves < stack.images.size()) fetch_ahead(tile, stack.images[r + halves].data());
       fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
         const Real* const value = stack.images[r].data() + first;
         if (cells_.pair.b != nullptr) {
@@ -169,20 +200,20 @@ class FineTiles {
     const std::size_t size = tile.width() * extent_.channels;
     std::fill_n(column_sums_.begin(), size, 0.0);
     std::fill_n(signed_column_sums_.begin(), size, 0.0);
-    const double* row = sums_.values().data();
-    for (std::size_t y = 0; y < tile.height(); ++y, row += tile.stride()) {
-      const double sign = y % 2 == 0 ? 1 : -1;
-      for (std::size_t i = 0; i < size; ++i) {
-        column_sums_[i] += row[i];
-        signed_column_sums_[i] += sign * row[i];
-      }
+    for (std::size_t y = 0; y < tile.height(); ++y) {
+      add_row({sums_.values().data() + y * tile.stride(), column_sums_.data(),
+               signed_column_sums_.data()},
+              y % 2 == 0 ? 1 : -1, size);
     }
-    for (std::size_t i = 0; i < size; ++i) {
-      const double sign = i / extent_.channels % 2 == 0 ? 1 : -1;
-      double* const channel = to.alternating.data() + i % extent_.channels * alternations;
-      channel[0] += sign * column_sums_[i];
-      channel[1] += signed_column_sums_[i];
-      channel[2] += sign * signed_column_sums_[i];
+    for (std::size_t x = 0; x < tile.width(); ++x) {
+      const double sign = x % 2 == 0 ? 1 : -1;
+      for (std::size_t c = 0; c < extent_.channels; ++c) {
+        const std::size_t i = x * extent_.channels + c;
+        double* const channel = to.alternating.data() + c * alternations;
+        channel[0] += sign * column_sums_[i];
+        channel[1] += signed_column_sums_[i];
+        channel[2] += sign * signed_column_sums_[i];
+      }
     }
   }
 
