@@ -156,7 +156,20 @@ class FactorMeans {
   }
 
   void add(std::span<const CellPilot> sides, const Weights& weights) {
-    for (std::size_t c = 0; c < extent_.channels; ++c) add_channel(sides, weights, c);
+    std::vector<std::vector<std::vector<CellMoments>>> moments;  // of each side's channels
+    for (const CellPilot& side : sides) {
+      const auto of_stack = [&](const auto& stack) {
+        const WeightedImages images{stack, weights.value, step_of(side), weights.choice};
+        return cell_moments(images, groups_);
+      };
+      moments.push_back(std::visit(of_stack, side.stack));
+    }
+    for (std::size_t c = 0; c < extent_.channels; ++c) {
+      const std::vector<bool> varied = varied_windows(extent_, groups_, weights.value, c);
+      std::vector<Cumulants> cells(varied.size());
+      for (std::size_t s = 0; s < sides.size(); ++s) add_side(cells, moments[s][c], sides[s]);
+      add_cells(cells, varied);
+    }
   }
 
   std::vector<CellTails> tails() const {
@@ -168,16 +181,7 @@ class FactorMeans {
   }
 
  private:
-  void add_channel(std::span<const CellPilot> sides, const Weights& weights, std::size_t channel) {
-    const std::vector<bool> varied = varied_windows(extent_, groups_, weights.value, channel);
-    std::vector<Cumulants> cells(varied.size());
-    for (const CellPilot& side : sides) {
-      const auto moments = [&](const auto& stack) {
-        const WeightedImages images{stack, weights.value, step_of(side), weights.choice};
-        return cell_moments(images, groups_, channel);
-      };
-      add_side(cells, std::visit(moments, side.stack), side);
-    }
+  void add_cells(const std::vector<Cumulants>& cells, const std::vector<bool>& varied) {
     std::size_t window = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       for (std::size_t i = 0; i < groups_[g].windows.size(); ++i, ++window) {
