@@ -200,11 +200,13 @@ void KeptObservations::append(KeptObservations&& next) {
 std::span<const double> Pool::keep_picture(Estimator& estimator, std::uint64_t index,
                                            std::span<double> out, Block& block) const {
   const std::size_t elements = channels_ - 1;
-  auto texels = std::make_unique_for_overwrite<float[]>(elements);
-  const std::span<float> picture(texels.get(), elements);
+  KeptObservations& kept = block.observations;
+  if (kept.texels.empty()) {
+    kept.texels.push_back(std::make_unique_for_overwrite<float[]>(block.size * elements));
+  }
+  const std::span<float> picture(kept.texels[0].get() + kept.pictures.size() * elements, elements);
   recorded::read_picture(estimator, index, picture, block.whole.cost);
-  block.observations.texels.push_back(std::move(texels));
-  block.observations.pictures.emplace_back(picture);
+  kept.pictures.emplace_back(picture);
   return sums_later_ ? std::span<const double>() : widened(picture, out);
 }
 
@@ -239,7 +241,8 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .observations = {},
               .partial = {},
-              .trouble = {}};
+              .trouble = {},
+              .size = last - first};
   const bool in_place = sums_later_ && recorded::unknown_channels(*setup_);
   std::vector<double> out(in_place ? 0 : channels_);
   Intake intake(block.whole.channels);

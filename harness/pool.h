@@ -24,7 +24,7 @@ std::uint64_t block_size_of(std::uint64_t primaries);
 /// Observations whole.
 struct KeptObservations {
   std::vector<std::vector<double>> values = {};       ///< as they were drawn; of pictures none
-  std::vector<std::unique_ptr<float[]>> texels = {};  ///< of pictures of files
+  std::vector<std::unique_ptr<float[]>> texels = {};  ///< of pictures of files, a block each
   std::vector<std::span<const float>> pictures = {};  ///< the same, without their averages
   std::vector<Cost> costs = {};
   /// Of the first so many of them, where they were summed after all were there.
@@ -115,6 +115,7 @@ class Pool {
     KeptObservations observations;            ///< where they are kept
     std::vector<std::pair<std::uint64_t, Summary>> partial;
     std::string trouble;
+    std::uint64_t size = 0;  ///< observations that it is to have
   };
   /// Draws observations [first, last) of one block with a worker's estimator. Thread-safe.
   Block draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const;
