@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,13 @@ bool is_reference(const Setup& setup);
 /// Of pictures as observations: the number of channels, of which nothing but the names is known.
 /// nullopt for other set-ups. Millions of names need not be made where nobody asks for them.
 std::optional<std::size_t> unknown_channels(const Setup& setup);
+
+/// Of an estimator of such a set-up: observation `index` as the file has it, `texels` one for each
+/// element. `secondary` gives the same numbers, and their average after them.
+void read_picture(Estimator& pictures, std::uint64_t index, std::span<float> texels, Cost& cost);
+
+/// The average of texels that follows them in an observation.
+double average_of(std::span<const float> texels);
 
 /// The file that holds observation `index` of a set-up alone, or "".
 std::string observation_file(const Setup& setup, std::uint64_t index);

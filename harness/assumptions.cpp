@@ -80,8 +80,19 @@ reports::Gate gate_of(const stats::Gate& gate, const std::string& where) {
           .state = states[static_cast<int>(gate.state)]};
 }
 
+namespace {
+
+/// So far from the ends of doubles that no shape can be beyond them: nearly all are, and an image
+/// has millions of them.
+bool are_ordinary(const stats::Moments& moments) {
+  return moments.m2 > 1e-60 && moments.m2 < 1e60 && std::abs(moments.m3) < 1e90 &&
+         moments.m4 > 1e-120 && moments.m4 < 1e120;
+}
+
+}  // namespace
+
 std::string beyond_doubles(const stats::Moments& moments, const std::string& name) {
-  if (moments.count < 2) return "";
+  if (moments.count < 2 || are_ordinary(moments)) return "";
   const double spread = moments.maximum - moments.minimum;
   const bool sound = moments.m2 > 0 && std::isfinite(moments.m2) && std::isfinite(moments.m4) &&
                      moments.m4 > 0 && std::isfinite(moments.skewness()) &&

@@ -75,7 +75,7 @@ bool is_red(const reports::Gate& gate) { return gate.state == "red"; }
 /// Nobody looks at the pictures of a calibration's observations.
 void leave_out_pictures(const Pools& pools) {
   for (const auto& pool : pools.all()) {
-    for (ChannelPlan& channel : pool->plan()) channel.histogram_high = channel.histogram_low;
+    for (ChannelPlan& channel : pool->plans()) channel.histogram_high = channel.histogram_low;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimators/ready_made.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
@@ -43,6 +44,8 @@ Difference mean_of(const Channel& channel, const ChannelData& data, double level
 
 Channel channel_of(const Question& question, std::size_t subject, std::size_t channel) {
   const Subject& side = question.subjects[subject];
+  // Of pictures nothing is declared, and their millions of names are not made for one of them.
+  if (recorded::unknown_channels(*side.setup)) return {};
   return side.setup->channels()[side.channels[channel]];
 }
 

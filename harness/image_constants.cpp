@@ -1,6 +1,7 @@
 #include "harness/image_constants.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,21 +20,22 @@ struct Span {
   bool constant(double rounding) const { return high - low <= 2 * rounding; }
 };
 
-/// Where one number is to stand in every image of a stack.
+/// Where one number, itself of one of the images, is to stand in every image of a stack.
 struct Replacement {
   std::size_t element;
   double value;
 };
 
 /// The stack with these elements replaced; images that change are kept in `copies`.
-stats::ImageStack<double> replaced(const stats::ImageStack<double>& stack,
-                                   const std::vector<Replacement>& replacements,
-                                   std::vector<std::vector<double>>& copies) {
+template <class Real>
+stats::ImageStack<Real> replaced(const stats::ImageStack<Real>& stack,
+                                 const std::vector<Replacement>& replacements,
+                                 std::vector<std::vector<Real>>& copies) {
   if (replacements.empty()) return stack;
-  stats::ImageStack<double> out{stack.extent, {}};
-  for (const std::span<const double> image : stack.images) {
-    std::vector<double>& copy = copies.emplace_back(image.begin(), image.end());
-    for (const Replacement& each : replacements) copy[each.element] = each.value;
+  stats::ImageStack<Real> out{stack.extent, {}};
+  for (const std::span<const Real> image : stack.images) {
+    std::vector<Real>& copy = copies.emplace_back(image.begin(), image.end());
+    for (const Replacement& each : replacements) copy[each.element] = static_cast<Real>(each.value);
     out.images.emplace_back(copy);
   }
   return out;
@@ -46,44 +48,57 @@ struct Declared {
   double rounding;
 };
 
-std::vector<Declared> declared_by(const Subject& subject) {
-  if (recorded::unknown_channels(*subject.setup)) {
-    const Channel unknown;
-    return std::vector<Declared>(subject.channels.size(),
-                                 {unknown.low, unknown.high, unknown.rounding});
+/// Of every element; of pictures of files one for all.
+class DeclaredElements {
+ public:
+  explicit DeclaredElements(const Subject& subject) {
+    if (recorded::unknown_channels(*subject.setup)) return;
+    const std::vector<Channel> all = subject.setup->channels();
+    each_.reserve(subject.channels.size());
+    for (const std::size_t channel : subject.channels) {
+      each_.push_back({all[channel].low, all[channel].high, all[channel].rounding});
+    }
   }
-  const std::vector<Channel> all = subject.setup->channels();
-  std::vector<Declared> declared;
-  declared.reserve(subject.channels.size());
-  for (const std::size_t channel : subject.channels) {
-    declared.push_back({all[channel].low, all[channel].high, all[channel].rounding});
+  const Declared& operator[](std::size_t element) const {
+    return each_.empty() ? any_ : each_[element];
   }
-  return declared;
-}
+  template <class Map>
+  void map(const Map& mapped) {
+    any_ = mapped(any_);
+    for (Declared& channel : each_) channel = mapped(channel);
+  }
 
-/// Of every element; of one that is no constant it ends where that shows. Some elements of all
-/// images at a time: nearly always the second image tells that none of them is a constant.
-std::vector<Span> spans_of(const stats::ImageStack<double>& stack,
-                           const std::vector<Declared>& channels) {
-  constexpr std::size_t at_a_time = 256;
-  std::vector<Span> spans(stack.extent.elements());
-  for (std::size_t first = 0; first < spans.size(); first += at_a_time) {
-    const std::size_t last = std::min(first + at_a_time, spans.size());
-    for (std::size_t i = first; i < last; ++i) {
-      spans[i] = {stack.images[0][i], stack.images[0][i]};
-    }
-    bool constants = true;
-    for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
-      const std::span<const double> image = stack.images[r];
-      constants = false;
-      for (std::size_t i = first; i < last; ++i) {
-        spans[i].low = std::min(spans[i].low, image[i]);
-        spans[i].high = std::max(spans[i].high, image[i]);
-        constants |= spans[i].constant(channels[i].rounding);
-      }
+ private:
+  Declared any_{Channel().low, Channel().high, Channel().rounding};
+  std::vector<Declared> each_;
+};
+
+constexpr std::size_t at_a_time = 256;
+using Spans = std::array<Span, at_a_time>;
+
+/// Of the elements from `first` on, as many as there are; of one that is no constant it ends where
+/// that shows: nearly always the second image tells that none of them is a constant. Whether any
+/// may be.
+template <class Real>
+bool find_spans(const stats::ImageStack<Real>& stack, const DeclaredElements& channels,
+                std::size_t first, Spans& spans) {
+  const std::size_t size = std::min(at_a_time, stack.extent.elements() - first);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double value = stack.images[0][first + i];
+    spans[i] = {value, value};
+  }
+  bool constants = true;
+  for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
+    const Real* const image = stack.images[r].data() + first;
+    constants = false;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double value = image[i];
+      spans[i].low = std::min(spans[i].low, value);
+      spans[i].high = std::max(spans[i].high, value);
+      constants |= spans[i].constant(channels[first + i].rounding);
     }
   }
-  return spans;
+  return constants;
 }
 
 /// What a constant can have missed: its value, and the range of the law it is of.
@@ -107,9 +122,10 @@ struct Missing {
   }
 };
 
-Constant mean_of(const stats::ImageStack<double>& stack, std::size_t element) {
+template <class Real>
+Constant mean_of(const stats::ImageStack<Real>& stack, std::size_t element) {
   stats::Moments moments;
-  for (const std::span<const double> image : stack.images) moments.add(image[element]);
+  for (const std::span<const Real> image : stack.images) moments.add(image[element]);
   return {moments.mean, moments.standard_error()};
 }
 
@@ -131,7 +147,8 @@ double z_of(const UnseenElement& unseen) {
   return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
 }
 
-VaryingPart::VaryingPart(const Question& question, const ImagePair& pair)
+template <class Real>
+VaryingPart<Real>::VaryingPart(const Question& question, const ImagePair<Real>& pair)
     : of_two_(pair.of_two()), first_(pair.first()) {
   if (of_two_) {
     second_ = pair.second();
@@ -141,15 +158,20 @@ VaryingPart::VaryingPart(const Question& question, const ImagePair& pair)
   }
 }
 
-void VaryingPart::settle_against_reference(const Question& question, const ImagePair& pair) {
+template <class Real>
+void VaryingPart<Real>::settle_against_reference(const Question& question,
+                                                 const ImagePair<Real>& pair) {
   const stats::ImageReference reference = pair.reference();
   value_.assign(reference.value.begin(), reference.value.end());
   error_.assign(reference.standard_error.begin(), reference.standard_error.end());
-  const std::vector<Declared> channels = declared_by(question.subjects[0]);
-  const std::vector<Span> spans = spans_of(first_, channels);
+  const DeclaredElements channels(question.subjects[0]);
+  Spans spans;
+  bool constants = false;
   std::vector<Replacement> replacements;
   for (std::size_t i = 0; i < value_.size(); ++i) {
-    const Span span = spans[i];
+    if (i % at_a_time == 0) constants = find_spans(first_, channels, i, spans);
+    if (!constants) continue;
+    const Span span = spans[i % at_a_time];
     if (!span.constant(channels[i].rounding)) continue;
     ++constants_;
     const double constant = first_.images[0][i];
@@ -166,17 +188,24 @@ void VaryingPart::settle_against_reference(const Question& question, const Image
   first_ = replaced(first_, replacements, settled_);
 }
 
-void VaryingPart::settle_two(const Question& question) {
-  const std::vector<Declared> one = declared_by(question.subjects[0]);
-  std::vector<Declared> two = declared_by(question.subjects[1]);
-  for (Declared& channel : two) channel = mapped(channel, question);
+template <class Real>
+void VaryingPart<Real>::settle_two(const Question& question) {
+  const DeclaredElements one(question.subjects[0]);
+  DeclaredElements two(question.subjects[1]);
+  two.map([&](const Declared& channel) { return mapped(channel, question); });
   std::vector<Replacement> of_first;
   std::vector<Replacement> of_second;
-  const std::vector<Span> first_spans = spans_of(first_, one);
-  const std::vector<Span> second_spans = spans_of(second_, two);
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    const bool first_constant = first_spans[i].constant(one[i].rounding);
-    const bool second_constant = second_spans[i].constant(two[i].rounding);
+  Spans first_spans;
+  Spans second_spans;
+  bool constants = false;
+  for (std::size_t i = 0; i < first_.extent.elements(); ++i) {
+    if (i % at_a_time == 0) {
+      constants = find_spans(first_, one, i, first_spans);
+      constants |= find_spans(second_, two, i, second_spans);
+    }
+    if (!constants) continue;
+    const bool first_constant = first_spans[i % at_a_time].constant(one[i].rounding);
+    const bool second_constant = second_spans[i % at_a_time].constant(two[i].rounding);
     if (!first_constant && !second_constant) continue;
     const double a = first_.images[0][i];
     const double b = second_.images[0][i];
@@ -188,7 +217,7 @@ void VaryingPart::settle_two(const Question& question) {
       continue;
     }
     const Declared& channel = first_constant ? one[i] : two[i];
-    const stats::ImageStack<double>& constant = first_constant ? first_ : second_;
+    const stats::ImageStack<Real>& constant = first_constant ? first_ : second_;
     const Constant mean = mean_of(first_constant ? second_ : first_, i);
     const Missing missing{first_constant ? a : b, channel.low, channel.high,
                           constant.images.size()};
@@ -201,5 +230,8 @@ void VaryingPart::settle_two(const Question& question) {
   first_ = replaced(first_, of_first, settled_);
   second_ = replaced(second_, of_second, settled_);
 }
+
+template class VaryingPart<float>;
+template class VaryingPart<double>;
 
 }  // namespace assay::harness

@@ -27,16 +27,17 @@ double z_of(const UnseenElement& unseen);
 /// is one, is among `unseen`. Of two images, constants that differ by no more than rounding are
 /// equal; an element that varied in one image alone is as one against a reference with that image's
 /// standard error, where the other declares a range (without one Welch's test takes what was seen).
+template <class Real>
 class VaryingPart {
  public:
-  VaryingPart(const Question& question, const ImagePair& pair);
+  VaryingPart(const Question& question, const ImagePair<Real>& pair);
   VaryingPart(const VaryingPart&) = delete;  // spans point inside
   VaryingPart& operator=(const VaryingPart&) = delete;
 
   const std::vector<UnseenElement>& unseen() const { return unseen_; }
   /// Whether any element varied.
   bool any() const { return constants_ < first_.extent.elements(); }
-  const stats::ImageStack<double>& first() const { return first_; }
+  const stats::ImageStack<Real>& first() const { return first_; }
 
   /// What `use` makes of the first stack and what it is held against.
   template <class Use>
@@ -46,13 +47,13 @@ class VaryingPart {
   }
 
  private:
-  void settle_against_reference(const Question& question, const ImagePair& pair);
+  void settle_against_reference(const Question& question, const ImagePair<Real>& pair);
   void settle_two(const Question& question);
 
   bool of_two_ = false;
-  stats::ImageStack<double> first_;
-  stats::ImageStack<double> second_;
-  std::vector<std::vector<double>> settled_;  // images of which an element was rounded
+  stats::ImageStack<Real> first_;
+  stats::ImageStack<Real> second_;
+  std::vector<std::vector<Real>> settled_;  // images of which an element was rounded
   std::vector<double> value_;
   std::vector<double> error_;
   std::vector<UnseenElement> unseen_;

@@ -10,6 +10,7 @@
 #include "stats/image_equivalence.h"
 #include "stats/image_pyramid.h"
 #include "stats/image_sign_flip.h"
+#include "stats/image_sums.h"
 #include "stats/moments.h"
 #include "stats/tails.h"
 
@@ -30,16 +31,18 @@ using Images = std::vector<std::vector<double>>;
 
 /// Means of the images r, r + count, r + 2 count, …: as good as the images themselves for flipping
 /// signs, and there are at most `count` of them.
-Images grouped(const stats::ImageStack<double>& stack, std::size_t count) {
+template <class Real>
+Images grouped(const stats::ImageStack<Real>& stack, std::size_t count) {
   const std::size_t groups = std::min(count, stack.images.size());
   Images means(groups, std::vector<double>(stack.extent.elements()));
   for (std::size_t g = 0; g < groups; ++g) {
     const std::size_t members = (stack.images.size() - g + groups - 1) / groups;
-    const std::span<const double> first = stack.images[0];
+    const std::span<const Real> first = stack.images[0];
     for (std::size_t r = g; r < stack.images.size(); r += groups) {
       for (std::size_t i = 0; i < means[g].size(); ++i) {
         // From the first image on: the mean of a constant is that constant, without rounding.
-        means[g][i] += (stack.images[r][i] - first[i]) / static_cast<double>(members);
+        const double difference = double{stack.images[r][i]} - double{first[i]};
+        means[g][i] += difference / static_cast<double>(members);
       }
     }
     for (std::size_t i = 0; i < means[g].size(); ++i) means[g][i] += first[i];
@@ -53,25 +56,31 @@ stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Image
   return stack;
 }
 
-stats::FlipMatrix flips_of(const stats::ImageStack<double>& a, const stats::ImageReference& b) {
+template <class Real>
+stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const stats::ImageReference& b) {
   if (a.images.size() <= most_flipped) return stats::flip_matrix(a, b);
   const Images first = grouped(a, most_flipped);
   return stats::flip_matrix(stack_of(a.extent, first), b);
 }
 
-stats::FlipMatrix flips_of(const stats::ImageStack<double>& a, const stats::ImageStack<double>& b) {
+template <class Real>
+stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const stats::ImageStack<Real>& b) {
   if (std::max(a.images.size(), b.images.size()) <= most_flipped) return stats::flip_matrix(a, b);
   const Images first = grouped(a, most_flipped);
   const Images second = grouped(b, most_flipped);
   return stats::flip_matrix(stack_of(a.extent, first), stack_of(b.extent, second));
 }
 
-bool has_error(const stats::ImageStack<double>&) { return false; }
+template <class Real>
+bool has_error(const stats::ImageStack<Real>&) {
+  return false;
+}
 bool has_error(const stats::ImageReference& b) { return !b.standard_error.empty(); }
 
 /// The sum of squares of correlated elements: the share of sign vectors that reach it. nullopt
 /// where so few replicates, or so small a level, leave nothing to reject.
-std::optional<double> flipped_energy(const VaryingPart& varying, const ImageTest& test) {
+template <class Real>
+std::optional<double> flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test) {
   // A reference's error does not flip with the replicates: cells alone are left.
   if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return std::nullopt;
   const double share = test.share.alpha * stats::energy_share;
@@ -86,10 +95,12 @@ std::optional<double> flipped_energy(const VaryingPart& varying, const ImageTest
   return stats::sign_flip(matrix, {share, static_cast<std::uint64_t>(flips)}, random).log_p;
 }
 
-stats::ImageFamily family_of(const VaryingPart& varying, const ImageTest& test,
+template <class Real>
+stats::ImageFamily family_of(const VaryingPart<Real>& varying, const ImageTest& test,
                              ImageOutcome& outcome) {
+  outcome.z.resize(varying.first().extent.elements());
   stats::PyramidOptions options{
-      .energy_log_p = {}, .smallest = test.smallest_cell, .weights = test.weights};
+      .energy_log_p = {}, .smallest = test.smallest_cell, .weights = test.weights, .z = outcome.z};
   if (!test.independent) {
     const std::optional<double> log_p = flipped_energy(varying, test);
     outcome.by_sign_flips = true;
@@ -100,17 +111,17 @@ stats::ImageFamily family_of(const VaryingPart& varying, const ImageTest& test,
       [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
 }
 
-stats::ImageFinding finding_of(const UnseenElement& unseen, const ImagePair& pair) {
-  stats::ImageFinding finding = stats::certain_finding(pair.extent(), unseen.element, unseen.sign);
+stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageExtent& extent) {
+  stats::ImageFinding finding = stats::certain_finding(extent, unseen.element, unseen.sign);
   finding.log_p = unseen.log_p;
   finding.z = z_of(unseen);
-  const double elements = static_cast<double>(pair.extent().elements());
+  const double elements = static_cast<double>(extent.elements());
   finding.adjusted_log_p = std::min(0.0, unseen.log_p + std::log(elements / unseen_share));
   return finding;
 }
 
 /// The elements that never varied join the family, at the share that was set aside for them.
-void add_unseen(const ImagePair& pair, ImageOutcome& outcome) {
+void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
   stats::ImageFamily& family = outcome.family;
   for (stats::ImageFinding& group : family.groups) {
     group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
@@ -118,13 +129,14 @@ void add_unseen(const ImagePair& pair, ImageOutcome& outcome) {
   const auto least = std::min_element(
       outcome.unseen.begin(), outcome.unseen.end(),
       [](const UnseenElement& a, const UnseenElement& b) { return a.log_p < b.log_p; });
-  if (least != outcome.unseen.end()) family.groups.push_back(finding_of(*least, pair));
+  if (least != outcome.unseen.end()) family.groups.push_back(finding_of(*least, extent));
   stats::decide(family);
 }
 
 // ---- theta beyond 0
 
-stats::ImageDistance distance_of(const ImagePair& pair, bool relative) {
+template <class Real>
+stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative) {
   const stats::ImageDistance distance = pair.with(
       [](const auto& first, const auto& second) { return stats::image_distance(first, second); });
   if (!relative) {
@@ -144,14 +156,17 @@ double mean_over(std::span<const double> image) {
   return sum / static_cast<double>(image.size());
 }
 
-stats::Moments means_of(const stats::ImageStack<double>& stack) {
+template <class Real>
+stats::Moments means_of(const stats::ImageStack<Real>& stack) {
+  const double elements = static_cast<double>(stack.extent.elements());
   stats::Moments moments;
-  for (const auto& image : stack.images) moments.add(mean_over(image));
+  for (const double sum : stats::image_sums(stack)) moments.add(sum / elements);
   return moments;
 }
 
 /// Standard error of theta for a difference that is the same, or in proportion, everywhere.
-double uniform_error(const ImagePair& pair, bool relative) {
+template <class Real>
+double uniform_error(const ImagePair<Real>& pair, bool relative) {
   double error = means_of(pair.first()).standard_error();
   double mean = 0;
   if (pair.of_two()) {
@@ -196,6 +211,29 @@ stats::Interval interval_of(const stats::ImageDistance& distance, double confide
           confidence};
 }
 
+/// What the pair shows, and how far it is apart.
+template <class Real>
+stats::ImageDistance look_at(const Question& question, const ImageTest& test,
+                             const ImagePair<Real>& pair, ImageOutcome& outcome) {
+  stats::check::replicates("image", pair.replicates());
+  const bool relative = is_relative(question, 0);
+  const stats::ImageDistance distance = distance_of(pair, relative);
+  const VaryingPart varying(question, pair);
+  if (!varying.any() || !(distance.bias_variance > 0)) {
+    throw stats::ZeroVariance(
+        "every replicate of both images is the same: without spread nothing can be said of what "
+        "was never seen; take fewer `primaries`, or more observations");
+  }
+  outcome.unseen = varying.unseen();
+  outcome.replicates = pair.replicates();
+  outcome.smallest_cell = test.smallest_cell;
+  outcome.family = family_of(varying, test, outcome);
+  for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
+  add_unseen(pair.extent(), outcome);
+  outcome.uniform_error = uniform_error(pair, relative);
+  return distance;
+}
+
 std::string range_text(std::uint32_t first, std::uint32_t count, const char* name) {
   if (count == 1) return fmt::format("{} {}", name, first);
   return fmt::format("{}s {}-{}", name, first, first + count - 1);
@@ -232,29 +270,17 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
 
 ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
                                  std::span<const ChannelData> data) {
-  const ImagePair pair(question, data);
-  stats::check::replicates("image", pair.replicates());
   const bool relative = is_relative(question, 0);
-  const stats::ImageDistance distance = distance_of(pair, relative);
-  const VaryingPart varying(question, pair);
-  if (!varying.any() || !(distance.bias_variance > 0)) {
-    throw stats::ZeroVariance(
-        "every replicate of both images is the same: without spread nothing can be said of what "
-        "was never seen; take fewer `primaries`, or more observations");
-  }
   ImageEvidence result;
-  result.outcome.unseen = varying.unseen();
-  result.outcome.replicates = pair.replicates();
-  result.outcome.smallest_cell = test.smallest_cell;
-  result.outcome.family = family_of(varying, test, result.outcome);
-  add_unseen(pair, result.outcome);
-  result.outcome.uniform_error = uniform_error(pair, relative);
+  const stats::ImageDistance distance = with_pair(question, data, [&](const auto& pair) {
+    return look_at(question, test, pair, result.outcome);
+  });
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {
     const double margin = within ? entry.claim.margin.value : entry.detect->value;
     result.outcome.wanted =
-        wanted_replicates(distance, margin, test, static_cast<double>(pair.replicates()));
+        wanted_replicates(distance, margin, test, static_cast<double>(result.outcome.replicates));
   }
   const stats::ImageFamily& family = result.outcome.family;
   const stats::TestResult equal{

@@ -26,6 +26,7 @@ struct ImageTest {
 struct ImageOutcome {
   stats::ImageFamily family = {};
   std::vector<UnseenElement> unseen = {};
+  std::vector<double> z = {};  ///< of every element: Welch's, or of the bound on what was unseen
   std::size_t replicates = 0;
   std::uint32_t smallest_cell = 1;
   bool by_sign_flips = false;

@@ -15,8 +15,10 @@ stats::ImageExtent extent_of(const ImageShape& shape);
 
 /// Replicates of an image, and what they are held against: replicates of another, scaled, or a
 /// number for each element.
+template <class Real>
 class ImagePair {
  public:
+  /// Of single precision only where in_single_precision says so.
   ImagePair(const Question& question, std::span<const ChannelData> data);
   ImagePair(const ImagePair&) = delete;  // spans point inside
   ImagePair& operator=(const ImagePair&) = delete;
@@ -24,8 +26,8 @@ class ImagePair {
   const stats::ImageExtent& extent() const { return extent_; }
   bool of_two() const { return second_.has_value(); }
   std::size_t replicates() const { return first_.images.size(); }
-  const stats::ImageStack<double>& first() const { return first_; }
-  const stats::ImageStack<double>& second() const { return *second_; }
+  const stats::ImageStack<Real>& first() const { return first_; }
+  const stats::ImageStack<Real>& second() const { return *second_; }
   stats::ImageReference reference() const { return {extent_, value_, error_}; }
 
   /// What `use` makes of the first stack and what it is held against.
@@ -36,11 +38,21 @@ class ImagePair {
 
  private:
   stats::ImageExtent extent_;
-  stats::ImageStack<double> first_;
-  ImageViews scaled_;  // of the second, where a factor is not 1
-  std::optional<stats::ImageStack<double>> second_;
+  ImageViews made_[2];  // where a side is scaled, or widened to the other's precision
+  stats::ImageStack<Real> first_;
+  std::optional<stats::ImageStack<Real>> second_;
   std::vector<double> value_;
   std::vector<double> error_;
 };
+
+/// Whether both sides are pictures of files and are compared as they are.
+bool in_single_precision(const Question& question, std::span<const ChannelData> data);
+
+/// What `use` makes of the pair, in the precision that it is kept in.
+template <class Use>
+auto with_pair(const Question& question, std::span<const ChannelData> data, const Use& use) {
+  if (in_single_precision(question, data)) return use(ImagePair<float>(question, data));
+  return use(ImagePair<double>(question, data));
+}
 
 }  // namespace assay::harness

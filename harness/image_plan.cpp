@@ -40,7 +40,7 @@ const Pilot& pilot_at(const Question& question, std::size_t subject, const Pilot
 bool all_piloted(const Question& question, const Pilots& pilots) {
   return std::all_of(question.subjects.begin(), question.subjects.end(), [&](const Subject& side) {
     const Pilot* pilot = pilot_of(side, pilots);
-    return pilot != nullptr && pilot->images.size() >= 2 * stats::least_replicates;
+    return pilot != nullptr && pilot->image_count() >= 2 * stats::least_replicates;
   });
 }
 
@@ -63,12 +63,16 @@ Cumulants cumulants_of(const stats::Moments& pilot, double primaries, double fac
 /// Mean over the elements of |skewness of one replicate's difference|.
 double mean_skewness(const Question& question, const Plan& plan, const Pilots& pilots) {
   const std::size_t elements = question.subjects[0].channels.size();
+  std::vector<const Pilot*> sides;
+  for (std::size_t s = 0; s < question.subjects.size(); ++s) {
+    sides.push_back(&pilot_at(question, s, pilots));
+  }
   double sum = 0;
   for (std::size_t i = 0; i < elements; ++i) {
     Cumulants total;
     for (std::size_t s = 0; s < question.subjects.size(); ++s) {
       const Subject& side = question.subjects[s];
-      const Cumulants part = cumulants_of(pilot_at(question, s, pilots).channels[side.channels[i]],
+      const Cumulants part = cumulants_of(sides[s]->moments(side.channels[i]),
                                           averaged(question, plan, s), factor_of(question, s));
       total.variance += part.variance;
       total.third += part.third;
@@ -124,6 +128,11 @@ std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const Im
   return tails[kept].size;
 }
 
+stats::AnyImageStack stack_of(const ImageViews& views, const stats::ImageExtent& extent) {
+  if (views.single_precision()) return stats::ImageStack<float>{extent, views.images<float>()};
+  return stats::ImageStack<double>{extent, views.images<double>()};
+}
+
 /// The pilots as sides of a comparison of one replicate, or of as many as are set.
 class PilotSides {
  public:
@@ -132,7 +141,7 @@ class PilotSides {
       const Subject& subject = question.subjects[s];
       images_.emplace_back(pilot_at(question, s, pilots).images, subject.channels);
       averaged_.push_back(averaged(question, plan, s));
-      sides_.push_back({.stack = {extent_of(*subject.image), images_.back().images()},
+      sides_.push_back({.stack = stack_of(images_.back(), extent_of(*subject.image)),
                         .factor = factor_of(question, s),
                         .replicates = averaged_.back()});
     }
@@ -185,16 +194,20 @@ struct PilotImage {
 
 /// The two halves of a pilot have one law: their squared bias is noise alone, of the covariance
 /// C (2 / R + 2 / R) in all.
+template <class Real>
+PilotImage pilot_image(const stats::ImageStack<Real>& pilot) {
+  stats::ImageStack<Real> half[2] = {{pilot.extent, {}}, {pilot.extent, {}}};
+  const std::size_t used = pilot.images.size() / 2 * 2;
+  for (std::size_t r = 0; r < used; ++r) half[r % 2].images.push_back(pilot.images[r]);
+  const stats::ImageDistance distance = stats::image_distance(half[0], half[1]);
+  return {.noise = std::sqrt(distance.bias_variance) * static_cast<double>(used) / 4,
+          .squared_norm = distance.squared_norm};
+}
+
 PilotImage pilot_image(const Subject& subject, const Pilot& pilot) {
   const ImageViews views(pilot.images, subject.channels);
-  const std::vector<std::span<const double>>& images = views.images();
-  const stats::ImageExtent extent = extent_of(*subject.image);
-  stats::ImageStack<double> halves[2] = {{extent, {}}, {extent, {}}};
-  for (std::size_t r = 0; r < images.size() / 2 * 2; ++r) halves[r % 2].images.push_back(images[r]);
-  const stats::ImageDistance distance = stats::image_distance(halves[0], halves[1]);
-  const double replicates = static_cast<double>(images.size() / 2 * 2);
-  return {.noise = std::sqrt(distance.bias_variance) * replicates / 4,
-          .squared_norm = distance.squared_norm};
+  return std::visit([](const auto& stack) { return pilot_image(stack); },
+                    stack_of(views, extent_of(*subject.image)));
 }
 
 /// What margins are in units of, squared.

@@ -12,7 +12,6 @@
 #include "harness/picture.h"
 #include "harness/question_image.h"
 #include "harness/text_hash.h"
-#include "stats/image_welch.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
@@ -86,17 +85,9 @@ reports::Map map_of(const char* name, const ImageShape& shape, const std::vector
                    .height = shape.height,
                    .components = shape.components,
                    .texels = {}};
+  map.texels.values.reserve(values.size());
   for (const double value : values) map.texels.values.push_back(narrow(value));
   return map;
-}
-
-/// z of every element: Welch's, or that of the bound for elements that never varied.
-std::vector<double> z_map(const Question& question, const ImagePair& pair) {
-  const VaryingPart varying(question, pair);
-  std::vector<double> z(pair.extent().elements());
-  varying.with([&](const auto& a, const auto& b) { stats::welch_z(a, b, 0, z); });
-  for (const UnseenElement& element : varying.unseen()) z[element.element] = z_of(element);
-  return z;
 }
 
 /// Sidak over the elements that vary.
@@ -134,18 +125,18 @@ void add_moments(const TestWork& work, std::size_t subject, reports::Test& test)
 void add_maps(const TestWork& work, const ImageOutcome& outcome, reports::Test& test) {
   const Question& question = work.outcome.question;
   const ImageShape& shape = *question.subjects[0].image;
-  const std::vector<ChannelData> data = data_of(work, 0);
-  const ImagePair pair(question, data);
-  const std::vector<double> z = z_map(question, pair);
   const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
-  test.maps.push_back(map_of("z", shape, z));
-  test.maps.push_back(map_of("p_adjusted", shape, adjusted_map(z, tested)));
+  test.maps.push_back(map_of("z", shape, outcome.z));
+  test.maps.push_back(map_of("p_adjusted", shape, adjusted_map(outcome.z, tested)));
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     add_moments(work, subject, test);
   }
-  if (pair.of_two()) return;
-  const std::span<const double> reference = pair.reference().value;
-  test.maps.push_back(map_of("reference", shape, {reference.begin(), reference.end()}));
+  if (question.of_two()) return;
+  std::vector<double> reference;
+  for (const Constant& each : question.references) {
+    reference.push_back(each.value + question.offset);
+  }
+  test.maps.push_back(map_of("reference", shape, reference));
 }
 
 /// A file name of letters, digits, `-` and `_`, different for different tests.

@@ -39,8 +39,8 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
     pool->keep_observations(estimator.setup->observations().value_or(usual));
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
-  if (pool->plan().size() <= kept_channels) {
-    for (ChannelPlan& channel : pool->plan()) channel.keep = count;
+  if (pool->channels() <= kept_channels) {
+    for (ChannelPlan& channel : pool->plans()) channel.keep = count;
   }
   pool->request(count);
   return pool;
@@ -49,7 +49,7 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
 std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
   auto pool = std::make_shared<Pool>(
       subject.setup, key_of(*subject.estimator, seed, 0, subject.purpose + " pilot"), 1);
-  for (ChannelPlan& channel : pool->plan()) channel.keep = averaging_observations;
+  for (ChannelPlan& channel : pool->plans()) channel.keep = averaging_observations;
   pool->request(averaging_observations);
   return pool;
 }
@@ -65,17 +65,22 @@ stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
   return means;
 }
 
-Pilot read(const Pool& pool) {
-  Pilot pilot{
-      .channels = {}, .primaries = pool.primaries(), .with_cost = {}, .trouble = pool.trouble()};
-  if (!pilot.trouble.empty()) return pilot;
-  const std::vector<ChannelSummary>& channels = pool.prefix(pool.requested()).channels;
+/// The sums of a pilot pool, as of single primaries where a recorded run has means of several.
+std::shared_ptr<const Summary> sums_of(const Pool& pool) {
   const RecordedRun* run = as_recorded_run(*pool.setup());
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    const bool averaged = run != nullptr && run->entry().information.averages;
-    pilot.channels.push_back(averaged ? of_primaries(channels[i].moments, run->primaries())
-                                      : channels[i].moments);
-    pilot.with_cost.push_back(channels[i].details().with_cost);
+  if (run == nullptr || !run->entry().information.averages) return pool.shared(pool.requested());
+  auto sums = std::make_shared<Summary>(pool.prefix(pool.requested()));
+  for (ChannelSummary& channel : sums->channels) {
+    channel.moments = of_primaries(channel.moments, run->primaries());
+  }
+  return sums;
+}
+
+Pilot read(const Pool& pool) {
+  Pilot pilot{.primaries = pool.primaries(), .trouble = pool.trouble()};
+  if (!pilot.trouble.empty()) return pilot;
+  pilot.sums = sums_of(pool);
+  for (std::size_t i = 0; i < pool.plan().size() && pool.plan()[i].keep > 0; ++i) {
     const std::span<const double> kept = pool.values(i, pool.requested());
     if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
   }
@@ -95,14 +100,17 @@ const Pilot* pilot_of(const Subject& subject, const Pilots& pilots) {
   return found != pilots.end() && found->second.trouble.empty() ? &found->second : nullptr;
 }
 
+PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel) {
+  const std::size_t index = subject.channels[channel];
+  return {.moments = pilot.moments(index),
+          .values = index < pilot.values.size() ? std::span<const double>(pilot.values[index])
+                                                : std::span<const double>()};
+}
+
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots) {
   const Subject& side = question.subjects[subject];
-  const Pilot& pilot = pilots.at(pilot_name(side));
-  const std::size_t index = side.channels[channel];
-  return {.moments = pilot.channels[index],
-          .values = index < pilot.values.size() ? std::span<const double>(pilot.values[index])
-                                                : std::span<const double>()};
+  return pilot_channel(side, pilots.at(pilot_name(side)), channel);
 }
 
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
@@ -113,7 +121,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
     names.push_back(estimator->name);
     pools.push_back(pilot_pool(*estimator, run.seed));
     if (!run.with_cost.contains(estimator->name)) continue;
-    for (ChannelPlan& channel : pools.back()->plan()) channel.with_cost = true;
+    for (ChannelPlan& channel : pools.back()->plans()) channel.with_cost = true;
   }
   for (const Subject* subject : run.draws) {
     names.push_back(pilot_name(*subject));

@@ -18,15 +18,21 @@ namespace assay::harness {
 
 /// What a pilot tells of an estimator, by channel.
 struct Pilot {
-  std::vector<stats::Moments> channels;          ///< of secondaries of `primaries` primaries
+  /// Of secondaries of `primaries` primaries; null where there is trouble.
+  std::shared_ptr<const Summary> sums = {};
   std::vector<std::vector<double>> values = {};  ///< of the first channels, as drawn
   std::uint64_t primaries = 1;
-  /// By channel, then CountedCost; empty where not wanted.
-  std::vector<std::vector<stats::JointMoments>> with_cost = {};
   /// Of an image: whole observations, and whose they are.
-  std::span<const std::vector<double>> images = {};
+  Observations images = {};
   std::shared_ptr<const KeptObservations> kept = {};
   std::string trouble = "";  ///< why there are no numbers: the estimator threw
+
+  std::size_t image_count() const {
+    return std::visit([](const auto& each) { return each.size(); }, images);
+  }
+  const stats::Moments& moments(std::size_t channel) const {
+    return sums->channels[channel].moments;
+  }
 };
 
 /// By pilot_name. Averaging estimators at one primary, others at the suite's `primaries`. Of
@@ -46,11 +52,14 @@ std::string pilot_name(const Subject& subject);
 /// The pilot of a subject, if it has one that went well.
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);
 
-/// One channel of a question in the pilot of one of its subjects, which must have one.
 struct PilotChannel {
   const stats::Moments& moments;
   std::span<const double> values;  ///< empty beyond the channels that are kept
 };
+/// One channel of a subject in its pilot.
+PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel);
+/// The same of one of a question's subjects, which must have a pilot. It is looked up by name: not
+/// for each of an image's channels.
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots);
 

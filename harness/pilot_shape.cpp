@@ -102,9 +102,10 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
   if (question.of_laws()) return "";
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
-    if (pilot_of(side, pilots) == nullptr || !side.purpose.empty()) continue;
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (pilot == nullptr || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const stats::Moments& moments = pilot_channel(question, subject, channel, pilots).moments;
+      const stats::Moments& moments = pilot->moments(side.channels[channel]);
       const std::string reason = beyond_doubles(moments, side.estimator->name);
       if (!reason.empty() && !is_constant(question, subject, channel, moments)) return reason;
     }
@@ -120,7 +121,7 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
     const Pilot* pilot = pilot_of(side, pilots);
     if (pilot == nullptr || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const PilotChannel data = pilot_channel(question, subject, channel, pilots);
+      const PilotChannel data = pilot_channel(side, *pilot, channel);
       if (is_constant(question, subject, channel, data.moments)) continue;
       const std::string part =
           side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";

@@ -37,6 +37,13 @@ Pool::BlockSums sums_of(const Summary& block) {
   return sums;
 }
 
+/// The observation that a picture of a file is.
+std::span<const double> widened(std::span<const float> picture, std::span<double> out) {
+  std::ranges::copy(picture, out.begin());
+  out.back() = recorded::average_of(picture);
+  return out;
+}
+
 /// Primaries that one observation is made of.
 std::uint64_t primaries_of(const Setup& setup, std::uint64_t primaries) {
   const std::optional<ImageShape> image = setup.image();
@@ -128,7 +135,14 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
       key_(key),
       primaries_(primaries),
       block_size_(block_size_of(primaries_of(*setup_, primaries))),
-      plan_(channels_of(*setup_)) {}
+      channels_(channels_of(*setup_)) {}
+
+std::vector<ChannelPlan>& Pool::plans() {
+  plan_.resize(channels_);
+  return plan_;
+}
+
+Summary Pool::no_sums() const { return sums_later_ ? Summary() : Summary(channels_, plan_); }
 
 void Pool::mark(std::uint64_t count) {
   const bool known = !prefixes_.try_emplace(count, std::make_shared<const Summary>()).second;
@@ -140,9 +154,12 @@ void Pool::request(std::uint64_t count) {
   if (!is_ready_made()) requested_ = std::max(requested_, count);
 }
 
-const Summary& Pool::prefix(std::uint64_t count) const {
-  return is_ready_made() ? *ready_made_ : *prefixes_.at(count);
+std::shared_ptr<const Summary> Pool::shared(std::uint64_t count) const {
+  if (is_ready_made()) return {setup_, ready_made_};  // as long as its set-up
+  return prefixes_.at(count);
 }
+
+const Summary& Pool::prefix(std::uint64_t count) const { return *shared(count); }
 
 std::uint64_t Pool::largest_prefix() const {
   if (is_ready_made()) return ready_made_->count;
@@ -152,29 +169,83 @@ std::uint64_t Pool::largest_prefix() const {
 
 std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
   if (is_ready_made()) return {};
-  if (sums_later_) return {};
+  if (values_.empty()) return {};
   const std::vector<double>& kept = values_.at(channel);
   return {kept.data(), std::min<std::size_t>(kept.size(), count)};
 }
 
-std::span<const std::vector<double>> Pool::observations(std::uint64_t count) const {
-  const std::vector<std::vector<double>>& kept = (known_ ? known_ : kept_)->values;
-  return std::span(kept).first(std::min<std::size_t>(kept.size(), count));
+Observations Pool::observations(std::uint64_t count) const {
+  return (known_ ? known_ : kept_)->first(count);
 }
 
 std::uint64_t Pool::block_end(std::uint64_t first) const {
   return std::min(first + block_size_, setup_->observations().value_or(most_observations));
 }
 
+Observations KeptObservations::first(std::uint64_t count) const {
+  const std::size_t most = std::min<std::size_t>(size(), count);
+  if (!pictures.empty()) return std::span(pictures).first(most);
+  return std::span(values).first(most);
+}
+
+void KeptObservations::append(KeptObservations&& next) {
+  std::ranges::move(next.values, std::back_inserter(values));
+  std::ranges::move(next.texels, std::back_inserter(texels));
+  std::ranges::move(next.pictures, std::back_inserter(pictures));
+  std::ranges::move(next.costs, std::back_inserter(costs));
+}
+
+/// A picture goes from its file to where it is kept, and into an observation where sums are taken
+/// of it at once.
+std::span<const double> Pool::keep_picture(Estimator& estimator, std::uint64_t index,
+                                           std::span<double> out, Block& block) const {
+  const std::size_t elements = channels_ - 1;
+  KeptObservations& kept = block.observations;
+  if (kept.texels.empty()) {
+    kept.texels.push_back(std::make_unique_for_overwrite<float[]>(block.size * elements));
+  }
+  const std::span<float> picture(kept.texels[0].get() + kept.pictures.size() * elements, elements);
+  recorded::read_picture(estimator, index, picture, block.whole.cost);
+  kept.pictures.emplace_back(picture);
+  return sums_later_ ? std::span<const double>() : widened(picture, out);
+}
+
+/// One observation, kept where that was asked for: in `out`, or where it stays.
+std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
+                                      std::span<double> out, Block& block) const {
+  if (known_ && index < known_->size()) {
+    block.whole.cost += known_->costs[index];
+    if (known_->pictures.empty()) return known_->values[index];
+    return sums_later_ ? std::span<const double>() : widened(known_->pictures[index], out);
+  }
+  const bool kept = !known_ && index < kept_observations_;
+  // Counted where the sum stands: to load as a whole what an estimator has just stored in parts
+  // would hold up every observation.
+  Cost before;
+  if (kept) before = block.whole.cost;
+  std::span<const double> drawn = out;
+  if (kept && recorded::unknown_channels(*setup_)) {
+    drawn = keep_picture(estimator, index, out, block);
+  } else {
+    Stream random(key_, index);
+    estimator.secondary(random, primaries_, out, block.whole.cost);
+    if (kept) drawn = block.observations.values.emplace_back(out.begin(), out.end());
+  }
+  if (kept) block.observations.costs.push_back(block.whole.cost - before);
+  return drawn;
+}
+
 Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const {
-  Block block{.whole = Summary(sums_later_ ? std::span<const ChannelPlan>() : plan_),
-              .values = std::vector<std::vector<double>>(sums_later_ ? 0 : plan_.size()),
+  const std::uint64_t values_kept = most_kept(plan_);
+  Block block{.whole = no_sums(),
+              .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .observations = {},
               .partial = {},
-              .trouble = {}};
-  std::vector<double> out(plan_.size());
+              .trouble = {},
+              .size = last - first};
+  const bool in_place = sums_later_ && recorded::unknown_channels(*setup_);
+  std::vector<double> out(in_place ? 0 : channels_);
   Intake intake(block.whole.channels);
-  const std::uint64_t values_kept = most_kept(plan_);
   auto mark = prefixes_.upper_bound(first);
   const auto seconds = [&estimator] { return thread_seconds() + estimator.seconds_elsewhere(); };
   const double start = seconds();
@@ -187,24 +258,9 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   try {
     estimator.announce({.key = key_, .first = first, .last = last});
     for (; index < last; ++index) {
-      Stream random(key_, index);
-      std::span<const double> drawn = out;
-      // Counted where the sum stands: to load as a whole what an estimator has just stored in parts
-      // would hold up every observation.
-      const bool kept = !known_ && index < kept_observations_;
       Cost before;
-      if (kept || counts_costs) before = block.whole.cost;
-      if (known_ && index < known_->values.size()) {
-        drawn = known_->values[index];
-        block.whole.cost += known_->costs[index];
-      } else {
-        estimator.secondary(random, primaries_, out, block.whole.cost);
-      }
-      if (kept) {
-        block.observations.values.push_back(out);
-        block.observations.costs.push_back(block.whole.cost - before);
-        drawn = block.observations.values.back();
-      }
+      if (counts_costs) before = block.whole.cost;
+      const std::span<const double> drawn = observe(estimator, index, out, block);
       if (counts_costs) cost = counted(block.whole.cost - before);
       if (!sums_later_) intake.take(drawn, index, cost, drawn.data() != out.data());
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
@@ -232,7 +288,7 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
 bool Pool::sums_later() const {
   if (is_ready_made() || !setup_->image() || !setup_->observations()) return false;
   const std::uint64_t pictures = *setup_->observations();
-  const bool kept = known_ ? known_->values.size() >= pictures : kept_observations_ >= pictures;
+  const bool kept = known_ ? known_->size() >= pictures : kept_observations_ >= pictures;
   return kept && grouped_channels_.empty() && !keeps_blocks_ &&
          std::ranges::all_of(plan_, is_plain);
 }
@@ -260,8 +316,8 @@ void Pool::end_drawing() {
 
 void Pool::fold(Block&& block) {
   if (!started_) {
-    running_ = Summary(sums_later_ ? std::span<const ChannelPlan>() : plan_);
-    if (!sums_later_) values_.resize(plan_.size());
+    running_ = no_sums();
+    if (most_kept(plan_) > 0) values_.resize(channels_);
     started_ = true;
   }
   if (!trouble_.empty()) return;
@@ -275,8 +331,7 @@ void Pool::fold(Block&& block) {
   for (std::size_t c = 0; c < values_.size(); ++c) {
     values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
   }
-  std::ranges::move(block.observations.values, std::back_inserter(kept_->values));
-  std::ranges::move(block.observations.costs, std::back_inserter(kept_->costs));
+  kept_->append(std::move(block.observations));
   trouble_ = std::move(block.trouble);
 }
 

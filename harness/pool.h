@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "estimators/estimator.h"
+#include "harness/image_views.h"
 #include "harness/summary.h"
 
 namespace assay::harness {
@@ -20,12 +21,20 @@ namespace assay::harness {
 /// those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);
 
-/// Observations whole, as they were drawn.
+/// Observations whole.
 struct KeptObservations {
-  std::vector<std::vector<double>> values = {};
+  std::vector<std::vector<double>> values = {};       ///< as they were drawn; of pictures none
+  std::vector<std::unique_ptr<float[]>> texels = {};  ///< of pictures of files, a block each
+  std::vector<std::span<const float>> pictures = {};  ///< the same, without their averages
   std::vector<Cost> costs = {};
   /// Of the first so many of them, where they were summed after all were there.
   std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
+
+  std::size_t size() const { return costs.size(); }
+  /// The first of them, at most `count`.
+  Observations first(std::uint64_t count) const;
+  /// Takes those that follow.
+  void append(KeptObservations&& next);
 };
 
 class Pool {
@@ -36,10 +45,13 @@ class Pool {
   StreamKey key() const { return key_; }
   std::uint64_t primaries() const { return primaries_; }
 
-  /// What to keep; before anything is drawn.
+  std::size_t channels() const { return channels_; }
+  /// What to keep of each channel, before anything is drawn; none: of no channel more than its
+  /// moments, and an image's millions need no plans.
   void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
-  std::vector<ChannelPlan>& plan() { return plan_; }
   const std::vector<ChannelPlan>& plan() const { return plan_; }
+  /// One for each channel, to be changed.
+  std::vector<ChannelPlan>& plans();
 
   /// To sum the variances of these channels in groups; before anything is drawn.
   void keep_group_variances(std::vector<std::size_t> channels) {
@@ -70,12 +82,13 @@ class Pool {
 
   /// The summary of the first `count` observations, once drawn; `count` as marked.
   const Summary& prefix(std::uint64_t count) const;
+  std::shared_ptr<const Summary> shared(std::uint64_t count) const;
   /// The largest marked count that is drawn; 0 where none is.
   std::uint64_t largest_prefix() const;
   /// The first values of a channel, at most `count` and as many as were to be kept.
   std::span<const double> values(std::size_t channel, std::uint64_t count) const;
   /// The first observations, all channels, at most `count` and as many as were to be kept.
-  std::span<const std::vector<double>> observations(std::uint64_t count) const;
+  Observations observations(std::uint64_t count) const;
   /// A whole block by itself.
   struct BlockSums {
     std::uint64_t count = 0;
@@ -102,6 +115,7 @@ class Pool {
     KeptObservations observations;            ///< where they are kept
     std::vector<std::pair<std::uint64_t, Summary>> partial;
     std::string trouble;
+    std::uint64_t size = 0;  ///< observations that it is to have
   };
   /// Draws observations [first, last) of one block with a worker's estimator. Thread-safe.
   Block draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const;
@@ -122,8 +136,14 @@ class Pool {
   StreamKey key_;
   std::uint64_t primaries_;
   std::uint64_t block_size_;
+  std::size_t channels_;
   std::vector<ChannelPlan> plan_;
   bool sums_later() const;
+  Summary no_sums() const;
+  std::span<const double> observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
+                                  Block& block) const;
+  std::span<const double> keep_picture(Estimator& estimator, std::uint64_t index,
+                                       std::span<double> out, Block& block) const;
 
   std::map<std::uint64_t, std::shared_ptr<const Summary>> prefixes_;
   std::uint64_t requested_ = 0;

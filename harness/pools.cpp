@@ -62,7 +62,7 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
                                         const Pilots& pilots) {
   std::vector<ChannelPlan> plan;
   // An image is drawn as maps: no histogram of each pixel.
-  if (pool.is_ready_made() || pool.setup()->image()) return pool.plan();
+  if (pool.is_ready_made() || pool.setup()->image()) return {};
   const std::vector<Channel> channels = pool.setup()->channels();
   if (const auto rows = pool.setup()->observations()) {
     for (const Range& range : data_ranges(*pool.setup(), *rows)) {
@@ -74,10 +74,10 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   const Pilot pilot = found != pilots.end() ? found->second : Pilot{.trouble = "no pilot"};
   const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!pilot.trouble.empty() || pilot.channels[i].count < 2) {
+    if (!pilot.trouble.empty() || pilot.moments(i).count < 2) {
       plan.push_back({.keep = plotted_values});
     } else {
-      plan.push_back(with_histogram(expected_range(channels[i], pilot.channels[i], averaged)));
+      plan.push_back(with_histogram(expected_range(channels[i], pilot.moments(i), averaged)));
     }
   }
   return plan;
@@ -85,7 +85,7 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
 
 void keep_for(const Method& method, const Subject& side, Pool& pool) {
   if (method.keeps == Keeps::costs) {
-    for (const std::size_t channel : side.channels) pool.plan()[channel].with_cost = true;
+    for (const std::size_t channel : side.channels) pool.plans()[channel].with_cost = true;
   }
   if (method.keeps == Keeps::group_variances) pool.keep_group_variances(side.channels);
   if (method.keeps == Keeps::blocks) pool.keep_blocks();
@@ -108,12 +108,12 @@ std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t se
   const auto piloted = pilots.find(wanted.estimator.name);
   const auto rows = wanted.setup->observations();
   if (rows && piloted != pilots.end() && piloted->second.kept &&
-      piloted->second.kept->values.size() == *rows) {
+      piloted->second.kept->size() == *rows) {
     pool->take_known(piloted->second.kept);
   }
   const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());
-  pool->plan() =
-      draws != nullptr ? sampler_plan(*draws) : estimator_plan(*pool, wanted.estimator, pilots);
+  pool->plan(draws != nullptr ? sampler_plan(*draws)
+                              : estimator_plan(*pool, wanted.estimator, pilots));
   all_.push_back(pool);
   return pool;
 }
@@ -139,7 +139,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
                                                   seed, pilots);
   if (plan.method.keeps == Keeps::values || plan.method.keeps == Keeps::points) {
     for (const std::size_t channel : side.channels) {
-      std::uint64_t& keep = pool->plan()[channel].keep;
+      std::uint64_t& keep = pool->plans()[channel].keep;
       keep = std::max(keep, plan.most_secondaries());
     }
   }

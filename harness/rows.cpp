@@ -40,9 +40,10 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
   std::vector<Rows> all;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
-    if (!is_recorded(side) || pilot_of(side, pilots) == nullptr) continue;
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (!is_recorded(side) || pilot == nullptr || pilot->values.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const PilotChannel data = pilot_channel(question, subject, channel, pilots);
+      const PilotChannel data = pilot_channel(side, *pilot, channel);
       const std::size_t used = std::min<std::uint64_t>(data.values.size(), count);
       const bool finite = std::all_of(data.values.begin(), data.values.end(),
                                       [](double value) { return std::isfinite(value); });

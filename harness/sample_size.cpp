@@ -46,7 +46,9 @@ std::optional<double> pilot_log_spread(const Question& question, std::size_t sub
   std::optional<double> most;
   for (const std::size_t channel : side.channels) {
     const auto spread = planned_log_spread(
-        question, {.values = pilot.channels[channel], .with_cost = pilot.with_cost[channel]},
+        question,
+        {.values = pilot.moments(channel),
+         .with_cost = pilot.sums->channels[channel].details().with_cost},
         question.subjects[subject].averaged(plan.primaries[subject]));
     if (spread) most = std::max(most.value_or(0), *spread);
   }

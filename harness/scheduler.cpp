@@ -77,8 +77,8 @@ class Workers {
 /// there are workers.
 std::size_t under_way(const std::vector<std::shared_ptr<Pool>>& pools, unsigned workers) {
   constexpr std::size_t many_channels = std::size_t{1} << 16;
-  const bool large = std::ranges::any_of(
-      pools, [](const auto& pool) { return pool->plan().size() > many_channels; });
+  const bool large =
+      std::ranges::any_of(pools, [](const auto& pool) { return pool->channels() > many_channels; });
   return large ? workers : std::size_t{8} * workers;
 }
 

@@ -18,7 +18,8 @@ void add_details(ChannelDetails& details, double value, const ObservationCost& c
   if (!details.cells.empty()) ++details.cells[static_cast<std::size_t>(value)];
 }
 
-Summary::Summary(std::span<const ChannelPlan> plan) : channels(plan.size()) {
+Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> plan)
+    : channels(count_of_channels) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const bool binned = plan[i].histogram_low < plan[i].histogram_high;
     if (!binned && plan[i].cells == 0 && !plan[i].with_cost) continue;

@@ -109,7 +109,8 @@ struct Summary {
   Cost cost = {};
   double seconds = 0;  ///< CPU seconds of drawing
 
-  explicit Summary(std::span<const ChannelPlan> plan = {});
+  /// Of no observations yet. Without a plan nothing but moments is kept.
+  explicit Summary(std::size_t count_of_channels = 0, std::span<const ChannelPlan> plan = {});
   /// Appends the observations that follow: in block order, so that the result is a function of the
   /// blocks and not of who drew them.
   void append(const Summary& next);

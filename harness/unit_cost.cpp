@@ -23,8 +23,9 @@ class Timings {
     if (pool.setup()->observations() || std::any_of(all_.begin(), all_.end(), same)) return;
     const StreamKey key = key_of(estimator, seed, 0, purpose.empty() ? "cost" : purpose + "#cost");
     all_.push_back({&pool, std::make_shared<Pool>(pool.setup(), key, pool.primaries())});
-    std::vector<ChannelPlan>& plan = all_.back().pool->plan();
-    for (std::size_t i = 0; i < plan.size(); ++i) plan[i].cells = pool.plan()[i].cells;
+    for (std::size_t i = 0; i < pool.plan().size(); ++i) {
+      all_.back().pool->plans()[i].cells = pool.plan()[i].cells;
+    }
     all_.back().pool->request(std::max<std::uint64_t>(1, timed_primaries / pool.primaries()));
   }
   const std::vector<Timed>& all() const { return all_; }

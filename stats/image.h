@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace assay::stats {
@@ -24,6 +25,15 @@ struct ImageStack {
   ImageExtent extent;
   std::vector<std::span<const Real>> images;
 };
+
+// A stack in whichever precision it is kept.
+using AnyImageStack = std::variant<ImageStack<double>, ImageStack<float>>;
+inline const ImageExtent& extent_of(const AnyImageStack& any) {
+  return std::visit([](const auto& stack) -> const ImageExtent& { return stack.extent; }, any);
+}
+inline std::size_t replicates_of(const AnyImageStack& any) {
+  return std::visit([](const auto& stack) { return stack.images.size(); }, any);
+}
 
 // An image known exactly (standard_error empty) or with a standard error for each element.
 struct ImageReference {

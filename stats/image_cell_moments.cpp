@@ -52,25 +52,26 @@ struct Level {
 };
 
 // Squares of twice the side, `side` of them in a row.
-void double_side(const std::vector<double>& from, std::vector<double>& to, std::size_t side) {
+ASSAY_VECTOR_COPIES void double_side(const double* from, double* to, std::size_t side) {
+  double* const __restrict sum = to;
   for (std::size_t y = 0; y < side; ++y) {
-    const double* const top = from.data() + 4 * y * side;
+    const double* const top = from + 4 * y * side;
     const double* const bottom = top + 2 * side;
     for (std::size_t x = 0; x < side; ++x) {
-      to[y * side + x] = (top[2 * x] + top[2 * x + 1]) + (bottom[2 * x] + bottom[2 * x + 1]);
+      sum[y * side + x] = (top[2 * x] + top[2 * x + 1]) + (bottom[2 * x] + bottom[2 * x + 1]);
     }
   }
 }
 
 std::size_t tiles_in(std::size_t count, std::size_t side) { return (count + side - 1) / side; }
 
+template <class Real>
 class Cells {
  public:
-  Cells(const WeightedImages& images, const std::vector<WindowGroup>& groups, std::size_t channel)
+  Cells(const WeightedImages<Real>& images, const std::vector<WindowGroup>& groups)
       : images_(images),
         groups_(groups),
         extent_(images.stack.extent),
-        channel_(channel),
         side_(std::min(largest_tile, std::bit_ceil(std::max(extent_.width, extent_.height)))),
         tiles_{tiles_in(extent_.width, side_), tiles_in(extent_.height, side_), 1} {
     for (std::size_t size = side_; size > 0; size /= 2) levels_.emplace_back(size * size);
@@ -78,21 +79,28 @@ class Cells {
       if (images.left_out && r % images.step == *images.left_out) continue;
       taken_.push_back(r);
     }
-    tile_sums_.assign(taken_.size(), std::vector<double>(tiles_.elements()));
+    const std::vector<std::vector<double>> sums(taken_.size(),
+                                                std::vector<double>(tiles_.elements()));
+    tile_sums_.assign(extent_.channels, sums);
     std::size_t count = 0;
     for (const WindowGroup& group : groups) {
       first_.push_back(count);
       count += group.windows.size();
     }
-    moments_.resize(count);
+    moments_.assign(extent_.channels, std::vector<CellMoments>(count));
   }
 
-  std::vector<CellMoments> moments() {
+  // The channels of a tile one after the other, while it is in a cache.
+  std::vector<std::vector<CellMoments>> moments() {
     for (std::size_t y = 0; y < tiles_.height; ++y) {
-      for (std::size_t x = 0; x < tiles_.width; ++x) take_tile(x, y);
+      for (std::size_t x = 0; x < tiles_.width; ++x) {
+        for (channel_ = 0; channel_ < extent_.channels; ++channel_) take_tile(x, y);
+      }
     }
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      if (!in_tiles(groups_[g])) take_large(g);
+    for (channel_ = 0; channel_ < extent_.channels; ++channel_) {
+      for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (!in_tiles(groups_[g])) take_large(g);
+      }
     }
     return std::move(moments_);
   }
@@ -104,13 +112,14 @@ class Cells {
 
   void load(std::size_t image, std::size_t left, std::size_t top) {
     std::vector<double>& values = levels_[0].sum;
-    const std::span<const double> value = images_.stack.images[image];
-    const std::span<const double> first = images_.stack.images[0];
+    const std::span<const Real> value = images_.stack.images[image];
+    const std::span<const Real> first = images_.stack.images[0];
     const std::size_t width = std::min(side_, extent_.width - left);
     for (std::size_t y = 0; y < side_ && top + y < extent_.height; ++y) {
       std::size_t e = ((top + y) * extent_.width + left) * extent_.channels + channel_;
       for (std::size_t x = 0; x < width; ++x, e += extent_.channels) {
-        values[y * side_ + x] = images_.weights[e] * (value[e] - first[e]);
+        values[y * side_ + x] =
+            images_.weights[e] * (static_cast<double>(value[e]) - static_cast<double>(first[e]));
       }
     }
   }
@@ -123,10 +132,10 @@ class Cells {
       const double count = static_cast<double>(i + 1);
       levels_[0].take(count);
       for (std::size_t k = 1; k < levels_.size(); ++k) {
-        double_side(levels_[k - 1].sum, levels_[k].sum, side_ >> k);
+        double_side(levels_[k - 1].sum.data(), levels_[k].sum.data(), side_ >> k);
         levels_[k].take(count);
       }
-      tile_sums_[i][y * tiles_.width + x] = levels_.back().sum[0];
+      tile_sums_[channel_][i][y * tiles_.width + x] = levels_.back().sum[0];
     }
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (in_tiles(groups_[g])) keep(g, x * side_, y * side_);
@@ -142,7 +151,8 @@ class Cells {
       for (std::size_t x = 0; x < in_row && left + x * size < extent_.width; ++x) {
         const std::size_t cell = (top / size + y) * row + left / size + x;
         const std::size_t i = y * in_row + x;
-        moments_[first_[g] + cell] = {static_cast<double>(taken_.size()), level.m2[i], level.m3[i]};
+        moments_[channel_][first_[g] + cell] = {static_cast<double>(taken_.size()), level.m2[i],
+                                                level.m3[i]};
       }
     }
   }
@@ -161,33 +171,40 @@ class Cells {
     WindowSums sums(tiles_);
     Level level(group.windows.size());
     for (std::size_t i = 0; i < taken_.size(); ++i) {
-      sums.load(tile_sums_[i]);
+      sums.load(tile_sums_[channel_][i]);
       for (std::size_t w = 0; w < level.sum.size(); ++w) level.sum[w] = sums.of(group, w);
       level.take(static_cast<double>(i + 1));
     }
     for (std::size_t w = 0; w < level.sum.size(); ++w) {
-      moments_[first_[g] + w] = {static_cast<double>(taken_.size()), level.m2[w], level.m3[w]};
+      moments_[channel_][first_[g] + w] = {static_cast<double>(taken_.size()), level.m2[w],
+                                           level.m3[w]};
     }
   }
 
-  const WeightedImages& images_;
+  const WeightedImages<Real>& images_;
   const std::vector<WindowGroup>& groups_;
   const ImageExtent& extent_;
-  std::size_t channel_;
+  std::size_t channel_ = 0;  // under way
   std::size_t side_;
   ImageExtent tiles_;
-  std::vector<Level> levels_;       // of sides 1, 2, 4, … of a tile
-  std::vector<std::size_t> taken_;  // images
-  std::vector<std::size_t> first_;  // window of each group
-  std::vector<std::vector<double>> tile_sums_;
-  std::vector<CellMoments> moments_;
+  std::vector<Level> levels_;                                // of sides 1, 2, 4, … of a tile
+  std::vector<std::size_t> taken_;                           // images
+  std::vector<std::size_t> first_;                           // window of each group
+  std::vector<std::vector<std::vector<double>>> tile_sums_;  // of a channel's images
+  std::vector<std::vector<CellMoments>> moments_;            // of a channel
 };
 
 }  // namespace
 
-std::vector<CellMoments> cell_moments(const WeightedImages& images,
-                                      const std::vector<WindowGroup>& groups, std::size_t channel) {
-  return Cells(images, groups, channel).moments();
+template <class Real>
+std::vector<std::vector<CellMoments>> cell_moments(const WeightedImages<Real>& images,
+                                                   const std::vector<WindowGroup>& groups) {
+  return Cells<Real>(images, groups).moments();
 }
+
+template std::vector<std::vector<CellMoments>> cell_moments(const WeightedImages<float>&,
+                                                            const std::vector<WindowGroup>&);
+template std::vector<std::vector<CellMoments>> cell_moments(const WeightedImages<double>&,
+                                                            const std::vector<WindowGroup>&);
 
 }  // namespace assay::stats

@@ -17,17 +17,19 @@ struct CellMoments {
   double m3 = 0;
 };
 
+template <class Real>
 struct WeightedImages {
-  const ImageStack<double>& stack;
+  const ImageStack<Real>& stack;
   std::span<const double> weights;
   std::size_t step = 1;  // every step-th image, from `left_out` on, is left out
   std::optional<std::size_t> left_out = {};
 };
 
-// Of all windows of the groups, which are aligned, in a row; of one channel. Each sum is of
+// Of all windows of the groups, which are aligned, in a row, for each channel. Each sum is of
 // weight (x - x of the first image). Cells of sides up to 64 tile by tile over all images, so that
 // what is known of them stays in the cache; larger ones from the sums over tiles.
-std::vector<CellMoments> cell_moments(const WeightedImages& images,
-                                      const std::vector<WindowGroup>& groups, std::size_t channel);
+template <class Real>
+std::vector<std::vector<CellMoments>> cell_moments(const WeightedImages<Real>& images,
+                                                   const std::vector<WindowGroup>& groups);
 
 }  // namespace assay::stats

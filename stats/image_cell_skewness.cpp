@@ -47,22 +47,26 @@ void add_side(std::vector<Cumulants>& cells, const std::vector<CellMoments>& pil
 // what they are given to: as a test's halves do.
 std::size_t step_of(const CellPilot& side) {
   const double half = std::max(side.replicates / halves, 1.0);
-  const double steps = static_cast<double>(side.stack.images.size()) / half;
+  const double steps = static_cast<double>(replicates_of(side.stack)) / half;
   return static_cast<std::size_t>(std::max(steps, static_cast<double>(halves)));
 }
 
 // Of every `step`-th image from `first` on.
 std::vector<double> weights_of(std::span<const CellPilot> sides,
                                const std::vector<EveryImage>& which) {
-  const ImageExtent& extent = sides[0].stack.extent;
+  const ImageExtent& extent = extent_of(sides[0].stack);
   std::vector<double> variance(extent.elements());
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const CellPilot& side = sides[s];
     std::vector<double> mean(extent.elements());
     std::vector<double> m2(extent.elements());
-    moments_of_range(side.stack, 0, {mean, m2}, which[s]);
+    std::visit(
+        [&](const auto& stack) {
+          moments_of_range(stack, 0, {mean, m2}, which[s]);
+        },
+        side.stack);
     const std::size_t step = which[s].step;
-    const std::size_t count = (side.stack.images.size() + step - 1 - which[s].start) / step;
+    const std::size_t count = (replicates_of(side.stack) + step - 1 - which[s].start) / step;
     const double scale =
         side.factor * side.factor / side.replicates / static_cast<double>(count - 1);
     for (std::size_t i = 0; i < m2.size(); ++i) variance[i] += scale * m2[i];
@@ -152,7 +156,20 @@ class FactorMeans {
   }
 
   void add(std::span<const CellPilot> sides, const Weights& weights) {
-    for (std::size_t c = 0; c < extent_.channels; ++c) add_channel(sides, weights, c);
+    std::vector<std::vector<std::vector<CellMoments>>> moments;  // of each side's channels
+    for (const CellPilot& side : sides) {
+      const auto of_stack = [&](const auto& stack) {
+        const WeightedImages images{stack, weights.value, step_of(side), weights.choice};
+        return cell_moments(images, groups_);
+      };
+      moments.push_back(std::visit(of_stack, side.stack));
+    }
+    for (std::size_t c = 0; c < extent_.channels; ++c) {
+      const std::vector<bool> varied = varied_windows(extent_, groups_, weights.value, c);
+      std::vector<Cumulants> cells(varied.size());
+      for (std::size_t s = 0; s < sides.size(); ++s) add_side(cells, moments[s][c], sides[s]);
+      add_cells(cells, varied);
+    }
   }
 
   std::vector<CellTails> tails() const {
@@ -164,13 +181,7 @@ class FactorMeans {
   }
 
  private:
-  void add_channel(std::span<const CellPilot> sides, const Weights& weights, std::size_t channel) {
-    const std::vector<bool> varied = varied_windows(extent_, groups_, weights.value, channel);
-    std::vector<Cumulants> cells(varied.size());
-    for (const CellPilot& side : sides) {
-      const WeightedImages images{side.stack, weights.value, step_of(side), weights.choice};
-      add_side(cells, cell_moments(images, groups_, channel), side);
-    }
+  void add_cells(const std::vector<Cumulants>& cells, const std::vector<bool>& varied) {
     std::size_t window = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       for (std::size_t i = 0; i < groups_[g].windows.size(); ++i, ++window) {
@@ -186,8 +197,8 @@ class FactorMeans {
 
 void check_sides(const char* function, std::span<const CellPilot> sides) {
   for (const CellPilot& side : sides) {
-    check::image_stack(function, side.stack);
-    check::same_extent(function, side.stack.extent, sides[0].stack.extent);
+    std::visit([&](const auto& stack) { check::image_stack(function, stack); }, side.stack);
+    check::same_extent(function, extent_of(side.stack), extent_of(sides[0].stack));
   }
 }
 
@@ -202,7 +213,7 @@ std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level
                                   std::span<const double> weights) {
   check::inside_unit({function_name, "level"}, level);
   check_sides(function_name, sides);
-  const ImageExtent& extent = sides[0].stack.extent;
+  const ImageExtent& extent = extent_of(sides[0].stack);
   if (!weights.empty() && weights.size() != extent.elements()) {
     check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
   }

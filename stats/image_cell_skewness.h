@@ -13,7 +13,7 @@ namespace assay::stats {
 //
 // One side of the comparison: pilot replicates, and the mean over later ones that is to be tested.
 struct CellPilot {
-  ImageStack<double> stack;
+  AnyImageStack stack;
   double factor = 1;      // the difference is the sum over the sides of factor * mean
   double replicates = 1;  // of the pilot's kind in that mean
 };

@@ -1,52 +1,17 @@
 #include "stats/image_coarse_cells.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "stats/image_welch_cells.h"
 
 namespace assay::stats {
 namespace {
 
-// Sums of one channel's windows, all groups in a row.
-class WindowMoments {
- public:
-  explicit WindowMoments(std::size_t windows)
-      : effect(windows),
-        variance(windows),
-        reciprocal_degrees(windows),
-        mean_(windows),
-        m2_(windows) {}
-
-  std::vector<double> effect;              // of a - b, averaged over the halves
-  std::vector<double> variance;            // its squared standard error
-  std::vector<double> reciprocal_degrees;  // sum of variance_g^2 / (n_g - 1) over the parts
-
-  void add(std::size_t window, double value, double inverse_count) {
-    const double delta = value - mean_[window];
-    mean_[window] += delta * inverse_count;
-    m2_[window] += delta * (value - mean_[window]);
-  }
-
-  // The sum did not vary; what is left is the rounding of larger sums that it
-  // was taken from.
-  void did_not_vary(std::size_t window) { m2_[window] = 0; }
-
-  // The replicates added since the last call are a part whose mean enters with
-  // this factor.
-  void finish_part(double count, double factor) {
-    for (std::size_t i = 0; i < mean_.size(); ++i) {
-      const double part = factor * factor * m2_[i] / (count * (count - 1));
-      effect[i] += factor * mean_[i];
-      variance[i] += part;
-      reciprocal_degrees[i] += part * part / (count - 1);
-    }
-    std::fill(mean_.begin(), mean_.end(), 0.0);
-    std::fill(m2_.begin(), m2_.end(), 0.0);
-  }
-
- private:
-  std::vector<double> mean_;
-  std::vector<double> m2_;
-};
+void add(WelchCells& cells, std::size_t window, double value, double inverse_count) {
+  const double delta = value - cells.mean[window];
+  cells.mean[window] += delta * inverse_count;
+  cells.m2[window] += delta * (value - cells.mean[window]);
+}
 
 using Groups = std::vector<WindowGroup>;
 
@@ -54,7 +19,7 @@ using Groups = std::vector<WindowGroup>;
 // (image_fine_cells.h), all channels and images alike.
 Groups coarse_groups(const Groups& groups) {
   Groups coarse = groups;
-  const auto blocks = [](std::uint32_t end) { return (end + block_side - 1) / block_side; };
+  const auto blocks = [](std::uint32_t end) { return static_cast<std::uint32_t>(blocks_of(end)); };
   for (WindowGroup& group : coarse) {
     if (is_fine(group) || group.size == 1) group.windows.clear();
     for (Rectangle& window : group.windows) {
@@ -115,9 +80,10 @@ class CoarseSums {
   const BlockSums* image_ = nullptr;
 };
 
-WindowMoments window_moments(const CoarseImages& coarse, const Groups& groups,
-                             std::size_t channel) {
-  WindowMoments moments(count_windows(groups));
+// Of one channel's windows, all groups in a row.
+WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std::size_t channel) {
+  WelchCells moments;
+  moments.start(count_windows(groups));
   CoarseSums sums(coarse.extent, channel);
   for (std::size_t h = 0; h < halves; ++h) {
     for (std::size_t side = 0; side < sides_of_pair; ++side) {
@@ -128,12 +94,13 @@ WindowMoments window_moments(const CoarseImages& coarse, const Groups& groups,
         sums.load(image);
         const double inverse = 1 / ++count;
         for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-          moments.add(window, sums.of(group, i), inverse);
+          add(moments, window, sums.of(group, i), inverse);
         });
       }
       sums.load(coarse.varied[h]);
       for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-        if (sums.total_of(group, i) == 0) moments.did_not_vary(window);
+        // The sum did not vary; what is left is the rounding of larger sums that it was taken from.
+        if (sums.total_of(group, i) == 0) moments.m2[window] = 0;
       });
       moments.finish_part(count, side == 0 ? 0.5 : -0.5);
     }
@@ -149,14 +116,10 @@ WindowMoments window_moments(const CoarseImages& coarse, const Groups& groups,
 
 // `groups` in elements, `coarse` the same in blocks.
 void offer_windows(std::vector<BestCell>& best, const Groups& groups, const Groups& coarse,
-                   const WindowMoments& moments, std::size_t channel) {
+                   const WelchCells& moments, std::size_t channel) {
   for_each_window(coarse, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-    const double variance = moments.variance[window];
-    // Sums that did not vary have none; of two images, constants that
-    // differ were found before.
-    if (!(variance > 0)) return;
-    const StudentValue value{moments.effect[window] / std::sqrt(variance),
-                             variance * variance / moments.reciprocal_degrees[window]};
+    // Of two images, constants that differ were found before.
+    if (!moments.varied(window)) return;
     const bool alternating = group.grid == Grid::alternating;
     const auto g = static_cast<std::size_t>(&group - coarse.data());
     ImageFinding candidate{alternating ? ImageStatistic::alternating : ImageStatistic::window,
@@ -167,7 +130,7 @@ void offer_windows(std::vector<BestCell>& best, const Groups& groups, const Grou
                            0,
                            0};
     if (alternating) candidate.alternation = static_cast<Alternation>(i);
-    offer(best[g], candidate, value);
+    offer(best[g], candidate, moments.value(window));
   });
 }
 

@@ -10,7 +10,7 @@ namespace assay::stats {
 namespace {
 
 // Elements whose sums, and whose values in a hundred images, stay in a cache near by.
-constexpr std::size_t block_size = 256;
+constexpr std::size_t block_size = 512;
 using Block = std::array<double, block_size>;
 
 struct Sums {

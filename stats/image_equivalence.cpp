@@ -3,24 +3,59 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "stats/check.h"
 #include "stats/errors.h"
 #include "stats/image_moments.h"
 #include "stats/tails.h"
+#include "stats/vector_copies.h"
 
 namespace assay::stats {
 namespace {
 
-constexpr std::size_t block_size = 1024;
+constexpr std::size_t block_size = 512;
 using Block = std::array<double, block_size>;
 
-// Mean and squared error of one element of one image.
-struct Estimate {
-  double mean = 0;
-  double squared_error = 0;
+// Means and squared errors of the elements of a block.
+struct Estimates {
+  Block mean{};
+  Block squared_error{};
 };
+
+struct LeftOut {
+  const Block& mean;
+  const Block& m2;
+  double count;
+};
+
+// Without one replicate: its value leaves mean and m2 by Welford's step backwards.
+template <class Real>
+inline void step_back(const Real* values, const LeftOut& of, Estimates& out, std::size_t size) {
+  const double rest = of.count - 1;
+  const double scale = rest * (rest - 1);
+  const double count = of.count;
+  const double* const mean = of.mean.data();
+  const double* const m2 = of.m2.data();
+  double* const __restrict mean_out = out.mean.data();
+  double* const __restrict squared_error = out.squared_error.data();
+  for (std::size_t i = 0; i < size; ++i) {
+    const double delta = static_cast<double>(values[i]) - mean[i];
+    const double left = m2[i] - delta * delta * count / rest;
+    mean_out[i] = mean[i] - delta / rest;
+    squared_error[i] = (left < 0 ? 0.0 : left) / scale;
+  }
+}
+ASSAY_VECTOR_COPIES void leave_out(const float* values, const LeftOut& of, Estimates& out,
+                                   std::size_t size) {
+  step_back(values, of, out, size);
+}
+ASSAY_VECTOR_COPIES void leave_out(const double* values, const LeftOut& of, Estimates& out,
+                                   std::size_t size) {
+  step_back(values, of, out, size);
+}
 
 // An image's block with and without one replicate.
 template <class Real>
@@ -33,15 +68,15 @@ class StackBlock {
   std::size_t left_out() const { return stack_.images.size(); }
   void load(std::size_t first, std::size_t size) {
     first_ = first;
-    moments_of_range(stack_, first, {std::span(mean_).first(size), std::span(m2_).first(size)});
+    size_ = size;
+    moments_of_range(stack_, first, {std::span(all_.mean).first(size), std::span(m2_).first(size)});
+    for (std::size_t i = 0; i < size; ++i) {
+      all_.squared_error[i] = m2_[i] / (count() * (count() - 1));
+    }
   }
-  Estimate all(std::size_t i) const { return {mean_[i], m2_[i] / (count() * (count() - 1))}; }
-  // Without replicate r: the value leaves mean and m2 by Welford's step backwards.
-  Estimate without(std::size_t r, std::size_t i) const {
-    const double rest = count() - 1;
-    const double delta = static_cast<double>(stack_.images[r][first_ + i]) - mean_[i];
-    const double m2 = std::max(m2_[i] - delta * delta * count() / rest, 0.0);
-    return {mean_[i] - delta / rest, m2 / (rest * (rest - 1))};
+  const Estimates& all() const { return all_; }
+  void without(std::size_t r, Estimates& out) const {
+    leave_out(stack_.images[r].data() + first_, {all_.mean, m2_, count()}, out, size_);
   }
 
  private:
@@ -49,7 +84,8 @@ class StackBlock {
 
   const ImageStack<Real>& stack_;
   std::size_t first_ = 0;
-  Block mean_{};
+  std::size_t size_ = 0;
+  Estimates all_;
   Block m2_{};
 };
 
@@ -61,27 +97,29 @@ class ReferenceBlock {
   }
 
   std::size_t left_out() const { return 0; }
-  void load(std::size_t first, std::size_t) { first_ = first; }
-  Estimate all(std::size_t i) const {
-    const double error = check::reference_error(function_, reference_, first_ + i);
-    return {reference_.value[first_ + i], error * error};
+  void load(std::size_t first, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) {
+      const double error = check::reference_error(function_, reference_, first + i);
+      all_.mean[i] = reference_.value[first + i];
+      all_.squared_error[i] = error * error;
+    }
   }
-  Estimate without(std::size_t, std::size_t i) const { return all(i); }
+  const Estimates& all() const { return all_; }
+  void without(std::size_t, Estimates& out) const { out = all_; }
 
  private:
   const char* function_;
   const ImageReference& reference_;
-  std::size_t first_ = 0;
+  Estimates all_;
 };
 
 // Sums over elements of one or more terms.
 template <std::size_t count>
 using Sums = std::array<double, count>;
 
+// The terms of a block, the first kind of all its elements, then the second.
 template <std::size_t count>
-void add(Sums<count>& sums, const Sums<count>& terms) {
-  for (std::size_t k = 0; k < count; ++k) sums[k] += terms[k];
-}
+using Terms = std::array<Block, count>;
 
 // Covariance of two jackknifed sums: (n - 1) / n times the sum of products about the means.
 template <std::size_t count>
@@ -97,7 +135,8 @@ double jackknife_covariance(const std::vector<Sums<count>>& values, std::size_t 
   return products * (n - 1) / n;
 }
 
-// The sums over elements of term(estimate of a, estimate of b), and without each replicate.
+// The sums over elements of the terms of (estimate of a, estimate of b), and without each
+// replicate.
 template <std::size_t count>
 struct Jackknife {
   Sums<count> whole{};
@@ -114,24 +153,64 @@ struct Jackknife {
   }
 };
 
+// Sums of several replicates take their terms in step: each in the order of the elements, but none
+// waits for the other's addition.
+constexpr std::size_t in_step = 8;
+
+template <std::size_t count>
+using Step = std::array<Terms<count>, in_step>;
+
+template <std::size_t count>
+void add_in_step(std::span<Sums<count>> sums, const Step<count>& terms, std::size_t kind,
+                 std::size_t size) {
+  std::array<double, in_step> sum{};
+  for (std::size_t k = 0; k < sums.size(); ++k) sum[k] = sums[k][kind];
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t k = 0; k < in_step; ++k) sum[k] += terms[k][kind][i];
+  }
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k][kind] = sum[k];
+}
+
+// What adds up without each replicate in turn, of as many kinds of terms. `terms_without` fills in
+// the terms without replicate r.
+template <std::size_t count, class TermsWithout>
+void add_without(std::vector<Sums<count>>& sums, std::size_t kinds, std::size_t size,
+                 Step<count>& step, const TermsWithout& terms_without) {
+  for (std::size_t r = 0; r < sums.size(); r += in_step) {
+    const auto some = std::span(sums).subspan(r, std::min(in_step, sums.size() - r));
+    for (std::size_t k = 0; k < some.size(); ++k) terms_without(r + k, step[k]);
+    for (std::size_t kind = 0; kind < kinds; ++kind) add_in_step(some, step, kind, size);
+  }
+}
+
 template <std::size_t count, class First, class Second, class Term>
 Jackknife<count> jackknife(std::size_t elements, First a, Second b, const Term& term) {
   Jackknife<count> sums;
   sums.without_a.resize(a.left_out());
   sums.without_b.resize(b.left_out());
+  const auto step = std::make_unique<Step<count>>();
+  const auto one = std::make_unique<Estimates>();
   for (std::size_t first = 0; first < elements; first += block_size) {
     const std::size_t size = std::min(block_size, elements - first);
     a.load(first, size);
     b.load(first, size);
-    for (std::size_t i = 0; i < size; ++i) add(sums.whole, term(a.all(i), b.all(i)));
-    for (std::size_t r = 0; r < sums.without_a.size(); ++r) {
-      for (std::size_t i = 0; i < size; ++i)
-        add(sums.without_a[r], term(a.without(r, i), b.all(i)));
+    term(a.all(), b.all(), (*step)[0], size);
+    for (std::size_t kind = 0; kind < count; ++kind) {
+      add_in_step(std::span(&sums.whole, 1), *step, kind, size);
     }
-    for (std::size_t r = 0; r < sums.without_b.size(); ++r) {
-      for (std::size_t i = 0; i < size; ++i)
-        add(sums.without_b[r], term(a.all(i), b.without(r, i)));
-    }
+    add_without(sums.without_a, Term::kinds_of_a, size, *step,
+                [&](std::size_t r, Terms<count>& terms) {
+                  a.without(r, *one);
+                  term(*one, b.all(), terms, size);
+                });
+    add_without(sums.without_b, count, size, *step, [&](std::size_t r, Terms<count>& terms) {
+      b.without(r, *one);
+      term(a.all(), *one, terms, size);
+    });
+  }
+  for (Sums<count>& without : sums.without_a) {
+    std::copy(sums.whole.begin() + Term::kinds_of_a, sums.whole.end(),
+              without.begin() + Term::kinds_of_a);
   }
   for (const double sum : sums.whole) {
     if (!std::isfinite(sum)) check::fail({"squared_bias", "sum over the image"}, sum, "finite");
@@ -139,28 +218,44 @@ Jackknife<count> jackknife(std::size_t elements, First a, Second b, const Term& 
   return sums;
 }
 
-double squared_difference(const Estimate& a, const Estimate& b) {
-  const double difference = a.mean - b.mean;
-  return difference * difference - a.squared_error - b.squared_error;
+ASSAY_VECTOR_COPIES void squared_differences(const Estimates& a, const Estimates& b, Block& out,
+                                             std::size_t size) {
+  double* const __restrict term = out.data();
+  for (std::size_t i = 0; i < size; ++i) {
+    const double difference = a.mean[i] - b.mean[i];
+    term[i] = difference * difference - a.squared_error[i] - b.squared_error[i];
+  }
+}
+ASSAY_VECTOR_COPIES void squared_norms(const Estimates& b, Block& out, std::size_t size) {
+  double* const __restrict term = out.data();
+  for (std::size_t i = 0; i < size; ++i) term[i] = b.mean[i] * b.mean[i] - b.squared_error[i];
 }
 
+// Each fills in its terms of a block. Terms of the first `kinds_of_a` kinds depend on a.
 struct Absolute {
-  Sums<1> operator()(const Estimate& a, const Estimate& b) const {
-    return {squared_difference(a, b)};
+  static constexpr std::size_t kinds_of_a = 1;
+  void operator()(const Estimates& a, const Estimates& b, Terms<1>& out, std::size_t size) const {
+    squared_differences(a, b, out[0], size);
   }
 };
 
 struct Relative {
+  static constexpr std::size_t kinds_of_a = 1;
   double constant;
   double elements;
-  Sums<1> operator()(const Estimate& a, const Estimate& b) const {
-    return {squared_difference(a, b) / (elements * (b.mean * b.mean + constant))};
+  void operator()(const Estimates& a, const Estimates& b, Terms<1>& out, std::size_t size) const {
+    squared_differences(a, b, out[0], size);
+    for (std::size_t i = 0; i < size; ++i) {
+      out[0][i] /= elements * (b.mean[i] * b.mean[i] + constant);
+    }
   }
 };
 
 struct BiasAndNorm {
-  Sums<2> operator()(const Estimate& a, const Estimate& b) const {
-    return {squared_difference(a, b), b.mean * b.mean - b.squared_error};
+  static constexpr std::size_t kinds_of_a = 1;
+  void operator()(const Estimates& a, const Estimates& b, Terms<2>& out, std::size_t size) const {
+    squared_differences(a, b, out[0], size);
+    squared_norms(b, out[1], size);
   }
 };
 

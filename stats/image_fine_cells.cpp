@@ -1,10 +1,10 @@
 #include "stats/image_fine_cells.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "stats/image_tile.h"
+#include "stats/image_welch_cells.h"
 #include "stats/vector_copies.h"
 
 namespace assay::stats {
@@ -61,31 +61,35 @@ ASSAY_VECTOR_COPIES void update(const Updated& row, double inverse_count, std::s
   }
 }
 
-// Of the squares of one side that begin in a tile: as in WindowMoments of
-// image_pyramid.
-struct SquareMoments {
-  std::vector<double> mean;
-  std::vector<double> m2;
-  std::vector<double> effect;
-  std::vector<double> variance;
-  std::vector<double> reciprocal_degrees;
-
-  void clear(std::size_t size) {
-    for (std::vector<double>* each : {&mean, &m2, &effect, &variance, &reciprocal_degrees}) {
-      each->assign(size, 0.0);
-    }
-  }
-  void finish_part(double count, double factor) {
-    for (std::size_t i = 0; i < mean.size(); ++i) {
-      const double part = factor * factor * m2[i] / (count * (count - 1));
-      effect[i] += factor * mean[i];
-      variance[i] += part;
-      reciprocal_degrees[i] += part * part / (count - 1);
-    }
-    std::ranges::fill(mean, 0.0);
-    std::ranges::fill(m2, 0.0);
-  }
+struct ColumnSums {
+  const double* row;
+  double* sum;
+  double* signed_sum;
 };
+
+ASSAY_VECTOR_COPIES void add_row(const ColumnSums& to, double sign, std::size_t size) {
+  const double* const row = to.row;
+  double* const __restrict sum = to.sum;
+  double* const __restrict signed_sum = to.signed_sum;
+  for (std::size_t i = 0; i < size; ++i) {
+    sum[i] += row[i];
+    signed_sum[i] += sign * row[i];
+  }
+}
+
+// Asks for the rows of a tile before they are needed: a tile's rows are too short for the machine
+// to see that more of them follow.
+template <class Real>
+void fetch_ahead(const Tile& tile, const Real* image) {
+  constexpr std::size_t line = 64 / sizeof(Real);
+  const ImageExtent& extent = tile.extent;
+  const std::size_t size = std::min(tile.stride(), (extent.width - tile.x) * extent.channels);
+  const std::size_t rows = std::min(tile.height() + Tile::halo, extent.height - tile.y);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Real* const first = image + ((tile.y + row) * extent.width + tile.x) * extent.channels;
+    for (std::size_t i = 0; i < size; i += line) __builtin_prefetch(first + i);
+  }
+}
 
 // The group of aligned and the group of shifted cells of one side, where there
 // are any.
@@ -122,7 +126,7 @@ class FineTiles {
   void take(const Tile& tile) {
     const std::size_t size = Tile::rows * tile.stride();
     for (std::size_t k = 0; k < fine_squares.size(); ++k) {
-      moments_[k].clear(size / (fine_squares[k].step * fine_squares[k].step));
+      moments_[k].start(size / (fine_squares[k].step * fine_squares[k].step));
     }
     for (std::size_t h = 0; h < halves; ++h) {
       take_half(tile, cells_.pair.a, {h, 0}, 0.5);
@@ -144,6 +148,7 @@ class FineTiles {
     std::vector<BlockSums>& kept = coarse_.images[part.half][part.side];
     double count = 0;
     for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
+      if (r + halves < stack.images.size()) fetch_ahead(tile, stack.images[r + halves].data());
       fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
         const Real* const value = stack.images[r].data() + first;
         if (cells_.pair.b != nullptr) {
@@ -159,7 +164,7 @@ class FineTiles {
       keep_blocks(tile, blocks);
       add_alternating(tile, blocks);
     }
-    for (SquareMoments& moments : moments_) moments.finish_part(count, factor);
+    for (WelchCells& moments : moments_) moments.finish_part(count, factor);
   }
 
   void update_squares(const Tile& tile, std::size_t k, double inverse) {
@@ -195,20 +200,20 @@ class FineTiles {
     const std::size_t size = tile.width() * extent_.channels;
     std::fill_n(column_sums_.begin(), size, 0.0);
     std::fill_n(signed_column_sums_.begin(), size, 0.0);
-    const double* row = sums_.values().data();
-    for (std::size_t y = 0; y < tile.height(); ++y, row += tile.stride()) {
-      const double sign = y % 2 == 0 ? 1 : -1;
-      for (std::size_t i = 0; i < size; ++i) {
-        column_sums_[i] += row[i];
-        signed_column_sums_[i] += sign * row[i];
-      }
+    for (std::size_t y = 0; y < tile.height(); ++y) {
+      add_row({sums_.values().data() + y * tile.stride(), column_sums_.data(),
+               signed_column_sums_.data()},
+              y % 2 == 0 ? 1 : -1, size);
     }
-    for (std::size_t i = 0; i < size; ++i) {
-      const double sign = i / extent_.channels % 2 == 0 ? 1 : -1;
-      double* const channel = to.alternating.data() + i % extent_.channels * alternations;
-      channel[0] += sign * column_sums_[i];
-      channel[1] += signed_column_sums_[i];
-      channel[2] += sign * signed_column_sums_[i];
+    for (std::size_t x = 0; x < tile.width(); ++x) {
+      const double sign = x % 2 == 0 ? 1 : -1;
+      for (std::size_t c = 0; c < extent_.channels; ++c) {
+        const std::size_t i = x * extent_.channels + c;
+        double* const channel = to.alternating.data() + c * alternations;
+        channel[0] += sign * column_sums_[i];
+        channel[1] += signed_column_sums_[i];
+        channel[2] += sign * signed_column_sums_[i];
+      }
     }
   }
 
@@ -274,14 +279,11 @@ class FineTiles {
     if (!aligned && (square.x + wide > width || square.y + high > height)) return;
     square.width = std::min(wide, width - square.x);
     square.height = std::min(high, height - square.y);
-    const SquareMoments& moments = moments_[k];
+    const WelchCells& moments = moments_[k];
     for (std::size_t c = 0; c < extent_.channels; ++c) {
-      const double variance = moments.variance[first + c];
-      if (!(variance > 0)) continue;
-      const StudentValue value{moments.effect[first + c] / std::sqrt(variance),
-                               variance * variance / moments.reciprocal_degrees[first + c]};
+      if (!moments.varied(first + c)) continue;
       offer(best_[*group], {ImageStatistic::window, cells_.groups[*group].size, square, c, 0, 0, 0},
-            value);
+            moments.value(first + c));
     }
   }
 
@@ -292,11 +294,9 @@ class FineTiles {
   TileSums sums_;
   std::vector<double> column_sums_;
   std::vector<double> signed_column_sums_;
-  std::array<SquareMoments, fine_squares.size()> moments_;
+  std::array<WelchCells, fine_squares.size()> moments_;  // of the squares that begin in the tile
   std::array<GroupsOfSide, fine_squares.size()> groups_;
 };
-
-std::size_t blocks_of(std::size_t count) { return (count + block_side - 1) / block_side; }
 
 template <class Real>
 CoarseImages empty_blocks(const ImagePair<Real>& pair) {

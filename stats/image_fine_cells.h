@@ -19,6 +19,8 @@ namespace assay::stats {
 inline constexpr std::size_t sides_of_pair = 2;  // a and b
 inline constexpr std::size_t alternations = 3;   // by column, by row, checkerboard
 inline constexpr std::uint32_t block_side = 4;
+// That cover so many elements of a row or column.
+inline std::size_t blocks_of(std::size_t count) { return (count + block_side - 1) / block_side; }
 
 // Whether the cells of a group are tested here.
 bool is_fine(const WindowGroup& group);
@@ -39,8 +41,8 @@ struct CoarseImages {
   BlockSums squared_error;               // of a reference, weighted; empty where it has none
 };
 
-// The means over the replicates of one half of one side, as WindowMoments of
-// image_pyramid has them: what the halves' and sides' parts add up to.
+// What fine cells are tested on: the replicates, their halves with the weights
+// that each gives the other, and the groups of cells.
 template <class Real>
 struct FineCells {
   const ImagePair<Real>& pair;

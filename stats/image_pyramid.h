@@ -53,10 +53,13 @@ ImageFamily image_pyramid(const ZMap& map);
 // `weights` of the elements in cells and energy, where they are known from other data (a pilot):
 // both halves then take them. A rare light that half the replicates did not see is weighted like a
 // quiet element by them, and sums of any size are skewed; a larger pilot has seen it.
+//
+// `z` receives welch_z of every element, where it has room for them.
 struct PyramidOptions {
   std::optional<double> energy_log_p = {};
   std::uint32_t smallest = 1;  // 1: single elements too
   std::span<const double> weights = {};
+  std::span<double> z = {};
 };
 // The share of the level that the sum over the whole image has: what a difference that is the same
 // everywhere is found by.

@@ -20,6 +20,7 @@ namespace {
 using Groups = std::vector<WindowGroup>;
 
 constexpr const char* function_name = "image_pyramid";
+
 double two_sided(LogTails tails) {
   return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
 }
@@ -78,7 +79,8 @@ std::size_t largest(std::span<const double> z) {
 template <class Real>
 void add_elements(ImageFamily& family, const ImagePair<Real>& pair, const PyramidOptions& options,
                   double share) {
-  std::vector<double> z(pair.a.extent.elements());
+  std::vector<double> own(options.z.empty() ? pair.a.extent.elements() : 0);
+  const std::span<double> z = options.z.empty() ? std::span(own) : options.z;
   const WelchCounts counts = element_map(pair, z);
   family.tested = counts.tested;
   family.equal_constants = counts.equal_constants;
@@ -138,6 +140,9 @@ ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options
   }
   const ImageExtent& extent = pair.a.extent;
   check_weights(options.weights, extent);
+  if (!options.z.empty() && options.z.size() != extent.elements()) {
+    check::fail({function_name, "z.size()"}, options.z.size(), "that of the elements");
+  }
   const Groups groups = window_groups(extent, 1 - energy_share);
   ImageFamily family;
   add_elements(family, pair, options, groups[0].share);

@@ -12,28 +12,31 @@ namespace {
 
 class Picture final : public Estimator {
  public:
-  Picture(std::shared_ptr<const PictureStack> stack, std::shared_ptr<SeenPictures> seen,
-          std::size_t elements)
-      : stack_(std::move(stack)), seen_(std::move(seen)), texels_(elements) {}
+  Picture(std::shared_ptr<const PictureStack> stack, std::shared_ptr<SeenPictures> seen)
+      : stack_(std::move(stack)), seen_(std::move(seen)) {}
 
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
                  Cost& cost) override {
     if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
-    if (random.observation() >= stack_->files.size()) {
-      throw std::out_of_range("recorded: there is no observation " +
-                              std::to_string(random.observation()) + ", there are " +
-                              std::to_string(stack_->files.size()) + " files");
-    }
-    stack_->read(random.observation(), texels_);
-    refuse_a_copy(random.observation());
+    texels_.resize(out.size() - 1);
+    read(random.observation(), texels_, cost);
     write_observation(texels_, out);
+  }
+
+  void read(std::uint64_t index, std::span<float> texels, Cost& cost) {
+    if (index >= stack_->files.size()) {
+      throw std::out_of_range("recorded: there is no observation " + std::to_string(index) +
+                              ", there are " + std::to_string(stack_->files.size()) + " files");
+    }
+    stack_->read(index, texels);
+    refuse_a_copy(index, texels);
     cost.samples += 1;
   }
 
  private:
   /// Copies are no independent observations: they would make the variance too small.
-  void refuse_a_copy(std::uint64_t index) {
-    const auto other = seen_->note(index, texels_);
+  void refuse_a_copy(std::uint64_t index, std::span<const float> texels) {
+    const auto other = seen_->note(index, texels);
     if (!other) return;
     const auto [first, second] = std::minmax(*other, index);
     throw InputError({.file = stack_->files[second]},
@@ -60,7 +63,7 @@ class PictureSetup final : public Setup {
   }
   std::optional<ImageShape> image() const override { return shape_; }
   std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<Picture>(stack_, seen_, shape_.elements());
+    return std::make_unique<Picture>(stack_, seen_);
   }
   std::optional<std::uint64_t> observations() const override { return stack_->files.size(); }
   std::string data_file() const override { return data_file_; }
@@ -118,6 +121,16 @@ std::optional<std::size_t> unknown_channels(const Setup& setup) {
   return pictures->channel_count();
 }
 
+void read_picture(Estimator& pictures, std::uint64_t index, std::span<float> texels, Cost& cost) {
+  dynamic_cast<Picture&>(pictures).read(index, texels, cost);
+}
+
+double average_of(std::span<const float> texels) {
+  double sum = 0;
+  for (const float texel : texels) sum += double{texel};
+  return sum / static_cast<double>(texels.size());
+}
+
 std::string observation_file(const Setup& setup, std::uint64_t index) {
   const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
   return pictures == nullptr ? "" : pictures->file(index);
@@ -133,12 +146,8 @@ std::optional<std::pair<std::string, std::string>> shared_picture(const Setup& f
 Channel average_channel() { return {.name = "average", .diagnostic = true}; }
 
 void write_observation(std::span<const float> texels, std::span<double> out) {
-  double sum = 0;
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    out[i] = double{texels[i]};
-    sum += out[i];
-  }
-  out[texels.size()] = sum / static_cast<double>(texels.size());
+  std::ranges::copy(texels, out.begin());
+  out[texels.size()] = average_of(texels);
 }
 
 std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,

@@ -1,13 +1,15 @@
 #include "estimators/recorded/seen_pictures.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 
 namespace assay::recorded {
 
 namespace {
 
-/// Fowler, Noll and Vo's hash (FNV-1a, 64 bits), a texel at a time.
+/// Fowler, Noll and Vo's hash (FNV-1a, 64 bits), a word at a time.
 std::uint64_t step(std::uint64_t digest, std::uint64_t value) {
   digest = (digest ^ value) * 0x100000001b3;
   return digest ^ digest >> 32;  // the product alone never carries a high bit down
@@ -19,28 +21,51 @@ struct Digest {
   bool one_value = true;
 };
 
-/// In one pass. Every fourth texel goes to a digest of its own, so that none waits for the last.
-Digest digest_of(std::span<const float> texels) {
-  constexpr std::size_t lanes = 4;
+std::uint64_t word(const float* texels) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, texels, sizeof bits);
+  return bits;
+}
+
+/// Of two texels at a time. Every eighth pair goes to a digest of its own, so that none waits for
+/// the last.
+std::uint64_t digest_of_bits(std::span<const float> texels) {
+  constexpr std::size_t lanes = 8;
   Digest whole;
   std::array<std::uint64_t, lanes> digests;
   digests.fill(whole.value);
-  bool finite = true;
-  bool differs = false;
   std::size_t i = 0;
-  const auto take = [&](std::size_t lane) {
-    const float texel = texels[i + lane];
-    digests[lane] = step(digests[lane], std::bit_cast<std::uint32_t>(texel));
-    finite &= texel - texel == 0;
-    differs |= texel != texels[0];
-  };
-  for (; i + lanes <= texels.size(); i += lanes) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) take(lane);
+  for (; i + 2 * lanes <= texels.size(); i += 2 * lanes) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      digests[lane] = step(digests[lane], word(texels.data() + i + 2 * lane));
+    }
   }
-  for (std::size_t lane = 0; i + lane < texels.size(); ++lane) take(lane);
   for (const std::uint64_t digest : digests) whole.value = step(whole.value, digest);
-  whole.finite = finite;
-  whole.one_value = !differs;
+  for (; i < texels.size(); ++i) {
+    whole.value = step(whole.value, std::bit_cast<std::uint32_t>(texels[i]));
+  }
+  return whole.value;
+}
+
+/// By pieces that stay in the cache from one question to the next.
+Digest digest_of(std::span<const float> texels) {
+  constexpr std::size_t piece = 4096;
+  Digest whole;
+  for (std::size_t first = 0; first < texels.size(); first += piece) {
+    const std::span<const float> some =
+        texels.subspan(first, std::min(piece, texels.size() - first));
+    whole.value = step(whole.value, digest_of_bits(some));
+    std::uint32_t beyond = 0;
+    std::uint32_t differs = 0;
+    for (const float texel : some) {
+      constexpr std::uint32_t exponent = 0x7f800000;
+      const auto bits = std::bit_cast<std::uint32_t>(texel);
+      beyond |= (bits & exponent) == exponent ? 1U : 0U;
+      differs |= texel != texels[0] ? 1U : 0U;
+    }
+    whole.finite &= beyond == 0;
+    whole.one_value &= differs == 0;
+  }
   return whole;
 }
 

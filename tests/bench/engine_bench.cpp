@@ -39,7 +39,7 @@ double bare(const Setup& setup, std::uint64_t total) {
 double by_harness(const std::shared_ptr<const Setup>& setup, std::uint64_t total,
                   unsigned threads) {
   auto pool = std::make_shared<harness::Pool>(setup, stream_key(1, "bench", "", 0), primaries);
-  for (harness::ChannelPlan& channel : pool->plan()) {
+  for (harness::ChannelPlan& channel : pool->plans()) {
     channel = {.histogram_low = 0, .histogram_high = 10, .keep = 2000};
   }
   pool->request(total / primaries);

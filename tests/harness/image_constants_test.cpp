@@ -54,7 +54,7 @@ TEST(ImageConstants, AConstantWithinRoundingOfItsReferenceIsAtIt) {
   images[5][7] += rounding;  // varies, but not by more than rounding
   images[5][8] += 1e-3;
   const std::vector<ChannelData> data = data_of({images});
-  const ImagePair pair(question, data);
+  const ImagePair<double> pair(question, data);
   const VaryingPart varying(question, pair);
   EXPECT_TRUE(varying.any());
   EXPECT_TRUE(varying.unseen().empty());
@@ -77,7 +77,7 @@ TEST(ImageConstants, APixelThatWasNeverLitIsHeldAgainstItsRangeAlone) {
   Images images = at_reference(question);
   for (auto& image : images) image[dark] = 0.02;
   const std::vector<ChannelData> data = data_of({images});
-  const ImagePair pair(question, data);
+  const ImagePair<double> pair(question, data);
   const VaryingPart varying(question, pair);
   EXPECT_FALSE(varying.any());
   ASSERT_EQ(varying.unseen().size(), 1u);
@@ -92,7 +92,7 @@ TEST(ImageConstants, BeyondTheRangeAConstantIsCertainlyWrong) {
   Images images = at_reference(question);
   for (auto& image : images) image[17 * 24] = 8;  // where nothing but the background is seen
   const std::vector<ChannelData> data = data_of({images});
-  const ImagePair pair(question, data);
+  const ImagePair<double> pair(question, data);
   const VaryingPart varying(question, pair);
   ASSERT_EQ(varying.unseen().size(), 1u);
   EXPECT_LT(varying.unseen()[0].log_p, std::log(1e-100));
@@ -111,7 +111,7 @@ TEST(ImageConstants, ConstantsOfTwoImagesAreEqualWithinRoundingOnly) {
   }
   first[2][5] += rounding;
   const std::vector<ChannelData> data = data_of({first, second});
-  const ImagePair pair(question, data);
+  const ImagePair<double> pair(question, data);
   const VaryingPart varying(question, pair);
   varying.with([&](const auto& a, const auto& b) {
     if constexpr (requires { b.images; }) {
@@ -136,7 +136,7 @@ TEST(ImageConstants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
     second[r][dark] = 0.025 + 0.0001 * static_cast<double>(r % 5);
   }
   const std::vector<ChannelData> data = data_of({first, second});
-  const ImagePair pair(question, data);
+  const ImagePair<double> pair(question, data);
   const VaryingPart varying(question, pair);
   ASSERT_EQ(varying.unseen().size(), 1u);
   EXPECT_EQ(varying.unseen()[0].sign, -1);

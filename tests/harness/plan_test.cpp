@@ -225,11 +225,11 @@ TEST(Plan, DoesNotDependOnWhichOtherTestsAreThere) {
 
 TEST(Plan, PilotIsOfTheSeedAlone) {
   const std::string test = "  - {claim: mean(single) == 2}\n";
-  const stats::Moments one = plan_text(test).pilots.at("single").channels[0];
-  EXPECT_EQ(plan_text(test).pilots.at("single").channels[0], one);
-  EXPECT_NE(plan_text(test, 2).pilots.at("single").channels[0].mean, one.mean);
-  EXPECT_EQ(plan_text(test).pilots.at("single").channels[0].mean,
-            plan_text(test).pilots.at("normal").channels[0].mean)
+  const stats::Moments one = plan_text(test).pilots.at("single").moments(0);
+  EXPECT_EQ(plan_text(test).pilots.at("single").moments(0), one);
+  EXPECT_NE(plan_text(test, 2).pilots.at("single").moments(0).mean, one.mean);
+  EXPECT_EQ(plan_text(test).pilots.at("single").moments(0).mean,
+            plan_text(test).pilots.at("normal").moments(0).mean)
       << "the same plugin and parameters at one primary";
 }
 

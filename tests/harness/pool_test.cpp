@@ -66,7 +66,7 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
   const StreamKey key = stream_key(1, "test/sums", "", 0);
   auto pool =
       std::make_shared<Pool>(std::make_shared<SumsSetup>(wanted.behaviour), key, wanted.primaries);
-  pool->plan() = {{.histogram_low = 0, .histogram_high = 1, .keep = 700}, {.keep = 20}};
+  pool->plan({{.histogram_low = 0, .histogram_high = 1, .keep = 700}, {.keep = 20}});
   for (const std::uint64_t count : wanted.prefixes) pool->request(count);
   Silence silence;
   draw_all({pool}, {.threads = wanted.threads}, silence);
@@ -209,8 +209,9 @@ TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
   EXPECT_EQ(second->trouble(), "");
   EXPECT_EQ(second->prefix(30).channels[1].moments.m4, first->prefix(30).channels[1].moments.m4);
   EXPECT_EQ(second->prefix(30).cost, first->prefix(30).cost);
-  EXPECT_EQ(second->observations(20).size(), 20U);
-  EXPECT_EQ(second->observations(20).data(), first->observations(20).data());
+  const auto drawn = std::get<0>(second->observations(20));
+  EXPECT_EQ(drawn.size(), 20U);
+  EXPECT_EQ(drawn.data(), std::get<0>(first->observations(20)).data());
 }
 
 // Pictures of files are summed when all are there, once for the pilot and the test.

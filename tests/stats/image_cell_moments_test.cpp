@@ -18,7 +18,7 @@ std::vector<WindowGroup> aligned_groups(const ImageExtent& extent) {
   return groups;
 }
 
-double sum_over(const WeightedImages& images, std::size_t image, const Rectangle& window,
+double sum_over(const WeightedImages<double>& images, std::size_t image, const Rectangle& window,
                 std::size_t channel) {
   const ImageExtent& extent = images.stack.extent;
   double sum = 0;
@@ -42,8 +42,10 @@ void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
   const ImageStack<double> stack{extent, {values.begin(), values.end()}};
   const WeightedImages images{stack, weights, 3, 1};
   const std::vector<WindowGroup> groups = aligned_groups(extent);
+  const auto all = cell_moments(images, groups);
+  ASSERT_EQ(all.size(), extent.channels);
   for (std::size_t c = 0; c < extent.channels; ++c) {
-    const std::vector<CellMoments> cells = cell_moments(images, groups, c);
+    const std::vector<CellMoments>& cells = all[c];
     std::size_t cell = 0;
     for (const WindowGroup& group : groups) {
       for (const Rectangle& window : group.windows) {

@@ -33,9 +33,8 @@ Images draw(Philox& random, const ImageExtent& extent, std::size_t replicates,
 
 CellPilot side_of(const ImageExtent& extent, const Images& images, double replicates,
                   double factor = 1) {
-  CellPilot side{.stack = {extent, {}}, .factor = factor, .replicates = replicates};
-  for (const auto& image : images) side.stack.images.emplace_back(image);
-  return side;
+  const ImageStack<double> stack{extent, {images.begin(), images.end()}};
+  return {.stack = stack, .factor = factor, .replicates = replicates};
 }
 
 double exponential(Philox& random, std::size_t) { return -std::log1p(-random.uniform()); }

@@ -15,20 +15,15 @@ namespace assay::stats {
 namespace {
 
 using tests::draw_stack;
+using tests::one_element;
 using tests::OwnedStack;
 using tests::Philox;
 
-constexpr ImageExtent extent{37, 31, 3};  // more than one block and no multiple of anything
+constexpr ImageExtent extent = tests::uneven;
 
 OwnedStack normal_stack(std::uint32_t test_case, std::size_t replicates) {
   Philox random(test_case);
   return draw_stack(extent, replicates, [&](std::size_t) { return 5 + random.normal(); });
-}
-
-Moments one_element(const OwnedStack& stack, std::size_t element) {
-  Moments moments;
-  for (const auto& image : stack.images) moments.add(static_cast<double>(image[element]));
-  return moments;
 }
 
 TEST(ImageMoments, EveryElementHasTheMomentsOfItsOwnValues) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stats/image.h"
+#include "stats/moments.h"
 #include "tests/philox.h"
 
 namespace assay::tests {
@@ -21,6 +22,16 @@ struct OwnedStack {
     return stack;
   }
 };
+
+// More than one block of elements and no multiple of anything.
+inline constexpr stats::ImageExtent uneven{37, 31, 3};
+
+// Of one element, value by value.
+inline stats::Moments one_element(const OwnedStack& stack, std::size_t element) {
+  stats::Moments moments;
+  for (const auto& image : stack.images) moments.add(static_cast<double>(image[element]));
+  return moments;
+}
 
 // draw(element) for every element of every replicate.
 template <class Draw>

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "stats/image.h"
+
+namespace assay::stats {
+
+// The sum of each image's elements in their order. Several images are added up in step, so that no
+// addition waits for the last: each sum has the bits of adding up that image alone.
+template <class Real>
+std::vector<double> image_sums(const ImageStack<Real>& stack);
+
+}  // namespace assay::stats
