@@ -123,18 +123,8 @@ struct Information {
 
 /// An entry of the catalogue.
 struct Entry {
-  using Prepare = std::function<std::shared_ptr<const Setup>(Parameters&)>;
-
-  // Written out in one place, as every plugin's file makes, copies and destroys some.
-  Entry(Information, Prepare);
-  Entry(const Entry&);
-  Entry(Entry&&) noexcept;
-  Entry& operator=(const Entry&);
-  Entry& operator=(Entry&&) noexcept;
-  ~Entry();
-
   Information information;
-  Prepare prepare;
+  std::function<std::shared_ptr<const Setup>(Parameters&)> prepare;
 };
 
 /// A primary in two halves: draw(stream) makes its random choices, value(choices, cost) works out
@@ -231,8 +221,7 @@ std::shared_ptr<const Setup> averaging(Channel channel, Primary primary,
 
 }  // namespace assay
 
-// Likewise what every plugin's file does with these.
+// Written out in one place, as every plugin's file makes, copies and destroys some.
 extern template class std::vector<assay::ParameterInformation>;
 extern template class std::vector<assay::Channel>;
 extern template class std::vector<assay::NamedSampler>;
-extern template class std::vector<assay::Entry>;

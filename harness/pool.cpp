@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <ctime>
 #include <iterator>
 #include <limits>
@@ -31,17 +32,14 @@ double thread_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-Pool::BlockSums sums_of(const Summary& block) {
-  Pool::BlockSums sums{.count = block.count, .seconds = block.seconds};
-  for (const ChannelSummary& channel : block.channels) sums.channels.push_back(channel.moments);
-  return sums;
+std::vector<stats::Moments> moments_of(std::span<const ChannelSummary> channels) {
+  std::vector<stats::Moments> moments;
+  for (const ChannelSummary& channel : channels) moments.push_back(channel.moments);
+  return moments;
 }
 
-/// The observation that a picture of a file is.
-std::span<const double> widened(std::span<const float> picture, std::span<double> out) {
-  std::ranges::copy(picture, out.begin());
-  out.back() = recorded::average_of(picture);
-  return out;
+bool stays(const Setup& setup) {
+  return as_recorded_run(setup) == nullptr && setup.image() && setup.observations();
 }
 
 /// Primaries that one observation is made of.
@@ -60,9 +58,9 @@ std::size_t channels_of(const Setup& setup) {
   return unknown ? *unknown : setup.channels().size();
 }
 
-bool is_plain(const ChannelPlan& plan) {
-  return !(plan.histogram_low < plan.histogram_high) && plan.keep == 0 && plan.cells == 0 &&
-         !plan.with_cost;
+/// Whether more is kept of a channel's sums than moments.
+bool has_details(const ChannelPlan& plan) {
+  return plan.histogram_low < plan.histogram_high || plan.cells != 0 || plan.with_cost;
 }
 
 ObservationCost counted(const Cost& cost) {
@@ -135,7 +133,9 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
       key_(key),
       primaries_(primaries),
       block_size_(block_size_of(primaries_of(*setup_, primaries))),
-      channels_(channels_of(*setup_)) {}
+      channels_(channels_of(*setup_)),
+      sums_later_(stays(*setup_)),
+      kept_observations_(sums_later_ ? *setup_->observations() : 0) {}
 
 std::vector<ChannelPlan>& Pool::plans() {
   plan_.resize(channels_);
@@ -174,31 +174,14 @@ std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) c
   return {kept.data(), std::min<std::size_t>(kept.size(), count)};
 }
 
-Observations Pool::observations(std::uint64_t count) const {
-  return (known_ ? known_ : kept_)->first(count);
-}
+Observations Pool::observations(std::uint64_t count) const { return all_kept().range(0, count); }
 
 std::uint64_t Pool::block_end(std::uint64_t first) const {
   return std::min(first + block_size_, setup_->observations().value_or(most_observations));
 }
 
-Observations KeptObservations::first(std::uint64_t count) const {
-  const std::size_t most = std::min<std::size_t>(size(), count);
-  if (!pictures.empty()) return std::span(pictures).first(most);
-  return std::span(values).first(most);
-}
-
-void KeptObservations::append(KeptObservations&& next) {
-  std::ranges::move(next.values, std::back_inserter(values));
-  std::ranges::move(next.texels, std::back_inserter(texels));
-  std::ranges::move(next.pictures, std::back_inserter(pictures));
-  std::ranges::move(next.costs, std::back_inserter(costs));
-}
-
-/// A picture goes from its file to where it is kept, and into an observation where sums are taken
-/// of it at once.
-std::span<const double> Pool::keep_picture(Estimator& estimator, std::uint64_t index,
-                                           std::span<double> out, Block& block) const {
+/// A picture goes from its file to where it is kept.
+void Pool::keep_picture(Estimator& estimator, std::uint64_t index, Block& block) const {
   const std::size_t elements = channels_ - 1;
   KeptObservations& kept = block.observations;
   if (kept.texels.empty()) {
@@ -207,16 +190,15 @@ std::span<const double> Pool::keep_picture(Estimator& estimator, std::uint64_t i
   const std::span<float> picture(kept.texels[0].get() + kept.pictures.size() * elements, elements);
   recorded::read_picture(estimator, index, picture, block.whole.cost);
   kept.pictures.emplace_back(picture);
-  return sums_later_ ? std::span<const double>() : widened(picture, out);
 }
 
-/// One observation, kept where that was asked for: in `out`, or where it stays.
+/// One observation, kept where that was asked for: in `out`, or where it stays. A picture that is
+/// summed later is not widened.
 std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
                                       std::span<double> out, Block& block) const {
   if (known_ && index < known_->size()) {
     block.whole.cost += known_->costs[index];
-    if (known_->pictures.empty()) return known_->values[index];
-    return sums_later_ ? std::span<const double>() : widened(known_->pictures[index], out);
+    return sums_later_ ? std::span<const double>() : known_->whole(index, out);
   }
   const bool kept = !known_ && index < kept_observations_;
   // Counted where the sum stands: to load as a whole what an estimator has just stored in parts
@@ -225,7 +207,7 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
   if (kept) before = block.whole.cost;
   std::span<const double> drawn = out;
   if (kept && recorded::unknown_channels(*setup_)) {
-    drawn = keep_picture(estimator, index, out, block);
+    keep_picture(estimator, index, block);
   } else {
     Stream random(key_, index);
     estimator.secondary(random, primaries_, out, block.whole.cost);
@@ -236,7 +218,7 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
 }
 
 Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const {
-  const std::uint64_t values_kept = most_kept(plan_);
+  const std::uint64_t values_kept = sums_later_ ? 0 : most_kept(plan_);
   Block block{.whole = no_sums(),
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .observations = {},
@@ -250,9 +232,10 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   const auto seconds = [&estimator] { return thread_seconds() + estimator.seconds_elsewhere(); };
   const double start = seconds();
   std::uint64_t index = first;
-  GroupVariance groups(grouped_channels_);
-  const bool counts_costs = std::any_of(plan_.begin(), plan_.end(),
-                                        [](const ChannelPlan& each) { return each.with_cost; });
+  GroupVariance groups(sums_later_ ? std::vector<std::size_t>() : grouped_channels_);
+  const bool counts_costs = !sums_later_ && std::ranges::any_of(plan_, [](const ChannelPlan& each) {
+    return each.with_cost;
+  });
   ObservationCost cost{};
   const FlushDenormals flush;
   try {
@@ -285,39 +268,84 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   return block;
 }
 
-bool Pool::sums_later() const {
-  if (is_ready_made() || !setup_->image() || !setup_->observations()) return false;
-  const std::uint64_t pictures = *setup_->observations();
-  const bool kept = known_ ? known_->size() >= pictures : kept_observations_ >= pictures;
-  return kept && grouped_channels_.empty() && !keeps_blocks_ &&
-         std::ranges::all_of(plan_, is_plain);
+/// The first observations, summed once for all pools that share them.
+std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Summary& drawn) {
+  const auto shared = all_kept().sums.find(count);
+  if (shared != all_kept().sums.end()) return shared->second;
+  auto summed = std::make_shared<Summary>(drawn);
+  summed->channels = sums_of_kept(observations(count));
+  if (!known_) kept_->sums[count] = summed;
+  return summed;
 }
 
-void Pool::begin_drawing() {
-  if (!started_) sums_later_ = sums_later();
+/// Of kept observations, as draw() takes it of those that go: what is kept beside moments.
+void Pool::take_details(Summary& summary) const {
+  std::vector<std::size_t> detailed;
+  for (std::size_t c = 0; c < plan_.size(); ++c) {
+    if (has_details(plan_[c])) detailed.push_back(c);
+  }
+  if (detailed.empty() && grouped_channels_.empty()) return;
+  Summary empty(channels_, plan_);
+  for (const std::size_t c : detailed) {
+    summary.channels[c].rare = std::move(empty.channels[c].rare);
+  }
+  GroupVariance groups(grouped_channels_);
+  std::vector<double> out(channels_);
+  for (std::uint64_t index = 0; index < summary.count; ++index) {
+    const std::span<const double> values = all_kept().whole(index, out);
+    const ObservationCost cost = counted(all_kept().costs[index]);
+    for (const std::size_t c : detailed) {
+      if (!std::isfinite(values[c])) continue;
+      add_details(summary.channels[c].rare.made(), values[c], cost);
+    }
+    if (const auto variance = groups.add(values)) summary.group_variances.add(*variance);
+  }
+}
+
+/// Of kept observations the values of channels that are asked for by themselves.
+void Pool::keep_values() {
+  const std::uint64_t most = std::min(most_kept(plan_), drawn());
+  std::vector<double> out(channels_);
+  for (; values_taken_ < most; ++values_taken_) {
+    values_.resize(channels_);
+    const std::span<const double> values = all_kept().whole(values_taken_, out);
+    for (std::size_t c = 0; c < plan_.size(); ++c) {
+      if (values_taken_ < plan_[c].keep) values_[c].push_back(values[c]);
+    }
+  }
 }
 
 void Pool::end_drawing() {
   if (!sums_later_) return;
-  const std::shared_ptr<const KeptObservations> kept = known_ ? known_ : kept_;
+  keep_values();
+  const bool plain = grouped_channels_.empty() && std::ranges::none_of(plan_, has_details);
   for (auto& [count, prefix] : prefixes_) {
     if (count > drawn() || count == 0 || !prefix->channels.empty()) continue;
-    const auto shared = kept->sums.find(count);
-    if (shared != kept->sums.end()) {
-      prefix = shared->second;
-      continue;
+    std::shared_ptr<const Summary> sums = sums_of_first(count, *prefix);
+    if (!plain) {
+      auto with_details = std::make_shared<Summary>(*sums);
+      take_details(*with_details);
+      sums = std::move(with_details);
     }
-    auto summed = std::make_shared<Summary>(*prefix);
-    summed->channels = sums_of_kept(observations(count));
-    prefix = std::move(summed);
-    if (!known_) kept_->sums[count] = prefix;
+    prefix = std::move(sums);
   }
+}
+
+/// The block that begins at observation `first`.
+void Pool::keep_block(const Summary& block, std::uint64_t first) {
+  const auto channels = [&] {
+    return sums_later_ ? moments_of(sums_of_kept(all_kept().range(first, first + block.count)))
+                       : moments_of(block.channels);
+  };
+  blocks_.push_back({.count = block.count,
+                     .channels = block.count == 0 ? std::vector<stats::Moments>() : channels(),
+                     .seconds = block.seconds});
 }
 
 void Pool::fold(Block&& block) {
   if (!started_) {
     running_ = no_sums();
-    if (most_kept(plan_) > 0) values_.resize(channels_);
+    if (most_kept(plan_) > 0 && !sums_later_) values_.resize(channels_);
     started_ = true;
   }
   if (!trouble_.empty()) return;
@@ -326,12 +354,13 @@ void Pool::fold(Block&& block) {
     prefix->append(partial);
     prefixes_.at(count) = std::move(prefix);
   }
+  const std::uint64_t before = running_.count;
   running_.append(block.whole);
-  if (keeps_blocks_) blocks_.push_back(sums_of(block.whole));
   for (std::size_t c = 0; c < values_.size(); ++c) {
     values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
   }
   kept_->append(std::move(block.observations));
+  if (keeps_blocks_) keep_block(block.whole, before);
   trouble_ = std::move(block.trouble);
 }
 

@@ -13,6 +13,7 @@
 
 #include "estimators/estimator.h"
 #include "harness/image_views.h"
+#include "harness/kept_observations.h"
 #include "harness/summary.h"
 
 namespace assay::harness {
@@ -20,22 +21,6 @@ namespace assay::harness {
 /// Observations of a block, a power of two that depends on `primaries` alone; of an image they are
 /// those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);
-
-/// Observations whole.
-struct KeptObservations {
-  std::vector<std::vector<double>> values = {};       ///< as they were drawn; of pictures none
-  std::vector<std::unique_ptr<float[]>> texels = {};  ///< of pictures of files, a block each
-  std::vector<std::span<const float>> pictures = {};  ///< the same, without their averages
-  std::vector<Cost> costs = {};
-  /// Of the first so many of them, where they were summed after all were there.
-  std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
-
-  std::size_t size() const { return costs.size(); }
-  /// The first of them, at most `count`.
-  Observations first(std::uint64_t count) const;
-  /// Takes those that follow.
-  void append(KeptObservations&& next);
-};
 
 class Pool {
  public:
@@ -121,10 +106,10 @@ class Pool {
   Block draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const;
   /// Takes the next block, in order.
   void fold(Block&& block);
-  /// Before the first block and after the last one that is drawn for now, by one thread: pictures
-  /// of files, which are kept anyway, are summed when all are there, an element over all of them at
-  /// a time instead of picture by picture (kept_sums.h). The second uses all threads.
-  void begin_drawing();
+  /// After the last block that is drawn for now, by one thread, on all of them: pictures of files
+  /// are summed when all are there, an element over all of them at a time instead of picture by
+  /// picture (kept_sums.h). Whatever else is kept of them, so that their numbers do not depend on
+  /// it.
   void end_drawing();
   std::uint64_t drawn() const { return running_.count; }
   /// Moments of an earlier run: nothing is drawn, and every prefix is the whole.
@@ -137,13 +122,18 @@ class Pool {
   std::uint64_t primaries_;
   std::uint64_t block_size_;
   std::size_t channels_;
+  /// Pictures of files, which stay and are summed when all are there.
+  bool sums_later_;
   std::vector<ChannelPlan> plan_;
-  bool sums_later() const;
   Summary no_sums() const;
+  const KeptObservations& all_kept() const { return known_ ? *known_ : *kept_; }
+  std::shared_ptr<const Summary> sums_of_first(std::uint64_t count, const Summary& drawn);
+  void take_details(Summary& summary) const;
+  void keep_values();
   std::span<const double> observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
                                   Block& block) const;
-  std::span<const double> keep_picture(Estimator& estimator, std::uint64_t index,
-                                       std::span<double> out, Block& block) const;
+  void keep_picture(Estimator& estimator, std::uint64_t index, Block& block) const;
+  void keep_block(const Summary& block, std::uint64_t first);
 
   std::map<std::uint64_t, std::shared_ptr<const Summary>> prefixes_;
   std::uint64_t requested_ = 0;
@@ -152,9 +142,9 @@ class Pool {
   std::vector<std::size_t> grouped_channels_;
   std::shared_ptr<KeptObservations> kept_ = std::make_shared<KeptObservations>();
   std::shared_ptr<const KeptObservations> known_;
-  std::uint64_t kept_observations_ = 0;
+  std::uint64_t kept_observations_;
+  std::uint64_t values_taken_ = 0;  ///< of kept observations, for `values_`
   bool keeps_blocks_ = false;
-  bool sums_later_ = false;
   std::vector<BlockSums> blocks_;
   bool started_ = false;
   std::string trouble_;

@@ -98,7 +98,6 @@ void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& dr
   for (const auto& pool : pools) total += work(*pool, pool->requested() - pool->drawn());
   progress.begin(drawing.phase, total);
 
-  for (const auto& pool : pools) pool->begin_drawing();
   TaskList tasks(pools);
   Workers workers(pools);
   std::uint64_t done = 0;
