@@ -11,8 +11,8 @@ namespace {
 
 // Of each number of a picture: as it is kept, and of each element besides: moments of pilot, test
 // and of what is under way, weights and maps. Measured (README.md).
-constexpr double bytes_of_number = 8;
-constexpr double bytes_of_element = 450;
+constexpr double bytes_of_number = 4;
+constexpr double bytes_of_element = 225;
 constexpr double gigabyte = 1e9;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();

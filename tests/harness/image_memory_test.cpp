@@ -41,7 +41,7 @@ class ImageMemory : public ::testing::Test {
 
 // Of the pictures of `a` alone: a reference has none to keep, and the other is no image.
 TEST_F(ImageMemory, IsThatOfEveryNumberAndMore) {
-  EXPECT_GT(picture_bytes(estimators_), 8 * pictures * elements);
+  EXPECT_GT(picture_bytes(estimators_), 4 * pictures * elements);
   EXPECT_LT(picture_bytes(estimators_), 100 * pictures * elements);
 }
 

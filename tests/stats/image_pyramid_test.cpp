@@ -331,6 +331,18 @@ TEST(ImagePyramid, EveryElementIsInOneAlignedWindowOfEveryLevel) {
   }
 }
 
+TEST(ImagePyramid, GivesTheZOfEveryElement) {
+  Philox random(843);
+  const OwnedStack a = normal_stack(random, 16);
+  const OwnedStack b = normal_stack(random, 18);
+  std::vector<double> expected(small.elements());
+  std::vector<double> z(small.elements());
+  welch_z(a.view(), b.view(), 0, expected);
+  const ImageFamily family = image_pyramid(a.view(), b.view(), {.z = z});
+  EXPECT_EQ(z, expected);
+  EXPECT_EQ(family.log_p, image_pyramid(a.view(), b.view()).log_p);
+}
+
 TEST(ImagePyramid, BadArgumentsAreRefused) {
   std::vector<double> z(small.elements());
   EXPECT_THROW(image_pyramid({{13, 10, 1}, z}), std::domain_error);
@@ -344,6 +356,7 @@ TEST(ImagePyramid, BadArgumentsAreRefused) {
   EXPECT_THROW(image_pyramid(a.view(), a.view(), {.energy_log_p = 0.1}), std::domain_error);
   std::vector<double> weights(small.elements() - 1, 1);
   EXPECT_THROW(image_pyramid(a.view(), a.view(), {.weights = weights}), std::domain_error);
+  EXPECT_THROW(image_pyramid(a.view(), a.view(), {.z = weights}), std::domain_error);
   weights.push_back(-1);
   EXPECT_THROW(image_pyramid(a.view(), a.view(), {.weights = weights}), std::domain_error);
 }
