@@ -44,7 +44,11 @@ stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
                                   LobeDensity density) {
   const DomainChart chart = chart_by(sampler.domain(), marginal);
   const Panels panels = affordable(sampler.panels());
-  const auto value = [chart, density](double first, double second) {
+  const auto value = [chart, density, firsts = RememberedCoordinates(chart.coordinate),
+                      seconds = RememberedCoordinates(chart.coordinate)](double x,
+                                                                         double y) mutable {
+    const Coordinate& first = firsts(x);
+    const Coordinate& second = seconds(y);
     return density(chart.point(first, second)) * chart.jacobian(first, second);
   };
   return {.x = chart.first,
