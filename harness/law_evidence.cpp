@@ -10,6 +10,7 @@
 #include "harness/sampler_setup.h"
 #include "stats/anderson_darling.h"
 #include "stats/binomial.h"
+#include "stats/sorted.h"
 #include "stats/two_part_ks.h"
 #include "stats/two_valued.h"
 
@@ -196,7 +197,7 @@ Points points_of(const Question& question, std::size_t subject, std::size_t chan
     points.of_a_sampler = true;
     std::erase(points.sorted, no_point(draws->marginals()[side.channels[channel]]));
   }
-  std::sort(points.sorted.begin(), points.sorted.end());
+  points.sorted = stats::sorted(std::move(points.sorted));
   return points;
 }
 
