@@ -34,6 +34,19 @@ Counters counters_from(std::uint64_t first) {
   return c;
 }
 
+/// Draws `first` on of one observation's substream 0.
+Counters draws_from(std::uint64_t observation, std::uint32_t first) {
+  Counters c;
+  for (std::size_t r = 0; r < registers; ++r) {
+    const long long draw = first + static_cast<long long>(lanes * r);
+    c.x0[r] = _mm_set_epi64x(draw + 1, draw);
+    c.x1[r] = _mm_setzero_si128();
+    c.x2[r] = everywhere(static_cast<std::uint32_t>(observation));
+    c.x3[r] = everywhere(static_cast<std::uint32_t>(observation >> 32));
+  }
+  return c;
+}
+
 void philox_of_all(Counters& c, PhiloxKey key) {
   const __m128i even = everywhere(0xD2511F53);
   const __m128i odd = everywhere(0xCD9E8D57);
@@ -62,15 +75,17 @@ std::array<std::uint64_t, lanes> joined(__m128i low, __m128i high) {
   return words;
 }
 
+PhiloxKey halves_of(StreamKey key) {
+  return {static_cast<std::uint32_t>(key.bits), static_cast<std::uint32_t>(key.bits >> 32)};
+}
+
 }  // namespace
 
 void first_words(StreamKey key, std::uint64_t first, std::span<FirstWords> words) {
-  const PhiloxKey halves{static_cast<std::uint32_t>(key.bits),
-                         static_cast<std::uint32_t>(key.bits >> 32)};
   std::size_t done = 0;
   for (; done + together <= words.size(); done += together) {
     Counters c = counters_from(first + done);
-    philox_of_all(c, halves);
+    philox_of_all(c, halves_of(key));
     for (std::size_t r = 0; r < registers; ++r) {
       const auto one = joined(c.x0[r], c.x1[r]);
       const auto two = joined(c.x2[r], c.x3[r]);
@@ -84,6 +99,23 @@ void first_words(StreamKey key, std::uint64_t first, std::span<FirstWords> words
     const std::uint64_t one = stream();
     words[done] = {one, stream()};
   }
+}
+
+void LongStream::refill() {
+  for (std::size_t done = 0; done < words_.size(); done += 2 * together) {
+    Counters c = draws_from(observation_, draw_);
+    philox_of_all(c, halves_of(key_));
+    for (std::size_t r = 0; r < registers; ++r) {
+      const auto one = joined(c.x0[r], c.x1[r]);
+      const auto two = joined(c.x2[r], c.x3[r]);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        words_[done + 2 * (lanes * r + lane)] = one[lane];
+        words_[done + 2 * (lanes * r + lane) + 1] = two[lane];
+      }
+    }
+    draw_ += together;
+  }
+  next_ = 0;
 }
 
 }  // namespace assay

@@ -9,8 +9,14 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Point direction(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+Coordinate number(double value) { return {.value = value}; }
+
+Coordinate angle(double value) {
+  return {.value = value, .cosine = std::cos(value), .sine = std::sin(value)};
+}
+
+Point direction(const Coordinate& theta, const Coordinate& phi) {
+  return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
 }
 
 template <Domain D>
@@ -23,19 +29,21 @@ template <Domain D>
 DomainChart of_directions(double highest_theta) {
   return {.first = {0, highest_theta},
           .second = {0, 2 * pi},
+          .coordinate = angle,
           .point = direction,
-          .jacobian = [](double theta, double) { return std::sin(theta); },
+          .jacobian = [](const Coordinate& theta, const Coordinate&) { return theta.sine; },
           .coordinates = angles<D>};
 }
 
 DomainChart of_square() {
   return {.first = {0, 1},
           .second = {0, 1},
+          .coordinate = number,
           .point =
-              [](double u, double v) {
-                return Point{u, v, 0};
+              [](const Coordinate& u, const Coordinate& v) {
+                return Point{u.value, v.value, 0};
               },
-          .jacobian = [](double, double) { return 1.0; },
+          .jacobian = [](const Coordinate&, const Coordinate&) { return 1.0; },
           .coordinates =
               [](const Point& p) {
                 return std::array{p[0], p[1]};
@@ -52,11 +60,12 @@ double share_of_rest(double v, double u) {
 DomainChart of_triangle() {
   return {.first = {0, 1},
           .second = {0, 1},
+          .coordinate = number,
           .point =
-              [](double u, double share) {
-                return Point{u, share * (1 - u), 0};
+              [](const Coordinate& u, const Coordinate& share) {
+                return Point{u.value, share.value * (1 - u.value), 0};
               },
-          .jacobian = [](double u, double) { return 1 - u; },
+          .jacobian = [](const Coordinate& u, const Coordinate&) { return 1 - u.value; },
           .coordinates =
               [](const Point& p) {
                 return std::array{p[0], share_of_rest(p[1], p[0])};
@@ -66,17 +75,23 @@ DomainChart of_triangle() {
 DomainChart turned(DomainChart chart, Domain domain) {
   std::swap(chart.first, chart.second);
   if (domain == Domain::triangle) {
-    chart.point = [](double v, double share) { return Point{share * (1 - v), v, 0}; };
+    chart.point = [](const Coordinate& v, const Coordinate& share) {
+      return Point{share.value * (1 - v.value), v.value, 0};
+    };
     chart.coordinates = [](const Point& p) { return std::array{p[1], share_of_rest(p[0], p[1])}; };
     return chart;  // the same element of area: 1 - v
   }
   if (domain == Domain::square) {
-    chart.point = [](double v, double u) { return Point{u, v, 0}; };
+    chart.point = [](const Coordinate& v, const Coordinate& u) {
+      return Point{u.value, v.value, 0};
+    };
     chart.coordinates = [](const Point& p) { return std::array{p[1], p[0]}; };
     return chart;
   }
-  chart.point = [](double phi, double theta) { return direction(theta, phi); };
-  chart.jacobian = [](double, double theta) { return std::sin(theta); };
+  chart.point = [](const Coordinate& phi, const Coordinate& theta) {
+    return direction(theta, phi);
+  };
+  chart.jacobian = [](const Coordinate&, const Coordinate& theta) { return theta.sine; };
   chart.coordinates = [](const Point& p) {
     const auto [theta, phi] = angles<Domain::sphere>(p);
     return std::array{phi, theta};

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "stats/quantile_test.h"
+#include "stats/sorted.h"
 
 namespace assay::harness {
 namespace {
@@ -11,8 +13,7 @@ namespace {
 std::vector<double> sorted(std::span<const double> values, double factor) {
   std::vector<double> copy(values.begin(), values.end());
   for (double& value : copy) value *= factor;
-  std::sort(copy.begin(), copy.end());
-  return copy;
+  return stats::sorted(std::move(copy));
 }
 
 /// The sample quantile: where the counts on both sides agree with the probability.

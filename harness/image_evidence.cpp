@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimators/first_words.h"
 #include "harness/inversion.h"
 #include "stats/errors.h"
 #include "stats/image_equivalence.h"
@@ -20,7 +21,8 @@ namespace {
 // This share of the level goes to elements that never varied.
 constexpr double unseen_share = 0.02;
 // Sign vectors are enumerated for so few replicates, some milliseconds' work; for more of them a
-// random choice is looked at, and never of more vectors or longer ones: some seconds' work.
+// random choice is looked at, and never of more vectors or longer ones: a quarter of a second's
+// work.
 constexpr std::size_t most_enumerated = 18;
 constexpr double most_flips = 0x1p19;
 constexpr std::size_t most_flipped = 64;
@@ -91,7 +93,8 @@ std::optional<double> flipped_energy(const VaryingPart<Real>& varying, const Ima
   if (matrix.replicates() <= most_enumerated) return stats::sign_flip(matrix, share).log_p;
   const double flips = std::ceil(4 / share);
   if (flips > most_flips) return std::nullopt;
-  Stream random(stream_key(test.flips.bits, "sign flips", "", 0), varying.first().images.size());
+  LongStream random(stream_key(test.flips.bits, "sign flips", "", 0),
+                    varying.first().images.size());
   return stats::sign_flip(matrix, {share, static_cast<std::uint64_t>(flips)}, random).log_p;
 }
 

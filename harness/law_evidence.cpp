@@ -10,6 +10,7 @@
 #include "harness/sampler_setup.h"
 #include "stats/anderson_darling.h"
 #include "stats/binomial.h"
+#include "stats/sorted.h"
 #include "stats/two_part_ks.h"
 #include "stats/two_valued.h"
 
@@ -131,6 +132,18 @@ Evidence from_proportions(const Points& x, const Points& y) {
   return {.estimate = std::abs(share(x) - share(y)), .at = at, .interval = interval};
 }
 
+// What rounding may be off in the logarithm of a p-value, and more.
+constexpr double rounding = 1e-6;
+
+/// Whether an interval at this confidence may begin above theta, or end beyond it: tests at theta,
+/// of which an exact interval of two proportions takes some hundred.
+bool may_begin_above(double theta, const Evidence& evidence, double confidence) {
+  return evidence.at(theta).log_p_upper <= std::log(1 - confidence) + rounding;
+}
+bool may_end_beyond(double theta, const Evidence& evidence, double confidence) {
+  return evidence.at(theta).log_p_lower >= std::log((1 - confidence) / 2) - rounding;
+}
+
 /// theta = the larger of the two. "At most" is rejected where either part rejects it at half the
 /// level (Bonferroni), "at least" where both do (intersection of unions).
 Evidence larger_of(const Evidence& points, const Evidence& missing) {
@@ -144,9 +157,14 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
   };
   const auto interval = [points, missing](double confidence) -> Interval {
     const double halved = 1 - (1 - confidence) / 2;
-    return {std::max(points.interval(halved).low, missing.interval(halved).low),
-            std::max(points.interval(confidence).high, missing.interval(confidence).high),
-            confidence};
+    Interval both{points.interval(halved).low, points.interval(confidence).high, confidence};
+    if (may_begin_above(both.low, missing, halved)) {
+      both.low = std::max(both.low, missing.interval(halved).low);
+    }
+    if (may_end_beyond(both.high, missing, confidence)) {
+      both.high = std::max(both.high, missing.interval(confidence).high);
+    }
+    return both;
   };
   return {.estimate = std::max(points.estimate, missing.estimate),
           .at = at,
@@ -196,7 +214,7 @@ Points points_of(const Question& question, std::size_t subject, std::size_t chan
     points.of_a_sampler = true;
     std::erase(points.sorted, no_point(draws->marginals()[side.channels[channel]]));
   }
-  std::sort(points.sorted.begin(), points.sorted.end());
+  points.sorted = stats::sorted(std::move(points.sorted));
   return points;
 }
 

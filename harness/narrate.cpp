@@ -56,19 +56,21 @@ double farther(double x, double y, const Evidence& evidence) {
 
 /// The largest effect in the claim's forbidden direction that the interval holds.
 double excluded_beyond(const ChannelOutcome& channel) {
-  const stats::Interval interval = channel.evidence.interval(channel.effect.confidence);
+  // An end that is no number lies at infinity.
+  const double low = channel.effect.low.value_or(-HUGE_VAL);
+  const double high = channel.effect.high.value_or(HUGE_VAL);
   switch (channel.regions.relation) {
     case Relation::at_most:
     case Relation::less:
-      return interval.high;
+      return high;
     case Relation::at_least:
     case Relation::greater:
-      return interval.low;
+      return low;
     case Relation::equal:
     case Relation::within:
       break;
   }
-  return farther(interval.low, interval.high, channel.evidence);
+  return farther(low, high, channel.evidence);
 }
 
 /// The place of a channel among the references; nullopt but for a mean against a number.

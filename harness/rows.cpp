@@ -15,6 +15,7 @@
 #include "stats/independence_gates.h"
 #include "stats/quantisation_gate.h"
 #include "stats/repeated_run.h"
+#include "stats/sorted.h"
 #include "stats/unpiloted_gates.h"
 
 namespace assay::harness {
@@ -199,8 +200,8 @@ std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelD
   if (question.kind == QuestionKind::fit_to_law || question.kind == QuestionKind::fit_to_density) {
     const bool by_points = method == "ks" || method == "anderson-darling";
     if (!by_points || data[0].values.size() < 2) return gates;
-    std::vector<double> sorted(data[0].values.begin(), data[0].values.end());
-    std::sort(sorted.begin(), sorted.end());
+    const std::vector<double> sorted =
+        stats::sorted({data[0].values.begin(), data[0].values.end()});
     gates.push_back(stats::quantisation_gate(sorted, outcome.share().alpha));
   }
   if (!question.of_means() || is_exact(outcome.plan.method)) return gates;

@@ -44,7 +44,11 @@ stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
                                   LobeDensity density) {
   const DomainChart chart = chart_by(sampler.domain(), marginal);
   const Panels panels = affordable(sampler.panels());
-  const auto value = [chart, density](double first, double second) {
+  const auto value = [chart, density, firsts = RememberedCoordinates(chart.coordinate),
+                      seconds = RememberedCoordinates(chart.coordinate)](double x,
+                                                                         double y) mutable {
+    const Coordinate& first = firsts(x);
+    const Coordinate& second = seconds(y);
     return density(chart.point(first, second)) * chart.jacobian(first, second);
   };
   return {.x = chart.first,
@@ -90,11 +94,10 @@ stats::TabulatedLaw law_on_interval(const Sampler& sampler) {
   stats::AdaptiveQuadrature rule(table_limits);
   const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
   const auto parts = stats::cut(range, range, std::max(sampler.panels().first, least_parts));
-  return stats::tabulate(
-      [&](double x) {
-        return rule.counted(sampler.density({x, 0, 0}));
-      },
-      parts, rule);
+  return stats::tabulate(rule.of([&](double x) {
+    return sampler.density({x, 0, 0});
+  }),
+                         parts, rule);
 }
 
 stats::TabulatedLaw law_of(const Sampler& sampler, std::size_t marginal) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <limits>
 
 #include "stats/check.h"
 
@@ -14,58 +15,69 @@ using Rule = boost::math::quadrature::gauss<double, AdaptiveQuadrature::nodes>;
 // So near to the end of a part that a border of panels lies outside, rounding included.
 constexpr double nudge = 1e-9;
 constexpr double blind_share = AdaptiveQuadrature::blind_share;
+constexpr std::size_t low_end = AdaptiveQuadrature::nodes;
+constexpr std::size_t high_end = low_end + 1;
 
-struct Nodes {
-  Integral sum;
-  std::array<double, AdaptiveQuadrature::nodes> parts = {};
-  std::size_t count = 0;
-  bool some_zero = false;
-  bool some_positive = false;
-
-  void add(Integral value, double weight) {
-    parts[count++] = weight * value.value;
-    sum = sum + Integral{weight * value.value, weight * value.error};
-    (value.value > 0 ? some_positive : some_zero) = true;
-  }
-};
-
-Nodes at_nodes(const AdaptiveQuadrature::Function& function, Span span) {
+AdaptiveQuadrature::Places places_in(Span span) {
+  AdaptiveQuadrature::Places places;
   const double half = span.width() / 2;
-  const auto& places = Rule::abscissa();  // of the upper half, 0 first
-  const auto& weights = Rule::weights();
-  Nodes nodes;
-  nodes.add(function(span.middle()), half * weights[0]);
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    nodes.add(function(span.middle() - half * places[i]), half * weights[i]);
-    nodes.add(function(span.middle() + half * places[i]), half * weights[i]);
-  }
-  return nodes;
+  std::transform(AdaptiveQuadrature::node_places().begin(), AdaptiveQuadrature::node_places().end(),
+                 places.begin(), [&](double node) { return span.middle() + half * node; });
+  places[low_end] = span.low + nudge * span.width();
+  places[high_end] = span.high - nudge * span.width();
+  return places;
+}
+
+// Of the nodes, in the order of node_places().
+const std::array<double, AdaptiveQuadrature::nodes>& node_weights() {
+  static const std::array<double, AdaptiveQuadrature::nodes> weights = [] {
+    std::array<double, AdaptiveQuadrature::nodes> all{Rule::weights()[0]};
+    for (std::size_t i = 1; i < Rule::weights().size(); ++i) {
+      all[2 * i - 1] = all[2 * i] = Rule::weights()[i];
+    }
+    return all;
+  }();
+  return weights;
 }
 
 // Mass that a border of the support may hide beyond the outermost nodes, from the densities at the
 // part's ends.
-double hidden(Span span, const Nodes& nodes, double low, double high) {
-  if (nodes.some_zero && nodes.some_positive) return 0;  // the border is seen
-  if (nodes.some_zero) return blind_share * span.width() * (low + high);
-  return blind_share * nodes.sum.value * ((low > 0 ? 0 : 1) + (high > 0 ? 0 : 1));
+double hidden(Span span, double sum, const AdaptiveQuadrature::Values& at) {
+  const auto positive = std::count_if(at.begin(), at.begin() + AdaptiveQuadrature::nodes,
+                                      [](const Integral& each) { return each.value > 0; });
+  const double low = at[low_end].value;
+  const double high = at[high_end].value;
+  if (positive == 0) return blind_share * span.width() * (low + high);
+  if (positive < AdaptiveQuadrature::nodes) return 0;  // the border is seen
+  return blind_share * sum * ((low > 0 ? 0 : 1) + (high > 0 ? 0 : 1));
 }
 
 }  // namespace
 
-Integral AdaptiveQuadrature::counted(double density) {
-  check::non_negative({"AdaptiveQuadrature", "density"}, density);
-  ++used_;
-  largest_ = std::max(largest_, density);
-  return {density, 0};
+AdaptiveQuadrature::Values AdaptiveQuadrature::counted(const Places& densities) {
+  Values values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double density = densities[i];
+    if (!(density >= 0 && density <= std::numeric_limits<double>::max())) {
+      check::non_negative({"AdaptiveQuadrature", "density"}, density);
+    }
+    largest_ = std::max(largest_, density);
+    values[i] = {density, 0};
+  }
+  used_ += values.size();
+  return values;
 }
 
 AdaptiveQuadrature::Sampled AdaptiveQuadrature::sampled(const Function& function, Span span) {
-  const Nodes found = at_nodes(function, span);
-  const double low = function(span.low + nudge * span.width()).value;
-  const double high = function(span.high - nudge * span.width()).value;
-  return {{found.sum.value, found.sum.error + hidden(span, found, low, high)},
-          found.parts,
-          {low, high}};
+  const Values at = function(places_in(span));
+  Sampled found{.ends = {at[low_end].value, at[high_end].value}};
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const double weight = span.width() / 2 * node_weights()[i];
+    found.parts[i] = weight * at[i].value;
+    found.integral = found.integral + Integral{found.parts[i], weight * at[i].error};
+  }
+  found.integral.error += hidden(span, found.integral.value, at);
+  return found;
 }
 
 Integral AdaptiveQuadrature::once(const Function& function, Span span) {

@@ -40,8 +40,12 @@ struct QuadratureLimits {
 // negative or non-finite value throws std::domain_error.
 class AdaptiveQuadrature {
  public:
-  using Function = std::function<Integral(double)>;
   static constexpr std::size_t nodes = 7;
+  // Where a part is looked at: at the nodes, in the order of node_places(), and just inside its
+  // ends.
+  using Places = std::array<double, nodes + 2>;
+  using Values = std::array<Integral, nodes + 2>;
+  using Function = std::function<Values(const Places&)>;
 
   explicit AdaptiveQuadrature(QuadratureLimits limits) : limits_(limits) {}
 
@@ -61,13 +65,21 @@ class AdaptiveQuadrature {
   Sampled sampled(const Function& function, Span span);
   // The nodes in [-1, 1].
   static const std::array<double, nodes>& node_places();
-  // Values of a density count against the limit; throws as above.
-  Integral counted(double density);
+  // A density as such a function. Its values count against the limit; it throws as above.
+  template <class Density>
+  Function of(Density density) {
+    return [this, density](const Places& at) {
+      Places densities;
+      for (std::size_t i = 0; i < at.size(); ++i) densities[i] = density(at[i]);
+      return counted(densities);
+    };
+  }
   bool exhausted() const { return used_ >= limits_.evaluations; }
   const QuadratureLimits& limits() const { return limits_; }
   double largest() const { return largest_; }  // of the densities counted
 
  private:
+  Values counted(const Places& densities);
   Integral refined(const Function& function, Span span, Integral whole, int depth);
 
   QuadratureLimits limits_;

@@ -61,6 +61,14 @@ double log_lower(BetaPoint point, BetaShape shape) {
   return p > boost_minimum ? std::log(p) : log_by_fraction(point, shape);
 }
 
+void check_binomial(std::uint64_t successes, Trials trials) {
+  check::at_least({"binomial_tails", "trials"}, trials.trials, 1);
+  check::unit({"binomial_tails", "probability"}, trials.probability);
+  if (successes > trials.trials) {
+    check::fail({"binomial_tails", "successes"}, successes, "at most trials");
+  }
+}
+
 LogTails halved(LogTails tails) {
   return {tails.lower - std::numbers::ln2, tails.upper - std::numbers::ln2};
 }
@@ -133,17 +141,22 @@ LogTails student_t_tails(double t, double degrees) {
   return t >= 0 ? special::from_upper(outer) : special::from_lower(outer);
 }
 
-LogTails binomial_tails(std::uint64_t successes, Trials trials) {
-  const auto [n, p] = trials;
-  check::at_least({"binomial_tails", "trials"}, n, 1);
-  check::unit({"binomial_tails", "probability"}, p);
-  if (successes > n) check::fail({"binomial_tails", "successes"}, successes, "at most trials");
+double binomial_lower(std::uint64_t successes, Trials trials) {
+  check_binomial(successes, trials);
+  if (successes == trials.trials) return 0;
   const double k = static_cast<double>(successes);
-  const double size = static_cast<double>(n);
-  LogTails tails;
-  if (successes < n) tails.lower = beta_tails(p, {k + 1, size - k}).upper;
-  if (successes > 0) tails.upper = beta_tails(p, {k, size - k + 1}).lower;
-  return tails;
+  return beta_tails(trials.probability, {k + 1, static_cast<double>(trials.trials) - k}).upper;
+}
+
+double binomial_upper(std::uint64_t successes, Trials trials) {
+  check_binomial(successes, trials);
+  if (successes == 0) return 0;
+  const double k = static_cast<double>(successes);
+  return beta_tails(trials.probability, {k, static_cast<double>(trials.trials) - k + 1}).lower;
+}
+
+LogTails binomial_tails(std::uint64_t successes, Trials trials) {
+  return {binomial_lower(successes, trials), binomial_upper(successes, trials)};
 }
 
 }  // namespace assay::stats

@@ -46,7 +46,7 @@ double log_mean_bound(const UnitSample& x, double m) {
   if (x.mean >= m) return 0;
   // Any whole number at or above n mean bounds the tail at n mean.
   const auto hits = static_cast<std::uint64_t>(std::min(x.n, std::ceil(x.n * x.mean)));
-  const double bentkus = 1 + binomial_tails(hits, {static_cast<std::uint64_t>(x.n), m}).lower;
+  const double bentkus = 1 + binomial_lower(hits, {static_cast<std::uint64_t>(x.n), m});
   return std::min({0.0, -x.n * bernoulli_divergence(x.mean, m), bentkus});
 }
 

@@ -96,7 +96,7 @@ std::uint64_t impossible_observations(const CellCounts& counts) {
 double log_p_impossible(const ChiSquareFit& fit, double tolerance) {
   if (fit.impossible == 0) return 0;
   if (tolerance == 0) return special::lowest_log();
-  return binomial_tails(fit.impossible, {fit.observations, std::min(tolerance, 1.0)}).upper;
+  return binomial_upper(fit.impossible, {fit.observations, std::min(tolerance, 1.0)});
 }
 
 double pearson(const std::vector<PooledCell>& cells) {

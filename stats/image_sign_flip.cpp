@@ -6,6 +6,7 @@
 #include <string>
 
 #include "stats/check.h"
+#include "stats/vector_copies.h"
 
 namespace assay::stats {
 namespace {
@@ -67,6 +68,26 @@ FlipMatrix matrix_of(const ImageStack<Real>& a, const Second& second) {
   return {replicates, std::move(matrix)};
 }
 
+using Energies = std::array<double, FlipMatrix::together>;
+
+ASSAY_VECTOR_COPIES Energies energies_of(const double* matrix, const double* signs,
+                                         std::size_t replicates) {
+  constexpr std::size_t together = FlipMatrix::together;
+  Energies sums{};
+  for (std::size_t r = 0; r < replicates; ++r) {
+    Energies row{};
+    for (std::size_t s = 0; s < r; ++s) {
+      const double value = matrix[r * replicates + s];
+      for (std::size_t k = 0; k < together; ++k) row[k] += signs[s * together + k] * value;
+    }
+    const double diagonal = matrix[r * replicates + r];
+    for (std::size_t k = 0; k < together; ++k) {
+      sums[k] += 2 * signs[r * together + k] * row[k] + diagonal;
+    }
+  }
+  return sums;
+}
+
 void check_replicates(const FlipMatrix& matrix, double share) {
   check::inside_unit({"sign_flip", "share"}, share);
   const double needed = 2 - std::log2(share);
@@ -87,6 +108,11 @@ double FlipMatrix::energy(const std::vector<double>& signs) const {
     sum += 2 * signs[r] * row + values_[r * replicates_ + r];
   }
   return sum;
+}
+
+std::array<double, FlipMatrix::together> FlipMatrix::energies(
+    const std::vector<double>& signs) const {
+  return energies_of(values_.data(), signs.data(), replicates_);
 }
 
 template <class Real>
@@ -128,14 +154,12 @@ SignFlip sign_flip(const FlipMatrix& matrix, double share) {
     check::fail({"sign_flip", "replicates to enumerate"}, replicates,
                 "at most " + std::to_string(most_enumerated) + "; use a generator");
   }
-  const double threshold = detail::flip_threshold(matrix);
   const std::uint64_t vectors = std::uint64_t{1} << (replicates - 1);
-  std::vector<double> signs(replicates, 1);
-  std::uint64_t reached = 1;
-  for (std::uint64_t bits = 1; bits < vectors; ++bits) {
-    for (std::size_t r = 1; r < replicates; ++r) signs[r] = (bits >> (r - 1)) % 2 == 0 ? 1 : -1;
-    reached += matrix.energy(signs) >= threshold;
-  }
+  // The observed signs, all positive, are vector 0 and reach their own energy.
+  const auto sign = [](std::uint64_t before, std::size_t r) {
+    return r == 0 || ((before + 1) >> (r - 1)) % 2 == 0 ? 1.0 : -1.0;
+  };
+  const std::uint64_t reached = 1 + detail::count_reached(matrix, vectors - 1, sign);
   const double log_p = std::log(static_cast<double>(reached)) -
                        static_cast<double>(replicates - 1) * std::numbers::ln2;
   return {matrix.energy(std::vector<double>(replicates, 1)), log_p, vectors - 1,

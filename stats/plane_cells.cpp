@@ -133,12 +133,16 @@ std::size_t PlaneGrid::index(double x, double y) const {
 
 AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, AdaptiveQuadrature& rule) {
   const std::vector<Span> parts = cut(y, density.y, density.y_panels);
-  return [&density, &rule, parts](double x) {
+  const auto at = [&density, &rule, parts](double x) {
+    const auto along = rule.of([&density, x](double y) { return density.value(x, y); });
     Integral sum;
-    for (const Span& part : parts) {
-      sum = sum + rule.over([&](double at) { return rule.counted(density.value(x, at)); }, part);
-    }
+    for (const Span& part : parts) sum = sum + rule.over(along, part);
     return sum;
+  };
+  return [at](const AdaptiveQuadrature::Places& places) {
+    AdaptiveQuadrature::Values values;
+    std::transform(places.begin(), places.end(), values.begin(), at);
+    return values;
   };
 }
 

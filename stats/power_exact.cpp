@@ -42,7 +42,7 @@ std::uint64_t critical_count(std::uint64_t n, double p, double log_level) {
   std::uint64_t rejected = n + 1;
   while (rejected - kept > 1) {
     const std::uint64_t middle = kept + (rejected - kept) / 2;
-    const bool rejects = binomial_tails(middle, {n, p}).upper <= log_level;
+    const bool rejects = binomial_upper(middle, {n, p}) <= log_level;
     (rejects ? rejected : kept) = middle;
   }
   return rejected;
@@ -96,7 +96,7 @@ double binomial_power(const ExactMeanPlan& plan, std::uint64_t n, double effect)
   if (null < 0 || null > 1 || alternative < 0 || alternative > 1) return 1;
   const std::uint64_t critical = critical_count(n, null, up.log_level);
   if (critical > n) return 0;
-  return std::exp(binomial_tails(critical, {n, alternative}).upper);
+  return std::exp(binomial_upper(critical, {n, alternative}));
 }
 
 double bounded_power(const ExactMeanPlan& plan, std::uint64_t n, double effect) {

@@ -17,17 +17,43 @@ struct Studentised {
   double degrees;
 };
 
-// P(reject) at a true effect, null region |theta| <= allow or theta <= allow.
-double power_of(const Studentised& scale, const ErrorRates& rates, EffectPlan effect) {
-  const double critical = student_t_quantile(critical_tail(rates), scale.degrees);
-  const double up = (effect.detect - effect.allow) / scale.standard_error;
-  double power = std::exp(noncentral_t_tails(critical, {scale.degrees, up}).upper);
-  if (rates.two_sided) {
-    const double down = (effect.detect + effect.allow) / scale.standard_error;
-    power += std::exp(noncentral_t_tails(-critical, {scale.degrees, down}).lower);
+// P(reject), null region |theta| <= allow or theta <= allow.
+class Power {
+ public:
+  Power(const Studentised& scale, const ErrorRates& rates)
+      : scale_(scale),
+        rates_(rates),
+        critical_(student_t_quantile(critical_tail(rates), scale.degrees)) {}
+
+  double at(EffectPlan effect) const { return with_far(near(effect), effect); }
+
+  // Whether it is 1 - beta or more. Far from the question the tail on the other side, a fifth of
+  // the work and never above its level alpha / 2, need not be known.
+  bool suffices_at(EffectPlan effect) const {
+    constexpr double rounding = 1e-9;
+    const double power = near(effect);
+    const double wanted = 1 - rates_.beta;
+    if (power >= wanted || power + rates_.alpha / 2 + rounding < wanted) return power >= wanted;
+    return with_far(power, effect) >= wanted;
   }
-  return std::min(power, 1.0);
-}
+
+ private:
+  double near(EffectPlan effect) const {
+    const double up = (effect.detect - effect.allow) / scale_.standard_error;
+    return std::exp(noncentral_t_tails(critical_, {scale_.degrees, up}).upper);
+  }
+  double with_far(double power, EffectPlan effect) const {
+    if (rates_.two_sided) {
+      const double down = (effect.detect + effect.allow) / scale_.standard_error;
+      power += std::exp(noncentral_t_tails(-critical_, {scale_.degrees, down}).lower);
+    }
+    return std::min(power, 1.0);
+  }
+
+  Studentised scale_;
+  ErrorRates rates_;
+  double critical_;
+};
 
 Studentised scale_of(const MeanPlan& plan, double n) {
   const double own = plan.standard_deviation * plan.standard_deviation / n;
@@ -67,9 +93,8 @@ double detectable(const char* function, const Plan& plan, double n) {
   check_plan(function, plan);
   check_size(function, n);
   const Studentised scale = scale_of(plan, n);
-  const auto enough = [&](double effect) {
-    return power_of(scale, plan.rates, {plan.allow, effect}) >= 1 - plan.rates.beta;
-  };
+  const Power power(scale, plan.rates);
+  const auto enough = [&](double effect) { return power.suffices_at({plan.allow, effect}); };
   return planning::smallest_effect(enough, plan.allow, scale.standard_error);
 }
 
@@ -97,7 +122,7 @@ double student_t_power(const MeanPlan& plan, double n, double effect) {
   check_plan("student_t_power", plan);
   check_size("student_t_power", n);
   check::finite({"student_t_power", "effect"}, effect);
-  return power_of(scale_of(plan, n), plan.rates, {plan.allow, effect});
+  return Power(scale_of(plan, n), plan.rates).at({plan.allow, effect});
 }
 
 double student_t_detectable(const MeanPlan& plan, double n) {
@@ -116,7 +141,7 @@ std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double 
   const double guess = plan.standard_deviation * plan.standard_deviation / own;
   if (guess > planning::most_samples) return std::nullopt;
   const auto enough = [&](double n) {
-    return power_of(scale_of(plan, n), plan.rates, {plan.allow, detect}) >= 1 - plan.rates.beta;
+    return Power(scale_of(plan, n), plan.rates).suffices_at({plan.allow, detect});
   };
   return planning::smallest_sample(enough, guess + beyond_normal(plan.rates), 2);
 }
@@ -125,7 +150,7 @@ double welch_power(const TwoMeansPlan& plan, double n_x, double effect) {
   check_plan("welch_power", plan);
   check_size("welch_power", std::min(n_x, n_x * plan.allocation));
   check::finite({"welch_power", "effect"}, effect);
-  return power_of(scale_of(plan, n_x), plan.rates, {plan.allow, effect});
+  return Power(scale_of(plan, n_x), plan.rates).at({plan.allow, effect});
 }
 
 double welch_detectable(const TwoMeansPlan& plan, double n_x) {
@@ -140,7 +165,7 @@ std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double 
   const double guess = normal_sample_size(sd, {plan.allow, detect}, plan.rates);
   if (guess > planning::most_samples) return std::nullopt;
   const auto enough = [&](double n) {
-    return power_of(scale_of(plan, n), plan.rates, {plan.allow, detect}) >= 1 - plan.rates.beta;
+    return Power(scale_of(plan, n), plan.rates).suffices_at({plan.allow, detect});
   };
   const double minimum = std::max(2.0, std::ceil(2 / plan.allocation));
   return planning::smallest_sample(enough, guess, minimum);

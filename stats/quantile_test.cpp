@@ -24,21 +24,13 @@ void check_sorted(const char* function, std::span<const double> sorted) {
   }
 }
 
-double at_least_tail(std::uint64_t count, Trials trials) {
-  return count == 0 ? 0 : binomial_tails(count, trials).upper;
-}
-
-double at_most_tail(std::uint64_t count, Trials trials) {
-  return count == trials.trials ? 0 : binomial_tails(count, trials).lower;
-}
-
 // The smallest k with P(K <= k) > e^log_level: the lower critical count, by bisection.
 std::uint64_t smallest_kept(Trials trials, double log_level) {
   std::uint64_t low = 0;
   std::uint64_t high = trials.trials;
   while (low < high) {
     const std::uint64_t middle = std::midpoint(low, high);
-    if (at_most_tail(middle, trials) > log_level) {
+    if (binomial_lower(middle, trials) > log_level) {
       high = middle;
     } else {
       low = middle + 1;
@@ -107,10 +99,10 @@ class LargestProduct {
 
  private:
   double first(std::size_t i) const {
-    return at_least_tail(lower_.below(splits_[i]), {lower_.values.size(), probability_});
+    return binomial_upper(lower_.below(splits_[i]), {lower_.values.size(), probability_});
   }
   double second(std::size_t i) const {
-    return at_most_tail(upper_.at_most(splits_[i]), {upper_.values.size(), probability_});
+    return binomial_lower(upper_.at_most(splits_[i]), {upper_.values.size(), probability_});
   }
   void search(std::size_t begin, std::size_t end) {
     if (first(begin) + second(end) <= largest_) return;
@@ -157,8 +149,8 @@ TestResult quantile_test(const QuantileCounts& counts, double probability) {
   const double share = static_cast<double>(counts.below + counts.at_most) / 2 / n;
   return {probability - share,
           {"binomial", {n, probability}},
-          at_least_tail(counts.below, trials),
-          at_most_tail(counts.at_most, trials),
+          binomial_upper(counts.below, trials),
+          binomial_lower(counts.at_most, trials),
           Exactness::exact};
 }
 
@@ -234,7 +226,7 @@ std::optional<std::uint64_t> quantile_sample_size(const QuantilePlan& plan) {
     const auto n = static_cast<std::uint64_t>(size);
     const std::uint64_t critical = largest_kept({n, null}, log_level) + 1;
     if (critical > n) return false;
-    return at_least_tail(critical, {n, truth}) >= std::log1p(-plan.rates.beta);
+    return binomial_upper(critical, {n, truth}) >= std::log1p(-plan.rates.beta);
   };
   const double z =
       normal_quantile(planning::critical_tail(plan.rates)) * std::sqrt(null * (1 - null)) +

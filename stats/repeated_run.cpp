@@ -17,8 +17,8 @@ bool same(double x, double y) {
   return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
 }
 
-/// Steele, Lea and Flood's finaliser of SplitMix64.
-std::uint64_t mixed(std::uint64_t x) {
+/// Of Steele, Lea and Flood (2014): every bit of x flips each bit of it with probability near 1/2.
+std::uint64_t splitmix64_finalised(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
   x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
   return x ^ (x >> 31);
@@ -34,7 +34,7 @@ struct Stay {
     return length == other.length && same(value, other.value);
   }
   std::uint64_t hash() const {
-    return mixed(std::bit_cast<std::uint64_t>(value) + 0x9e3779b97f4a7c15 * length);
+    return splitmix64_finalised(std::bit_cast<std::uint64_t>(value) + 0x9e3779b97f4a7c15 * length);
   }
 };
 

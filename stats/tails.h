@@ -49,6 +49,8 @@ LogTails gamma_tails(double x, double shape);  // unit scale
 LogTails f_tails(double f, FDegrees degrees);
 LogTails beta_tails(double x, BetaShape shape);
 LogTails binomial_tails(std::uint64_t successes, Trials trials);  // P(K <= k), P(K >= k)
+double binomial_lower(std::uint64_t successes, Trials trials);    // one alone is half the work
+double binomial_upper(std::uint64_t successes, Trials trials);
 LogTails noncentral_t_tails(double t, Noncentral parameters);
 LogTails noncentral_chi_square_tails(double x, Noncentral parameters);
 

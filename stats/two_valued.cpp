@@ -37,8 +37,8 @@ TwoValued mirrored(const TwoValued& x) {
   return {{-x.range.high, -x.range.low}, {x.high.trials - x.high.successes, x.high.trials}};
 }
 
-LogTails tails_at(Successes observed, double probability) {
-  return binomial_tails(observed.successes, {observed.trials, std::clamp(probability, 0.0, 1.0)});
+Trials trials_at(Successes observed, double probability) {
+  return {observed.trials, std::clamp(probability, 0.0, 1.0)};
 }
 
 // The null line, by the probability q of y: p = start + slope q inside [0, 1] for q in [first,
@@ -69,8 +69,8 @@ struct LogProduct {
   NullLine line;
 
   double operator()(double q) const {
-    const double log_a = tails_at(x, line.start + line.slope * q).lower;
-    const double log_b = tails_at(y, q).upper;
+    const double log_a = binomial_lower(x.successes, trials_at(x, line.start + line.slope * q));
+    const double log_b = binomial_upper(y.successes, trials_at(y, q));
     return std::max(special::lowest_log(), log_a + log_b);
   }
 };

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "stats/two_valued.h"
 #include "tests/philox.h"
 
 namespace assay::harness {
@@ -53,6 +54,25 @@ TEST(LawEvidence, PointsHaveTheWholeLevelWhereNoMassIsMissing) {
   const auto distance = stats::ks_distance(points.sorted, uniform_law(0).law);
   EXPECT_EQ(points_against_law(points, uniform_law(0)).at(0).log_p_upper,
             stats::kolmogorov_smirnov(distance).log_p_upper);
+}
+
+// The masses decide neither end, the upper one, both.
+TEST(LawEvidence, AnIntervalReachesAsFarAsThatOfEitherPart) {
+  tests::Philox random(1);
+  constexpr double confidence = 0.98;
+  constexpr double halved = 1 - (1 - confidence) / 2;
+  const Points whole = uniform_points(3000, 0, random);
+  for (const std::uint64_t missing : {0u, 150u, 1500u}) {
+    const Points points = uniform_points(3000, missing, random);
+    const auto distance = stats::ks_distance(points.sorted, whole.sorted);
+    const stats::TwoValued one{.range = {0, 1}, .high = {.successes = missing, .trials = 3000}};
+    const stats::TwoValued other{.range = {0, 1}, .high = {.successes = 0, .trials = 3000}};
+    const auto low = stats::two_valued_difference_interval(one, other, halved).low;
+    const auto high = stats::two_valued_difference_interval(one, other, confidence).high;
+    const stats::Interval found = points_against_points(points, whole).interval(confidence);
+    EXPECT_EQ(found.low, std::max(stats::ks_interval(distance, halved).low, low)) << missing;
+    EXPECT_EQ(found.high, std::max(stats::ks_interval(distance, confidence).high, high)) << missing;
+  }
 }
 
 // Of a table that is off by e the distance counts e less against the claim, e more for it.

@@ -34,6 +34,22 @@ FlipMatrix null_matrix(Philox& random, std::size_t replicates = 16) {
   return flip_matrix(a.view(), correlated_stack(random, replicates).view());
 }
 
+TEST(ImageSignFlip, EnergiesSideBySideAreThoseOfEachVectorAlone) {
+  constexpr std::size_t replicates = 17;
+  Philox random(852);
+  const FlipMatrix matrix = null_matrix(random, replicates);
+  std::vector<double> signs(replicates * FlipMatrix::together);
+  for (double& sign : signs) sign = random.uniform() < 0.5 ? -1 : 1;
+  const auto energies = matrix.energies(signs);
+  for (std::size_t k = 0; k < FlipMatrix::together; ++k) {
+    std::vector<double> alone;
+    for (std::size_t r = 0; r < replicates; ++r) {
+      alone.push_back(signs[r * FlipMatrix::together + k]);
+    }
+    EXPECT_EQ(energies[k], matrix.energy(alone));
+  }
+}
+
 // Both calibrations: false alarm 1e-5.
 TEST(ImageSignFlip, EnumerationKeepsItsLevelOnCorrelatedSkewedImages) {
   const auto calibration = calibrate({850, 400, Shape::at_most_uniform}, [](Philox& random) {
