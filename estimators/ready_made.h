@@ -31,11 +31,12 @@ double average_of(std::span<const float> texels);
 /// The file that holds observation `index` of a set-up alone, or "".
 std::string observation_file(const Setup& setup, std::uint64_t index);
 
-/// The files of a picture of one set-up and of one of another that are the same, bit for bit, as
-/// far as they have been read; nullopt where there are none. Pictures of one value throughout count
-/// for nothing: without noise all are alike, and that is an outcome. Any other two are one render
-/// given twice, even where a part of the picture is without noise.
+/// The files of a picture of one set-up and of one of another that are the same, bit for bit, among
+/// the first `count` of each as far as they have been read; nullopt where there are none. Pictures
+/// of one value throughout count for nothing: without noise all are alike, and that is an outcome.
+/// Any other two are one render given twice, even where a part of the picture is without noise.
 std::optional<std::pair<std::string, std::string>> shared_picture(const Setup& first,
-                                                                  const Setup& second);
+                                                                  const Setup& second,
+                                                                  std::uint64_t count);
 
 }  // namespace assay::recorded

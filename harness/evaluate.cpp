@@ -282,12 +282,22 @@ double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& cha
   return 1 - (two_tails ? 1 : 2) * share.alpha;
 }
 
-reports::Effect effect_at(const Evidence& evidence, double confidence) {
+/// Of a claim with a factor the effect is that against so many times the second side.
+std::string quantity_of(const Evidence& evidence, double factor) {
+  std::string quantity = evidence.quantity;
+  if (factor != 1) {
+    quantity += fmt::format(" {} {:g} times the second",
+                            quantity.starts_with("ratio") ? "to" : "from", factor);
+  }
+  return evidence.ratio ? "ln(" + quantity + ")" : quantity;
+}
+
+reports::Effect effect_at(const Evidence& evidence, double confidence, double factor) {
   const stats::Interval interval = evidence.interval(confidence);
   const auto number = [](double value) {
     return std::isfinite(value) ? reports::Number(value) : reports::Number();
   };
-  return {.quantity = evidence.ratio ? "ln(" + evidence.quantity + ")" : evidence.quantity,
+  return {.quantity = quantity_of(evidence, factor),
           .estimate = number(evidence.estimate),
           .low = number(interval.low),
           .high = number(interval.high),
@@ -299,11 +309,13 @@ reports::Effect effect_at(const Evidence& evidence, double confidence) {
 
 reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const bool refuted = outcome.verdict == Verdict::fail;
-  return effect_at(channel.evidence, deciding_confidence(outcome, channel, refuted));
+  return effect_at(channel.evidence, deciding_confidence(outcome, channel, refuted),
+                   outcome.question.factor);
 }
 
 reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  return effect_at(channel.evidence, deciding_confidence(outcome, channel, true));
+  return effect_at(channel.evidence, deciding_confidence(outcome, channel, true),
+                   outcome.question.factor);
 }
 
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {

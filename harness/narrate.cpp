@@ -102,8 +102,13 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
   if (!channel.regions.has_forbidden()) {
     std::string text = "no evidence against the claim";
     if (channel.detectable) {
-      text += fmt::format("; {} or more would have been found with probability {:g}",
-                          reports::margin_text(*channel.detectable, channel.effect),
+      // The same sum of squares in a few pixels, or of both signs, is seen by other cells: from
+      // other sizes on.
+      const char* how = outcome.question.kind == QuestionKind::image
+                            ? " that is the same all over the image"
+                            : " or more";
+      text += fmt::format("; {}{} would have been found with probability {:g}",
+                          reports::margin_text(*channel.detectable, channel.effect), how,
                           1 - outcome.share().beta);
     }
     return text;

@@ -111,10 +111,10 @@ struct Pair {
                   pair.first.estimator->name, pair.second.estimator->name, why));
 }
 
-void refuse_shared_pictures(const Question& question) {
+void refuse_shared_pictures(const Question& question, std::uint64_t count) {
   for (const Subject& first : question.subjects) {
     for (const Subject& second : std::span(&first + 1, std::to_address(question.subjects.end()))) {
-      if (const auto files = recorded::shared_picture(*first.setup, *second.setup)) {
+      if (const auto files = recorded::shared_picture(*first.setup, *second.setup, count)) {
         refuse(question, {first, second},
                fmt::format("`{}` and `{}` are the same picture", files->first, files->second));
       }
@@ -144,7 +144,7 @@ bool has_rows(const Question& question) {
 void require_independent_sides(const Question& question, const Pilots& pilots,
                                std::uint64_t count) {
   if (question.subjects.size() < 2) return;
-  refuse_shared_pictures(question);
+  refuse_shared_pictures(question, count);
   const std::vector<Rows> all = rows_of(question, pilots, count);
   for (const Rows& one : all) {
     for (const Rows& two : all) {

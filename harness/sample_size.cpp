@@ -229,14 +229,15 @@ double equivalence_power(const Question& question, const TestSize& size,
 }
 
 /// Quantiles, slopes, images and counts of draws have none here; nor has a comparison of numbers
-/// without a spread.
+/// without a spread, or of variances known from two observations, whose kurtosis is 1.
 bool has_power(const Question& question, const PlannedChannel& channel) {
   using enum QuestionKind;
   if (question.kind == quantile || question.kind == slope || question.kind == image ||
       question.of_draws()) {
     return false;
   }
-  return !has_log_spread(question) || channel.kurtosis + channel.other_kurtosis > 2;
+  const bool of_spread = has_log_spread(question) || question.of_variances();
+  return !of_spread || channel.kurtosis + channel.other_kurtosis > 2;
 }
 
 /// Methods of which no formula says what they find: their power is not quoted.

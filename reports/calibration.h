@@ -69,7 +69,7 @@ bool unflagged(const Calibration&, const CalibrationCell&);
 /// Cells of which one or the other holds.
 std::size_t defects(const Calibration&);
 
-/// "no cell errs too often", or how many do.
+/// "no cell of 72 is found to err too often", or how many do.
 std::string verdict_sentence(const Calibration&);
 
 /// Tables of at most 100 columns.

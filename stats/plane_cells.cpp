@@ -134,7 +134,7 @@ std::size_t PlaneGrid::index(double x, double y) const {
 AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, AdaptiveQuadrature& rule) {
   const std::vector<Span> parts = cut(y, density.y, density.y_panels);
   const auto at = [&density, &rule, parts](double x) {
-    const auto along = rule.of([&density, x](double y) { return density.value(x, y); });
+    const auto along = rule.of([&density, x](double v) { return density.value(x, v); });
     Integral sum;
     for (const Span& part : parts) sum = sum + rule.over(along, part);
     return sum;

@@ -71,9 +71,10 @@ class PictureSetup final : public Setup {
   std::string file(std::uint64_t index) const {
     return index < stack_->files.size() ? stack_->files[index] : "";
   }
-  std::optional<std::pair<std::string, std::string>> shared_with(const PictureSetup& other) const {
+  std::optional<std::pair<std::string, std::string>> shared_with(const PictureSetup& other,
+                                                                 std::uint64_t count) const {
     if (seen_ == other.seen_) return {};
-    const auto indices = seen_->shared_with(*other.seen_);
+    const auto indices = seen_->shared_with(*other.seen_, count);
     if (!indices) return {};
     return std::pair(file(indices->first), other.file(indices->second));
   }
@@ -137,10 +138,11 @@ std::string observation_file(const Setup& setup, std::uint64_t index) {
 }
 
 std::optional<std::pair<std::string, std::string>> shared_picture(const Setup& first,
-                                                                  const Setup& second) {
+                                                                  const Setup& second,
+                                                                  std::uint64_t count) {
   const auto* const one = dynamic_cast<const PictureSetup*>(&first);
   const auto* const two = dynamic_cast<const PictureSetup*>(&second);
-  return one == nullptr || two == nullptr ? std::nullopt : one->shared_with(*two);
+  return one == nullptr || two == nullptr ? std::nullopt : one->shared_with(*two, count);
 }
 
 Channel average_channel() { return {.name = "average", .diagnostic = true}; }

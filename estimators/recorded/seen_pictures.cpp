@@ -81,12 +81,13 @@ std::optional<std::uint64_t> SeenPictures::note(std::uint64_t index,
 }
 
 std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::shared_with(
-    const SeenPictures& other) const {
+    const SeenPictures& other, std::uint64_t count) const {
   const std::scoped_lock lock(mutex_, other.mutex_);
   std::optional<std::pair<std::uint64_t, std::uint64_t>> found;
   for (const auto& [digest, index] : other.by_digest_) {
     const auto mine = by_digest_.find(digest);
-    if (mine == by_digest_.end() || (found && found->second < index)) continue;
+    if (mine == by_digest_.end() || mine->second >= count || index >= count) continue;
+    if (found && found->second < index) continue;
     found.emplace(mine->second, index);
   }
   return found;

@@ -19,11 +19,11 @@ class SeenPictures {
   /// an error in itself. Thread-safe.
   std::optional<std::uint64_t> note(std::uint64_t index, std::span<const float> texels);
 
-  /// Indices of a picture here and of one there that had the same digest, the first there; nullopt
-  /// where no two do. Of what was noted so far: pictures of one value throughout, which are all
-  /// alike without noise, count for nothing.
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> shared_with(
-      const SeenPictures& other) const;
+  /// Indices below `count` of a picture here and of one there that had the same digest, the first
+  /// there; nullopt where no two do. Of what was noted so far: pictures of one value throughout,
+  /// which are all alike without noise, count for nothing.
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> shared_with(const SeenPictures& other,
+                                                                     std::uint64_t count) const;
 
  private:
   mutable std::mutex mutex_;

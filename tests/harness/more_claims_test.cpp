@@ -42,6 +42,31 @@ std::string refused(const std::string& test) {
 
 // Verdicts below are right with probability 1 - alpha - beta = 0.9998 at least, with the seed 1.
 
+TEST(MoreClaims, OfAFactorSayWhatTheEffectIsAgainst) {
+  const auto quantity = [](const std::string& claim) {
+    return tested("{claim: '" + claim + "', secondaries: 500}").channels[0].effect.quantity;
+  };
+  EXPECT_EQ(quantity("variance(uniform) < 2 * variance(scaled)"),
+            "ln(ratio of variances to 2 times the second)");
+  EXPECT_EQ(quantity("mean(uniform) == 0.5 * mean(scaled)"),
+            "relative difference of means from 0.5 times the second");
+  EXPECT_EQ(quantity("mean(uniform) == mean(scaled)"), "relative difference of means");
+}
+
+// Their kurtosis is 1 whatever the law: what would have been found is not known, and not asked for.
+TEST(MoreClaims, OfAVarianceFromTwoObservationsSayNothingOfPower) {
+  for (const char* claim :
+       {"variance(n) <= 100", "variance(n) == 1", "variance(n) < variance(w)"}) {
+    const reports::Test test = run_test(std::string("suite: s\nestimators:\n"
+                                                    "  n: {plugin: analytic/normal}\n"
+                                                    "  w: {plugin: analytic/normal, deviation: 9}\n"
+                                                    "tests:\n  - {claim: '") +
+                                        claim + "', secondaries: 2}\n");
+    EXPECT_NE(test.verdict, reports::Verdict::error) << claim;
+    EXPECT_FALSE(test.detectable) << claim;
+  }
+}
+
 TEST(BiasClaim, IsHeldAgainstTheAnalyticMean) {
   EXPECT_EQ(verdict_of("{claim: bias(uniform) == 0, detect: 2%}"), Verdict::pass);
   EXPECT_EQ(verdict_of("{claim: bias(uniform) within 2% of 0}"), Verdict::pass);

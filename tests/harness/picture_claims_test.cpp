@@ -8,6 +8,9 @@
 #include <filesystem>
 #include <vector>
 
+#include "harness/commands.h"
+#include "harness/replay.h"
+#include "reports/json.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
@@ -65,6 +68,8 @@ TEST(PictureClaims, StacksOfOneLawPass) {
   const reports::Test& test = record.suites[0].tests[0];
   EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
   EXPECT_EQ(test.image->replicates, 24u);
+  // A difference of both signs of that root mean square would not.
+  EXPECT_THAT(test.message, HasSubstr("that is the same all over the image would have been found"));
   EXPECT_EQ(test.image->components, (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_FALSE(test.maps.empty());
 }
@@ -73,13 +78,67 @@ TEST(PictureClaims, CopiesOnTheOtherSideAreRefusedWithTheirNames) {
   const Workplace place;
   write_stack(place, {"a", 1});
   write_stack(place, {"b", 2});
-  std::filesystem::copy_file(place.file("a03.exr"), place.file("b24.exr"));
+  std::filesystem::copy_file(place.file("a03.exr"), place.file("b23.exr"),
+                             std::filesystem::copy_options::overwrite_existing);
   for (const char* claim : {"mean(a) == mean(b)", "mean(a.average) == mean(b.average)"}) {
     const std::string why =
         refusal([&] { run_files({place.write("s.yaml", suite_text(stack_b, claim))}); });
     EXPECT_THAT(why, HasSubstr("`a` and `b` are no independent samples: `"));
     EXPECT_THAT(why, HasSubstr("a03.exr` and `"));
-    EXPECT_THAT(why, HasSubstr("b24.exr` are the same picture"));
+    EXPECT_THAT(why, HasSubstr("b23.exr` are the same picture"));
+  }
+}
+
+TEST(PictureClaims, CopiesThatNoTestTakesAreNoMatter) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2, false, 24});
+  std::filesystem::copy_file(place.file("a22.exr"), place.file("b24.exr"));
+  std::string text = suite_text(stack_b, "mean(a) == mean(b)");
+  text.insert(text.size() - 1, "\n    secondaries: 20");
+  EXPECT_EQ(run_files({place.write("s.yaml", text)}).suites[0].tests[0].verdict, Verdict::pass);
+}
+
+// Of what is kept beside them: values for the second claim, costs for the third.
+constexpr const char* three_claims =
+    "mean(a) == mean(b)\n"
+    "  - claim: distribution(a.average) == distribution(b.average)\n"
+    "  - {claim: efficiency(a.average) > 0.001 * efficiency(b.average), cost: samples}";
+
+TEST(PictureClaims, NumbersDoNotDependOnTheOtherClaims) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2});
+  const std::string alone = place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"));
+  const reports::Test expected = run_files({alone}).suites[0].tests[0];
+  const std::string together = place.write("s.yaml", suite_text(stack_b, three_claims));
+  const auto record = run_files({together});
+  ASSERT_EQ(record.suites[0].tests.size(), 3u);
+  const reports::Test& test = record.suites[0].tests[0];
+  EXPECT_EQ(test.channels[0].statistic, expected.channels[0].statistic);
+  ASSERT_EQ(test.samples.size(), expected.samples.size());
+  for (std::size_t i = 0; i < test.samples.size(); ++i) {
+    EXPECT_EQ(test.samples[i].mean, expected.samples[i].mean);
+    EXPECT_EQ(test.samples[i].variance, expected.samples[i].variance);
+  }
+}
+
+// A replay has no pilot that read all of them.
+TEST(PictureClaims, AreReplayedToTheBit) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2});
+  std::string text = suite_text(stack_b, three_claims);
+  text.insert(text.find("mean(b)\n") + 7, "\n    secondaries: 20");
+  const reports::Record record = run_files({place.write("s.yaml", text)});
+  const std::string file = place.write("run.json", reports::json(record));
+  for (const reports::Test& test : record.suites[0].tests) {
+    testing::internal::CaptureStdout();
+    const int code = replay({.record = file, .test = test.id});
+    std::fflush(stdout);
+    const std::string said = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(code, 0) << said;
+    EXPECT_THAT(said, HasSubstr("the same numbers as recorded")) << test.id;
   }
 }
 

@@ -71,7 +71,7 @@ TEST(Calibration, TablesFitAHundredColumns) {
   EXPECT_THAT(text, HasSubstr("alpha 0.001"));
   EXPECT_THAT(text, HasSubstr("1.05\u00a0M"));
   EXPECT_THAT(text, HasSubstr("skewness-corrected-t"));
-  EXPECT_THAT(text, HasSubstr("no cell of 3 errs too often"));
+  EXPECT_THAT(text, HasSubstr("no cell of 3 is found to err too often"));
 }
 
 TEST(Calibration, PagesDrawEveryAlphaAndEscapeText) {
