@@ -79,6 +79,9 @@ class Parser {
   void end(const char* what) {
     const Token token = lexer_.next();
     if (token.is("*")) fail(token.where, "a factor stands before its quantity: `0.5 * mean(b)`");
+    if (token.is(",")) {
+      fail(token.where, fmt::format("{} is over before `,`; decimals stand after a point", what));
+    }
     if (token.kind != Kind::end) {
       fail(token.where, fmt::format("{} is over before {}", what, shown(token)));
     }

@@ -54,6 +54,12 @@ void require_different_data(const Question& question, const Claim& claim) {
       std::count_if(question.subjects.begin(), question.subjects.end(), same) < 2) {
     return;
   }
+  if (question.subjects[0].setup->image()) {
+    throw InputError(claim.left.where,
+                     fmt::format("both sides are the pictures `{}`; give one of them pictures of "
+                                 "seeds of their own",
+                                 first));
+  }
   throw InputError(claim.left.where,
                    fmt::format("both sides are read from `{}`: its rows belong together and are no "
                                "independent samples; record the difference as a column of its own "

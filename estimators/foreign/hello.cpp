@@ -211,7 +211,9 @@ class Reader {
     std::set<std::string_view> names;
     for (const Channel& channel : hello_.channels) {
       if (names.insert(channel.name).second) continue;
-      throw ProtocolError("its hello names `" + channel.name + "` twice");
+      const std::string mend =
+          hello_.image ? "; the elements of an image have their names, leave such channels out" : "";
+      throw ProtocolError("its hello names `" + channel.name + "` twice" + mend);
     }
     if (!hello_.image) return;
     for (std::size_t i = hello_.image->elements(); i < hello_.channels.size(); ++i) {

@@ -119,6 +119,8 @@ TEST(Claim, SaysWhatWasExpectedAndWhere) {
             "1:1: there is no quantity `skewness`; expected one of mean, bias, variance, "
             "total_variance, worst_variance, quantile, efficiency, cost, distribution, "
             "integral, inconsistency");
+  EXPECT_EQ(refused("mean(a) == 0,25"),
+            "1:13: the claim is over before `,`; decimals stand after a point");
   EXPECT_EQ(refused("mean(a) == 1 2"), "1:14: the claim is over before the number `2`");
   EXPECT_EQ(refused("1 == mean(a)"),
             "1:1: a claim begins with a quantity, as in `mean(area) == 0.5`");

@@ -89,6 +89,14 @@ TEST(PictureClaims, CopiesOnTheOtherSideAreRefusedWithTheirNames) {
   }
 }
 
+TEST(PictureClaims, OnBothSidesAreRefusedInTheirWords) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  const std::string same = suite_text("file: 'a*.exr', pixels: independent", "mean(a) == mean(b)");
+  EXPECT_THAT(refusal([&] { run_files({place.write("s.yaml", same)}); }),
+              HasSubstr("a*.exr`; give one of them pictures of seeds of their own"));
+}
+
 TEST(PictureClaims, CopiesThatNoTestTakesAreNoMatter) {
   const Workplace place;
   write_stack(place, {"a", 1});

@@ -107,6 +107,7 @@ TEST(Hello, RefusesLinesThatItDoesNotKnow) {
   EXPECT_THAT(wrong("channel a median 1\n"), HasSubstr("are known"));
   EXPECT_THAT(wrong("channel two.words\n"), HasSubstr("letters, digits"));
   EXPECT_THAT(wrong("channel a\nchannel a\n"), HasSubstr("`a` twice"));
+  EXPECT_THAT(wrong("image 2 2\nchannel x0y0\n"), HasSubstr("leave such channels out"));
   EXPECT_THAT(wrong("channel a\nbias small\n"), HasSubstr("bias is unbiased"));
   EXPECT_THAT(wrong("channel a\naverages 3\n"), HasSubstr("nothing follows"));
 }
