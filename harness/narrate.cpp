@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/recorded_run.h"
 #include "reports/effect.h"
 #include "reports/number.h"
 #include "stats/tails.h"
@@ -241,6 +242,22 @@ std::string told(const TestOutcome& outcome) {
   return least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least);
 }
 
+/// Rows of one side that the other has no partner for: a pair of samples has one size. Of the
+/// moments of a run all are used.
+std::string left_over(const TestOutcome& outcome) {
+  const std::uint64_t used = outcome.secondaries();
+  const auto rows = [](const Subject& subject) { return subject.setup->observations(); };
+  const std::vector<Subject>& all = outcome.question.subjects;
+  if (std::ranges::none_of(all, [&](const Subject& each) { return rows(each) == used; })) return {};
+  std::string text;
+  for (const Subject& each : all) {
+    if (rows(each).value_or(used) <= used || as_recorded_run(*each.setup) != nullptr) continue;
+    text += fmt::format("; of `{}` the first {} of {} are used", each.estimator->name, used,
+                        *rows(each));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string narrate_holm(const HolmFinding& found) {
@@ -252,7 +269,7 @@ std::string narrate_holm(const HolmFinding& found) {
 }
 
 std::string narrate(const TestOutcome& outcome) {
-  return outcome.channels.empty() ? "" : plain(told(outcome));
+  return outcome.channels.empty() ? "" : plain(told(outcome)) + left_over(outcome);
 }
 
 }  // namespace assay::harness

@@ -68,6 +68,7 @@ TEST(PictureClaims, StacksOfOneLawPass) {
   const reports::Test& test = record.suites[0].tests[0];
   EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
   EXPECT_EQ(test.image->replicates, 24u);
+  EXPECT_THAT(test.message, HasSubstr("; of `b` the first 24 of 32 are used"));
   // A difference of both signs of that root mean square would not.
   EXPECT_THAT(test.message, HasSubstr("that is the same all over the image would have been found"));
   EXPECT_EQ(test.image->components, (std::vector<std::string>{"R", "G", "B"}));
