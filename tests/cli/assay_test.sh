@@ -329,7 +329,7 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
   expect 0 calibrate t --law normal --alpha 0.05 --runs 20 --quiet --report html=c.html \
     --report json=c.json --report markdown=c.md
   contains out 'mean == number'
-  contains out 'errs too often'
+  contains out 'err too often'
   xmllint --noout --nonet c.html || fail 'the page is not well-formed'
   contains c.html '<svg'
   /usr/bin/python3 -c 'import json; assert json.load(open("c.json"))["report"] == "calibration"' ||
