@@ -201,7 +201,8 @@ class Parser {
 
   /// The commonest slips: an estimator without its quantity, and the two sides exchanged.
   [[noreturn]] void no_quantity(const Token& name) {
-    for (const char* of_spread : {"stddev", "stdev", "std", "deviation", "standard_deviation", "sd"}) {
+    for (const char* of_spread :
+         {"stddev", "stdev", "std", "deviation", "standard_deviation", "sd"}) {
       if (name.text != of_spread) continue;
       fail(name.where,
            fmt::format("there is no quantity `{}`; square it: `variance(…)`", name.text));

@@ -35,8 +35,7 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
   std::uint64_t usual = averages ? averaging_observations : other_observations;
   if (const auto images = usual_images(*estimator.setup, primaries)) {
     usual = *images;
-    // Those of files are the test's own and are not read twice.
-    pool->keep_observations(estimator.setup->observations().value_or(usual));
+    pool->keep_observations(usual);  // those of files are kept anyway
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
   if (pool->channels() <= kept_channels) {

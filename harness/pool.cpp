@@ -58,11 +58,6 @@ std::size_t channels_of(const Setup& setup) {
   return unknown ? *unknown : setup.channels().size();
 }
 
-/// Whether more is kept of a channel's sums than moments.
-bool has_details(const ChannelPlan& plan) {
-  return plan.histogram_low < plan.histogram_high || plan.cells != 0 || plan.with_cost;
-}
-
 ObservationCost counted(const Cost& cost) {
   return {static_cast<double>(cost.rays()), static_cast<double>(cost.samples)};
 }
@@ -282,9 +277,8 @@ std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Su
 void Pool::take_details(Summary& summary) const {
   std::vector<std::size_t> detailed;
   for (std::size_t c = 0; c < plan_.size(); ++c) {
-    if (has_details(plan_[c])) detailed.push_back(c);
+    if (plan_[c].has_details()) detailed.push_back(c);
   }
-  if (detailed.empty() && grouped_channels_.empty()) return;
   Summary empty(channels_, plan_);
   for (const std::size_t c : detailed) {
     summary.channels[c].rare = std::move(empty.channels[c].rare);
@@ -305,9 +299,10 @@ void Pool::take_details(Summary& summary) const {
 /// Of kept observations the values of channels that are asked for by themselves.
 void Pool::keep_values() {
   const std::uint64_t most = std::min(most_kept(plan_), drawn());
+  if (values_taken_ >= most) return;  // room for a whole picture is not made for nothing
   std::vector<double> out(channels_);
+  values_.resize(channels_);
   for (; values_taken_ < most; ++values_taken_) {
-    values_.resize(channels_);
     const std::span<const double> values = all_kept().whole(values_taken_, out);
     for (std::size_t c = 0; c < plan_.size(); ++c) {
       if (values_taken_ < plan_[c].keep) values_[c].push_back(values[c]);
@@ -318,7 +313,8 @@ void Pool::keep_values() {
 void Pool::end_drawing() {
   if (!sums_later_) return;
   keep_values();
-  const bool plain = grouped_channels_.empty() && std::ranges::none_of(plan_, has_details);
+  const bool plain =
+      grouped_channels_.empty() && std::ranges::none_of(plan_, &ChannelPlan::has_details);
   for (auto& [count, prefix] : prefixes_) {
     if (count > drawn() || count == 0 || !prefix->channels.empty()) continue;
     std::shared_ptr<const Summary> sums = sums_of_first(count, *prefix);

@@ -45,11 +45,11 @@ std::optional<double> pilot_log_spread(const Question& question, std::size_t sub
   const Pilot& pilot = pilots.at(side.estimator->name);
   std::optional<double> most;
   for (const std::size_t channel : side.channels) {
-    const auto spread = planned_log_spread(
-        question,
-        {.values = pilot.moments(channel),
-         .with_cost = pilot.sums->channels[channel].details().with_cost},
-        question.subjects[subject].averaged(plan.primaries[subject]));
+    const auto spread =
+        planned_log_spread(question,
+                           {.values = pilot.moments(channel),
+                            .with_cost = pilot.sums->channels[channel].details().with_cost},
+                           question.subjects[subject].averaged(plan.primaries[subject]));
     if (spread) most = std::max(most.value_or(0), *spread);
   }
   return most;

@@ -21,12 +21,11 @@ void add_details(ChannelDetails& details, double value, const ObservationCost& c
 Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> plan)
     : channels(count_of_channels) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
-    const bool binned = plan[i].histogram_low < plan[i].histogram_high;
-    if (!binned && plan[i].cells == 0 && !plan[i].with_cost) continue;
+    if (!plan[i].has_details()) continue;
     ChannelDetails& details = channels[i].rare.made();
     details.cells.resize(plan[i].cells);
     if (plan[i].with_cost) details.with_cost.resize(counted_costs);
-    if (binned) {
+    if (plan[i].has_histogram()) {
       details.histogram.low = plan[i].histogram_low;
       details.histogram.high = plan[i].histogram_high;
       details.histogram.counts.resize(histogram_bins);

@@ -46,6 +46,10 @@ struct ChannelPlan {
   std::uint64_t keep = 0;  ///< the values of the first `keep` observations are stored
   std::size_t cells = 0;   ///< the channel's values are cell numbers 0 … cells - 1 to be counted
   bool with_cost = false;  ///< keep the joint moments of value and cost
+
+  bool has_histogram() const { return histogram_low < histogram_high; }
+  /// Whether more is kept of the channel's sums than moments.
+  bool has_details() const { return has_histogram() || cells != 0 || with_cost; }
 };
 
 inline constexpr std::size_t histogram_bins = 60;

@@ -22,7 +22,8 @@ std::size_t defects(const Calibration& calibration) {
 
 std::string verdict_sentence(const Calibration& calibration) {
   const std::size_t bad = defects(calibration);
-  if (bad == 0) return fmt::format("no cell of {} is found to err too often", calibration.cells.size());
+  if (bad == 0)
+    return fmt::format("no cell of {} is found to err too often", calibration.cells.size());
   return fmt::format("{} of {} cells err too often", bad, calibration.cells.size());
 }
 

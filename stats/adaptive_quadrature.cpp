@@ -48,7 +48,8 @@ double hidden(Span span, double sum, const AdaptiveQuadrature::Values& at) {
   const double low = at[low_end].value;
   const double high = at[high_end].value;
   if (positive == 0) return blind_share * span.width() * (low + high);
-  if (positive < static_cast<std::ptrdiff_t>(AdaptiveQuadrature::nodes)) return 0;  // the border is seen
+  if (positive < static_cast<std::ptrdiff_t>(AdaptiveQuadrature::nodes))
+    return 0;  // the border is seen
   return blind_share * sum * ((low > 0 ? 0 : 1) + (high > 0 ? 0 : 1));
 }
 

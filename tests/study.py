@@ -130,8 +130,9 @@ def main():
           "verdicts of true claims |\n|---|---|---|---|---|")
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(arguments.workers) as pool):
-        kept = [study(arguments, true_claims(suite, pathlib.Path(folder), arguments.budget, arguments.coarsen), pool)
-                for suite in arguments.suites]
+        copies = [true_claims(suite, pathlib.Path(folder), arguments.budget, arguments.coarsen)
+                  for suite in arguments.suites]
+        kept = [study(arguments, copy, pool) for copy in copies]
     return 0 if all(kept) else 1
 
 

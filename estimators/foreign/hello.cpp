@@ -212,7 +212,8 @@ class Reader {
     for (const Channel& channel : hello_.channels) {
       if (names.insert(channel.name).second) continue;
       const std::string mend =
-          hello_.image ? "; the elements of an image have their names, leave such channels out" : "";
+          hello_.image ? "; the elements of an image have their names, leave such channels out"
+                       : "";
       throw ProtocolError("its hello names `" + channel.name + "` twice" + mend);
     }
     if (!hello_.image) return;

@@ -77,9 +77,9 @@ TEST(RepeatedRun, OfTwoSamplesSaysWhereInEach) {
   EXPECT_FALSE(common_run(uniform_values(1000, 12), uniform_values(1000, 13)));
 }
 
-// Laws of few values, where runs repeat soonest: the header's bound is 0.016 for all samples together;
-// of three equal values a change that matches has probability 1/4 for each before it, and chance is
-// below 1e-13, less for the others.
+// Laws of few values, where runs repeat soonest: the header's bound is 0.016 for all samples
+// together; of three equal values a change that matches has probability 1/4 for each before it, and
+// chance is below 1e-13, less for the others.
 TEST(RepeatedRun, IsNotFoundInIndependentValues) {
   Philox random(14);
   const auto coin = [&] { return std::floor(2 * random.uniform()); };
