@@ -62,31 +62,26 @@ ObservationCost counted(const Cost& cost) {
   return {static_cast<double>(cost.rays()), static_cast<double>(cost.samples)};
 }
 
-// Of so many channels the sums of all do not stay in a cache from one observation to the next.
-constexpr std::size_t many_channels = 4096;
-
-/// Takes the observations of a block into its sums, in order. Of an image those that stay where
-/// they are wait, and then some channels of all of them are taken before the next: each channel's
-/// sums are as if they had been taken one by one.
+/// Takes the observations of a block into its sums, in order. Some wait, and then some channels of
+/// all of them are taken before the next: drawing need not wait for a value to be summed, nor do
+/// the sums of a picture leave the cache at every observation. Each channel's sums are as if its
+/// values had been taken one by one.
 class Intake {
  public:
   explicit Intake(std::vector<ChannelSummary>& channels)
-      : channels_(channels), together_(channels.size() > many_channels) {}
+      : channels_(channels),
+        most_copies_(
+            std::clamp<std::size_t>(at_a_time / std::max<std::size_t>(channels.size(), 1), 1, 32)),
+        copies_(most_copies_ * channels.size()) {}
 
+  /// `stays`: the values stand where they are until the end of the block; others are copied.
   void take(std::span<const double> values, std::uint64_t index, const ObservationCost& cost,
             bool stays) {
-    if (together_ && stays) {
-      waiting_.push_back({values, index, cost});
-      return;
-    }
-    take_waiting();
-    for (std::size_t c = 0; c < values.size(); ++c) {
-      add_observation(channels_[c], values[c], index, cost);
-    }
+    waiting_.push_back({stays ? values : copied(values), index, cost});
+    if (copied_ == most_copies_) take_waiting();
   }
+
   void take_waiting() {
-    if (waiting_.empty()) return;
-    constexpr std::size_t at_a_time = 512;
     for (std::size_t first = 0; first < channels_.size(); first += at_a_time) {
       const std::size_t last = std::min(first + at_a_time, channels_.size());
       for (const Waiting& each : waiting_) {
@@ -96,6 +91,7 @@ class Intake {
       }
     }
     waiting_.clear();
+    copied_ = 0;
   }
 
  private:
@@ -104,8 +100,19 @@ class Intake {
     std::uint64_t index;
     ObservationCost cost;
   };
+
+  static constexpr std::size_t at_a_time = 512;
+
+  std::span<const double> copied(std::span<const double> values) {
+    const auto place = copies_.begin() + static_cast<std::ptrdiff_t>(copied_++ * channels_.size());
+    std::ranges::copy(values, place);
+    return {place, values.size()};
+  }
+
   std::vector<ChannelSummary>& channels_;
-  bool together_;
+  std::size_t most_copies_;
+  std::size_t copied_ = 0;
+  std::vector<double> copies_;
   std::vector<Waiting> waiting_;
 };
 
