@@ -58,11 +58,7 @@ Stream Stream::substream(std::uint32_t index) const {
   if (index == std::numeric_limits<std::uint32_t>::max()) {
     throw std::logic_error("Stream: a substream's index is below 2^32 - 1");
   }
-  Stream split = *this;
-  split.counter_[0] = 0;
-  split.counter_[1] = index + 1;
-  split.next_ = 2;
-  return split;
+  return {key(), observation(), index + 1};
 }
 
 }  // namespace assay

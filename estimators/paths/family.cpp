@@ -97,6 +97,7 @@ class Walks final : public Estimator {
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
                  Cost& cost) override {
     Tally tally;
+    random.draw_ahead();
     for (std::uint64_t i = 0; i < primaries; ++i) trace_(random, tally, cost);
     cost.samples += primaries;
     const double n = static_cast<double>(primaries);

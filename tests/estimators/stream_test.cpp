@@ -40,6 +40,22 @@ double pair_p(const std::function<std::pair<double, double>(std::uint64_t)>& pai
   return equiprobable_p(cells, observations);
 }
 
+// From any place in the stream on, in a substream, and of an observation of many digits.
+TEST(Stream, HasTheSameWordsDrawnAhead) {
+  for (const std::uint64_t observation : {std::uint64_t{64}, std::uint64_t{0x1'2345'6789}}) {
+    const Stream start(key, observation);
+    for (const Stream& stream : {start, start.substream(0x89abcdef)}) {
+      for (int before = 0; before < 20; ++before) {
+        Stream one = stream;
+        Stream ahead = stream;
+        for (int i = 0; i < before; ++i) ASSERT_EQ(ahead(), one());
+        ahead.draw_ahead();
+        for (int i = 0; i < 100; ++i) ASSERT_EQ(ahead(), one());
+      }
+    }
+  }
+}
+
 TEST(Stream, IsPhiloxAsDefined) {
   for (const auto& row : tests::table("philox.csv")) {
     std::array<std::uint32_t, 10> n{};
