@@ -9,10 +9,10 @@
 // the lens is seen there as a disc of radius |1 - z / focus| radius, the disc of confusion.
 
 #include <cmath>
-#include <numbers>
 
 #include "estimators/stream.h"
 #include "render/scene.h"
+#include "render/unit_circle.h"
 
 namespace assay::depth_of_field {
 
@@ -53,8 +53,8 @@ inline render::Ray lens_ray(const Lens& lens, const PlanePoint& pixel, const Pla
 struct UniformDisc {
   PlanePoint operator()(double s, double t) const {
     const double radius = std::sqrt(s);
-    const double angle = 2 * std::numbers::pi * t;
-    return {radius * std::cos(angle), radius * std::sin(angle)};
+    const auto [x, y] = render::on_unit_circle(t);
+    return {radius * x, radius * y};
   }
 };
 

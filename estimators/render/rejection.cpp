@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "render/unit_circle.h"
+
 namespace assay::render {
 
 namespace {
@@ -17,8 +19,8 @@ Vector3 propose(Stream& random) {
   const double xi = random.uniform_open();
   const double cosine = xi * xi;
   const double sine = std::sqrt(1 - cosine * cosine);
-  const double phi = 2 * std::numbers::pi * random.uniform();
-  return {sine * std::cos(phi), sine * std::sin(phi), cosine};
+  const auto [x, y] = on_unit_circle(random.uniform());
+  return {sine * x, sine * y, cosine};
 }
 
 [[noreturn]] void exceeded(const Vector3& out, double acceptance) {
