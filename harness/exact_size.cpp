@@ -113,6 +113,15 @@ std::optional<double> exact_detectable_effect(const Question& question, const Te
   return most / channel.unit;
 }
 
+bool exact_finds_nothing(const Question& question, const TestSize& size, const Plan& plan,
+                         const PlannedChannel& channel, const stats::ErrorRates& rates) {
+  if (!is_quoted(question, plan, channel)) return false;
+  return std::ranges::none_of(sides_of(channel.regions.relation), [&](int side) {
+    return stats::exact_detectable(method_of(plan), plan_of(channel, rates), size.secondaries, side)
+        .has_value();
+  });
+}
+
 std::optional<double> exact_power_at(const Question& question, const TestSize& size,
                                      const Plan& plan, const PlannedChannel& channel,
                                      const stats::ErrorRates& rates, double effect) {

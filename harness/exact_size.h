@@ -32,6 +32,10 @@ std::optional<double> exact_detectable_effect(const Question& question, const Te
                                               const Plan& plan, const PlannedChannel& channel,
                                               const stats::ErrorRates& rates);
 
+/// Whether no mean that the range allows is found with probability 1 - beta, on either side.
+bool exact_finds_nothing(const Question& question, const TestSize& size, const Plan& plan,
+                         const PlannedChannel& channel, const stats::ErrorRates& rates);
+
 /// The probability of finding `effect`, the smaller of both sides; nullopt likewise.
 std::optional<double> exact_power_at(const Question& question, const TestSize& size,
                                      const Plan& plan, const PlannedChannel& channel,

@@ -102,6 +102,12 @@ std::string wide_margin(const TestOutcome& outcome, const ChannelOutcome& channe
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (!channel.regions.has_forbidden()) {
     std::string text = "no evidence against the claim";
+    if (channel.finds_nothing) {
+      return fmt::format(
+          "{}, nor could there be: in {} observations no difference that the range allows is found "
+          "with probability {:g}",
+          text, outcome.secondaries(), 1 - outcome.share().beta);
+    }
     if (channel.detectable) {
       // The same sum of squares in a few pixels, or of both signs, is seen by other cells: from
       // other sizes on.

@@ -41,6 +41,7 @@ struct ChannelOutcome {
   double log_p_adjusted = 0;
   reports::Effect effect = {};
   std::optional<double> detectable = {};  ///< least theta found with probability 1 - beta
+  bool finds_nothing = false;             ///< no theta that the range allows is found so
   std::optional<double> reference = {};   ///< a number to mark among the observations
   std::optional<ImageOutcome> image = {};
 };

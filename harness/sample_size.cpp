@@ -301,6 +301,11 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
   return found;
 }
 
+bool finds_nothing(const Question& question, const TestSize& size, const Plan& plan,
+                   const PlannedChannel& channel) {
+  return exact_finds_nothing(question, size, plan, channel, rates_of(size.share, channel.regions));
+}
+
 std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,
                                const PlannedChannel& channel, double effect) {
   const double n = static_cast<double>(size.secondaries);

@@ -42,6 +42,10 @@ std::optional<std::uint64_t> planned_secondaries(const Question& question, const
 std::optional<double> detectable_effect(const Question& question, const TestSize& size,
                                         const Plan& plan, const PlannedChannel& channel);
 
+/// Whether no theta that a declared range allows is found with probability 1 - beta.
+bool finds_nothing(const Question& question, const TestSize& size, const Plan& plan,
+                   const PlannedChannel& channel);
+
 /// The probability of failing the claim when theta is `effect`; of `<` and `>` the probability of
 /// passing it with that advantage, of `within` that of passing it when theta is 0.
 std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,

@@ -19,6 +19,7 @@ estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
   other: {plugin: analytic/normal, mean: 2.01, primaries: 1}
   unit: {plugin: analytic/normal, mean: 2, deviation: 0.1, primaries: 1}
+  ranged: {plugin: analytic/law, law: 'uniform(0, 4)', primaries: 1}
 tests:
   - {name: test, )" + test + "}\n"),
                     "test");
@@ -45,6 +46,14 @@ TEST(Narrate, PassByAnAbsoluteMarginBeyondTheReferenceSaysSo) {
 TEST(Narrate, ClassicalPassSaysWhatWouldHaveBeenFound) {
   expect_said(told("claim: mean(normal) == 2"), Verdict::pass,
               "or more would have been found with probability 0.99");
+}
+
+// Values between 0 and 4: four of them do not tell a mean of 2 from any other.
+TEST(Narrate, ClassicalPassSaysWhereNothingCouldHaveBeenFound) {
+  const char* const claim = "claim: mean(ranged) == 2, test: bounded, secondaries: ";
+  expect_said(told(std::string(claim) + "4"), Verdict::pass,
+              "nor could there be: in 4 observations no difference that the range allows is found");
+  expect_said(told(std::string(claim) + "400"), Verdict::pass, "or more would have been found");
 }
 
 TEST(Narrate, NeverSaysThatAClaimIsAccepted) {
