@@ -179,7 +179,8 @@ std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) c
 Observations Pool::observations(std::uint64_t count) const { return all_kept().range(0, count); }
 
 std::uint64_t Pool::block_end(std::uint64_t first) const {
-  return std::min(first + block_size_, setup_->observations().value_or(most_observations));
+  return std::min(
+      {first + block_size_, most_marked(), setup_->observations().value_or(most_observations)});
 }
 
 /// A picture goes from its file to where it is kept.

@@ -90,7 +90,8 @@ class Pool {
   // The scheduler's side. Observations per block are a function of `primaries` alone.
   std::uint64_t block_size() const { return block_size_; }
   /// Where the block that begins at `first` ends. Blocks are drawn whole, even where less was
-  /// requested: a later look then continues as if it had been one run.
+  /// requested: a later look then continues as if it had been one run. The last one ends with what
+  /// is marked, as nobody asks for more: an observation of another program may take seconds.
   std::uint64_t block_end(std::uint64_t first) const;
 
   /// A drawn block, and copies of it at the marked counts that lie inside.

@@ -121,6 +121,19 @@ TEST(Pool, DoesNotChangeWhenContinuedLater) {
             drawn({.prefixes = {9000}})->prefix(9000).channels[0].moments);
 }
 
+TEST(Pool, DrawsNoMoreThanAnyoneMayAskFor) {
+  const StreamKey key = stream_key(1, "test/sums", "", 0);
+  const auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);
+  Silence silence;
+  pool->mark(5000);
+  pool->request(100);
+  draw_all({pool}, {.threads = 2}, silence);
+  EXPECT_EQ(pool->drawn(), 2048);
+  pool->request(5000);
+  draw_all({pool}, {.threads = 2}, silence);
+  EXPECT_EQ(pool->drawn(), 5000);
+}
+
 // Blocks are drawn whole: 3000 requested draws 4096, and a prefix inside can no longer be taken.
 TEST(Pool, RefusesAMarkBehindWhatIsDrawn) {
   const StreamKey key = stream_key(1, "test/sums", "", 0);
