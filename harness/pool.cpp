@@ -70,15 +70,20 @@ class Intake {
  public:
   explicit Intake(std::vector<ChannelSummary>& channels)
       : channels_(channels),
-        most_copies_(
+        most_rows_(
             std::clamp<std::size_t>(at_a_time / std::max<std::size_t>(channels.size(), 1), 1, 32)),
-        copies_(most_copies_ * channels.size()) {}
+        rows_(most_rows_ * channels.size()) {}
 
-  /// `stays`: the values stand where they are until the end of the block; others are copied.
-  void take(std::span<const double> values, std::uint64_t index, const ObservationCost& cost,
-            bool stays) {
-    waiting_.push_back({stays ? values : copied(values), index, cost});
-    if (copied_ == most_copies_) take_waiting();
+  /// Where an observation may be drawn.
+  std::span<double> row() {
+    return std::span(rows_).subspan(filled_ * channels_.size(), channels_.size());
+  }
+
+  /// An observation drawn in row(), or one that stays where it is until the end of the block.
+  void take(std::span<const double> values, std::uint64_t index, const ObservationCost& cost) {
+    waiting_.push_back({values, index, cost});
+    if (values.data() != row().data()) return;
+    if (++filled_ == most_rows_) take_waiting();
   }
 
   void take_waiting() {
@@ -91,7 +96,7 @@ class Intake {
       }
     }
     waiting_.clear();
-    copied_ = 0;
+    filled_ = 0;
   }
 
  private:
@@ -103,16 +108,10 @@ class Intake {
 
   static constexpr std::size_t at_a_time = 512;
 
-  std::span<const double> copied(std::span<const double> values) {
-    const auto place = copies_.begin() + static_cast<std::ptrdiff_t>(copied_++ * channels_.size());
-    std::ranges::copy(values, place);
-    return {place, values.size()};
-  }
-
   std::vector<ChannelSummary>& channels_;
-  std::size_t most_copies_;
-  std::size_t copied_ = 0;
-  std::vector<double> copies_;
+  std::size_t most_rows_;
+  std::size_t filled_ = 0;
+  std::vector<double> rows_;
   std::vector<Waiting> waiting_;
 };
 
@@ -228,8 +227,7 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
               .partial = {},
               .trouble = {},
               .size = last - first};
-  const bool in_place = sums_later_ && recorded::unknown_channels(*setup_);
-  std::vector<double> out(in_place ? 0 : channels_);
+  std::vector<double> unsummed(sums_later_ && !recorded::unknown_channels(*setup_) ? channels_ : 0);
   Intake intake(block.whole.channels);
   auto mark = prefixes_.upper_bound(first);
   const auto seconds = [&estimator] { return thread_seconds() + estimator.seconds_elsewhere(); };
@@ -246,9 +244,10 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
     for (; index < last; ++index) {
       Cost before;
       if (counts_costs) before = block.whole.cost;
+      const std::span<double> out = sums_later_ ? std::span(unsummed) : intake.row();
       const std::span<const double> drawn = observe(estimator, index, out, block);
       if (counts_costs) cost = counted(block.whole.cost - before);
-      if (!sums_later_) intake.take(drawn, index, cost, drawn.data() != out.data());
+      if (!sums_later_) intake.take(drawn, index, cost);
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
         if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);
       }
