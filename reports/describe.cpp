@@ -109,12 +109,18 @@ Channel worst_channel(const Test& test) {
 
 std::vector<const Sample*> worst_samples(const Test& test) {
   const std::string channel = worst_channel(test).name;
-  std::vector<const Sample*> of_channel, all;
+  std::set<std::string> of_channel;
   for (const Sample& sample : test.samples) {
-    all.push_back(&sample);
-    if (sample.channel == channel) of_channel.push_back(&sample);
+    if (sample.channel == channel) of_channel.insert(sample.estimator);
   }
-  return of_channel.empty() ? all : of_channel;
+  std::vector<const Sample*> samples;
+  for (const Sample& sample : test.samples) {
+    // The other side's channel may have another name.
+    if (sample.channel == channel || !of_channel.contains(sample.estimator)) {
+      samples.push_back(&sample);
+    }
+  }
+  return samples;
 }
 
 bool is_evidence(const Test& test) {

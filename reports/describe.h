@@ -13,7 +13,7 @@ namespace assay::reports {
 /// The worst channel's numbers, or those of an untested channel where nothing was tested.
 Channel worst_channel(const Test&);
 
-/// The samples of the worst channel; all of them where none has its name.
+/// The samples of the worst channel, and those of estimators that have none of its name.
 std::vector<const Sample*> worst_samples(const Test&);
 
 /// Whether the test's numbers mean what they say: not where an assumption of theirs does not hold.

@@ -45,6 +45,17 @@ TEST(Describe, ObservationsOfSeveralChannelsAreCountedOnce) {
       << plain_text(test);
 }
 
+TEST(Describe, ASideWhoseChannelHasAnotherNameIsCountedToo) {
+  reports::Test test = example_record().suites[0].tests[0];
+  test.samples.push_back(test.samples[0]);
+  test.samples[1].estimator = "other";
+  test.samples[1].channel = "luminance";
+  test.samples[1].secondaries = 100;
+  EXPECT_NE(plain_text(test).find("; 100 of other with 64\u00A0primaries each\n"),
+            std::string::npos)
+      << plain_text(test);
+}
+
 TEST(Describe, AProofIsExplainedByItsContrary) {
   const std::string text = plain_text(example_record().suites[0].tests[1]);
   EXPECT_NE(text.find("contrary: variance(area) >= variance(hemisphere)\n"), std::string::npos);
