@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "stats/kolmogorov.h"
 #include "stats/planning.h"
@@ -40,12 +43,22 @@ double two_sample_margin_critical(double log_alpha, std::uint64_t n) {
 }
 
 // d_alpha: the distance above `allow` from which the test rejects.
-double critical_distance(const DistancePlan& plan, double n) {
+double found_critical_distance(const DistancePlan& plan, double n) {
   const auto size = static_cast<std::uint64_t>(n);
   const double log_alpha = std::log(plan.rates.alpha);
   if (!plan.two_samples) return kolmogorov_upper_quantile(log_alpha, size);
   return plan.allow == 0 ? two_sample_critical(log_alpha, size)
                          : two_sample_margin_critical(log_alpha, size);
+}
+
+// The same, which takes up to milliseconds, and is asked for twice in a row: for the detectable
+// distance and for the power.
+double critical_distance(const DistancePlan& plan, double n) {
+  using Key = std::tuple<double, bool, bool, double>;
+  thread_local std::optional<std::pair<Key, double>> last;
+  const Key key{plan.rates.alpha, plan.two_samples, plan.allow == 0, n};
+  if (!last || last->first != key) last = {key, found_critical_distance(plan, n)};
+  return last->second;
 }
 
 double effective(const DistancePlan& plan, double n) { return plan.two_samples ? n / 2 : n; }
