@@ -72,7 +72,7 @@ bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t ob
   std::vector<double> a(mine.size());
   std::vector<double> b(theirs.size());
   for (std::uint64_t i = 0; i < observations; ++i) {
-    // A whole image takes as long as all the rest of a look.
+    // An image, or the mean of many paths, takes as long as all the rest of a look.
     if (i >= kept.size()) draw(*one, pool, i, a);
     draw(*other, pool, i, b);
     if (!std::ranges::equal(i < kept.size() ? kept[i] : a, b)) return true;
