@@ -21,11 +21,12 @@ namespace {
 // This share of the level goes to elements that never varied.
 constexpr double unseen_share = 0.02;
 // Sign vectors are enumerated for so few replicates, some milliseconds' work; for more of them a
-// random choice is looked at, and never of more vectors or longer ones: a quarter of a second's
-// work.
+// random choice is looked at, and never of more vectors or longer ones: an eighth of a second's
+// work. So many that reach the sum of squares tell its p-value to a tenth.
 constexpr std::size_t most_enumerated = 18;
 constexpr double most_flips = 0x1p19;
 constexpr std::size_t most_flipped = 64;
+constexpr std::uint64_t enough_flips = 100;
 
 // ---- theta = 0
 
@@ -79,39 +80,49 @@ bool has_error(const stats::ImageStack<Real>&) {
 }
 bool has_error(const stats::ImageReference& b) { return !b.standard_error.empty(); }
 
-/// The sum of squares of correlated elements: the share of sign vectors that reach it. nullopt
-/// where so few replicates, or so small a level, leave nothing to reject.
+/// The smallest p-value that flips of signs can have.
+double least_log_p(std::size_t replicates, double flips) {
+  return replicates <= most_enumerated ? -std::log(2.0) * static_cast<double>(replicates - 1)
+                                       : -std::log1p(flips);
+}
+
+/// The sum of squares of correlated elements joins the family by flips of signs; or takes no part,
+/// where so few replicates, or so small a level, leave nothing to reject, and where other sums say
+/// more than any flips could.
 template <class Real>
-std::optional<double> flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test) {
+void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test,
+                        ImageOutcome& outcome) {
   // A reference's error does not flip with the replicates: cells alone are left.
-  if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return std::nullopt;
+  if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return;
   const double share = test.share.alpha * stats::energy_share;
+  const std::size_t replicates = std::min(most_flipped, varying.first().images.size());
+  const double flips = std::ceil(4 / share);
+  if (static_cast<double>(replicates) < 2 + std::log2(1 / share)) return;
+  if (replicates > most_enumerated && flips > most_flips) return;
+  if (least_log_p(replicates, flips) >= stats::energy_notice(outcome.family)) return;
   const stats::FlipMatrix matrix =
       varying.with([](const auto& a, const auto& b) { return flips_of(a, b); });
-  const double replicates = static_cast<double>(matrix.replicates());
-  if (replicates < 2 + std::log2(1 / share)) return std::nullopt;
-  if (matrix.replicates() <= most_enumerated) return stats::sign_flip(matrix, share).log_p;
-  const double flips = std::ceil(4 / share);
-  if (flips > most_flips) return std::nullopt;
   LongStream random(stream_key(test.flips.bits, "sign flips", "", 0),
                     varying.first().images.size());
-  return stats::sign_flip(matrix, {share, static_cast<std::uint64_t>(flips)}, random).log_p;
+  const stats::FlipPlan plan{share, static_cast<std::uint64_t>(flips), enough_flips};
+  const stats::SignFlip flip = replicates <= most_enumerated
+                                   ? stats::sign_flip(matrix, share)
+                                   : stats::sign_flip(matrix, plan, random);
+  outcome.by_sign_flips = true;
+  stats::add_energy(outcome.family, varying.first().extent, flip.log_p);
 }
 
 template <class Real>
-stats::ImageFamily family_of(const VaryingPart<Real>& varying, const ImageTest& test,
-                             ImageOutcome& outcome) {
+void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test,
+                    ImageOutcome& outcome) {
   outcome.z.resize(varying.first().extent.elements());
-  stats::PyramidOptions options{
-      .energy_log_p = {}, .smallest = test.smallest_cell, .weights = test.weights, .z = outcome.z};
-  if (!test.independent) {
-    const std::optional<double> log_p = flipped_energy(varying, test);
-    outcome.by_sign_flips = true;
-    outcome.enough_for_flips = log_p.has_value();
-    options.energy_log_p = log_p.value_or(0);
-  }
-  return varying.with(
+  const stats::PyramidOptions options{.energy = test.independent,
+                                      .smallest = test.smallest_cell,
+                                      .weights = test.weights,
+                                      .z = outcome.z};
+  outcome.family = varying.with(
       [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
+  if (!test.independent) add_flipped_energy(varying, test, outcome);
 }
 
 stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageExtent& extent) {
@@ -230,7 +241,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   outcome.unseen = varying.unseen();
   outcome.replicates = pair.replicates();
   outcome.smallest_cell = test.smallest_cell;
-  outcome.family = family_of(varying, test, outcome);
+  look_at_family(varying, test, outcome);
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(pair.extent(), outcome);
   outcome.uniform_error = uniform_error(pair, relative);

@@ -29,10 +29,9 @@ struct ImageOutcome {
   std::vector<double> z = {};  ///< of every element: Welch's, or of the bound on what was unseen
   std::size_t replicates = 0;
   std::uint32_t smallest_cell = 1;
-  bool by_sign_flips = false;
-  bool enough_for_flips = true;  ///< so many replicates that a sum of squares could be rejected
-  double wanted = 0;             ///< replicates that would decide, as far as can be told; 0: none
-  double uniform_error = 0;      ///< standard error of theta, were it the same everywhere
+  bool by_sign_flips = false;  ///< whether the sum of squares was judged so
+  double wanted = 0;           ///< replicates that would decide, as far as can be told; 0: none
+  double uniform_error = 0;    ///< standard error of theta, were it the same everywhere
 };
 
 struct ImageEvidence {

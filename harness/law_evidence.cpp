@@ -222,10 +222,12 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
   DeclaredLaw declared;
   if (question.kind == QuestionKind::fit_to_law) {
-    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}};
+    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}, .of_sorted = {}};
   } else {
     const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
-    declared.law = {.cdf = std::cref(table), .left_limit = {}};
+    declared.law = {.cdf = std::cref(table), .left_limit = {}, .of_sorted = [&table](auto values) {
+                      return table.of_sorted(values);
+                    }};
     declared.error = table.error;
   }
   if (draws != nullptr) {

@@ -144,6 +144,8 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
     }
   }
   if (plan.method.keeps == Keeps::images) pool->keep_observations(plan.most_secondaries());
+  // A mutant's first, which was_activated holds against its original's.
+  if (side.estimator->original && side.purpose.empty()) pool->keep_observations(1);
   keep_for(plan.method, side, *pool);
   for (const std::uint64_t size : plan.looks.sizes) pool->mark(size);
   return pool;

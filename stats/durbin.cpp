@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "stats/vector_copies.h"
+
 namespace assay::stats {
 namespace {
 
@@ -29,19 +31,28 @@ int rescale(std::vector<double>& entries) {
 
 // Durbin's matrix is symmetric about its other diagonal, and so are its powers: half of the entries
 // are worked out.
+ASSAY_VECTOR_COPIES void square(const double* a, std::size_t size, double* c) {
+  const std::size_t last = size - 1;
+  for (std::size_t i = 0; i < size; ++i) {
+    double* const row = c + i * size;
+    // Four rows at a time, each added after the other: the sum is stored once for the four.
+    for (std::size_t k = 0; k < size; k += 4) {
+      const std::size_t most = size - 1 - k;
+      const auto factor = [&](std::size_t m) { return m <= most ? a[i * size + k + m] : 0; };
+      const auto other = [&](std::size_t m) { return a + (k + std::min(m, most)) * size; };
+      const double f[] = {factor(0), factor(1), factor(2), factor(3)};
+      const double* const o[] = {other(0), other(1), other(2), other(3)};
+      for (std::size_t j = 0; j <= last - i; ++j) {
+        row[j] = row[j] + f[0] * o[0][j] + f[1] * o[1][j] + f[2] * o[2][j] + f[3] * o[3][j];
+      }
+    }
+    for (std::size_t j = 0; j < last - i; ++j) c[(last - j) * size + last - i] = row[j];
+  }
+}
+
 ScaledMatrix squared(const ScaledMatrix& a) {
   ScaledMatrix c{a.size, std::vector<double>(a.entries.size(), 0.0), 2 * a.exponent};
-  const std::size_t last = a.size - 1;
-  for (std::size_t i = 0; i < a.size; ++i) {
-    double* const row = &c.entries[i * a.size];
-    for (std::size_t k = 0; k < a.size; ++k) {
-      const double factor = a.at(i, k);
-      if (factor == 0) continue;
-      const double* const other = &a.entries[k * a.size];
-      for (std::size_t j = 0; j <= last - i; ++j) row[j] += factor * other[j];
-    }
-    for (std::size_t j = 0; j < last - i; ++j) c.at(last - j, last - i) = row[j];
-  }
+  square(a.entries.data(), a.size, c.entries.data());
   c.exponent += rescale(c.entries);
   return c;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "stats/check.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
@@ -24,6 +25,19 @@ void decide(ImageFamily& family) {
                                     });
   family.log_p = family.winner.adjusted_log_p;
 }
+
+void add_energy(ImageFamily& family, const ImageExtent& extent, double log_p) {
+  check::log_probability({"add_energy", "log_p"}, log_p);
+  ImageFinding finding = whole_image(ImageStatistic::energy, extent);
+  finding.log_p = log_p;
+  finding.z =
+      log_p < 0 ? normal_quantile({Tail::upper, log_p}) : -std::numeric_limits<double>::infinity();
+  finding.adjusted_log_p = std::min(0.0, log_p - std::log(energy_share));
+  family.groups.push_back(finding);
+  decide(family);
+}
+
+double energy_notice(const ImageFamily& family) { return family.log_p + std::log(energy_share); }
 
 ImageFinding whole_image(ImageStatistic statistic, const ImageExtent& extent) {
   ImageFinding finding;

@@ -50,6 +50,12 @@ double adjusted(double log_p, GroupSize group);
 // min over the groups.
 void decide(ImageFamily& family);
 
+// The energy by a p-value found elsewhere, of flips of signs for one, joins the family.
+// energy_notice: ln of the p-value below which it would be the family's smallest, the only one that
+// counts. Whoever cannot get below it need not look.
+void add_energy(ImageFamily& family, const ImageExtent& extent, double log_p);
+double energy_notice(const ImageFamily& family);
+
 // A finding that has no place: the whole image.
 ImageFinding whole_image(ImageStatistic statistic, const ImageExtent& extent);
 

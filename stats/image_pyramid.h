@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "stats/image.h"
@@ -40,11 +39,11 @@ ImageFamily image_pyramid(const ZMap& map);
 //   u = w1^2 (D0^2 - v0) + w0^2 (D1^2 - v1) + 2 w0 w1 D0 D1,     E u = (bias (w0 + w1))^2
 // summed over elements and divided by sqrt(sum u^2): normal for many independent elements, upper
 // tail. It needs independent elements. For others (reconstruction filters, Metropolis chains,
-// shared points) give the p-value of a sign flip (image_sign_flip.h) as `energy_log_p`.
+// shared points) leave `energy` out, and add_energy the p-value of a sign flip (image_sign_flip.h).
 //
 // Asymptotic: Welch's law.
-// Throws std::domain_error as welch_z does, for a positive energy_log_p, and for weights of another
-// number than the elements, negative or not finite.
+// Throws std::domain_error as welch_z does, and for weights of another number than the elements,
+// negative or not finite.
 // Cells smaller than `smallest` are left out of the family (their share stays unspent; different
 // constants still are certain): large sums thin out their elements' skewness, small ones do not,
 // and with 16 skewed replicates of unlike variance the level's part of single elements is exceeded
@@ -56,7 +55,7 @@ ImageFamily image_pyramid(const ZMap& map);
 //
 // `z` receives welch_z of every element, where it has room for them.
 struct PyramidOptions {
-  std::optional<double> energy_log_p = {};
+  bool energy = true;
   std::uint32_t smallest = 1;  // 1: single elements too
   std::span<const double> weights = {};
   std::span<double> z = {};

@@ -159,7 +159,8 @@ SignFlip sign_flip(const FlipMatrix& matrix, double share) {
   const auto sign = [](std::uint64_t before, std::size_t r) {
     return r == 0 || ((before + 1) >> (r - 1)) % 2 == 0 ? 1.0 : -1.0;
   };
-  const std::uint64_t reached = 1 + detail::count_reached(matrix, vectors - 1, sign);
+  const std::uint64_t reached =
+      1 + detail::count_reached(matrix, vectors - 1, vectors, sign).reached;
   const double log_p = std::log(static_cast<double>(reached)) -
                        static_cast<double>(replicates - 1) * std::numbers::ln2;
   return {matrix.energy(std::vector<double>(replicates, 1)), log_p, vectors - 1,
@@ -173,6 +174,7 @@ void check_flip_plan(const FlipMatrix& matrix, const FlipPlan& plan) {
   if (static_cast<double>(plan.flips) + 1 < 2 / plan.share) {
     check::fail({"sign_flip", "flips"}, plan.flips, "at least 2 / share - 1");
   }
+  check::at_least({"sign_flip", "enough"}, plan.enough, 1);
 }
 
 // Sign vectors whose Q equals the observed one but for rounding count as reaching it, which can
@@ -181,9 +183,11 @@ double flip_threshold(const FlipMatrix& matrix) {
   return matrix.energy(std::vector<double>(matrix.replicates(), 1)) * (1 - 1e-12);
 }
 
-SignFlip flip_result(const FlipMatrix& matrix, const FlipPlan& plan, std::uint64_t reached) {
-  const double p = (static_cast<double>(reached) + 1) / (static_cast<double>(plan.flips) + 1);
-  return {matrix.energy(std::vector<double>(matrix.replicates(), 1)), std::log(p), plan.flips,
+SignFlip flip_result(const FlipMatrix& matrix, const FlipPlan& plan, const FlipCount& count) {
+  const double vectors = static_cast<double>(count.vectors);
+  const double reached = static_cast<double>(count.reached);
+  const double p = count.reached == plan.enough ? reached / vectors : (reached + 1) / (vectors + 1);
+  return {matrix.energy(std::vector<double>(matrix.replicates(), 1)), std::log(p), count.vectors,
           FlipMethod::monte_carlo, Exactness::asymptotic};
 }
 

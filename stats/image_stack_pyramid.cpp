@@ -117,15 +117,6 @@ void add_best_energy(ImageFamily& family, const BestCell& best) {
   family.groups.push_back(finding);
 }
 
-void add_given_energy(ImageFamily& family, const ImageExtent& extent, double log_p) {
-  ImageFinding finding = whole_image(ImageStatistic::energy, extent);
-  finding.log_p = log_p;
-  finding.z =
-      log_p < 0 ? normal_quantile({Tail::upper, log_p}) : -std::numeric_limits<double>::infinity();
-  finding.adjusted_log_p = std::min(0.0, log_p - std::log(energy_share));
-  family.groups.push_back(finding);
-}
-
 void check_weights(std::span<const double> weights, const ImageExtent& extent) {
   if (!weights.empty() && weights.size() != extent.elements()) {
     check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
@@ -135,9 +126,6 @@ void check_weights(std::span<const double> weights, const ImageExtent& extent) {
 
 template <class Real>
 ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options) {
-  if (options.energy_log_p) {
-    check::log_probability({function_name, "energy_log_p"}, *options.energy_log_p);
-  }
   const ImageExtent& extent = pair.a.extent;
   check_weights(options.weights, extent);
   if (!options.z.empty() && options.z.size() != extent.elements()) {
@@ -156,11 +144,10 @@ ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options
     const CoarseImages coarse = offer_fine_cells<Real>({pair, half, groups}, best);
     for (std::size_t c = 0; c < extent.channels; ++c) {
       offer_coarse_cells(coarse, groups, c, best);
-      if (!options.energy_log_p) offer_energy(energy, extent, half, c, pair.reference);
+      if (options.energy) offer_energy(energy, extent, half, c, pair.reference);
     }
     add_best_windows(family, best, groups, options.smallest);
     add_best_energy(family, energy);
-    if (options.energy_log_p) add_given_energy(family, extent, *options.energy_log_p);
   }
   decide(family);
   return family;

@@ -12,10 +12,11 @@ namespace assay::stats {
 
 // The law that a sample is held against. `cdf(x)` is P(X <= x); where the law has atoms,
 // `left_limit` gives P(X < x) (empty: no atoms). Both are clamped to nothing: values outside [0, 1]
-// throw.
+// throw. `of_sorted`, where there is one, gives the cdf at all of some ascending values at once.
 struct ContinuousLaw {
   std::function<double(double)> cdf;
   std::function<double(double)> left_limit = {};
+  std::function<std::vector<double>(std::span<const double>)> of_sorted = {};
 };
 
 // F(x_i) of a continuous law at the values of a sorted sample, in its order: for whoever has worked

@@ -107,7 +107,7 @@ struct UpperIntegrand {
   double operator()(double u) const {
     const double half = parameters.degrees / 2;
     return half * (2 * u + 1 - std::exp(2 * u)) +
-           normal_tails(t * std::exp(u) - parameters.noncentrality).upper;
+           normal_upper(t * std::exp(u) - parameters.noncentrality);
   }
 };
 

@@ -28,4 +28,9 @@ LogTails normal_tails(double x) {
   return x >= 0 ? special::from_upper(log_upper(x)) : special::from_lower(log_upper(-x));
 }
 
+double normal_upper(double x) {
+  check::finite({"normal_upper", "x"}, x);
+  return x >= 0 ? special::clamp_log(log_upper(x)) : special::from_lower(log_upper(-x)).upper;
+}
+
 }  // namespace assay::stats

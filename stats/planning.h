@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "stats/check.h"
 #include "stats/power.h"
@@ -66,23 +67,69 @@ std::optional<std::uint64_t> smallest_sample(const Enough& enough, double guess,
   return static_cast<std::uint64_t>(high);
 }
 
-// The smallest x > from at which `enough(x)`, to 1e-12 relative; infinite when there is none.
+struct Bracket {
+  double low = 0;  // not enough
+  double high = 0;
+};
+
+// Around the smallest x > from at which `enough(x)`, to 1e-12 relative; infinite when there is
+// none.
+template <class Enough>
+Bracket effect_bracket(const Enough& enough, double from, double first_step) {
+  Bracket found{from, from + first_step};
+  for (double step = first_step; !enough(found.high); found.high = from + step) {
+    found.low = found.high;
+    step *= 2;
+    if (!(from + step < 1e300)) {
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      return {infinity, infinity};
+    }
+  }
+  while (found.high - found.low > 1e-12 * found.high) {
+    const double middle = std::midpoint(found.low, found.high);
+    if (middle == found.low || middle == found.high) break;
+    (enough(middle) ? found.high : found.low) = middle;
+  }
+  return found;
+}
+
 template <class Enough>
 double smallest_effect(const Enough& enough, double from, double first_step) {
-  double low = from;
-  double step = first_step;
-  while (!enough(from + step)) {
-    low = from + step;
-    step *= 2;
-    if (!(from + step < 1e300)) return std::numeric_limits<double>::infinity();
+  return effect_bracket(enough, from, first_step).high;
+}
+
+// The same, bit by bit, where a good guess is known: the bracket that halving would end with if the
+// guess were right is looked at first, two questions in place of forty.
+template <class Enough>
+double smallest_effect(const Enough& enough, double from, double first_step, double guess) {
+  const Bracket likely = effect_bracket([guess](double x) { return x >= guess; }, from, first_step);
+  const bool right = std::isfinite(likely.high) && enough(likely.high) &&
+                     (likely.low == from || !enough(likely.low));
+  return right ? likely.high : smallest_effect(enough, from, first_step);
+}
+
+// Near a root, and the slope there, as far as they are known without looking.
+struct Guess {
+  double root = 0;
+  double slope = 1;
+};
+
+// Where a nearly linear increasing function is zero, by secants: each is off by a small part of the
+// product of the last two steps. Some number where they do not get there.
+template <class Function>
+double secant_root(const Function& function, Guess guess) {
+  double before = guess.root;
+  double old = function(before);
+  double step = -old / guess.slope;
+  double at = before + step;
+  double previous = 1e-3 * std::abs(at);
+  for (int round = 0; round < 8 && !(std::abs(step * previous) <= 1e-13 * at * at); ++round) {
+    const double value = function(at);
+    previous = std::exchange(step, -value * step / (value - old));
+    old = value;
+    at += step;
   }
-  double high = from + step;
-  while (high - low > 1e-12 * high) {
-    const double middle = std::midpoint(low, high);
-    if (middle == low || middle == high) break;
-    (enough(middle) ? high : low) = middle;
-  }
-  return high;
+  return at;
 }
 
 inline void check_effect(const char* function, double allow, double detect) {

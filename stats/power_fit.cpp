@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "stats/kolmogorov.h"
 #include "stats/planning.h"
@@ -40,12 +43,22 @@ double two_sample_margin_critical(double log_alpha, std::uint64_t n) {
 }
 
 // d_alpha: the distance above `allow` from which the test rejects.
-double critical_distance(const DistancePlan& plan, double n) {
+double found_critical_distance(const DistancePlan& plan, double n) {
   const auto size = static_cast<std::uint64_t>(n);
   const double log_alpha = std::log(plan.rates.alpha);
   if (!plan.two_samples) return kolmogorov_upper_quantile(log_alpha, size);
   return plan.allow == 0 ? two_sample_critical(log_alpha, size)
                          : two_sample_margin_critical(log_alpha, size);
+}
+
+// The same, which takes up to milliseconds, and is asked for twice in a row: for the detectable
+// distance and for the power.
+double critical_distance(const DistancePlan& plan, double n) {
+  using Key = std::tuple<double, bool, bool, double>;
+  thread_local std::optional<std::pair<Key, double>> last;
+  const Key key{plan.rates.alpha, plan.two_samples, plan.allow == 0, n};
+  if (!last || last->first != key) last = {key, found_critical_distance(plan, n)};
+  return last->second;
 }
 
 double effective(const DistancePlan& plan, double n) { return plan.two_samples ? n / 2 : n; }
@@ -66,12 +79,44 @@ void check_plan(const char* function, const FitPlan& plan) {
   check::non_negative({function, "allow"}, plan.allow);
 }
 
-double fit_power(const FitPlan& plan, double n, double effect) {
-  const double nu = plan.degrees_of_freedom;
-  const LogTail tail{Tail::upper, std::log(plan.rates.alpha)};
-  const double critical = noncentral_chi_square_quantile(tail, {nu, n * plan.allow * plan.allow});
-  return std::exp(noncentral_chi_square_tails(critical, {nu, n * effect * effect}).upper);
-}
+class FitPower {
+ public:
+  FitPower(const FitPlan& plan, double n)
+      : plan_(plan),
+        n_(n),
+        critical_(noncentral_chi_square_quantile({Tail::upper, std::log(plan.rates.alpha)},
+                                                 noncentral(plan.allow))) {}
+
+  double at(double effect) const { return std::exp(tails(effect).upper); }
+
+  // The effect with a power of 1 - beta, nearly: the power's normal score is all but linear in it,
+  // as if X2 were normal with mean nu + l and variance 2 nu + 4 l at noncentrality l.
+  double about() const {
+    const double z = planning::z_upper(plan_.rates.beta);
+    const double nu = plan_.degrees_of_freedom;
+    const double beyond = critical_ - nu;
+    const double wanted = beyond + 2 * z * z + z * std::sqrt(2 * nu + 4 * beyond + 4 * z * z);
+    const double guess = std::sqrt(wanted / n_);
+    const double spread = std::sqrt(2 * nu + 4 * wanted);
+    const auto score = [&](double effect) {
+      return planning::z_upper(std::clamp(std::exp(tails(effect).lower), 1e-300, 1 - 1e-15)) - z;
+    };
+    return planning::secant_root(
+        score, {.root = guess, .slope = 2 * n_ * guess * (1 - 2 * z / spread) / spread});
+  }
+
+ private:
+  Noncentral noncentral(double effect) const {
+    return {plan_.degrees_of_freedom, n_ * effect * effect};
+  }
+  LogTails tails(double effect) const {
+    return noncentral_chi_square_tails(critical_, noncentral(effect));
+  }
+
+  FitPlan plan_;
+  double n_;
+  double critical_;
+};
 
 void check_fit_size(const char* function, double n) {
   if (!(n >= 1) || n > planning::most_samples) check::fail({function, "n"}, n, "in [1, 2^53]");
@@ -114,16 +159,15 @@ double chi_square_fit_power(const FitPlan& plan, double n, double effect) {
   check_plan("chi_square_fit_power", plan);
   check_fit_size("chi_square_fit_power", n);
   check::non_negative({"chi_square_fit_power", "effect"}, effect);
-  return fit_power(plan, n, effect);
+  return FitPower(plan, n).at(effect);
 }
 
 double chi_square_fit_detectable(const FitPlan& plan, double n) {
   check_plan("chi_square_fit_detectable", plan);
   check_fit_size("chi_square_fit_detectable", n);
-  const auto enough = [&](double effect) {
-    return fit_power(plan, n, effect) >= 1 - plan.rates.beta;
-  };
-  return planning::smallest_effect(enough, plan.allow, 1 / std::sqrt(n));
+  const FitPower power(plan, n);
+  const auto enough = [&](double effect) { return power.at(effect) >= 1 - plan.rates.beta; };
+  return planning::smallest_effect(enough, plan.allow, 1 / std::sqrt(n), power.about());
 }
 
 std::optional<std::uint64_t> chi_square_fit_sample_size(const FitPlan& plan, double detect) {
@@ -133,7 +177,7 @@ std::optional<std::uint64_t> chi_square_fit_sample_size(const FitPlan& plan, dou
   const double gap = detect - plan.allow;
   const double guess = (z * z + z * std::sqrt(2 * plan.degrees_of_freedom)) / (gap * gap);
   if (guess > planning::most_samples) return std::nullopt;
-  const auto enough = [&](double n) { return fit_power(plan, n, detect) >= 1 - plan.rates.beta; };
+  const auto enough = [&](double n) { return FitPower(plan, n).at(detect) >= 1 - plan.rates.beta; };
   return planning::smallest_sample(enough, guess, 1);
 }
 

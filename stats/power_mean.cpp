@@ -37,17 +37,34 @@ class Power {
     return with_far(power, effect) >= wanted;
   }
 
+  // The effect with a power of 1 - beta, nearly: the power's normal score is all but linear in it,
+  // (d - t (1 - 1 / 4 nu)) / sqrt(1 + t^2 / 2 nu) at noncentrality d (Johnson & Welch 1940).
+  double about(double allow) const {
+    const double z = z_upper(rates_.beta);
+    const double spread = std::sqrt(1 + critical_ * critical_ / (2 * scale_.degrees));
+    const double noncentrality = critical_ * (1 - 1 / (4 * scale_.degrees)) + z * spread;
+    const auto score = [&](double effect) { return score_at({allow, effect}) - z; };
+    return planning::secant_root(score, {.root = allow + noncentrality * scale_.standard_error,
+                                         .slope = 1 / (spread * scale_.standard_error)});
+  }
+
  private:
   double near(EffectPlan effect) const {
     const double up = (effect.detect - effect.allow) / scale_.standard_error;
     return std::exp(noncentral_t_tails(critical_, {scale_.degrees, up}).upper);
   }
+  double far(EffectPlan effect) const {
+    if (!rates_.two_sided) return 0;
+    const double down = (effect.detect + effect.allow) / scale_.standard_error;
+    return std::exp(noncentral_t_tails(-critical_, {scale_.degrees, down}).lower);
+  }
   double with_far(double power, EffectPlan effect) const {
-    if (rates_.two_sided) {
-      const double down = (effect.detect + effect.allow) / scale_.standard_error;
-      power += std::exp(noncentral_t_tails(-critical_, {scale_.degrees, down}).lower);
-    }
-    return std::min(power, 1.0);
+    return std::min(power + far(effect), 1.0);
+  }
+  double score_at(EffectPlan effect) const {
+    const double up = (effect.detect - effect.allow) / scale_.standard_error;
+    const double near = noncentral_t_tails(critical_, {scale_.degrees, up}).lower;
+    return z_upper(std::clamp(std::exp(near) - far(effect), 1e-300, 1 - 1e-15));
   }
 
   Studentised scale_;
@@ -95,7 +112,8 @@ double detectable(const char* function, const Plan& plan, double n) {
   const Studentised scale = scale_of(plan, n);
   const Power power(scale, plan.rates);
   const auto enough = [&](double effect) { return power.suffices_at({plan.allow, effect}); };
-  return planning::smallest_effect(enough, plan.allow, scale.standard_error);
+  return planning::smallest_effect(enough, plan.allow, scale.standard_error,
+                                   power.about(plan.allow));
 }
 
 double z_sum(const ErrorRates& rates) {

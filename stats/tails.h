@@ -43,6 +43,7 @@ struct Noncentral {
 // Degrees of freedom need not be whole. All throw std::domain_error for parameters out of range and
 // for non-finite arguments.
 LogTails normal_tails(double x);
+double normal_upper(double x);  // ln P(X >= x); one alone is half the work
 LogTails student_t_tails(double t, double degrees);
 LogTails chi_square_tails(double x, double degrees);
 LogTails gamma_tails(double x, double shape);  // unit scale

@@ -2,8 +2,8 @@
 // runs it (budgets in seconds apart), CPU seconds of
 //   set-up    plugins' scenes, tables and references
 //   pilots    drawing them
-//   plans     methods, sizes, the densities' masses in cells
-//   tables    distribution functions of densities, once a run
+//   plans     methods, sizes, masses in cells of the densities that a size depends on
+//   tables    the other densities' masses in cells, and distribution functions, once a run
 //   draws     all observations
 //   looks     all that happens between one round of draws and the next, and after the last:
 //             gates, evidence, verdicts, effects, sentences
@@ -17,6 +17,7 @@
 
 #include "harness/law_evidence.h"
 #include "harness/planned_run.h"
+#include "harness/sampler_setup.h"
 #include "harness/scheduler.h"
 
 namespace {
@@ -60,10 +61,9 @@ class Phases final : public harness::Progress {
 void make_tables(const std::vector<harness::TestWork*>& tests) {
   for (const harness::TestWork* work : tests) {
     const harness::Question& question = work->outcome.question;
-    if (question.kind != harness::QuestionKind::fit_to_density ||
-        work->outcome.plan.method.keeps != harness::Keeps::values) {
-      continue;
-    }
+    if (question.kind != harness::QuestionKind::fit_to_density) continue;
+    dynamic_cast<const harness::SamplerSetup&>(*question.subjects[0].setup).cells();
+    if (work->outcome.plan.method.keeps != harness::Keeps::values) continue;
     for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
       harness::declared_law(question, channel);
     }

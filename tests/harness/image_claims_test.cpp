@@ -250,5 +250,32 @@ TEST(ImageClaims, ConstantsAndFactorsAreMetPixelByPixel) {
   EXPECT_NEAR(*record.suites[0].tests[1].channels[0].effect.estimate, 0.5, 0.01);
 }
 
+reports::Test chains_test(const std::string& plugin) {
+  const std::string text = fmt::format(
+      "suite: s\nestimators:\n  a: {{plugin: {}, pixels: 4, primaries: 100}}\n"
+      "tests:\n  - {{claim: mean(a) == analytic, secondaries: 100}}\n",
+      plugin);
+  return run_text(text).suites[0].tests[0];
+}
+
+bool has_energy(const reports::Image& image) {
+  return std::any_of(image.groups.begin(), image.groups.end(),
+                     [](const auto& group) { return group.statistic == "energy"; });
+}
+
+// No share of sign vectors is as small as the p-value of a chain that is far off. False alarm 0.01
+// at seed 1.
+TEST(ImageClaims, SignsOfDependentPixelsAreFlippedWhereThatCanTellMore) {
+  const reports::Test sound = chains_test("metropolis/mean_value");
+  EXPECT_EQ(sound.verdict, Verdict::pass) << sound.message;
+  EXPECT_TRUE(sound.image->sign_flips);
+  EXPECT_TRUE(has_energy(*sound.image));
+  const reports::Test broken = chains_test("mutants/metropolis_inverted_ratio");
+  EXPECT_EQ(broken.verdict, Verdict::fail) << broken.message;
+  EXPECT_LT(*broken.image->winner.log10_p_adjusted, -6);
+  EXPECT_FALSE(broken.image->sign_flips);
+  EXPECT_FALSE(has_energy(*broken.image));
+}
+
 }  // namespace
 }  // namespace assay::harness

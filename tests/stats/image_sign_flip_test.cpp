@@ -61,7 +61,7 @@ TEST(ImageSignFlip, EnumerationKeepsItsLevelOnCorrelatedSkewedImages) {
 TEST(ImageSignFlip, MonteCarloKeepsItsLevelOnCorrelatedSkewedImages) {
   const auto calibration = calibrate({851, 4000, Shape::at_most_uniform}, [](Philox& random) {
     const FlipMatrix matrix = null_matrix(random);
-    return sign_flip(matrix, {.share = 0.1, .flips = 19}, random).log_p;
+    return sign_flip(matrix, {.share = 0.1, .flips = 19, .enough = 20}, random).log_p;
   });
   EXPECT_TRUE(calibration.ok) << calibration.text();
 }
@@ -69,10 +69,46 @@ TEST(ImageSignFlip, MonteCarloKeepsItsLevelOnCorrelatedSkewedImages) {
 TEST(ImageSignFlip, NotCountingTheObservedSignsIsCaught) {
   const auto calibration = calibrate({851, 4000, Shape::at_most_uniform}, [](Philox& random) {
     const FlipMatrix matrix = null_matrix(random);
-    const double p = std::exp(sign_flip(matrix, {.share = 0.1, .flips = 19}, random).log_p);
+    const double p =
+        std::exp(sign_flip(matrix, {.share = 0.1, .flips = 19, .enough = 20}, random).log_p);
     return std::log(std::max(20 * p - 1, 1e-12) / 19);
   });
   EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+// p-values of flips that end with the third vector to reach Q, or after 39.
+template <class Change>
+tests::Calibration calibrated_early_stop(Change change) {
+  return calibrate({857, 4000, Shape::at_most_uniform}, [&](Philox& random) {
+    return change(sign_flip(null_matrix(random), {.share = 0.1, .flips = 39, .enough = 3}, random));
+  });
+}
+
+TEST(ImageSignFlip, EndingWhenEnoughHaveReachedKeepsTheLevel) {
+  const auto calibration = calibrated_early_stop([](const SignFlip& flip) { return flip.log_p; });
+  EXPECT_TRUE(calibration.ok) << calibration.text();
+}
+
+// The share of the vectors drawn, as if their number had been fixed: it may end where it suits.
+TEST(ImageSignFlip, CountingWhatReachedBeforeTheLastIsCaught) {
+  const auto calibration = calibrated_early_stop([](const SignFlip& flip) {
+    return flip.flips < 39 ? flip.log_p + std::log(2.0 / 3) : flip.log_p;
+  });
+  EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+// One vector fewer, and they are not yet enough: the same share of ranks.
+TEST(ImageSignFlip, EndsWithTheVectorThatMakesThemEnough) {
+  Philox random(858);
+  const FlipMatrix matrix = null_matrix(random);
+  Philox again = random;
+  const SignFlip early = sign_flip(matrix, {.share = 0.1, .flips = 5000, .enough = 50}, random);
+  ASSERT_LT(early.flips, 5000);
+  EXPECT_DOUBLE_EQ(early.log_p, std::log(50 / static_cast<double>(early.flips)));
+  const SignFlip all =
+      sign_flip(matrix, {.share = 0.1, .flips = early.flips - 1, .enough = 50}, again);
+  EXPECT_EQ(all.flips, early.flips - 1);
+  EXPECT_DOUBLE_EQ(all.log_p, early.log_p);
 }
 
 TEST(ImageSignFlip, FlippingElementsByThemselvesIsCaught) {
@@ -108,7 +144,7 @@ TEST(ImageSignFlip, ABiasIsFoundAtTheSmallestPossiblePValue) {
   const SignFlip flip = sign_flip(matrix, 1e-4);
   EXPECT_NEAR(flip.log_p, -19 * std::log(2), 1e-12);
   EXPECT_EQ(flip.exactness, Exactness::asymptotic);
-  const SignFlip drawn = sign_flip(matrix, {.share = 1e-3, .flips = 5000}, random);
+  const SignFlip drawn = sign_flip(matrix, {.share = 1e-3, .flips = 5000, .enough = 100}, random);
   EXPECT_EQ(drawn.method, FlipMethod::monte_carlo);
   EXPECT_NEAR(drawn.log_p, -std::log(5001), 1e-12);
 }
@@ -117,7 +153,8 @@ TEST(ImageSignFlip, MonteCarloConvergesToEnumeration) {
   Philox random(854);
   const FlipMatrix matrix = null_matrix(random);
   const double exact = std::exp(sign_flip(matrix, 0.01).log_p);
-  const double drawn = std::exp(sign_flip(matrix, {.share = 0.01, .flips = 20000}, random).log_p);
+  const double drawn =
+      std::exp(sign_flip(matrix, {.share = 0.01, .flips = 20000, .enough = 20000}, random).log_p);
   EXPECT_NEAR(drawn, exact, 4.5 * std::sqrt(0.25 / 20000));  // false alarm below 1e-5
 }
 
@@ -131,8 +168,11 @@ TEST(ImageSignFlip, TooFewReplicatesOrFlipsAreRefusedWithTheReason) {
   } catch (const std::domain_error& error) {
     EXPECT_NE(std::string(error.what()).find("2^(1 - replicates)"), std::string::npos);
   }
-  EXPECT_THROW(sign_flip(matrix, {.share = 0.01, .flips = 198}, random), std::domain_error);
-  EXPECT_NO_THROW(sign_flip(matrix, {.share = 0.01, .flips = 199}, random));
+  EXPECT_THROW(sign_flip(matrix, {.share = 0.01, .flips = 198, .enough = 9}, random),
+               std::domain_error);
+  EXPECT_NO_THROW(sign_flip(matrix, {.share = 0.01, .flips = 199, .enough = 9}, random));
+  EXPECT_THROW(sign_flip(matrix, {.share = 0.01, .flips = 199, .enough = 0}, random),
+               std::domain_error);
   EXPECT_THROW(sign_flip(matrix, 0.0), std::domain_error);
   EXPECT_THROW(sign_flip(null_matrix(random, 26), 0.01), std::domain_error);
   const OwnedStack a = correlated_stack(random, 16);

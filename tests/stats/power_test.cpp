@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include "stats/planning.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
@@ -114,6 +117,37 @@ TEST(Power, DetectableEffectsReachTheirPower) {
   EXPECT_NEAR(ks_power_bound({.two_samples = true, .rates = rates}, 1000,
                              ks_detectable({.two_samples = true, .rates = rates}, 1000)),
               .9, 1e-9);
+}
+
+// A guess saves questions and changes no bit, be it right or wrong.
+TEST(Power, AGuessChangesNoBitOfTheSmallestEffect) {
+  constexpr double smallest = 0.7364916731037085;
+  int asked = 0;
+  const auto enough = [&](double x) {
+    ++asked;
+    return x >= smallest;
+  };
+  const double plain = planning::smallest_effect(enough, 0.1, 0.03);
+  EXPECT_GE(plain, smallest);
+  EXPECT_LT(plain, smallest * (1 + 2e-12));
+  EXPECT_GT(std::exchange(asked, 0), 30);
+  EXPECT_EQ(planning::smallest_effect(enough, 0.1, 0.03, smallest * (1 + 1e-15)), plain);
+  EXPECT_EQ(asked, 2);
+  for (const double wrong : {smallest * (1 - 1e-9), smallest * (1 + 1e-9), -1.0, 0.0, 1e308,
+                             std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(planning::smallest_effect(enough, 0.1, 0.03, wrong), plain) << wrong;
+  }
+}
+
+// Few questions are asked where the guess is right: of t and of chi-square it is.
+TEST(Power, ASecantRootIsThereWhereTheFunctionIsNearlyLinear) {
+  int asked = 0;
+  const auto function = [&](double x) {
+    ++asked;
+    return std::sinh((x - 3) / 4) / 2;
+  };
+  EXPECT_NEAR(planning::secant_root(function, {.root = 3.3, .slope = 0.12}), 3, 3e-12);
+  EXPECT_LE(asked, 5);
 }
 
 TEST(Power, AReferenceThatIsTooPoorAnswersNothing) {
