@@ -40,19 +40,4 @@ void first_words(StreamKey key, std::uint64_t first, std::span<FirstWords> words
   }
 }
 
-void LongStream::refill() {
-  const PhiloxKey key = halves_of(key_);
-  for (std::size_t done = 0; done < words_.size(); done += 2 * PhiloxLanes::together) {
-    PhiloxLanes draws = PhiloxLanes::draws_from({draw_, 0, static_cast<std::uint32_t>(observation_),
-                                                 static_cast<std::uint32_t>(observation_ >> 32)});
-    draws.encipher(key);
-    draws.words([&](std::size_t draw, std::uint64_t one, std::uint64_t two) {
-      words_[done + 2 * draw] = one;
-      words_[done + 2 * draw + 1] = two;
-    });
-    draw_ += PhiloxLanes::together;
-  }
-  next_ = 0;
-}
-
 }  // namespace assay

@@ -29,30 +29,4 @@ class FirstWords {
 /// other's products, 20 ns a stream; eight streams side by side take 5 ns each.
 void first_words(StreamKey key, std::uint64_t first, std::span<FirstWords> words);
 
-/// The words of one stream for who draws thousands of them: those of Stream(key, observation), bit
-/// by bit, in a quarter of the time.
-class LongStream {
- public:
-  using result_type = Stream::result_type;
-
-  LongStream(StreamKey key, std::uint64_t observation) : key_(key), observation_(observation) {}
-
-  static constexpr result_type min() { return Stream::min(); }
-  static constexpr result_type max() { return Stream::max(); }
-
-  result_type operator()() {
-    if (next_ == words_.size()) refill();
-    return words_[next_++];
-  }
-
- private:
-  void refill();
-
-  StreamKey key_;
-  std::uint64_t observation_;
-  std::uint32_t draw_ = 0;  // the next of the stream's blocks of two words
-  std::array<std::uint64_t, 64> words_{};
-  std::size_t next_ = words_.size();
-};
-
 }  // namespace assay

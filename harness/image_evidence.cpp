@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/first_words.h"
+#include "estimators/stream.h"
 #include "harness/inversion.h"
 #include "stats/errors.h"
 #include "stats/image_equivalence.h"
@@ -102,8 +102,8 @@ void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test,
   if (least_log_p(replicates, flips) >= stats::energy_notice(outcome.family)) return;
   const stats::FlipMatrix matrix =
       varying.with([](const auto& a, const auto& b) { return flips_of(a, b); });
-  LongStream random(stream_key(test.flips.bits, "sign flips", "", 0),
-                    varying.first().images.size());
+  Stream random(stream_key(test.flips.bits, "sign flips", "", 0), varying.first().images.size());
+  random.draw_ahead();
   const stats::FlipPlan plan{share, static_cast<std::uint64_t>(flips), enough_flips};
   const stats::SignFlip flip = replicates <= most_enumerated
                                    ? stats::sign_flip(matrix, share)

@@ -37,15 +37,6 @@ TEST(FirstWords, AreReadAsAStreamReads) {
   }
 }
 
-TEST(LongStream, HasTheWordsOfTheStream) {
-  const StreamKey key = stream_key(3, "family/plugin", "{}", 0);
-  for (const std::uint64_t observation : {std::uint64_t{64}, std::uint64_t{0x1'2345'6789}}) {
-    Stream stream(key, observation);
-    LongStream same(key, observation);
-    for (int i = 0; i < 1000; ++i) ASSERT_EQ(same(), stream());
-  }
-}
-
 // Announced or not, in order or not: the same bits.
 TEST(FirstWords, GiveALawTheObservationsThatItHasOneByOne) {
   for (const char* law : {"bernoulli(0.3)", "exponential(2)", "lognormal(1, 0.5)", "normal(3, 2)",
