@@ -7,6 +7,7 @@
 
 #include "estimators/first_words.h"
 #include "harness/inversion.h"
+#include "harness/parallel.h"
 #include "stats/errors.h"
 #include "stats/image_equivalence.h"
 #include "stats/image_pyramid.h"
@@ -102,8 +103,11 @@ template <class Real>
 stats::ImageFamily family_of(const VaryingPart<Real>& varying, const ImageTest& test,
                              ImageOutcome& outcome) {
   outcome.z.resize(varying.first().extent.elements());
-  stats::PyramidOptions options{
-      .energy_log_p = {}, .smallest = test.smallest_cell, .weights = test.weights, .z = outcome.z};
+  stats::PyramidOptions options{.energy_log_p = {},
+                                .smallest = test.smallest_cell,
+                                .weights = test.weights,
+                                .z = outcome.z,
+                                .for_each = on_all_threads};
   if (!test.independent) {
     const std::optional<double> log_p = flipped_energy(varying, test);
     outcome.by_sign_flips = true;
@@ -140,8 +144,9 @@ void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
 
 template <class Real>
 stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative) {
-  const stats::ImageDistance distance = pair.with(
-      [](const auto& first, const auto& second) { return stats::image_distance(first, second); });
+  const stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
+    return stats::image_distance(first, second, on_all_threads);
+  });
   if (!relative) {
     return stats::with_norm(distance, static_cast<double>(pair.extent().elements()));
   }
@@ -163,7 +168,7 @@ template <class Real>
 stats::Moments means_of(const stats::ImageStack<Real>& stack) {
   const double elements = static_cast<double>(stack.extent.elements());
   stats::Moments moments;
-  for (const double sum : stats::image_sums(stack)) moments.add(sum / elements);
+  for (const double sum : stats::image_sums(stack, on_all_threads)) moments.add(sum / elements);
   return moments;
 }
 

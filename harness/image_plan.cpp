@@ -8,6 +8,7 @@
 #include "harness/critical.h"
 #include "harness/frozen.h"
 #include "harness/image_views.h"
+#include "harness/parallel.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "stats/image_cell_skewness.h"
@@ -176,7 +177,7 @@ std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, c
   for (std::uint64_t count = replicates.first;; count *= 2) {
     pilot.set_replicates(count);
     const std::vector<stats::CellTails> tails =
-        stats::cell_tails(pilot.sides(), level, plan.method.frozen.weights);
+        stats::cell_tails(pilot.sides(), level, plan.method.frozen.weights, on_all_threads);
     if (keeps_level(tails.back()) || 2 * count > replicates.most) {
       plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
       return count;
@@ -199,7 +200,7 @@ PilotImage pilot_image(const stats::ImageStack<Real>& pilot) {
   stats::ImageStack<Real> half[2] = {{pilot.extent, {}}, {pilot.extent, {}}};
   const std::size_t used = pilot.images.size() / 2 * 2;
   for (std::size_t r = 0; r < used; ++r) half[r % 2].images.push_back(pilot.images[r]);
-  const stats::ImageDistance distance = stats::image_distance(half[0], half[1]);
+  const stats::ImageDistance distance = stats::image_distance(half[0], half[1], on_all_threads);
   return {.noise = std::sqrt(distance.bias_variance) * static_cast<double>(used) / 4,
           .squared_norm = distance.squared_norm};
 }
