@@ -2,8 +2,11 @@
 
 #include <openexr.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
+
+#include "render/zip_chunk.h"
 
 namespace assay::render {
 
@@ -72,11 +75,32 @@ class ScanLines {
     const bool first = !initialized_;
     initialized_ = true;
     if (!point_channels(row, static_cast<std::size_t>(chunk.height))) return false;
-    if (first &&
-        exr_decoding_choose_default_routines(context_, to_.part, &pipeline_) != EXR_ERR_SUCCESS) {
-      return false;
-    }
+    if (first && !choose_routines()) return false;
     return exr_decoding_run(context_, to_.part, &pipeline_) == EXR_ERR_SUCCESS;
+  }
+
+  bool choose_routines() {
+    pipeline_.decoding_user_data = &zip_;
+    const bool chosen =
+        exr_decoding_choose_default_routines(context_, to_.part, &pipeline_) == EXR_ERR_SUCCESS;
+    pipeline_.decompress_fn = inflate;
+    return chosen;
+  }
+
+  // A chunk that compression would have made larger is stored as it is; the core has made room.
+  static exr_result_t inflate(exr_decode_pipeline_t* pipeline) {
+    const auto* const packed = static_cast<const std::uint8_t*>(pipeline->packed_buffer);
+    auto* const unpacked = static_cast<std::uint8_t*>(pipeline->unpacked_buffer);
+    const exr_chunk_info_t& chunk = pipeline->chunk;
+    if (packed == nullptr || unpacked == nullptr) return EXR_ERR_INVALID_ARGUMENT;
+    if (chunk.packed_size == chunk.unpacked_size) {
+      if (packed != unpacked) std::copy_n(packed, chunk.packed_size, unpacked);
+      return EXR_ERR_SUCCESS;
+    }
+    auto& zip = *static_cast<ZipChunk*>(pipeline->decoding_user_data);
+    return zip.inflate({packed, chunk.packed_size}, {unpacked, chunk.unpacked_size})
+               ? EXR_ERR_SUCCESS
+               : EXR_ERR_CORRUPT_CHUNK;
   }
 
   // Where this chunk's texels go; those of channels that nobody asks for go nowhere.
@@ -104,6 +128,7 @@ class ScanLines {
   }
 
   const ScanLineTexels& to_;
+  ZipChunk zip_;
   exr_context_t context_ = nullptr;
   exr_decode_pipeline_t pipeline_ = EXR_DECODE_PIPELINE_INITIALIZER;
   std::int32_t lines_ = 0;

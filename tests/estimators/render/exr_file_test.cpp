@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <filesystem>
 
 #include "estimators/render/exr_scan_lines.h"
@@ -104,6 +106,31 @@ TEST_F(ExrFiles, ReadsSomeChannelsOfManyLines) {
       }
     }
   }
+}
+
+// What compression would make larger is stored as it is: the second chunk here, not the first.
+TEST_F(ExrFiles, ReadsChunksThatDoNotCompress) {
+  const Imath::Box2i box({0, 0}, {4, 31});
+  std::vector<float> texels(5 * 32, 1.0F);
+  std::uint32_t bits = 1;
+  for (std::size_t i = 5 * 16; i < texels.size(); ++i) {
+    bits = bits * 1664525 + 1013904223;
+    texels[i] = std::bit_cast<float>(bits & 0xbfffffff);  // finite
+  }
+  Imf::Header header(box, box);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.channels().insert("R", Imf::Channel(Imf::FLOAT));
+  Imf::FrameBuffer buffer;
+  buffer.insert("R", Imf::Slice::Make(Imf::FLOAT, texels.data(), box, 4, 20));
+  {
+    Imf::OutputFile output(file_.c_str(), header);
+    output.setFrameBuffer(buffer);
+    output.writePixels(32);
+  }
+  std::vector<float> read(texels.size());
+  EXPECT_TRUE(
+      render::read_scan_lines(file_, {.channels = {{"R", read.data()}}, .width = 5, .height = 32}));
+  EXPECT_EQ(read, texels);
 }
 
 TEST_F(ExrFiles, OfPlainFloatsAreReadByTheCore) {
