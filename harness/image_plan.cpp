@@ -56,7 +56,7 @@ struct Cumulants {
 Cumulants cumulants_of(const stats::Moments& pilot, double primaries, double factor) {
   if (pilot.count < 3 || !(pilot.m2 > 0)) return {};
   const double variance = pilot.variance();
-  const double third = pilot.skewness() * std::pow(variance, 1.5);
+  const double third = pilot.skewness() * variance * std::sqrt(variance);
   return {factor * factor * variance / primaries,
           factor * factor * factor * third / (primaries * primaries)};
 }
@@ -78,7 +78,9 @@ double mean_skewness(const Question& question, const Plan& plan, const Pilots& p
       total.variance += part.variance;
       total.third += part.third;
     }
-    if (total.variance > 0) sum += std::abs(total.third) / std::pow(total.variance, 1.5);
+    if (total.variance > 0) {
+      sum += std::abs(total.third) / (total.variance * std::sqrt(total.variance));
+    }
   }
   return sum / static_cast<double>(elements);
 }
