@@ -7,6 +7,7 @@
 
 #include "estimators/stream.h"
 #include "harness/inversion.h"
+#include "harness/parallel.h"
 #include "stats/errors.h"
 #include "stats/image_equivalence.h"
 #include "stats/image_pyramid.h"
@@ -119,7 +120,8 @@ void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test,
   const stats::PyramidOptions options{.energy = test.independent,
                                       .smallest = test.smallest_cell,
                                       .weights = test.weights,
-                                      .z = outcome.z};
+                                      .z = outcome.z,
+                                      .for_each = on_all_threads};
   outcome.family = varying.with(
       [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
   if (!test.independent) add_flipped_energy(varying, test, outcome);
@@ -151,8 +153,9 @@ void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
 
 template <class Real>
 stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative) {
-  const stats::ImageDistance distance = pair.with(
-      [](const auto& first, const auto& second) { return stats::image_distance(first, second); });
+  const stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
+    return stats::image_distance(first, second, on_all_threads);
+  });
   if (!relative) {
     return stats::with_norm(distance, static_cast<double>(pair.extent().elements()));
   }
@@ -174,7 +177,7 @@ template <class Real>
 stats::Moments means_of(const stats::ImageStack<Real>& stack) {
   const double elements = static_cast<double>(stack.extent.elements());
   stats::Moments moments;
-  for (const double sum : stats::image_sums(stack)) moments.add(sum / elements);
+  for (const double sum : stats::image_sums(stack, on_all_threads)) moments.add(sum / elements);
   return moments;
 }
 

@@ -8,6 +8,7 @@
 #include "harness/critical.h"
 #include "harness/frozen.h"
 #include "harness/image_views.h"
+#include "harness/parallel.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "stats/image_cell_skewness.h"
@@ -55,7 +56,7 @@ struct Cumulants {
 Cumulants cumulants_of(const stats::Moments& pilot, double primaries, double factor) {
   if (pilot.count < 3 || !(pilot.m2 > 0)) return {};
   const double variance = pilot.variance();
-  const double third = pilot.skewness() * std::pow(variance, 1.5);
+  const double third = pilot.skewness() * variance * std::sqrt(variance);
   return {factor * factor * variance / primaries,
           factor * factor * factor * third / (primaries * primaries)};
 }
@@ -77,7 +78,9 @@ double mean_skewness(const Question& question, const Plan& plan, const Pilots& p
       total.variance += part.variance;
       total.third += part.third;
     }
-    if (total.variance > 0) sum += std::abs(total.third) / std::pow(total.variance, 1.5);
+    if (total.variance > 0) {
+      sum += std::abs(total.third) / (total.variance * std::sqrt(total.variance));
+    }
   }
   return sum / static_cast<double>(elements);
 }
@@ -176,7 +179,7 @@ std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, c
   for (std::uint64_t count = replicates.first;; count *= 2) {
     pilot.set_replicates(count);
     const std::vector<stats::CellTails> tails =
-        stats::cell_tails(pilot.sides(), level, plan.method.frozen.weights);
+        stats::cell_tails(pilot.sides(), level, plan.method.frozen.weights, on_all_threads);
     if (keeps_level(tails.back()) || 2 * count > replicates.most) {
       plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
       return count;
@@ -199,7 +202,7 @@ PilotImage pilot_image(const stats::ImageStack<Real>& pilot) {
   stats::ImageStack<Real> half[2] = {{pilot.extent, {}}, {pilot.extent, {}}};
   const std::size_t used = pilot.images.size() / 2 * 2;
   for (std::size_t r = 0; r < used; ++r) half[r % 2].images.push_back(pilot.images[r]);
-  const stats::ImageDistance distance = stats::image_distance(half[0], half[1]);
+  const stats::ImageDistance distance = stats::image_distance(half[0], half[1], on_all_threads);
   return {.noise = std::sqrt(distance.bias_variance) * static_cast<double>(used) / 4,
           .squared_norm = distance.squared_norm};
 }

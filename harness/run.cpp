@@ -8,6 +8,7 @@
 #include "harness/interrupt.h"
 #include "harness/ledger.h"
 #include "harness/looks.h"
+#include "harness/parallel.h"
 #include "harness/planned_run.h"
 #include "harness/record_of.h"
 
@@ -48,8 +49,10 @@ void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<Suit
 
 }  // namespace
 
-reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
-                    Progress& progress) {
+namespace {
+
+reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions& options,
+                             Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const std::string started = utc_now();
   if (!options.ledger.empty()) require_ledger(options.ledger, suites);
@@ -74,6 +77,13 @@ reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
     note_ledger(record, planned.suites, options);
   }
   return record;
+}
+
+}  // namespace
+
+reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
+                    Progress& progress) {
+  return with_threads(options.threads, [&] { return run_in_arena(suites, options, progress); });
 }
 
 int exit_code(const reports::Record& record, InconclusivePolicy policy) {

@@ -1,15 +1,13 @@
 #include "harness/scheduler.h"
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_pipeline.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 
 #include "harness/interrupt.h"
+#include "harness/parallel.h"
 
 namespace assay::harness {
 namespace {
@@ -90,10 +88,7 @@ std::uint64_t work(const Pool& pool, std::uint64_t observations) {
 
 void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& drawing,
               Progress& progress) {
-  const unsigned count = drawing.threads != 0
-                             ? drawing.threads
-                             : static_cast<unsigned>(tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
+  const unsigned count = threads_of(drawing.threads);
   std::uint64_t total = 0;
   for (const auto& pool : pools) total += work(*pool, pool->requested() - pool->drawn());
   progress.begin(drawing.phase, total);
@@ -116,9 +111,7 @@ void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& dr
     if (!pools[drawn.pool]->trouble().empty()) tasks.note_trouble(drawn.pool);
     progress.advance(done);
   };
-  // An arena of its own: the limit above holds also where the calling thread is in another.
-  tbb::task_arena arena(static_cast<int>(count));
-  arena.execute([&] {
+  with_threads(drawing.threads, [&] {
     tbb::parallel_pipeline(
         under_way(pools, count),
         tbb::make_filter<void, Task>(tbb::filter_mode::serial_in_order, hand_out) &

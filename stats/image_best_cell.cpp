@@ -29,4 +29,16 @@ void offer(BestCell& best, const ImageFinding& candidate, StudentValue value) {
   best.value = value;
 }
 
+void join(BestCell& best, const BestCell& other) {
+  if (other.windows == 0) return;
+  const double ours = std::abs(best.finding.z);
+  const double theirs = std::abs(other.finding.z);
+  const bool better = best.windows == 0 || theirs > ours ||
+                      (theirs == ours && comes_before(other.finding, best.finding));
+  best.windows += other.windows;
+  if (!better) return;
+  best.finding = other.finding;
+  best.value = other.value;
+}
+
 }  // namespace assay::stats

@@ -18,4 +18,7 @@ struct BestCell {
 // can be the largest.
 void offer(BestCell& best, const ImageFinding& candidate, StudentValue value);
 
+// As if the other's cells had been offered here.
+void join(BestCell& best, const BestCell& other);
+
 }  // namespace assay::stats

@@ -10,7 +10,9 @@
 #include "stats/image_halves.h"
 #include "stats/image_moments.h"
 #include "stats/image_windows.h"
+#include "stats/level_factors.h"
 #include "stats/tails.h"
+#include "stats/vector_copies.h"
 
 namespace assay::stats {
 namespace {
@@ -22,24 +24,28 @@ using Groups = std::vector<WindowGroup>;
 // Choices of weights that are looked at, where the pilot has so many.
 constexpr std::size_t most_choices = 8;
 
-// Of the numerator of a studentised sum.
-struct Cumulants {
-  double variance = 0;
-  double third = 0;
-  double third_variance = 0;  // of the estimate of `third`, were the law normal
+// One side's part in them.
+struct SidePart {
+  const std::vector<CellMoments>& cells;
+  double count;  // images that the moments are of
+  double factor;
+  double replicates;
 };
 
-void add_side(std::vector<Cumulants>& cells, const std::vector<CellMoments>& pilot,
-              const CellPilot& side) {
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto& [count, m2, m3] = pilot[i];
-    if (!(m2 > 0)) continue;
+ASSAY_VECTOR_COPIES void add_side(std::vector<Cumulants>& cells, const SidePart& side) {
+  const CellMoments* const moments = side.cells.data();
+  Cumulants* const __restrict sum = cells.data();
+  const std::size_t size = cells.size();
+  const double count = side.count;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double m2 = moments[i].m2;
     const double deviation = side.factor * std::sqrt(m2 / (count - 1));
-    const double skewness = std::sqrt(count / m2) * (m3 / m2);
+    const double skewness = std::sqrt(count / m2) * (moments[i].m3 / m2);
     const double scale = deviation * deviation * deviation / (side.replicates * side.replicates);
-    cells[i].variance += deviation * deviation / side.replicates;
-    cells[i].third += scale * skewness;
-    cells[i].third_variance += 6 / count * scale * scale;
+    const bool varied = m2 > 0;
+    sum[i].variance += varied ? deviation * deviation / side.replicates : 0.0;
+    sum[i].third += varied ? scale * skewness : 0.0;
+    sum[i].third_variance += varied ? 6 / count * scale * scale : 0.0;
   }
 }
 
@@ -103,40 +109,6 @@ std::vector<bool> varied_windows(const ImageExtent& extent, const Groups& groups
   return varied;
 }
 
-// Two-sided normal, of probability 1e-4.
-constexpr double scatter_quantile = 3.9;
-
-// The mean of one size's factors.
-class FactorMean {
- public:
-  FactorMean(double x, std::size_t windows)
-      : scale_(x * x * x / 3), windows_(static_cast<double>(windows)) {}
-
-  void add(const Cumulants& cell) {
-    if (!(cell.variance > 0)) return;  // the rest of the pilot did not vary there
-    const double unit = scale_ / std::pow(cell.variance, 1.5);
-    const double scatter = unit * unit * cell.third_variance;
-    const double centred = std::exp(-scatter / 2);
-    ++count_;
-    sum_ += std::cosh(unit * cell.third) * centred;
-    excess_ += std::cosh(scatter_quantile * std::sqrt(scatter)) * centred - 1;
-  }
-
-  CellTails of_size(std::uint32_t size) const {
-    if (count_ == 0) return {.size = size};
-    // Channels may depend on each other, cells count.
-    return {
-        .size = size, .factor = sum_ / count_, .scatter = excess_ / count_ / std::sqrt(windows_)};
-  }
-
- private:
-  double scale_;
-  double windows_;
-  double sum_ = 0;
-  double excess_ = 0;
-  double count_ = 0;
-};
-
 Groups aligned_groups(const ImageExtent& extent) {
   Groups groups = window_groups(extent, 1 - energy_share);
   std::erase_if(groups, [](const WindowGroup& group) { return group.grid != Grid::aligned; });
@@ -146,53 +118,62 @@ Groups aligned_groups(const ImageExtent& extent) {
 // Of every size of cell.
 class FactorMeans {
  public:
-  FactorMeans(const ImageExtent& extent, double level)
-      : extent_(extent), groups_(aligned_groups(extent)) {
+  FactorMeans(const ImageExtent& extent, double level, const ForEach& for_each)
+      : extent_(extent), groups_(aligned_groups(extent)), for_each_(for_each) {
     for (const WindowGroup& group : groups_) {
       const double cells = static_cast<double>(group.windows.size() * extent.channels);
       const double tail = level * group.share / cells / 2;
-      means_.emplace_back(normal_quantile({Tail::upper, std::log(tail)}), group.windows.size());
+      factors_.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
     }
   }
 
   void add(std::span<const CellPilot> sides, const Weights& weights) {
-    std::vector<std::vector<std::vector<CellMoments>>> moments;  // of each side's channels
+    std::vector<std::vector<Cumulants>> cells(extent_.channels);
     for (const CellPilot& side : sides) {
       const auto of_stack = [&](const auto& stack) {
         const WeightedImages images{stack, weights.value, step_of(side), weights.choice};
-        return cell_moments(images, groups_);
+        const double count = static_cast<double>(images.taken().size());
+        const auto moments = cell_moments(images, groups_, for_each_);
+        for_each_(extent_.channels, [&](std::size_t c) {
+          cells[c].resize(moments[c].size());
+          add_side(cells[c], {moments[c], count, side.factor, side.replicates});
+        });
       };
-      moments.push_back(std::visit(of_stack, side.stack));
+      std::visit(of_stack, side.stack);
     }
     for (std::size_t c = 0; c < extent_.channels; ++c) {
-      const std::vector<bool> varied = varied_windows(extent_, groups_, weights.value, c);
-      std::vector<Cumulants> cells(varied.size());
-      for (std::size_t s = 0; s < sides.size(); ++s) add_side(cells, moments[s][c], sides[s]);
-      add_cells(cells, varied);
+      add_cells(cells[c], varied_windows(extent_, groups_, weights.value, c));
     }
   }
 
   std::vector<CellTails> tails() const {
     std::vector<CellTails> tails;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      tails.push_back(means_[g].of_size(groups_[g].size));
+      CellTails& tail = tails.emplace_back();
+      tail.size = groups_[g].size;
+      if (factors_[g].count() == 0) continue;
+      tail.factor = factors_[g].factor();
+      // Channels may depend on each other, cells count.
+      const double cells = static_cast<double>(groups_[g].windows.size());
+      tail.scatter = factors_[g].excess() / std::sqrt(cells);
     }
     return tails;
   }
 
  private:
   void add_cells(const std::vector<Cumulants>& cells, const std::vector<bool>& varied) {
-    std::size_t window = 0;
+    std::size_t first = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      for (std::size_t i = 0; i < groups_[g].windows.size(); ++i, ++window) {
-        if (varied[window]) means_[g].add(cells[window]);
-      }
+      const std::size_t count = groups_[g].windows.size();
+      factors_[g].add(std::span(cells).subspan(first, count), varied, first);
+      first += count;
     }
   }
 
   ImageExtent extent_;
   Groups groups_;
-  std::vector<FactorMean> means_;
+  const ForEach& for_each_;
+  std::vector<LevelFactors> factors_;  // of each group
 };
 
 void check_sides(const char* function, std::span<const CellPilot> sides) {
@@ -210,14 +191,14 @@ std::vector<double> cell_weights(std::span<const CellPilot> sides) {
 }
 
 std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
-                                  std::span<const double> weights) {
+                                  std::span<const double> weights, const ForEach& for_each) {
   check::inside_unit({function_name, "level"}, level);
   check_sides(function_name, sides);
   const ImageExtent& extent = extent_of(sides[0].stack);
   if (!weights.empty() && weights.size() != extent.elements()) {
     check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
   }
-  FactorMeans means(extent, level);
+  FactorMeans means(extent, level, for_each);
   if (!weights.empty()) {
     means.add(sides, {weights, {}});
   } else {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "stats/for_each.h"
 #include "stats/image.h"
 
 namespace assay::stats {
@@ -40,7 +41,8 @@ struct CellTails {
 // Throws std::domain_error as image_stack does, for different extents, and for a level outside
 // (0, 1), or weights of another number than the elements.
 std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
-                                  std::span<const double> weights = {});
+                                  std::span<const double> weights = {},
+                                  const ForEach& for_each = one_by_one);
 
 // Weights for image_pyramid.h: 1 / sqrt of the difference's variance at each element, steadied by
 // its 3 x 3 neighbours; 0 where nothing varied. Throws std::domain_error as cell_tails does.

@@ -9,6 +9,7 @@
 
 #include "stats/check.h"
 #include "stats/errors.h"
+#include "stats/image_jackknife.h"
 #include "stats/image_moments.h"
 #include "stats/tails.h"
 #include "stats/vector_copies.h"
@@ -16,14 +17,7 @@
 namespace assay::stats {
 namespace {
 
-constexpr std::size_t block_size = 512;
-using Block = std::array<double, block_size>;
-
-// Means and squared errors of the elements of a block.
-struct Estimates {
-  Block mean{};
-  Block squared_error{};
-};
+using namespace jackknifed;
 
 struct LeftOut {
   const Block& mean;
@@ -113,111 +107,6 @@ class ReferenceBlock {
   Estimates all_;
 };
 
-// Sums over elements of one or more terms.
-template <std::size_t count>
-using Sums = std::array<double, count>;
-
-// The terms of a block, the first kind of all its elements, then the second.
-template <std::size_t count>
-using Terms = std::array<Block, count>;
-
-// Covariance of two jackknifed sums: (n - 1) / n times the sum of products about the means.
-template <std::size_t count>
-double jackknife_covariance(const std::vector<Sums<count>>& values, std::size_t i, std::size_t j) {
-  if (values.empty()) return 0;
-  const double n = static_cast<double>(values.size());
-  Sums<count> mean{};
-  for (const Sums<count>& value : values) {
-    for (std::size_t k = 0; k < count; ++k) mean[k] += value[k] / n;
-  }
-  double products = 0;
-  for (const Sums<count>& value : values) products += (value[i] - mean[i]) * (value[j] - mean[j]);
-  return products * (n - 1) / n;
-}
-
-// The sums over elements of the terms of (estimate of a, estimate of b), and without each
-// replicate.
-template <std::size_t count>
-struct Jackknife {
-  Sums<count> whole{};
-  std::vector<Sums<count>> without_a;
-  std::vector<Sums<count>> without_b;
-
-  double covariance(std::size_t i, std::size_t j) const {
-    return jackknife_covariance(without_a, i, j) + jackknife_covariance(without_b, i, j);
-  }
-  double degrees() const {
-    const std::size_t fewest =
-        without_b.empty() ? without_a.size() : std::min(without_a.size(), without_b.size());
-    return static_cast<double>(fewest - 1);
-  }
-};
-
-// Sums of several replicates take their terms in step: each in the order of the elements, but none
-// waits for the other's addition.
-constexpr std::size_t in_step = 8;
-
-template <std::size_t count>
-using Step = std::array<Terms<count>, in_step>;
-
-template <std::size_t count>
-void add_in_step(std::span<Sums<count>> sums, const Step<count>& terms, std::size_t kind,
-                 std::size_t size) {
-  std::array<double, in_step> sum{};
-  for (std::size_t k = 0; k < sums.size(); ++k) sum[k] = sums[k][kind];
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t k = 0; k < in_step; ++k) sum[k] += terms[k][kind][i];
-  }
-  for (std::size_t k = 0; k < sums.size(); ++k) sums[k][kind] = sum[k];
-}
-
-// What adds up without each replicate in turn, of as many kinds of terms. `terms_without` fills in
-// the terms without replicate r.
-template <std::size_t count, class TermsWithout>
-void add_without(std::vector<Sums<count>>& sums, std::size_t kinds, std::size_t size,
-                 Step<count>& step, const TermsWithout& terms_without) {
-  for (std::size_t r = 0; r < sums.size(); r += in_step) {
-    const auto some = std::span(sums).subspan(r, std::min(in_step, sums.size() - r));
-    for (std::size_t k = 0; k < some.size(); ++k) terms_without(r + k, step[k]);
-    for (std::size_t kind = 0; kind < kinds; ++kind) add_in_step(some, step, kind, size);
-  }
-}
-
-template <std::size_t count, class First, class Second, class Term>
-Jackknife<count> jackknife(std::size_t elements, First a, Second b, const Term& term) {
-  Jackknife<count> sums;
-  sums.without_a.resize(a.left_out());
-  sums.without_b.resize(b.left_out());
-  const auto step = std::make_unique<Step<count>>();
-  const auto one = std::make_unique<Estimates>();
-  for (std::size_t first = 0; first < elements; first += block_size) {
-    const std::size_t size = std::min(block_size, elements - first);
-    a.load(first, size);
-    b.load(first, size);
-    term(a.all(), b.all(), (*step)[0], size);
-    for (std::size_t kind = 0; kind < count; ++kind) {
-      add_in_step(std::span(&sums.whole, 1), *step, kind, size);
-    }
-    add_without(sums.without_a, Term::kinds_of_a, size, *step,
-                [&](std::size_t r, Terms<count>& terms) {
-                  a.without(r, *one);
-                  term(*one, b.all(), terms, size);
-                });
-    add_without(sums.without_b, count, size, *step, [&](std::size_t r, Terms<count>& terms) {
-      b.without(r, *one);
-      term(a.all(), *one, terms, size);
-    });
-  }
-  for (Sums<count>& without : sums.without_a) {
-    std::copy(sums.whole.begin() + Term::kinds_of_a, sums.whole.end(),
-              without.begin() + Term::kinds_of_a);
-  }
-  for (const double sum : sums.whole) {
-    if (!std::isfinite(sum)) check::fail({"squared_bias", "sum over the image"}, sum, "finite");
-  }
-  return sums;
-}
-
 ASSAY_VECTOR_COPIES void squared_differences(const Estimates& a, const Estimates& b, Block& out,
                                              std::size_t size) {
   double* const __restrict term = out.data();
@@ -274,9 +163,10 @@ ReferenceBlock block_of(const char* function, const ImageReference& reference) {
 
 template <std::size_t count, class Real, class Second, class Term>
 Jackknife<count> jackknife_of(const char* function, const ImageStack<Real>& a, const Second& b,
-                              const Term& term) {
+                              const Term& term, const ForEach& for_each = one_by_one) {
   check::same_extent(function, a.extent, b.extent);
-  return jackknife<count>(a.extent.elements(), block_of(function, a), block_of(function, b), term);
+  return jackknife<count>(a.extent.elements(), block_of(function, a), block_of(function, b), term,
+                          for_each);
 }
 
 template <class Real, class Second, class Term>
@@ -287,8 +177,8 @@ SquaredBias bias_of(const char* function, const ImageStack<Real>& a, const Secon
 }
 
 template <class Real, class Second>
-ImageDistance distance_of(const ImageStack<Real>& a, const Second& b) {
-  const auto sums = jackknife_of<2>("image_distance", a, b, BiasAndNorm{});
+ImageDistance distance_of(const ImageStack<Real>& a, const Second& b, const ForEach& for_each) {
+  const auto sums = jackknife_of<2>("image_distance", a, b, BiasAndNorm{}, for_each);
   return {.squared_bias = sums.whole[0],
           .squared_norm = sums.whole[1],
           .bias_variance = sums.covariance(0, 0),
@@ -300,7 +190,7 @@ ImageDistance distance_of(const ImageStack<Real>& a, const Second& b) {
 template <class Real, class Second>
 TestResult equivalence_of(const ImageStack<Real>& a, const Second& b, double margin) {
   check::positive({"image_equivalence", "margin"}, margin);
-  return squared_margin_test(distance_of(a, b), margin * margin);
+  return squared_margin_test(distance_of(a, b, one_by_one), margin * margin);
 }
 
 }  // namespace
@@ -332,12 +222,14 @@ Interval squared_bias_interval(const SquaredBias& bias, double confidence) {
 }
 
 template <class Real>
-ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b) {
-  return distance_of(a, b);
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b,
+                             const ForEach& for_each) {
+  return distance_of(a, b, for_each);
 }
 template <class Real>
-ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b) {
-  return distance_of(a, b);
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b,
+                             const ForEach& for_each) {
+  return distance_of(a, b, for_each);
 }
 
 ImageDistance with_norm(ImageDistance distance, double squared_norm) {
@@ -372,8 +264,10 @@ TestResult image_equivalence(const ImageStack<Real>& a, const ImageReference& b,
   template SquaredBias squared_bias(const ImageStack<Real>&, const ImageReference&);               \
   template SquaredBias relative_bias(const ImageStack<Real>&, const ImageStack<Real>&, double);    \
   template SquaredBias relative_bias(const ImageStack<Real>&, const ImageReference&, double);      \
-  template ImageDistance image_distance(const ImageStack<Real>&, const ImageStack<Real>&);         \
-  template ImageDistance image_distance(const ImageStack<Real>&, const ImageReference&);           \
+  template ImageDistance image_distance(const ImageStack<Real>&, const ImageStack<Real>&,          \
+                                        const ForEach&);                                           \
+  template ImageDistance image_distance(const ImageStack<Real>&, const ImageReference&,            \
+                                        const ForEach&);                                           \
   template TestResult image_equivalence(const ImageStack<Real>&, const ImageStack<Real>&, double); \
   template TestResult image_equivalence(const ImageStack<Real>&, const ImageReference&, double)
 ASSAY_FOR_REAL(float);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "stats/for_each.h"
 #include "stats/image.h"
 #include "stats/test_result.h"
 
@@ -48,9 +49,11 @@ struct ImageDistance {
 
 // Throw std::domain_error as welch_z does.
 template <class Real>
-ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b);
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b,
+                             const ForEach& for_each = one_by_one);
 template <class Real>
-ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b);
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b,
+                             const ForEach& for_each = one_by_one);
 
 // The same with a norm that is a number without error: a margin in units of its root.
 ImageDistance with_norm(ImageDistance distance, double squared_norm);

@@ -110,11 +110,12 @@ GroupsOfSide groups_of_side(const std::vector<WindowGroup>& groups, std::uint32_
 template <class Real>
 class FineTiles {
  public:
-  FineTiles(const FineCells<Real>& cells, std::vector<BestCell>& best, CoarseImages& coarse)
+  FineTiles(const FineCells<Real>& cells, std::size_t band, CoarseImages& coarse)
       : cells_(cells),
         extent_(cells.pair.a.extent),
-        best_(best),
+        best_(cells.groups.size()),
         coarse_(coarse),
+        alternating_(band * extent_.channels * alternations),
         sums_(extent_),
         column_sums_(Tile{extent_}.stride()),
         signed_column_sums_(column_sums_.size()) {
@@ -122,6 +123,8 @@ class FineTiles {
       groups_[k] = groups_of_side(cells.groups, fine_squares[k].side);
     }
   }
+
+  const std::vector<BestCell>& best() const { return best_; }
 
   void take(const Tile& tile) {
     const std::size_t size = Tile::rows * tile.stride();
@@ -209,7 +212,7 @@ class FineTiles {
       const double sign = x % 2 == 0 ? 1 : -1;
       for (std::size_t c = 0; c < extent_.channels; ++c) {
         const std::size_t i = x * extent_.channels + c;
-        double* const channel = to.alternating.data() + c * alternations;
+        double* const channel = to.alternating.data() + alternating_ + c * alternations;
         channel[0] += sign * column_sums_[i];
         channel[1] += signed_column_sums_[i];
         channel[2] += sign * signed_column_sums_[i];
@@ -289,8 +292,9 @@ class FineTiles {
 
   const FineCells<Real>& cells_;
   const ImageExtent& extent_;
-  std::vector<BestCell>& best_;
+  std::vector<BestCell> best_;
   CoarseImages& coarse_;
+  std::size_t alternating_;  // where the band's sums with alternating signs are
   TileSums sums_;
   std::vector<double> column_sums_;
   std::vector<double> signed_column_sums_;
@@ -298,13 +302,17 @@ class FineTiles {
   std::array<GroupsOfSide, fine_squares.size()> groups_;
 };
 
+// Rows of an image are looked at in bands of tiles, which have sums with alternating signs of their
+// own until all are there.
+constexpr std::size_t band_rows = 2 * Tile::rows;
+
 template <class Real>
-CoarseImages empty_blocks(const ImagePair<Real>& pair) {
+CoarseImages empty_blocks(const ImagePair<Real>& pair, std::size_t bands) {
   const ImageExtent& extent = pair.a.extent;
   CoarseImages coarse;
   coarse.extent = {blocks_of(extent.width), blocks_of(extent.height), extent.channels};
   const BlockSums none{std::vector<double>(coarse.extent.elements()),
-                       std::vector<double>(extent.channels * alternations)};
+                       std::vector<double>(bands * extent.channels * alternations)};
   const auto per_half = [](const ImageStack<Real>& stack, std::size_t h) {
     return (stack.images.size() + 1 - h) / halves;
   };
@@ -319,6 +327,20 @@ CoarseImages empty_blocks(const ImagePair<Real>& pair) {
   return coarse;
 }
 
+void add_up_bands(const ImageExtent& extent, CoarseImages& coarse) {
+  const std::size_t size = extent.channels * alternations;
+  for (auto& half : coarse.images) {
+    for (std::vector<BlockSums>& side : half) {
+      for (BlockSums& image : side) {
+        for (std::size_t i = size; i < image.alternating.size(); ++i) {
+          image.alternating[i % size] += image.alternating[i];
+        }
+        image.alternating.resize(size);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 bool is_fine(const WindowGroup& group) {
@@ -328,17 +350,30 @@ bool is_fine(const WindowGroup& group) {
 }
 
 template <class Real>
-CoarseImages offer_fine_cells(const FineCells<Real>& cells, std::vector<BestCell>& best) {
+CoarseImages offer_fine_cells(const FineCells<Real>& cells, std::vector<BestCell>& best,
+                              const ForEach& for_each) {
   const ImageExtent& extent = cells.pair.a.extent;
-  CoarseImages coarse = empty_blocks(cells.pair);
-  FineTiles<Real> tiles(cells, best, coarse);
-  for (std::size_t y = 0; y < extent.height; y += Tile::rows) {
-    for (std::size_t x = 0; x < extent.width; x += Tile::columns) tiles.take({extent, x, y});
+  const std::size_t bands = (extent.height + band_rows - 1) / band_rows;
+  CoarseImages coarse = empty_blocks(cells.pair, bands);
+  std::vector<std::vector<BestCell>> found(bands);
+  for_each(bands, [&](std::size_t band) {
+    FineTiles<Real> tiles(cells, band, coarse);
+    const std::size_t first = band * band_rows;
+    for (std::size_t y = first; y < std::min(first + band_rows, extent.height); y += Tile::rows) {
+      for (std::size_t x = 0; x < extent.width; x += Tile::columns) tiles.take({extent, x, y});
+    }
+    found[band] = tiles.best();
+  });
+  for (const std::vector<BestCell>& of_band : found) {
+    for (std::size_t g = 0; g < best.size(); ++g) join(best[g], of_band[g]);
   }
+  add_up_bands(extent, coarse);
   return coarse;
 }
 
-template CoarseImages offer_fine_cells(const FineCells<float>&, std::vector<BestCell>&);
-template CoarseImages offer_fine_cells(const FineCells<double>&, std::vector<BestCell>&);
+template CoarseImages offer_fine_cells(const FineCells<float>&, std::vector<BestCell>&,
+                                       const ForEach&);
+template CoarseImages offer_fine_cells(const FineCells<double>&, std::vector<BestCell>&,
+                                       const ForEach&);
 
 }  // namespace assay::stats

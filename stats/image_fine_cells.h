@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "stats/for_each.h"
 #include "stats/image_best_cell.h"
 #include "stats/image_halves.h"
 #include "stats/image_windows.h"
@@ -53,6 +54,7 @@ struct FineCells {
 // Offers every fine cell to the best of its group, `best` by group, and returns
 // the blocks.
 template <class Real>
-CoarseImages offer_fine_cells(const FineCells<Real>& cells, std::vector<BestCell>& best);
+CoarseImages offer_fine_cells(const FineCells<Real>& cells, std::vector<BestCell>& best,
+                              const ForEach& for_each = one_by_one);
 
 }  // namespace assay::stats

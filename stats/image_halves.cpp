@@ -106,11 +106,13 @@ std::vector<double> steadied(const ImageExtent& extent, const std::vector<double
 }
 
 template <class Real>
-std::array<Half, halves> halves_of(const ImagePair<Real>& pair) {
-  return {half_of(pair, 0), half_of(pair, 1)};
+std::array<Half, halves> halves_of(const ImagePair<Real>& pair, const ForEach& for_each) {
+  std::array<Half, halves> both;
+  for_each(halves, [&](std::size_t half) { both[half] = half_of(pair, half); });
+  return both;
 }
 
-template std::array<Half, halves> halves_of(const ImagePair<float>&);
-template std::array<Half, halves> halves_of(const ImagePair<double>&);
+template std::array<Half, halves> halves_of(const ImagePair<float>&, const ForEach&);
+template std::array<Half, halves> halves_of(const ImagePair<double>&, const ForEach&);
 
 }  // namespace assay::stats

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "stats/for_each.h"
 #include "stats/image.h"
 
 namespace assay::stats {
@@ -34,6 +35,7 @@ struct ImagePair {
 };
 
 template <class Real>
-std::array<Half, halves> halves_of(const ImagePair<Real>& pair);
+std::array<Half, halves> halves_of(const ImagePair<Real>& pair,
+                                   const ForEach& for_each = one_by_one);
 
 }  // namespace assay::stats

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "stats/for_each.h"
 #include "stats/image.h"
 #include "stats/image_family.h"
 
@@ -53,12 +54,14 @@ ImageFamily image_pyramid(const ZMap& map);
 // both halves then take them. A rare light that half the replicates did not see is weighted like a
 // quiet element by them, and sums of any size are skewed; a larger pilot has seen it.
 //
-// `z` receives welch_z of every element, where it has room for them.
+// `z` receives welch_z of every element, where it has room for them. `for_each` may look at bands
+// of the images at the same time.
 struct PyramidOptions {
   bool energy = true;
   std::uint32_t smallest = 1;  // 1: single elements too
   std::span<const double> weights = {};
   std::span<double> z = {};
+  ForEach for_each = one_by_one;
 };
 // The share of the level that the sum over the whole image has: what a difference that is the same
 // everywhere is found by.

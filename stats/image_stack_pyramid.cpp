@@ -58,9 +58,18 @@ void offer_energy(BestCell& best, const ImageExtent& extent, const std::array<Ha
 }
 
 template <class Real>
-WelchCounts element_map(const ImagePair<Real>& pair, std::span<double> z) {
-  return pair.b != nullptr ? welch_z(pair.a, *pair.b, 0, z)
-                           : welch_z(pair.a, *pair.reference, 0, z);
+WelchCounts element_map(const ImagePair<Real>& pair, std::span<double> z, const ForEach& for_each) {
+  constexpr std::size_t at_a_time = std::size_t{1} << 15;
+  std::vector<WelchCounts> counts((z.size() + at_a_time - 1) / at_a_time);
+  for_each(counts.size(), [&](std::size_t i) {
+    const std::size_t first = i * at_a_time;
+    const std::span<double> some = z.subspan(first, std::min(at_a_time, z.size() - first));
+    counts[i] = pair.b != nullptr ? welch_z(pair.a, *pair.b, first, some)
+                                  : welch_z(pair.a, *pair.reference, first, some);
+  });
+  WelchCounts all;
+  for (const WelchCounts& some : counts) all.merge(some);
+  return all;
 }
 
 template <class Real>
@@ -81,7 +90,7 @@ void add_elements(ImageFamily& family, const ImagePair<Real>& pair, const Pyrami
                   double share) {
   std::vector<double> own(options.z.empty() ? pair.a.extent.elements() : 0);
   const std::span<double> z = options.z.empty() ? std::span(own) : options.z;
-  const WelchCounts counts = element_map(pair, z);
+  const WelchCounts counts = element_map(pair, z, options.for_each);
   family.tested = counts.tested;
   family.equal_constants = counts.equal_constants;
   family.different_constants = counts.different_constants;
@@ -135,15 +144,20 @@ ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options
   ImageFamily family;
   add_elements(family, pair, options, groups[0].share);
   if (family.different_constants == 0) {
-    auto half = halves_of(pair);
+    auto half = halves_of(pair, options.for_each);
     if (!options.weights.empty()) {
       for (Half& each : half) each.weight.assign(options.weights.begin(), options.weights.end());
     }
     std::vector<BestCell> best(groups.size());
     BestCell energy;
-    const CoarseImages coarse = offer_fine_cells<Real>({pair, half, groups}, best);
+    const CoarseImages coarse =
+        offer_fine_cells<Real>({pair, half, groups}, best, options.for_each);
+    std::vector<std::vector<BestCell>> of_channels(extent.channels,
+                                                   std::vector<BestCell>(groups.size()));
+    options.for_each(extent.channels,
+                     [&](std::size_t c) { offer_coarse_cells(coarse, groups, c, of_channels[c]); });
     for (std::size_t c = 0; c < extent.channels; ++c) {
-      offer_coarse_cells(coarse, groups, c, best);
+      for (std::size_t g = 0; g < groups.size(); ++g) join(best[g], of_channels[c][g]);
       if (options.energy) offer_energy(energy, extent, half, c, pair.reference);
     }
     add_best_windows(family, best, groups, options.smallest);

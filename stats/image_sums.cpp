@@ -26,16 +26,17 @@ std::array<double, in_step> sums_from(const ImageStack<Real>& stack, std::size_t
 }  // namespace
 
 template <class Real>
-std::vector<double> image_sums(const ImageStack<Real>& stack) {
+std::vector<double> image_sums(const ImageStack<Real>& stack, const ForEach& for_each) {
   std::vector<double> sums(stack.images.size());
-  for (std::size_t first = 0; first < sums.size(); first += in_step) {
+  for_each((sums.size() + in_step - 1) / in_step, [&](std::size_t i) {
+    const std::size_t first = i * in_step;
     const auto some = sums_from(stack, first);
     std::copy_n(some.begin(), std::min(in_step, sums.size() - first), sums.data() + first);
-  }
+  });
   return sums;
 }
 
-template std::vector<double> image_sums(const ImageStack<float>&);
-template std::vector<double> image_sums(const ImageStack<double>&);
+template std::vector<double> image_sums(const ImageStack<float>&, const ForEach&);
+template std::vector<double> image_sums(const ImageStack<double>&, const ForEach&);
 
 }  // namespace assay::stats

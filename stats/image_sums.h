@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "stats/for_each.h"
 #include "stats/image.h"
 
 namespace assay::stats {
@@ -9,6 +10,6 @@ namespace assay::stats {
 // The sum of each image's elements in their order. Several images are added up in step, so that no
 // addition waits for the last: each sum has the bits of adding up that image alone.
 template <class Real>
-std::vector<double> image_sums(const ImageStack<Real>& stack);
+std::vector<double> image_sums(const ImageStack<Real>& stack, const ForEach& for_each = one_by_one);
 
 }  // namespace assay::stats

@@ -17,6 +17,7 @@
 
 #include "estimators/value.h"
 #include "render/exr_header.h"
+#include "render/exr_scan_lines.h"
 
 namespace assay {
 
@@ -106,7 +107,7 @@ struct ExrFile::Parts {
 
   void open();
   void add_part(int part, double bytes);
-  void read_part(int part, const std::map<std::string, float*>& to, std::size_t stride) const;
+  void read_part(int part, const std::map<std::string, float*>& to, std::size_t apart) const;
 };
 
 void ExrFile::Parts::open() {
@@ -138,10 +139,12 @@ void ExrFile::Parts::add_part(int part, double bytes) {
 }
 
 void ExrFile::Parts::read_part(int part, const std::map<std::string, float*>& to,
-                               std::size_t stride) const {
+                               std::size_t apart) const {
+  const ExrWindow window = window_of(input->header(part));
+  if (render::read_scan_lines(name, {part, to, window.width, window.height, apart})) return;
   Imf::InputPart input_part(*input, part);
   const Imath::Box2i box = input_part.header().dataWindow();
-  const ExrWindow window = window_of(input_part.header());
+  const std::size_t stride = apart * sizeof(float);
   Imf::FrameBuffer buffer;
   for (const auto& [channel, first] : to) {
     const Imf::Channel& described = input_part.header().channels()[channel.c_str()];
@@ -216,7 +219,7 @@ void ExrFile::read(std::span<const std::string> names, std::span<float> texels) 
   }
   in_our_words(parts_->name, [&] {
     for (const auto& [part, to] : wanted) {
-      parts_->read_part(part, to, names.size() * sizeof(float));
+      parts_->read_part(part, to, names.size());
     }
   });
 }

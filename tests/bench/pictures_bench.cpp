@@ -1,5 +1,6 @@
 // `assay images` on 64 + 64 OpenEXR pictures, beside the bare decoding of the same files by the
-// library on as many threads. Times are processor seconds: a busy machine makes others longer.
+// library on as many threads: processor seconds, and elapsed ones, which a busy machine makes
+// longer.
 //   pictures_bench ASSAY [WIDTH HEIGHT [REPETITIONS]]      ASSAY the program; default 480 270 3
 // The pictures are 32-bit R, G and B, compressed by ZIP, of one law: a ramp with noise.
 
@@ -9,6 +10,7 @@
 #include <sys/resource.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -36,13 +38,21 @@ double cpu_seconds(int who) {
   return of(usage.ru_utime) + of(usage.ru_stime);
 }
 
-/// What `work` takes of them.
-template <class Work>
-double cpu_of(int who, const Work& work) {
-  const double before = cpu_seconds(who);
-  work();
-  return cpu_seconds(who) - before;
-}
+/// What each run took.
+struct Times {
+  std::vector<double> cpu = {};
+  std::vector<double> elapsed = {};
+
+  template <class Work>
+  void take(int who, const Work& work) {
+    const double before = cpu_seconds(who);
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    cpu.push_back(cpu_seconds(who) - before);
+    elapsed.push_back(seconds.count());
+  }
+};
 
 /// Of the largest program run so far, in GB.
 double most_memory() {
@@ -124,19 +134,22 @@ int main(int argc, char** argv) {
                               folder.string() + "/a*.exr' --reference '" + folder.string() +
                               "/b*.exr' --pixels independent --threads " + std::to_string(threads) +
                               " >/dev/null";
-  std::vector<double> decoding;
-  std::vector<double> testing;
+  Times decoding;
+  Times testing;
   int code = 0;
   for (int i = 0; i < repetitions; ++i) {
-    decoding.push_back(cpu_of(RUSAGE_SELF, [&] { decode_all(folder.string(), threads); }));
-    testing.push_back(cpu_of(RUSAGE_CHILDREN, [&] { code = std::system(command.c_str()); }));
+    decoding.take(RUSAGE_SELF, [&] { decode_all(folder.string(), threads); });
+    testing.take(RUSAGE_CHILDREN, [&] { code = std::system(command.c_str()); });
   }
   std::filesystem::remove_all(folder);
-  const double bare = bench::median(decoding);
-  const double whole = bench::median(testing);
-  std::printf(
-      "64 + 64 pictures of %d x %d, %u threads: decoding %.3f s, assay images %.3f s, %.2f "
-      "times, %.2f GB (wait status %d)\n",
-      width, height, threads, bare, whole, whole / bare, most_memory(), code);
+  std::printf("64 + 64 pictures of %d x %d, %u threads, %.2f GB (wait status %d)\n", width, height,
+              threads, most_memory(), code);
+  const auto show = [](const char* name, const std::vector<double>& bare,
+                       const std::vector<double>& whole) {
+    std::printf("%s: decoding %.3f s, assay images %.3f s, %.2f times\n", name, bench::median(bare),
+                bench::median(whole), bench::median(whole) / bench::median(bare));
+  };
+  show("processor", decoding.cpu, testing.cpu);
+  show("elapsed", decoding.elapsed, testing.elapsed);
   return code == 0 ? 0 : 1;
 }

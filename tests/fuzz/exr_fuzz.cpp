@@ -1,10 +1,11 @@
 // OpenEXR pictures of other programs (estimators/exr_file.h, estimators/pictures.h).
 // Whatever the bytes are, the file is read or refused with its name.
 //
-// sources: estimators/render/exr_file.cpp estimators/render/exr_header.cpp estimators/pictures.cpp
+// sources: estimators/render/exr_file.cpp estimators/render/exr_header.cpp
+// sources: estimators/render/exr_scan_lines.cpp estimators/render/zip_chunk.cpp estimators/pictures.cpp
 // sources: estimators/value.cpp estimators/image.cpp estimators/text_pattern.cpp
 // libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
-// libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath
+// libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath -ldeflate
 
 #include <cstddef>
 #include <cstdint>

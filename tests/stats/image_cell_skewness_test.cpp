@@ -12,6 +12,7 @@
 #include "stats/image_windows.h"
 #include "stats/tails.h"
 #include "tests/philox.h"
+#include "tests/stats/last_first.h"
 
 namespace assay::stats {
 namespace {
@@ -51,6 +52,18 @@ double closed_form(const ImageExtent& extent, std::uint32_t size, double skewnes
 }
 
 // Each estimate scatters by less than 3 %: beyond 15 % with probability below 1e-5.
+// Several rows of tiles.
+TEST(CellTails, AreTheSameInAnyOrder) {
+  Philox random(876);
+  const ImageExtent extent{20, 150, 3};
+  const Images images = draw(random, extent, 16, exponential);
+  const CellPilot side = side_of(extent, images, 16);
+  const std::vector<CellTails> tails = cell_tails({&side, 1}, level);
+  const std::vector<CellTails> other = cell_tails({&side, 1}, level, {}, tests::last_first);
+  ASSERT_EQ(tails.size(), other.size());
+  for (std::size_t i = 0; i < tails.size(); ++i) EXPECT_EQ(tails[i].factor, other[i].factor);
+}
+
 TEST(CellTails, SkewnessFallsWithTheSideOfCellsOfIndependentElements) {
   Philox random(860);
   const Images images = draw(random, eight, 8192, exponential);

@@ -10,6 +10,7 @@
 #include "stats/tails.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/image_samples.h"
+#include "tests/stats/last_first.h"
 
 namespace assay::stats {
 namespace {
@@ -154,6 +155,27 @@ TEST(ImageEquivalence, TheSquaredMarginTestIsTheSameFromTheTwoSums) {
     EXPECT_DOUBLE_EQ(one.statistic, other.statistic);
     EXPECT_DOUBLE_EQ(one.log_p_lower, other.log_p_lower);
   }
+}
+
+// More elements than are taken at a time.
+TEST(ImageEquivalence, TheDistanceIsTheSameInAnyOrderAndOfAllElements) {
+  Philox random(878);
+  const ImageExtent large{300, 200, 1};
+  const auto draw = [&](double mean) {
+    return tests::draw_stack(large, 16, [&](std::size_t) { return mean + 0.1 * random.normal(); });
+  };
+  const OwnedStack a = draw(1.05);
+  const OwnedStack b = draw(1);
+  const ImageDistance distance = image_distance(a.view(), b.view());
+  const ImageDistance other = image_distance(a.view(), b.view(), tests::last_first);
+  EXPECT_EQ(distance.squared_bias, other.squared_bias);
+  EXPECT_EQ(distance.bias_variance, other.bias_variance);
+  EXPECT_EQ(distance.covariance, other.covariance);
+  EXPECT_NEAR(distance.squared_norm, 60000, 60);
+  EXPECT_NEAR(distance.squared_bias, 60000 * 0.05 * 0.05, 4);
+  // 4 (bias^2 + v) v of each element, v = (va + vb) / R; of 30 degrees of freedom.
+  const double v = 0.02 / 16;
+  EXPECT_NEAR(distance.bias_variance / (60000 * 4 * (0.05 * 0.05 + v) * v), 1, 0.8);
 }
 
 // In units of a norm of 1 for each element the margin is a root mean square.

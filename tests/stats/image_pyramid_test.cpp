@@ -15,6 +15,7 @@
 #include "stats/tails.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/image_samples.h"
+#include "tests/stats/last_first.h"
 
 namespace assay::stats {
 namespace {
@@ -343,6 +344,29 @@ TEST(ImagePyramid, EveryElementIsInOneAlignedWindowOfEveryLevel) {
       }
     }
     EXPECT_EQ(covered, std::vector<int>(extent.elements(), 1)) << group.size;
+  }
+}
+
+// Several bands of rows, and more elements than are taken at a time.
+TEST(ImagePyramid, IsTheSameInAnyOrder) {
+  Philox random(877);
+  const ImageExtent extent{137, 90, 3};
+  const auto draw = [&](std::size_t) { return random.normal(); };
+  const OwnedStack a = draw_stack(extent, 16, draw);
+  const OwnedStack b = draw_stack(extent, 16, draw);
+  std::vector<double> z(extent.elements());
+  std::vector<double> other_z(extent.elements());
+  const ImageFamily family = image_pyramid(a.view(), b.view(), {.z = z});
+  const ImageFamily other =
+      image_pyramid(a.view(), b.view(), {.z = other_z, .for_each = tests::last_first});
+  EXPECT_EQ(z, other_z);
+  EXPECT_EQ(family.tested, other.tested);
+  ASSERT_EQ(family.groups.size(), other.groups.size());
+  for (std::size_t g = 0; g < family.groups.size(); ++g) {
+    EXPECT_EQ(family.groups[g].z, other.groups[g].z);
+    EXPECT_EQ(family.groups[g].adjusted_log_p, other.groups[g].adjusted_log_p);
+    EXPECT_EQ(family.groups[g].window.x, other.groups[g].window.x);
+    EXPECT_EQ(family.groups[g].window.y, other.groups[g].window.y);
   }
 }
 

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <filesystem>
 
+#include "estimators/render/exr_scan_lines.h"
 #include "estimators/value.h"
 #include "tests/estimators/exr_kinds.h"
 
@@ -76,6 +79,77 @@ TEST_F(ExrFiles, ReadsScanLinesOfEveryLosslessCompressionAndBothTypes) {
       expect_read(part);
     }
   }
+}
+
+// More lines than any of these compressions takes together, and channels between those asked for.
+TEST_F(ExrFiles, ReadsSomeChannelsOfManyLines) {
+  for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT}) {
+    for (const Imf::Compression compression :
+         {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION}) {
+      write_scan_lines(file_, {.width = 3,
+                               .height = 37,
+                               .channels = {"A", "B", "G", "R", "Z"},
+                               .type = type,
+                               .compression = compression,
+                               .left = 2});
+      const std::vector<float> texels = read({"R", "B"});
+      for (int y = 0; y < 37; ++y) {
+        for (int x = 0; x < 3; ++x) {
+          const auto at = static_cast<std::size_t>(2 * (3 * y + x));
+          // A half holds the larger ones rounded.
+          const auto stored = [&](float texel) {
+            return type == Imf::HALF ? static_cast<float>(Imath::half(texel)) : texel;
+          };
+          EXPECT_EQ(texels[at], stored(expected_texel(x, y, 3)));
+          EXPECT_EQ(texels[at + 1], stored(expected_texel(x, y, 1)));
+        }
+      }
+    }
+  }
+}
+
+// What compression would make larger is stored as it is: the second chunk here, not the first.
+TEST_F(ExrFiles, ReadsChunksThatDoNotCompress) {
+  const Imath::Box2i box({0, 0}, {4, 31});
+  std::vector<float> texels(5 * 32, 1.0F);
+  std::uint32_t bits = 1;
+  for (std::size_t i = 5 * 16; i < texels.size(); ++i) {
+    bits = bits * 1664525 + 1013904223;
+    texels[i] = std::bit_cast<float>(bits & 0xbfffffff);  // finite
+  }
+  Imf::Header header(box, box);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.channels().insert("R", Imf::Channel(Imf::FLOAT));
+  Imf::FrameBuffer buffer;
+  buffer.insert("R", Imf::Slice::Make(Imf::FLOAT, texels.data(), box, 4, 20));
+  {
+    Imf::OutputFile output(file_.c_str(), header);
+    output.setFrameBuffer(buffer);
+    output.writePixels(32);
+  }
+  std::vector<float> read(texels.size());
+  EXPECT_TRUE(
+      render::read_scan_lines(file_, {.channels = {{"R", read.data()}}, .width = 5, .height = 32}));
+  EXPECT_EQ(read, texels);
+}
+
+TEST_F(ExrFiles, OfPlainFloatsAreReadByTheCore) {
+  const auto by_core = [&](const Part& part) {
+    write_scan_lines(file_, part);
+    std::vector<float> texels(12);
+    const bool read = render::read_scan_lines(
+        file_, {.channels = {{"R", texels.data()}}, .width = 4, .height = 3});
+    EXPECT_EQ(texels[6], read ? expected_texel(2, 1, 0) : 0);
+    return read;
+  };
+  EXPECT_TRUE(by_core({.channels = {"R"}}));
+  EXPECT_TRUE(by_core({.channels = {"R"}, .compression = Imf::ZIPS_COMPRESSION}));
+  EXPECT_FALSE(by_core({.channels = {"R"}, .compression = Imf::RLE_COMPRESSION}));
+  EXPECT_FALSE(by_core({.channels = {"R"}, .type = Imf::HALF}));
+  EXPECT_FALSE(by_core({.channels = {"R"}, .compression = Imf::PIZ_COMPRESSION}));
+  EXPECT_FALSE(by_core({.channels = {"G"}}));
+  EXPECT_FALSE(by_core({.width = 5, .channels = {"R"}}));
+  EXPECT_FALSE(by_core({.height = 4, .channels = {"R"}}));
 }
 
 TEST_F(ExrFiles, ReadsTilesThatDoNotDivideThePicture) {
