@@ -119,6 +119,19 @@ TEST(Power, DetectableEffectsReachTheirPower) {
               .9, 1e-9);
 }
 
+// The critical distance is remembered from one question to the next, if that is the same.
+TEST(Power, DetectableDistancesAreThoseOfTheirOwnPlan) {
+  const ErrorRates rates{.01, .05, true};
+  const DistancePlan plan{.rates = rates};
+  const double one = ks_detectable(plan, 1000);
+  EXPECT_GT(ks_detectable(plan, 999), one);
+  EXPECT_LT(ks_detectable({.rates = {.02, .05, true}}, 1000), one);
+  EXPECT_EQ(ks_detectable(plan, 1000), one);
+  const double two = ks_detectable({.two_samples = true, .rates = rates}, 1000);
+  EXPECT_GT(two, 1.3 * one);
+  EXPECT_GT(ks_detectable({.allow = 1e-9, .two_samples = true, .rates = rates}, 1000), 1.01 * two);
+}
+
 // A guess saves questions and changes no bit, be it right or wrong.
 TEST(Power, AGuessChangesNoBitOfTheSmallestEffect) {
   constexpr double smallest = 0.7364916731037085;
