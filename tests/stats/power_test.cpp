@@ -129,7 +129,7 @@ TEST(Power, DetectableDistancesAreThoseOfTheirOwnPlan) {
   EXPECT_EQ(ks_detectable(plan, 1000), one);
   const double two = ks_detectable({.two_samples = true, .rates = rates}, 1000);
   EXPECT_GT(two, 1.3 * one);
-  EXPECT_GT(ks_detectable({.allow = 1e-9, .two_samples = true, .rates = rates}, 1000), 1.01 * two);
+  EXPECT_GT(ks_detectable({.two_samples = true, .allow = 1e-9, .rates = rates}, 1000), 1.01 * two);
 }
 
 // A guess saves questions and changes no bit, be it right or wrong.
