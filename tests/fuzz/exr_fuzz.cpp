@@ -3,7 +3,7 @@
 //
 // sources: estimators/render/exr_file.cpp estimators/render/exr_header.cpp
 // sources: estimators/render/exr_scan_lines.cpp estimators/render/zip_chunk.cpp estimators/pictures.cpp
-// sources: estimators/value.cpp estimators/image.cpp estimators/text_pattern.cpp
+// sources: estimators/value.cpp estimators/estimator.cpp estimators/image.cpp estimators/text_pattern.cpp
 // libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 // libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath -ldeflate
 
