@@ -98,6 +98,20 @@ TEST(Pool, OfEveryThreadCountHasTheSameBits) {
   }
 }
 
+// Of 5 primaries, and nothing drawn.
+std::shared_ptr<Pool> marked(std::uint64_t count) {
+  const StreamKey key = stream_key(1, "test/sums", "", 0);
+  auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);
+  pool->mark(count);
+  return pool;
+}
+
+void draw_up_to(std::uint64_t count, const std::shared_ptr<Pool>& pool, unsigned threads) {
+  Silence silence;
+  pool->request(count);
+  draw_all({pool}, {.threads = threads}, silence);
+}
+
 // Blocks hold 2048 observations of 5 primaries: prefixes inside, at and beyond their ends.
 TEST(Pool, PrefixIsThatOfAPoolDrawnOnlySoFar) {
   const std::vector<std::uint64_t> prefixes{1, 2, 999, 2047, 2048, 2049, 4096, 5000, 9999};
@@ -109,40 +123,27 @@ TEST(Pool, PrefixIsThatOfAPoolDrawnOnlySoFar) {
 }
 
 TEST(Pool, DoesNotChangeWhenContinuedLater) {
-  const StreamKey key = stream_key(1, "test/sums", "", 0);
-  const auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);
-  Silence silence;
-  pool->mark(9000);
-  pool->request(3000);
-  draw_all({pool}, {.threads = 1}, silence);
-  pool->request(9000);
-  draw_all({pool}, {.threads = 2}, silence);
+  const auto pool = marked(9000);
+  draw_up_to(3000, pool, 1);
+  draw_up_to(9000, pool, 2);
   EXPECT_EQ(pool->prefix(9000).channels[0].moments,
             drawn({.prefixes = {9000}})->prefix(9000).channels[0].moments);
 }
 
 TEST(Pool, DrawsNoMoreThanAnyoneMayAskFor) {
-  const StreamKey key = stream_key(1, "test/sums", "", 0);
-  const auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);
-  Silence silence;
-  pool->mark(5000);
-  pool->request(100);
-  draw_all({pool}, {.threads = 2}, silence);
+  const auto pool = marked(5000);
+  draw_up_to(100, pool, 2);
   EXPECT_EQ(pool->drawn(), 2048);
-  pool->request(5000);
-  draw_all({pool}, {.threads = 2}, silence);
+  draw_up_to(5000, pool, 2);
   EXPECT_EQ(pool->drawn(), 5000);
 }
 
 // Blocks are drawn whole: 3000 requested draws 4096, and a prefix inside can no longer be taken.
 TEST(Pool, RefusesAMarkBehindWhatIsDrawn) {
-  const StreamKey key = stream_key(1, "test/sums", "", 0);
-  const auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);
-  Silence silence;
-  pool->mark(9000);
+  const auto pool = marked(9000);
   pool->request(3000);
   EXPECT_EQ(pool->largest_prefix(), 0);
-  draw_all({pool}, {.threads = 1}, silence);
+  draw_up_to(3000, pool, 1);
   EXPECT_EQ(pool->largest_prefix(), 3000);
   EXPECT_THROW(pool->mark(4000), std::logic_error);
   EXPECT_NO_THROW(pool->mark(3000));

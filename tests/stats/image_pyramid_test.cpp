@@ -88,22 +88,6 @@ TEST(ImagePyramid, ACorrelatedStackKeepsItsLevelWithoutItsOwnEnergy) {
   });
 }
 
-TEST(ImagePyramid, AnEnergyFromElsewhereCountsBelowItsNoticeAlone) {
-  Philox random(843);
-  const OwnedStack a = normal_stack(random, 16);
-  const ImageFamily without =
-      image_pyramid(a.view(), normal_stack(random, 16).view(), {.energy = false});
-  const double notice = energy_notice(without);
-  ImageFamily unnoticed = without;
-  add_energy(unnoticed, small, notice + 1e-9);
-  EXPECT_EQ(unnoticed.log_p, without.log_p);
-  EXPECT_EQ(unnoticed.groups.size(), without.groups.size() + 1);
-  ImageFamily noticed = without;
-  add_energy(noticed, small, notice - 1e-9);
-  EXPECT_NEAR(noticed.log_p, without.log_p - 1e-9, 1e-12);
-  EXPECT_EQ(noticed.winner.statistic, ImageStatistic::energy);
-}
-
 TEST(ImagePyramid, AReferencesErrorIsInTheTest) {
   expect_calibrated({824, 4000, Shape::at_most_uniform}, [](Philox& random) {
     const OwnedStack a = normal_stack(random, 16);
@@ -392,8 +376,6 @@ TEST(ImagePyramid, BadArgumentsAreRefused) {
   const OwnedStack a = normal_stack(random, 16);
   const OwnedStack few = normal_stack(random, 15);
   EXPECT_THROW(image_pyramid(a.view(), few.view()), std::domain_error);
-  ImageFamily family;
-  EXPECT_THROW(add_energy(family, small, 0.1), std::domain_error);
   std::vector<double> weights(small.elements() - 1, 1);
   EXPECT_THROW(image_pyramid(a.view(), a.view(), {.weights = weights}), std::domain_error);
   EXPECT_THROW(image_pyramid(a.view(), a.view(), {.z = weights}), std::domain_error);
