@@ -164,6 +164,7 @@ void note_sizes(TestWork& work) {
     channel.detectable =
         detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
     channel.finds_nothing =
+        !channel.detectable &&
         finds_nothing(outcome.question, full_size(outcome), outcome.plan, observed);
     const bool equivalence = channel.regions.relation == Relation::within;
     if (!equivalence && !channel.regions.detect) continue;

@@ -47,10 +47,6 @@ void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<Suit
   }
 }
 
-}  // namespace
-
-namespace {
-
 reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions& options,
                              Progress& progress) {
   const auto start = std::chrono::steady_clock::now();

@@ -34,6 +34,9 @@ inline double z_upper(double probability) {
   return normal_quantile({Tail::upper, std::log(probability)});
 }
 
+// The normal score of a power whose complement this is, finite also where it rounds to 0 or 1.
+inline double score_of_miss(double miss) { return z_upper(std::clamp(miss, 1e-300, 1 - 1e-15)); }
+
 constexpr double most_samples = 0x1p53;
 
 // The smallest whole n >= minimum at which `enough(n)`, which must be monotone; galloping from a

@@ -99,7 +99,7 @@ class FitPower {
     const double guess = std::sqrt(wanted / n_);
     const double spread = std::sqrt(2 * nu + 4 * wanted);
     const auto score = [&](double effect) {
-      return planning::z_upper(std::clamp(std::exp(tails(effect).lower), 1e-300, 1 - 1e-15)) - z;
+      return planning::score_of_miss(std::exp(tails(effect).lower)) - z;
     };
     return planning::secant_root(
         score, {.root = guess, .slope = 2 * n_ * guess * (1 - 2 * z / spread) / spread});

@@ -64,7 +64,7 @@ class Power {
   double score_at(EffectPlan effect) const {
     const double up = (effect.detect - effect.allow) / scale_.standard_error;
     const double near = noncentral_t_tails(critical_, {scale_.degrees, up}).lower;
-    return z_upper(std::clamp(std::exp(near) - far(effect), 1e-300, 1 - 1e-15));
+    return planning::score_of_miss(std::exp(near) - far(effect));
   }
 
   Studentised scale_;
