@@ -17,15 +17,20 @@ using Quiet = policies::policy<policies::overflow_error<policies::ignore_error>,
 // Below this Boost's result may be denormal; the log forms take over long before.
 constexpr double boost_minimum = 1e-280;
 
-// ln P(a, x) = prefix - ln a + ln sum x^k / ((a+1) … (a+k)); DLMF 8.7.1.
+// ln P(a, x) = prefix - ln a + ln sum x^k / ((a+1) … (a+k)); DLMF 8.7.1. Four terms at a time:
+// their factors do not wait for one another.
 double log_far_lower(double shape, double x) {
   double term = 1;
   double sum = 1;
-  for (double k = 1; term > sum * 1e-15; ++k) {
-    term *= x / (shape + k);
-    sum += term;
+  for (double k = shape; term > sum * 1e-15; k += 4) {
+    const double first = x / (k + 1);
+    const double second = first * (x / (k + 2));
+    const double third = x / (k + 3);
+    const double fourth = third * (x / (k + 4));
+    sum += term * (first + second + second * (third + fourth));
+    term *= second * fourth;
   }
-  return special::log_gamma_prefix(shape, x) - std::log(shape) + std::log(sum);
+  return special::log_gamma_prefix(shape, x, sum / shape);
 }
 
 // ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2; convergents A_n / B_n by their
@@ -41,11 +46,10 @@ double log_far_upper(double shape, double x) {
       fraction.add(numerator, denominator);
     }
     const double value = fraction.reciprocal();
-    if (std::abs(value - last) <= 1e-12 * value)
-      return special::log_gamma_prefix(shape, x) + std::log(value);
+    if (std::abs(value - last) <= 1e-12 * value) return special::log_gamma_prefix(shape, x, value);
     last = value;
   }
-  return special::log_gamma_prefix(shape, x) + std::log(last);
+  return special::log_gamma_prefix(shape, x, last);
 }
 
 // Up to here the sum and the fraction take 200 terms at most, cheaper than Boost's expansion.

@@ -24,9 +24,7 @@ struct PoissonMixture {
   double rate;
   Tail tail;
 
-  double log_weight(double j) const {
-    return special::log_gamma_prefix(j + 1, rate) - std::log(rate);
-  }
+  double log_weight(double j) const { return special::log_gamma_prefix(j + 1, rate, 1 / rate); }
   double log_central(double j) const {
     const LogTails tails = gamma_tails(half_x, half_degrees + j);
     return tail == Tail::lower ? tails.lower : tails.upper;
@@ -78,10 +76,10 @@ double log_mixture(const PoissonMixture& mixture) {
   double j = up ? low : high;
   double term = std::exp(mixture.log_term(j) - peak);
   const double shape = mixture.half_degrees + (up ? j : j - 1);
-  double increment = shape > 0
-                         ? std::exp(mixture.log_weight(j) + special::log_gamma_prefix(shape, y) -
-                                    std::log(shape) - peak)
-                         : 0;
+  double increment =
+      shape > 0
+          ? std::exp(mixture.log_weight(j) + special::log_gamma_prefix(shape, y, 1 / shape) - peak)
+          : 0;
   double sum = term;
   while (up ? j < high : j > low) {
     const double a = mixture.half_degrees + j;
@@ -105,9 +103,10 @@ struct UpperIntegrand {
   Noncentral parameters;
 
   double operator()(double u) const {
-    const double half = parameters.degrees / 2;
-    return half * (2 * u + 1 - std::exp(2 * u)) +
-           normal_upper(t * std::exp(u) - parameters.noncentrality);
+    const double growth = std::expm1(2 * u);
+    // 2 u - growth; near 0 without cancellation, which many degrees would make much of.
+    const double fall = std::abs(growth) < 0.1 ? special::log1p_minus(growth) : 2 * u - growth;
+    return parameters.degrees / 2 * fall + normal_upper(t * std::exp(u) - parameters.noncentrality);
   }
 };
 

@@ -69,9 +69,9 @@ double log_deviance(double weight, double ratio) {
   return weight * (std::log(ratio) - excess);
 }
 
-double log_gamma_prefix(double shape, double x) {
-  return log_deviance(shape, x / shape) + 0.5 * std::log(shape / (2 * std::numbers::pi)) -
-         stirling_error(shape);
+double log_gamma_prefix(double shape, double x, double factor) {
+  return log_deviance(shape, x / shape) +
+         std::log(factor * std::sqrt(shape / (2 * std::numbers::pi))) - stirling_error(shape);
 }
 
 double log_beta_prefix(BetaShape shape, BetaPoint point) {

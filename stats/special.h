@@ -21,9 +21,9 @@ double log1p_minus(double z);
 // a (ln r - r + 1): minus the deviance of a ratio r at weight a.
 double log_deviance(double weight, double ratio);
 
-// ln(x^a e^-x / Gamma(a)) and ln(x^a y^b / B(a, b)) with y = 1 - x: deviance form, so the absolute
-// error is a few ulps of the result and not of a ln a (Loader 2000).
-double log_gamma_prefix(double shape, double x);
+// ln(f x^a e^-x / Gamma(a)) with a factor f > 0 and ln(x^a y^b / B(a, b)) with y = 1 - x: deviance
+// form, so the absolute error is a few ulps of the result and not of a ln a (Loader 2000).
+double log_gamma_prefix(double shape, double x, double factor = 1);
 struct BetaPoint {
   double x = 0;
   double y = 0;  // 1 - x, given apart so that neither loses digits

@@ -98,6 +98,18 @@ TEST(Tails, FractionalDegreesOfFreedomJoinTheNormalLaw) {
   }
 }
 
+TEST(Tails, NoncentralTOfManyDegreesJoinsTheNormalLawOnBothSidesOfTheNoncentrality) {
+  // T <= t where Z <= t S - delta, and S is within 1e-6 of 1: ln P moves by no more than t 1e-6
+  // times the hazard rate, which is below 4 here.
+  for (const double nu : {1e12, 1e13, 1e15}) {
+    for (const double t : {4.5, 5.0 - 1e-9, 5.0, 5.0 + 1e-9, 7.0}) {
+      const LogTails tails = noncentral_t_tails(t, {nu, 5});
+      EXPECT_NEAR(tails.upper, normal_tails(t - 5).upper, 2e-5) << nu << " " << t;
+      EXPECT_NEAR(tails.lower, normal_tails(t - 5).lower, 2e-5) << nu << " " << t;
+    }
+  }
+}
+
 TEST(Tails, QuantilesInvertTheTails) {
   for (const double log_p : {-1e-12, -0.1, -0.6931, -0.7, -3.0, -40.0, -690.0, -5000.0}) {
     for (const Tail tail : {Tail::lower, Tail::upper}) {
