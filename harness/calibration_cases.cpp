@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "harness/image_plan.h"
 #include "harness/law_cdf.h"
 #include "harness/laws.h"
 
@@ -14,12 +15,15 @@ namespace assay::harness {
 namespace {
 
 // What `detect` is: of means in standard deviations, of variances a ratio, of laws the largest
-// distance of their distribution functions, of the cells' probabilities Cohen's w, of a slope.
+// distance of their distribution functions, of the cells' probabilities Cohen's w, of a slope; of
+// images, whose pixels' means are about 6, the bias of each and its share of them.
 constexpr double mean_effect = 0.15;
 constexpr double variance_effect = 0.3;
 constexpr double law_effect = 0.1;
 constexpr double cell_effect = 0.15;
 constexpr double slope_effect = 0.2;
+constexpr double image_bias = 0.35;
+constexpr double image_part = 0.06;
 constexpr std::uint64_t classical_samples = 1000;
 
 struct Facts {
@@ -45,6 +49,16 @@ EstimatorEntry entry_of(const std::string& name, const std::string& law, double 
                                     {"shift", Value::scalar(fmt::format("{:.17g}", shift))},
                                     {"scale", Value::scalar(fmt::format("{:.17g}", scale))}}),
           .primaries = 1};
+}
+
+/// 64 pixels of means from 1 to 10, each with this law's noise.
+EstimatorEntry picture_of(const std::string& name, const std::string& law) {
+  return {.name = name,
+          .plugin = "analytic/ramp",
+          .parameters = Value::map({{"law", Value::scalar(law)},
+                                    {"width", Value::scalar("8")},
+                                    {"height", Value::scalar("8")}}),
+          .primaries = 4};
 }
 
 /// sup over x of P(x - shift < X <= x).
@@ -173,11 +187,26 @@ void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
   drafts.push_back({"ks", "law == law", "distribution(x) == distribution(y)", "", detect});
 }
 
+void images(std::vector<Draft>& drafts) {
+  const Margin bias{.value = image_bias};
+  drafts.push_back({"image", "image == analytic", "mean(picture) == analytic",
+                    fmt::format("bias(picture) == {:.17g}", image_bias), bias});
+  const Margin part{.value = image_part, .relative = true};
+  drafts.push_back({"image", "image == image", "mean(picture) == mean(other_picture)",
+                    fmt::format("mean(picture) == {:.17g} * mean(other_picture)", 1 + image_part),
+                    part});
+  const std::string within = fmt::format("mean(picture) within {:.17g} of ", image_bias);
+  drafts.push_back({"image", "image within x of analytic",
+                    fmt::format("bias(picture) within {0:.17g} of {0:.17g}", image_bias),
+                    within + "analytic"});
+}
+
 std::vector<Draft> drafts_of(const Facts& facts) {
   std::vector<Draft> drafts;
   means(facts, drafts);
   variances(facts, drafts);
   laws_themselves(facts, drafts);
+  images(drafts);
   return drafts;
 }
 
@@ -202,7 +231,9 @@ CalibrationCase case_of(const Draft& draft, const CalibrationScope& scope) {
   CalibrationCase made{.method = draft.method, .question = draft.question};
   made.alone = test_of(draft.true_claim, draft);
   made.alone->method = draft.method;
-  made.alone->secondaries = scope.samples.value_or(classical_samples);
+  const bool of_images = draft.method == "image";
+  made.alone->secondaries =
+      scope.samples.value_or(of_images ? classical_replicates : classical_samples);
   made.proof = made.alone->claim.relation == Relation::within;
   if (!draft.is_default) return made;
   made.true_claim = planned(draft.true_claim, draft, scope);
@@ -247,10 +278,12 @@ std::string calibrated_method(const std::string& named) {
 CalibrationBench::CalibrationBench(const CalibrationScope& scope) : law(scope.law) {
   Facts facts = facts_of(scope.law);
   if (facts.has_density) facts.shift_at_law_effect = shift_at_law_effect(facts);
-  for (const EstimatorEntry& entry : {entry_of("x", law, 0, 1), entry_of("y", law, 0, 1),
-                                      entry_of("shifted", law, facts.shift(), 1),
-                                      entry_of("moved", law, facts.shift_at_law_effect, 1),
-                                      entry_of("scaled", law, 0, std::sqrt(1 + variance_effect))}) {
+  for (const EstimatorEntry& entry :
+       {entry_of("x", law, 0, 1), entry_of("y", law, 0, 1),
+        entry_of("shifted", law, facts.shift(), 1),
+        entry_of("moved", law, facts.shift_at_law_effect, 1),
+        entry_of("scaled", law, 0, std::sqrt(1 + variance_effect)), picture_of("picture", law),
+        picture_of("other_picture", law)}) {
     estimators.emplace(entry.name, prepare(entry, "."));
   }
   for (const Draft& draft : drafts_of(facts)) {

@@ -43,7 +43,7 @@ struct CalibrationScope {
   std::string law;
   std::optional<std::string> method = {};  ///< this one only
   /// Observations of every test, in one look. Else tests are planned by `detect`, in looks, and a
-  /// method alone takes 1000.
+  /// method alone takes 1000, or 64 images.
   std::optional<std::uint64_t> samples = {};
 };
 

@@ -178,8 +178,8 @@ void define_others(CLI::App& app, Given& given) {
        "nominal level, in (0, 0.5]; repeatable; default 0.05, 0.01 and 0.001");
   one(calibrate, "--runs", given.runs, "N", "runs a cell; default 1000");
   one(calibrate, "--samples", given.samples, "N",
-      "observations of every test, in one look, 2 or more; default planned, in looks, and 1000 of "
-      "a method alone");
+      "observations of every test, in one look, 2 or more; default planned, in looks, and 1000 or "
+      "64 images of a method alone");
   one(calibrate, "--seed", given.seed, "N|random",
       "seed of the first run, the next ones follow; default 1");
   one(calibrate, "--threads", given.threads, "N", "worker threads; default one for each core");

@@ -231,6 +231,16 @@ const std::vector<std::string>& law_signatures() {
   return all;
 }
 
+Channel channel_of(const Variable& variable) {
+  const auto& [law, shift, scale] = variable;
+  // A scale of 0 makes a constant of any range.
+  const auto at = [&](double y) { return scale == 0 ? shift : shift + scale * y; };
+  Channel channel{.low = at(law.low()), .high = at(law.high())};
+  if (law.mean()) channel.mean = at(*law.mean());
+  if (law.variance()) channel.variance = scale * scale * *law.variance();
+  return channel;
+}
+
 }  // namespace assay::analytic
 
 namespace assay::plugins {
@@ -301,15 +311,11 @@ Law law_of(Parameters& parameters) {
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const Law law = law_of(parameters);
   const Variable variable{law, parameters.number("shift"), parameters.number("scale")};
-  Channel channel{.low = variable.shift + variable.scale * law.low(),
-                  .high = variable.shift + variable.scale * law.high()};
-  if (law.mean()) channel.mean = variable.shift + variable.scale * *law.mean();
-  if (law.variance()) channel.variance = variable.scale * variable.scale * *law.variance();
   std::vector<NamedSampler> samplers;
   if (law.has_density() && law.variance()) {
     samplers.push_back({"x", std::make_shared<VariableSampler>(variable)});
   }
-  return std::make_shared<const VariableSetup>(channel, variable, samplers);
+  return std::make_shared<const VariableSetup>(channel_of(variable), variable, samplers);
 }
 
 }  // namespace

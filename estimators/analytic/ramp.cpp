@@ -1,49 +1,58 @@
 // An image of known means: brightness grows from left to right.
 //
-// X(x, y, c) = m(x, c) (1 + s Z) with m(x, c) = (1 + 9 x / (width - 1)) (1, 0.8, 0.6)_c and Z of
-// mean 0 and variance 1: E[X] = m, Var X = (m s)^2. Z is normal, or exponential less 1 (skewness
-// 2).
+// X(x, y, c) = m(x, c) (1 + s Z) with m(x, c) = (1 + 9 x / (width - 1)) (1, 0.8, 0.6)_c and
+// Z = (Y - E[Y]) / sqrt(Var Y), Y of a named law: E[X] = m, Var X = (m s)^2.
 
 #include <array>
 #include <cmath>
+#include <string>
 
-#include "analytic/normal.h"
+#include "analytic/variable.h"
 #include "estimators/imaging.h"
 
 namespace assay::plugins {
 
 namespace {
 
-struct RampPrimary {
-  double mean;
-  double deviation;
-  bool exponential;
+using analytic::Law;
+using analytic::Variable;
 
-  double operator()(Stream& random) const {
-    const double z =
-        exponential ? -std::log(random.uniform_open()) - 1 : analytic::NormalLaw{}(random);
-    return mean + deviation * z;
+Law law_of(Parameters& parameters) {
+  const std::string text = parameters.string("law");
+  try {
+    const Law law = Law::parse(text);
+    if (law.variance()) return law;
+  } catch (const std::invalid_argument& error) {
+    parameters.refuse("law", std::string("is no law: ") + error.what());
   }
-};
+  parameters.refuse("law", "has no variance: nothing brings it to 1");
+}
+
+/// The variable of this law with another mean and deviation.
+Variable rescaled(const Law& law, double mean, double deviation) {
+  const double scale = deviation / std::sqrt(*law.variance());
+  return {law, mean - scale * *law.mean(), scale};
+}
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   constexpr std::array<double, 3> colour = {1, 0.8, 0.6};
   const std::size_t width = parameters.count("width");
-  ImageParts<RampPrimary> parts{
+  ImageParts<Variable> parts{
       .shape = {.width = width, .height = parameters.count("height")},
       .channels = {},
       .primaries = {},
       .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
   if (parameters.boolean("colour")) parts.shape.components = {"red", "green", "blue"};
   const double spread = parameters.number("spread");
-  const bool exponential = parameters.string("law") == "exponential";
+  const Law law = law_of(parameters);
   for (std::size_t i = 0; i < parts.shape.elements(); ++i) {
     const std::size_t component = i % parts.shape.components.size();
     const double column = static_cast<double>(i / parts.shape.components.size() % width);
     const double mean = (1 + 9 * column / static_cast<double>(width - 1)) * colour[component];
     const double deviation = mean * spread;
-    parts.channels.push_back({.mean = mean, .variance = deviation * deviation});
-    parts.primaries.push_back({mean, deviation, exponential});
+    const Variable pixel = rescaled(law, mean, deviation);
+    parts.channels.push_back(channel_of(pixel));
+    parts.primaries.push_back(pixel);
   }
   return imaging(std::move(parts));
 }
@@ -64,8 +73,9 @@ std::vector<Entry> analytic_ramp() {
       {{.name = "analytic/ramp",
         .summary = "An image of known means: a ramp with noise in proportion.",
         .description = "X = m (1 + spread Z), m growing from 1 to 10 from left to right, Z "
-                       "normal, or exponential less its mean. With `shared`, one Z serves all "
-                       "pixels of a primary: they are then fully correlated.",
+                       "of a law as `analytic/law` names it, brought to mean 0 and variance 1. "
+                       "With `shared`, one Z serves all pixels of a primary: they are then fully "
+                       "correlated. `assay calibrate image` measures the method on it.",
         .parameters = {size("width", "columns"),
                        size("height", "rows"),
                        {.name = "colour",
@@ -79,9 +89,8 @@ std::vector<Entry> analytic_ramp() {
                         .high = 1e100},
                        {.name = "law",
                         .type = ParameterType::string,
-                        .summary = "of Z",
-                        .fallback = "normal",
-                        .choices = {"normal", "exponential"}},
+                        .summary = "of Z up to mean and scale, as exponential(1)",
+                        .fallback = "normal(0, 1)"},
                        {.name = "shared",
                         .type = ParameterType::boolean,
                         .summary = "whether all pixels get the same random numbers",

@@ -19,6 +19,9 @@ struct Variable {
   double operator()(Stream& random) const { return shift + scale * law.draw(random); }
 };
 
+/// Its mean, variance and range, as far as they exist.
+Channel channel_of(const Variable& variable);
+
 /// Observations of one primary in batches, all others one by one: calibrations draw some millions
 /// of them a second.
 class VariableEstimator final : public Estimator {

@@ -190,17 +190,10 @@ TEST(Analytic, ImportanceSamplerFollowsItsDensity) {
   EXPECT_TRUE(pearson.passes()) << pearson.statistic;
 }
 
-/// analytic/law as a suite gives it; a flow map's text has no commas in it.
 Prepared prepare_law(const std::string& law, double shift = 0, double scale = 1) {
-  const Entry& entry = find_plugin("analytic/law", {});
-  Parameters given("analytic/law", entry.information.parameters,
-                   Value::map({{"law", Value::scalar(law)},
-                               {"shift", Value::scalar(std::to_string(shift))},
-                               {"scale", Value::scalar(std::to_string(scale))}}),
-                   "");
-  auto setup = entry.prepare(given);
-  given.require_all_read();
-  return {std::move(setup), stream_key(1, "analytic/law", given.canonical(), 0), entry.information};
+  return prepare("analytic/law", Value::map({{"law", Value::scalar(law)},
+                                             {"shift", Value::scalar(std::to_string(shift))},
+                                             {"scale", Value::scalar(std::to_string(scale))}}));
 }
 
 Channel law_channel(const std::string& law, double shift = 0, double scale = 1) {

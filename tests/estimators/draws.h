@@ -45,11 +45,11 @@ struct Prepared {
   Information information;
 };
 
-/// `parameters` is a flow map; files are relative to `folder`.
-inline Prepared prepare(const std::string& plugin, const std::string& parameters = "null",
+/// Files are relative to `folder`.
+inline Prepared prepare(const std::string& plugin, const Value& parameters,
                         const std::string& folder = "") {
   const Entry& entry = find_plugin(plugin, {});
-  Parameters given(plugin, entry.information.parameters, parse_flow(parameters), folder);
+  Parameters given(plugin, entry.information.parameters, parameters, folder);
   auto setup = entry.prepare(given);
   given.require_all_read();
   // A mutant's key is its original's, with the parameters that the original has.
@@ -62,6 +62,12 @@ inline Prepared prepare(const std::string& plugin, const std::string& parameters
     canonical = given.canonical(names);
   }
   return {std::move(setup), stream_key(1, name, canonical, 0), entry.information};
+}
+
+/// `parameters` is a flow map; its texts have no commas in them.
+inline Prepared prepare(const std::string& plugin, const std::string& parameters = "null",
+                        const std::string& folder = "") {
+  return prepare(plugin, parse_flow(parameters), folder);
 }
 
 /// Observations 0, 1, ... of every channel.

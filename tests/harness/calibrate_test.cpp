@@ -107,7 +107,7 @@ TEST(Calibrate, EveryMethodHasCellsOnEveryLawThatSuitsIt) {
   };
   for (const std::string& law : calibration_laws()) {
     for (const char* method : {"t", "welch", "tost", "chi-square", "F", "log-variance",
-                               "skewness-corrected-t", "log-efficiency", "slope", "ks"}) {
+                               "skewness-corrected-t", "log-efficiency", "slope", "ks", "image"}) {
       EXPECT_TRUE(has(method, law)) << method << " on " << law;
     }
   }

@@ -155,7 +155,7 @@ TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
 // One exponential value a pixel has skewness 2.
 TEST(ImageClaims, PixelsThatAreTooSkewedAreInvalidAndSayWhatHelps) {
   const std::string text =
-      "suite: s\nestimators:\n  a: {plugin: analytic/ramp, law: exponential, primaries: "
+      "suite: s\nestimators:\n  a: {plugin: analytic/ramp, law: exponential(1), primaries: "
       "1}\ntests:\n"
       "  - {claim: mean(a) == analytic, secondaries: 32, expect: invalid}\n";
   const reports::Test test = run_text(text).suites[0].tests[0];

@@ -28,7 +28,7 @@ std::map<std::string, Outcomes> outcomes_of(std::uint64_t seeds, const std::stri
 TEST(ImageLevel, TrueClaimsFailNoMoreOftenThanTheyMay) {
   const std::string estimators =
       "  normal: {plugin: analytic/ramp, width: 12, height: 12, primaries: 1}\n"
-      "  skewed: {plugin: analytic/ramp, width: 12, height: 12, law: exponential, primaries: 25}\n"
+      "  skewed: {plugin: analytic/ramp, width: 12, height: 12, law: exponential(1), primaries: 25}\n"
       "  shared: {plugin: analytic/ramp, width: 12, height: 12, shared: true, primaries: 1}\n";
   const auto outcomes =
       outcomes_of(150, estimators,

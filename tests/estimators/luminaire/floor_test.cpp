@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <numeric>
 
 #include "tests/estimators/draws.h"
@@ -104,11 +105,32 @@ TEST(Ramp, ComponentsStandTogetherAndHaveTheirMeans) {
   EXPECT_DOUBLE_EQ(channels[(4 + 1) * 3 + 1].mean.value(), 3.2);
 }
 
-// False alarm: 2 x 2 comparisons at 1e-6 each.
-TEST(Ramp, BothLawsHaveTheStatedMeanAndVariance) {
-  for (const char* law : {"normal", "exponential"}) {
-    const auto ramp = prepare("analytic/ramp",
-                              std::string("{width: 2, height: 2, spread: 0.5, law: ") + law + "}");
+/// Four pixels of means 1 and 10 and standard deviations half of those.
+Prepared ramp_of(const std::string& law) {
+  return prepare("analytic/ramp", Value::map({{"width", Value::scalar("2")},
+                                              {"height", Value::scalar("2")},
+                                              {"spread", Value::scalar("0.5")},
+                                              {"law", Value::scalar(law)}}));
+}
+
+TEST(Ramp, ThePixelsHaveTheRangeThatTheLawLeavesThem) {
+  // Of the uniform law, sqrt 3 standard deviations on both sides.
+  const Prepared ramp = ramp_of("uniform(-1, 5)");
+  const Channel last = ramp.setup->channels()[3];
+  EXPECT_NEAR(last.low, 10 - 5 * std::numbers::sqrt3, 1e-13);
+  EXPECT_NEAR(last.high, 10 + 5 * std::numbers::sqrt3, 1e-13);
+  EXPECT_EQ(prepare("analytic/ramp", "{spread: 0}").setup->channels()[0].high, 1);
+}
+
+TEST(Ramp, WhatIsNoLawOrHasNoVarianceIsRefused) {
+  EXPECT_THROW(prepare("analytic/ramp", "{law: normal}"), InputError);
+  EXPECT_THROW(prepare("analytic/ramp", "{law: student_t(2)}"), InputError);
+}
+
+// False alarm: 4 x 2 comparisons at 1e-6 each.
+TEST(Ramp, EveryLawIsBroughtToTheStatedMeanAndVariance) {
+  for (const char* law : {"normal(0, 1)", "normal(3, 2)", "exponential(2)", "uniform(-1, 5)"}) {
+    const Prepared ramp = ramp_of(law);
     const Sample sample = observe(ramp, 100000)[1];
     EXPECT_NEAR(sample.mean(), 10, five * sample.mean_error()) << law;
     EXPECT_NEAR(sample.variance(), 25, five * sample.variance_error()) << law;
