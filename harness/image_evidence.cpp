@@ -228,6 +228,15 @@ stats::Interval interval_of(const stats::ImageDistance& distance, double confide
           confidence};
 }
 
+std::string all_alike(const Question& question) {
+  std::string words;
+  for (const Subject& subject : question.subjects) {
+    words += fmt::format("{}`{}`", words.empty() ? "all images of " : " are alike, and all of ",
+                         subject.estimator->name);
+  }
+  return words + " are alike";
+}
+
 /// What the pair shows, and how far it is apart.
 template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
@@ -237,9 +246,10 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   const stats::ImageDistance distance = distance_of(pair, relative);
   const VaryingPart varying(question, pair);
   if (!varying.any() || !(distance.bias_variance > 0)) {
-    throw stats::ZeroVariance(
-        "every replicate of both images is the same: without spread nothing can be said of what "
-        "was never seen; take fewer `primaries`, or more observations");
+    throw stats::ZeroVariance(fmt::format(
+        "{}: without spread nothing can be said of what was never seen; see that the seed changes "
+        "the image, take fewer `primaries`, or more observations",
+        all_alike(question)));
   }
   outcome.unseen = varying.unseen();
   outcome.replicates = pair.replicates();

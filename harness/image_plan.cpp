@@ -9,6 +9,7 @@
 #include "harness/frozen.h"
 #include "harness/image_views.h"
 #include "harness/parallel.h"
+#include "harness/repeated_images.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "stats/image_cell_skewness.h"
@@ -243,6 +244,7 @@ std::uint64_t choose_for_image(const Question& question, const FamilyPlace& plac
   std::uint64_t size = planned ? stats::least_replicates : classical_replicates;
   size = std::min(question.test->secondaries.value_or(size), most);
   freeze(question, pilots, plan);
+  note_repeated_images(question, pilots, plan);
   judge_skewness(question, pilots, plan);
   const bool in_looks = planned && !question.test->secondaries;
   const std::uint64_t largest = in_looks ? std::min(most, most_first_look) : size;

@@ -164,7 +164,27 @@ TEST(PictureClaims, PicturesOfOneValueAreNoCopies) {
   const auto record = run_files({place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"))});
   const reports::Test& test = record.suites[0].tests[0];
   EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_THAT(test.message, HasSubstr("every replicate of both images is the same"));
+  EXPECT_THAT(test.message,
+              HasSubstr("all images of `a` are alike, and all of `b` are alike: without spread"));
+}
+
+// A picture that stands there twice is told of: a seed may have been given twice, or not be used.
+TEST(PictureClaims, PicturesThatRepeatAreCounted) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2});
+  constexpr auto overwrite = std::filesystem::copy_options::overwrite_existing;
+  std::filesystem::copy_file(place.file("a05.exr"), place.file("a07.exr"), overwrite);
+  std::filesystem::copy_file(place.file("a05.exr"), place.file("a16.exr"), overwrite);
+  const auto record = run_files({place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"))});
+  std::vector<std::string> found;
+  for (const reports::Gate& gate : record.suites[0].tests[0].gates) {
+    if (!gate.name.starts_with("different images")) continue;
+    found.push_back(fmt::format("{}: {:g} of {:g}, {}", gate.name, gate.value.value(),
+                                gate.limit.value(), gate.state));
+  }
+  EXPECT_THAT(found, testing::ElementsAre("different images of a, pilot: 22 of 24, amber",
+                                          "different images of b, pilot: 24 of 24, green"));
 }
 
 TEST(PictureClaims, ADefectIsFoundWhereItIs) {
