@@ -365,7 +365,9 @@ void take_look(TestWork& work, bool may_go_on) {
   }
   if (!work.verdict_only) {
     note_sizes(work);
-    if (outcome.message.empty()) outcome.message = narrate(outcome) + first_contradiction(work);
+    if (outcome.message.empty()) {
+      outcome.message = narrate(outcome) + means_where_it_differs(work) + first_contradiction(work);
+    }
   }
   require_activation(work);
 }

@@ -1,5 +1,7 @@
 #include "harness/image_judge.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,36 @@
 #include "stats/image_pyramid.h"
 
 namespace assay::harness {
+namespace {
+
+/// Indices of a window's elements in a question.
+std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const ImageShape& shape) {
+  std::vector<std::size_t> elements;
+  const stats::Rectangle& window = finding.window;
+  for (std::size_t y = window.y; y < window.y + window.height; ++y) {
+    for (std::size_t x = window.x; x < window.x + window.width; ++x) {
+      elements.push_back((y * shape.width + x) * shape.components.size() + finding.channel);
+    }
+  }
+  return elements;
+}
+
+double mean_over(const TestWork& work, std::size_t subject,
+                 const std::vector<std::size_t>& elements) {
+  const Summary& summary = work.pools[subject]->prefix(work.outcome.secondaries());
+  const std::vector<std::size_t>& channels = work.outcome.question.subjects[subject].channels;
+  double sum = 0;
+  for (const std::size_t i : elements) sum += summary.channels[channels[i]].moments.mean;
+  return sum / static_cast<double>(elements.size());
+}
+
+double reference_over(const Question& question, const std::vector<std::size_t>& elements) {
+  double sum = 0;
+  for (const std::size_t i : elements) sum += question.references[i].value + question.offset;
+  return sum / static_cast<double>(elements.size());
+}
+
+}  // namespace
 
 ImageTest image_test(const TestWork& work) {
   const TestOutcome& outcome = work.outcome;
@@ -22,6 +54,22 @@ ImageTest image_test(const TestWork& work) {
 ImageViews images_of(const TestWork& work, std::size_t subject) {
   return {work.pools[subject]->observations(work.outcome.secondaries()),
           work.outcome.question.subjects[subject].channels};
+}
+
+std::string means_where_it_differs(const TestWork& work) {
+  const TestOutcome& outcome = work.outcome;
+  const Question& question = outcome.question;
+  if (outcome.verdict != reports::Verdict::fail || !outcome.channels[0].image) return "";
+  const stats::ImageFinding& winner = outcome.channels[0].image->family.winner;
+  if (winner.statistic != stats::ImageStatistic::window) return "";
+  const std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
+  const double mean = mean_over(work, 0, elements);
+  const double other = question.of_two()
+                           ? question.factor * mean_over(work, 1, elements) + question.offset
+                           : reference_over(question, elements);
+  const std::string part =
+      other == 0 ? "" : fmt::format(", {:+.3g} %", 100 * (mean - other) / std::abs(other));
+  return fmt::format("; the mean at that place is {:.5g} against {:.5g}{}", mean, other, part);
 }
 
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,

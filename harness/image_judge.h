@@ -3,6 +3,7 @@
 // What taking a look at images needs of a test's data.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "harness/evaluate.h"
@@ -15,6 +16,10 @@ ImageTest image_test(const TestWork& work);
 
 /// The observations of this look, the subject's elements of each.
 ImageViews images_of(const TestWork& work, std::size_t subject);
+
+/// "; the mean at that place is 1.03 against 1, +3 %": of a failed claim on images whose deciding
+/// sum is one over a window, what it shows. Else "".
+std::string means_where_it_differs(const TestWork& work);
 
 /// The difference that a test of this size would find by the sum over the whole image, were it the
 /// same everywhere; nullopt where the claim allows a difference.

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <vector>
 
@@ -195,6 +197,18 @@ TEST(PictureClaims, ADefectIsFoundWhereItIs) {
   const reports::Test& test = record.suites[0].tests[0];
   EXPECT_EQ(test.verdict, Verdict::fail) << test.message;
   EXPECT_THAT(test.message, HasSubstr("columns 4-11, rows 4-11"));
+  // Means of 24 x 64 values: five standard errors of theirs.
+  constexpr const char* words = "; the mean at that place is ";
+  ASSERT_THAT(test.message, HasSubstr(words));
+  double mean = 0;
+  double other = 0;
+  double part = 0;
+  const std::string found = test.message.substr(test.message.find(words) + std::strlen(words));
+  ASSERT_EQ(std::sscanf(found.c_str(), "%lf against %lf, %lf %%", &mean, &other, &part), 3);
+  const double truth = 1 + 7.5 / 16;
+  EXPECT_NEAR(mean, 1.1 * truth, 0.02);
+  EXPECT_NEAR(other, truth, 0.02);
+  EXPECT_NEAR(part, 100 * (mean / other - 1), 0.05);
 }
 
 TEST(PictureClaims, AReferenceIsHeldAgainstWithItsError) {
