@@ -70,7 +70,7 @@ class StackBlock {
   }
   const Estimates& all() const { return all_; }
   void without(std::size_t r, Estimates& out) const {
-    leave_out(stack_.images[r].data() + first_, {all_.mean, m2_, count()}, out, size_);
+    leave_out(stack_.at(r, first_), {all_.mean, m2_, count()}, out, size_);
   }
 
  private:
