@@ -62,17 +62,19 @@ stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Image
 
 template <class Real>
 stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const stats::ImageReference& b) {
-  if (a.images.size() <= most_flipped) return stats::flip_matrix(a, b);
+  if (a.images.size() <= most_flipped) return stats::flip_matrix(a, b, on_all_threads);
   const Images first = grouped(a, most_flipped);
-  return stats::flip_matrix(stack_of(a.extent, first), b);
+  return stats::flip_matrix(stack_of(a.extent, first), b, on_all_threads);
 }
 
 template <class Real>
 stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const stats::ImageStack<Real>& b) {
-  if (std::max(a.images.size(), b.images.size()) <= most_flipped) return stats::flip_matrix(a, b);
+  if (std::max(a.images.size(), b.images.size()) <= most_flipped) {
+    return stats::flip_matrix(a, b, on_all_threads);
+  }
   const Images first = grouped(a, most_flipped);
   const Images second = grouped(b, most_flipped);
-  return stats::flip_matrix(stack_of(a.extent, first), stack_of(b.extent, second));
+  return stats::flip_matrix(stack_of(a.extent, first), stack_of(b.extent, second), on_all_threads);
 }
 
 template <class Real>
