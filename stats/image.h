@@ -75,6 +75,15 @@ struct ImagePair {
   const ImageReference* reference = nullptr;
 };
 
+template <class Real>
+ImagePair<Real> pair_of(const ImageStack<Real>& a, const ImageStack<Real>& b) {
+  return {a, &b, nullptr};
+}
+template <class Real>
+ImagePair<Real> pair_of(const ImageStack<Real>& a, const ImageReference& b) {
+  return {a, nullptr, &b};
+}
+
 // What the methods on images need as a variance of its own: with fewer, Student's tails at the
 // level that thousands of elements demand reject nothing (15 degrees: |t| > 12 at 5e-9).
 inline constexpr std::size_t least_replicates = 16;

@@ -134,7 +134,6 @@ RowCellTails::RowCellTails(std::span<const CellPilot> sides, double level,
     const double tail = level * group.share / cells / 2;
     factors.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
   }
-  factors_.assign(extent_.channels, factors);
   std::size_t choices = weights.empty() ? most_choices : 1;
   for (const CellPilot& side : sides) {
     sides_.push_back({side.factor, side.replicates});
@@ -145,7 +144,8 @@ RowCellTails::RowCellTails(std::span<const CellPilot> sides, double level,
   for (std::size_t i = 0; i < choices; ++i) {
     choices_.push_back({weights.empty() ? std::optional(i) : std::nullopt,
                         std::vector<RowCellMoments>(sides.size(), cells),
-                        std::vector<std::vector<double>>(extent_.channels, none)});
+                        std::vector<std::vector<double>>(extent_.channels, none),
+                        std::vector<std::vector<LevelFactors>>(extent_.channels, factors)});
   }
 }
 
@@ -185,7 +185,7 @@ void RowCellTails::take(std::span<const CellPilot> sides, RowRange rows, Choice&
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (choice.cells[0].is_larger(groups_[g])) continue;
       const std::size_t count = choice.cells[0].cells_in(groups_[g], rows);
-      factors_[c][g].add(std::span(cells[c]).subspan(done, count));
+      choice.factors[c][g].add(std::span(cells[c]).subspan(done, count));
       done += count;
     }
   });
@@ -206,7 +206,7 @@ void RowCellTails::count_weighted(std::span<const double> weights, RowRange rows
   }
 }
 
-void RowCellTails::add_larger(const Choice& choice) {
+void RowCellTails::add_larger(Choice& choice) const {
   ChannelCumulants cells;
   for (std::size_t s = 0; s < sides_.size(); ++s) {
     add_side(sides_[s], static_cast<double>(choice.cells[s].images()),
@@ -222,18 +222,25 @@ void RowCellTails::add_larger(const Choice& choice) {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (!choice.cells[0].is_larger(groups_[g])) continue;
       const std::size_t count = groups_[g].windows.size();
-      factors_[c][g].add(std::span(cells[c]).subspan(done, count));
+      choice.factors[c][g].add(std::span(cells[c]).subspan(done, count));
       done += count;
     }
   }
 }
 
+LevelFactors RowCellTails::factors_of(std::size_t group) const {
+  LevelFactors sum = choices_[0].factors[0][group];
+  for (std::size_t i = 1; i < choices_.size() * extent_.channels; ++i) {
+    sum.merge(choices_[i / extent_.channels].factors[i % extent_.channels][group]);
+  }
+  return sum;
+}
+
 std::vector<CellTails> RowCellTails::tails() {
-  for (const Choice& choice : choices_) add_larger(choice);
+  for (Choice& choice : choices_) add_larger(choice);
   std::vector<CellTails> tails;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    LevelFactors factors = factors_[0][g];
-    for (std::size_t c = 1; c < extent_.channels; ++c) factors.merge(factors_[c][g]);
+    const LevelFactors factors = factors_of(g);
     CellTails& tail = tails.emplace_back();
     tail.size = groups_[g].size;
     if (factors.count() == 0) continue;

@@ -71,6 +71,7 @@ class RowCellTails {
     // How many of a tile's elements have a weight, of each channel: counted in integers, where sums
     // leave no rounding.
     std::vector<std::vector<double>> weighted;
+    std::vector<std::vector<LevelFactors>> factors;  // of a channel's groups
   };
 
   // What one side of the comparison is beside its stack.
@@ -84,7 +85,8 @@ class RowCellTails {
   void count_weighted(std::span<const double> weights, RowRange rows, Choice& choice) const;
   void add_side(const Side& side, double count, const ChannelMoments& moments,
                 ChannelCumulants& cells) const;
-  void add_larger(const Choice& choice);
+  void add_larger(Choice& choice) const;
+  LevelFactors factors_of(std::size_t group) const;
 
   ImageExtent extent_;
   std::span<const double> weights_;
@@ -92,7 +94,6 @@ class RowCellTails {
   std::vector<WindowGroup> groups_;
   std::vector<Side> sides_;
   std::vector<Choice> choices_;
-  std::vector<std::vector<LevelFactors>> factors_;  // of a channel's groups
 };
 
 // Weights for image_pyramid.h: 1 / sqrt of the difference's variance at each element, steadied by

@@ -190,6 +190,10 @@ std::array<double, FlipMatrix::together> FlipMatrix::energies(
 
 template <class Real>
 void RowFlips<Real>::take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each) {
+  if (pair.b != nullptr && pair.b->images.size() != pair.a.images.size()) {
+    check::fail({"flip_matrix", "replicates of the second stack"}, pair.b->images.size(),
+                "as many as of the first, " + std::to_string(pair.a.images.size()));
+  }
   std::vector<std::vector<double>> parts((rows.last - rows.first + row_unit - 1) / row_unit);
   for_each(parts.size(), [&](std::size_t i) {
     const std::size_t first = rows.first + i * row_unit;
@@ -221,10 +225,6 @@ FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageStack<Real>& b,
   check::image_stack("flip_matrix", a);
   check::image_stack("flip_matrix", b);
   check::same_extent("flip_matrix", a.extent, b.extent);
-  if (a.images.size() != b.images.size()) {
-    check::fail({"flip_matrix", "replicates of the second stack"}, b.images.size(),
-                "as many as of the first, " + std::to_string(a.images.size()));
-  }
   return matrix_of<Real>({a, &b, nullptr}, for_each);
 }
 

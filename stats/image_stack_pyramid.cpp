@@ -166,8 +166,7 @@ void RowPyramid<Real>::add_elements(ImageFamily& family) const {
   family.tested = counts_.tested;
   family.equal_constants = counts_.equal_constants;
   family.different_constants = counts_.different_constants;
-  const bool wanted = options_.smallest <= 1 && counts_.tested > 0;
-  if (!wanted && counts_.different_constants == 0) return;
+  if (counts_.tested == 0 && counts_.different_constants == 0) return;
   ImageFinding finding = certain_finding(extent_, best_element_, z_[best_element_]);
   if (counts_.different_constants == 0) {
     finding.z = z_[best_element_];
@@ -182,7 +181,7 @@ template <class Real>
 void RowPyramid<Real>::add_best_windows(ImageFamily& family) const {
   for (std::size_t g = 1; g < groups_.size(); ++g) {
     const BestCell& best = found_.best[g];
-    if (best.windows == 0 || groups_[g].size < options_.smallest) continue;
+    if (best.windows == 0) continue;
     ImageFinding finding = best.finding;
     finding.log_p = two_sided(tails_of(best.value));
     finding.adjusted_log_p = adjusted(finding.log_p, {best.windows, groups_[g].share});
@@ -226,6 +225,7 @@ ImageFamily RowPyramid<Real>::family() {
     add_best_energy(family);
   }
   decide(family);
+  leave_out_cells(family, options_.smallest);
   return family;
 }
 
