@@ -50,10 +50,13 @@ class ExrFile {
   /// The attribute `samplesPerPixel` that pbrt writes.
   std::optional<std::uint64_t> samples_per_pixel() const;
 
-  /// Channels of one window, interleaved: that of column x, row y and position c in `names` goes to
-  /// texels[(y * width + x) * names.size() + c], rows from the top. InputError, beside the above,
-  /// for a name that is not there, windows that differ, and a channel that is sub-sampled.
-  void read(std::span<const std::string> names, std::span<float> texels) const;
+  /// Channels of one window, interleaved, of as many rows from `first` on as there is room for:
+  /// that of column x, row y and position c in `names` goes to
+  /// texels[((y - first) * width + x) * names.size() + c], rows from the top. Rows of chunks that
+  /// are read in parts take longer. InputError, beside the above, for a name that is not there,
+  /// windows that differ, and a channel that is sub-sampled.
+  void read(std::span<const std::string> names, std::span<float> texels,
+            std::size_t first = 0) const;
   /// The window that all of these share.
   ExrWindow window(std::span<const std::string> names) const;
 

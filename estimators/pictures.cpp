@@ -265,10 +265,14 @@ ImageShape PictureStack::shape(bool independent) const {
           .independent = independent};
 }
 
+std::unique_ptr<const ExrFile> PictureStack::open(std::size_t index) const {
+  auto file = std::make_unique<const ExrFile>(files[index]);
+  require_same(*file, *this);
+  return file;
+}
+
 void PictureStack::read(std::size_t index, std::span<float> texels) const {
-  const ExrFile file(files[index]);
-  require_same(file, *this);
-  file.read(channels.names, texels);
+  open(index)->read(channels.names, texels);
 }
 
 PictureStack open_stack(std::vector<std::string> files, const std::string& patterns) {

@@ -3,6 +3,7 @@
 // Pictures that another program rendered: which files, which channels, what they are of.
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct PictureStack {
   PictureChannels channels = {};
 
   ImageShape shape(bool independent) const;
+  /// One file, still of this size. InputError at the file.
+  std::unique_ptr<const ExrFile> open(std::size_t index) const;
   /// Reads the texels of one file, shape().elements() of them. InputError at the file.
   void read(std::size_t index, std::span<float> texels) const;
 };

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,20 @@ std::optional<std::size_t> unknown_channels(const Setup& setup);
 /// Of an estimator of such a set-up: observation `index` as the file has it, `texels` one for each
 /// element. `secondary` gives the same numbers, and their average after them.
 void read_picture(Estimator& pictures, std::uint64_t index, std::span<float> texels, Cost& cost);
+
+/// Pictures of files, to be read rows after rows.
+class PictureRows {
+ public:
+  virtual ~PictureRows() = default;
+  /// Reads the whole rows of picture `index` that follow on those read of it so far, as many as
+  /// there is room for. InputError as read_picture; once the last are read, also for a picture that
+  /// is another one bit for bit. False where a texel is not finite. Thread-safe for different
+  /// pictures.
+  virtual bool read(std::uint64_t index, std::span<float> texels) = 0;
+};
+
+/// Those of a set-up of pictures, all from their first row on; null for other set-ups.
+std::unique_ptr<PictureRows> picture_rows(const Setup& setup);
 
 /// The average of texels that follows them in an observation.
 double average_of(std::span<const float> texels);

@@ -6,12 +6,13 @@
 #include <cmath>
 
 #include "estimators/stream.h"
+#include "harness/image_flips.h"
 #include "harness/inversion.h"
 #include "harness/parallel.h"
+#include "harness/picture_look.h"
 #include "stats/errors.h"
 #include "stats/image_equivalence.h"
 #include "stats/image_pyramid.h"
-#include "stats/image_sign_flip.h"
 #include "stats/image_sums.h"
 #include "stats/moments.h"
 #include "stats/tails.h"
@@ -21,58 +22,17 @@ namespace {
 
 // This share of the level goes to elements that never varied.
 constexpr double unseen_share = 0.02;
-// Sign vectors are enumerated for so few replicates, some milliseconds' work; for more of them a
-// random choice is looked at, and never of more vectors or longer ones: an eighth of a second's
-// work. So many that reach the sum of squares tell its p-value to a tenth.
-constexpr std::size_t most_enumerated = 18;
-constexpr double most_flips = 0x1p19;
-constexpr std::size_t most_flipped = 64;
-constexpr std::uint64_t enough_flips = 100;
 
 // ---- theta = 0
 
-using Images = std::vector<std::vector<double>>;
-
-/// Means of the images r, r + count, r + 2 count, …: as good as the images themselves for flipping
-/// signs, and there are at most `count` of them.
-template <class Real>
-Images grouped(const stats::ImageStack<Real>& stack, std::size_t count) {
-  const std::size_t groups = std::min(count, stack.images.size());
-  Images means(groups, std::vector<double>(stack.extent.elements()));
-  for (std::size_t g = 0; g < groups; ++g) {
-    const std::size_t members = (stack.images.size() - g + groups - 1) / groups;
-    const std::span<const Real> first = stack.images[0];
-    for (std::size_t r = g; r < stack.images.size(); r += groups) {
-      for (std::size_t i = 0; i < means[g].size(); ++i) {
-        // From the first image on: the mean of a constant is that constant, without rounding.
-        const double difference = double{stack.images[r][i]} - double{first[i]};
-        means[g][i] += difference / static_cast<double>(members);
-      }
-    }
-    for (std::size_t i = 0; i < means[g].size(); ++i) means[g][i] += first[i];
+template <class Real, class Second>
+stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const Second& b) {
+  constexpr std::size_t rows_at_a_time = 16 * GroupedFlips<Real>::row_unit;
+  GroupedFlips<Real> flips;
+  for (std::size_t row = 0; row < a.extent.height; row += rows_at_a_time) {
+    flips.take(stats::pair_of(a, b), {row, std::min(row + rows_at_a_time, a.extent.height)});
   }
-  return means;
-}
-
-stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Images& images) {
-  stats::ImageStack<double> stack{extent, {}};
-  for (const std::vector<double>& image : images) stack.images.emplace_back(image);
-  return stack;
-}
-
-template <class Real>
-stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const stats::ImageReference& b) {
-  if (a.images.size() <= most_flipped) return stats::flip_matrix(a, b);
-  const Images first = grouped(a, most_flipped);
-  return stats::flip_matrix(stack_of(a.extent, first), b);
-}
-
-template <class Real>
-stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const stats::ImageStack<Real>& b) {
-  if (std::max(a.images.size(), b.images.size()) <= most_flipped) return stats::flip_matrix(a, b);
-  const Images first = grouped(a, most_flipped);
-  const Images second = grouped(b, most_flipped);
-  return stats::flip_matrix(stack_of(a.extent, first), stack_of(b.extent, second));
+  return flips.matrix();
 }
 
 template <class Real>
@@ -81,36 +41,23 @@ bool has_error(const stats::ImageStack<Real>&) {
 }
 bool has_error(const stats::ImageReference& b) { return !b.standard_error.empty(); }
 
-/// The smallest p-value that flips of signs can have.
-double least_log_p(std::size_t replicates, double flips) {
-  return replicates <= most_enumerated ? -std::log(2.0) * static_cast<double>(replicates - 1)
-                                       : -std::log1p(flips);
+/// The signs' own stream, of so many images.
+Stream signs_of(const ImageTest& test, std::size_t images) {
+  return {stream_key(test.flips.bits, "sign flips", "", 0), images};
 }
 
-/// The sum of squares of correlated elements joins the family by flips of signs; or takes no part,
-/// where so few replicates, or so small a level, leave nothing to reject, and where other sums say
-/// more than any flips could.
+/// The sum of squares of correlated elements.
 template <class Real>
 void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test,
                         ImageOutcome& outcome) {
   // A reference's error does not flip with the replicates: cells alone are left.
   if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return;
-  const double share = test.share.alpha * stats::energy_share;
-  const std::size_t replicates = std::min(most_flipped, varying.first().images.size());
-  const double flips = std::ceil(4 / share);
-  if (static_cast<double>(replicates) < 2 + std::log2(1 / share)) return;
-  if (replicates > most_enumerated && flips > most_flips) return;
-  if (least_log_p(replicates, flips) >= stats::energy_notice(outcome.family)) return;
-  const stats::FlipMatrix matrix =
-      varying.with([](const auto& a, const auto& b) { return flips_of(a, b); });
-  Stream random(stream_key(test.flips.bits, "sign flips", "", 0), varying.first().images.size());
-  random.draw_ahead();
-  const stats::FlipPlan plan{share, static_cast<std::uint64_t>(flips), enough_flips};
-  const stats::SignFlip flip = replicates <= most_enumerated
-                                   ? stats::sign_flip(matrix, share)
-                                   : stats::sign_flip(matrix, plan, random);
-  outcome.by_sign_flips = true;
-  stats::add_energy(outcome.family, varying.first().extent, flip.log_p);
+  const std::size_t images = varying.first().images.size();
+  const std::optional<FlipSize> size = flip_size(test.share, images);
+  if (!size) return;
+  outcome.by_sign_flips = add_flipped_energy(
+      outcome.family, varying.first().extent, *size, signs_of(test, images),
+      [&] { return varying.with([](const auto& a, const auto& b) { return flips_of(a, b); }); });
 }
 
 template <class Real>
@@ -151,20 +98,24 @@ void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
 
 // ---- theta beyond 0
 
-template <class Real>
-stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative) {
-  const stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
-    return stats::image_distance(first, second, on_all_threads);
-  });
-  if (!relative) {
-    return stats::with_norm(distance, static_cast<double>(pair.extent().elements()));
-  }
+/// The norm in it is that of the margin.
+stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
+                                        const stats::ImageExtent& extent, bool relative) {
+  if (!relative) return stats::with_norm(distance, static_cast<double>(extent.elements()));
   if (!(distance.squared_norm > 0)) {
     throw std::domain_error(
         "the image that it is held against is zero within its noise, and a margin in per cent of "
         "it means nothing; give the margin as a number");
   }
   return distance;
+}
+
+template <class Real>
+stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative) {
+  const stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
+    return stats::image_distance(first, second, on_all_threads);
+  });
+  return in_units_of_margin(distance, pair.extent(), relative);
 }
 
 double mean_over(std::span<const double> image) {
@@ -181,19 +132,20 @@ stats::Moments means_of(const stats::ImageStack<Real>& stack) {
   return moments;
 }
 
-/// Standard error of theta for a difference that is the same, or in proportion, everywhere.
+/// Standard error of theta for a difference that is the same, or in proportion, everywhere: from
+/// the images' means, and that of the second or its number.
+double uniform_error(const stats::Moments& first, const Constant& second, bool relative) {
+  const double error = std::hypot(first.standard_error(), second.standard_error);
+  return relative ? error / std::abs(second.value) : error;
+}
+
+Constant constant_of(const stats::Moments& means) { return {means.mean, means.standard_error()}; }
+
 template <class Real>
 double uniform_error(const ImagePair<Real>& pair, bool relative) {
-  double error = means_of(pair.first()).standard_error();
-  double mean = 0;
-  if (pair.of_two()) {
-    const stats::Moments second = means_of(pair.second());
-    error = std::hypot(error, second.standard_error());
-    mean = second.mean;
-  } else {
-    mean = mean_over(pair.reference().value);
-  }
-  return relative ? error / std::abs(mean) : error;
+  const Constant second = pair.of_two() ? constant_of(means_of(pair.second()))
+                                        : Constant{mean_over(pair.reference().value), 0};
+  return uniform_error(means_of(pair.first()), second, relative);
 }
 
 /// Replicates at which theta would be excluded from `margin` on: the squared bias's standard error
@@ -237,6 +189,14 @@ std::string all_alike(const Question& question) {
   return words + " are alike";
 }
 
+void require_spread(const Question& question, bool any, const stats::ImageDistance& distance) {
+  if (any && distance.bias_variance > 0) return;
+  throw stats::ZeroVariance(fmt::format(
+      "{}: without spread nothing can be said of what was never seen; see that the seed changes "
+      "the image, take fewer `primaries`, or more observations",
+      all_alike(question)));
+}
+
 /// What the pair shows, and how far it is apart.
 template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
@@ -245,12 +205,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   const bool relative = is_relative(question, 0);
   const stats::ImageDistance distance = distance_of(pair, relative);
   const VaryingPart varying(question, pair);
-  if (!varying.any() || !(distance.bias_variance > 0)) {
-    throw stats::ZeroVariance(fmt::format(
-        "{}: without spread nothing can be said of what was never seen; see that the seed changes "
-        "the image, take fewer `primaries`, or more observations",
-        all_alike(question)));
-  }
+  require_spread(question, varying.any(), distance);
   outcome.unseen = varying.unseen();
   outcome.replicates = pair.replicates();
   outcome.smallest_cell = test.smallest_cell;
@@ -258,6 +213,29 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(pair.extent(), outcome);
   outcome.uniform_error = uniform_error(pair, relative);
+  return distance;
+}
+
+/// The same of pictures that were looked at when they were read. They declare neither rounding nor
+/// range: an element that never varied is as it is.
+stats::ImageDistance look_at(const Question& question, const ImageTest& test,
+                             const PictureLook& look, ImageOutcome& outcome) {
+  const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
+  const bool relative = is_relative(question, 0);
+  const stats::ImageDistance distance = in_units_of_margin(look.distance, extent, relative);
+  require_spread(question, look.family.tested > 0, distance);
+  outcome.replicates = look.pictures;
+  outcome.smallest_cell = test.smallest_cell;
+  outcome.family = look.family;
+  outcome.z = look.z;
+  stats::leave_out_cells(outcome.family, test.smallest_cell);
+  if (look.flips) {
+    outcome.by_sign_flips =
+        add_flipped_energy(outcome.family, extent, flip_size(test.share, look.pictures).value(),
+                           signs_of(test, look.pictures), [&] { return *look.flips; });
+  }
+  add_unseen(extent, outcome);
+  outcome.uniform_error = uniform_error(look.means[0], constant_of(look.means[1]), relative);
   return distance;
 }
 
@@ -299,9 +277,11 @@ ImageEvidence evidence_of_images(const Question& question, const ImageTest& test
                                  std::span<const ChannelData> data) {
   const bool relative = is_relative(question, 0);
   ImageEvidence result;
-  const stats::ImageDistance distance = with_pair(question, data, [&](const auto& pair) {
-    return look_at(question, test, pair, result.outcome);
-  });
+  const auto look = [&](const auto& images) {
+    return look_at(question, test, images, result.outcome);
+  };
+  const stats::ImageDistance distance =
+      test.look != nullptr ? look(*test.look) : with_pair(question, data, look);
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {

@@ -14,13 +14,16 @@
 
 namespace assay::harness {
 
+struct PictureLook;
+
 /// How the family is tested; frozen by the plan, but for the share of the level.
 struct ImageTest {
   ErrorShare share = {};                 ///< of this look
   std::uint32_t smallest_cell = 1;       ///< that the pilot lets keep its level
   std::span<const double> weights = {};  ///< of the elements, from the pilot
-  bool independent = true;  ///< whether an image's elements are; else signs are flipped
-  StreamKey flips = {};     ///< of the signs, where there are too many to enumerate
+  bool independent = true;            ///< whether an image's elements are; else signs are flipped
+  StreamKey flips = {};               ///< of the signs, where there are too many to enumerate
+  const PictureLook* look = nullptr;  ///< at pictures, taken when they were read
 };
 
 struct ImageOutcome {

@@ -48,7 +48,8 @@ ImageTest image_test(const TestWork& work) {
           .weights = outcome.plan.method.frozen.weights,
           .independent = std::all_of(subjects.begin(), subjects.end(),
                                      [](const Subject& s) { return s.image->independent; }),
-          .flips = work.pools[0]->key()};
+          .flips = work.pools[0]->key(),
+          .look = outcome.plan.look.get()};
 }
 
 ImageViews images_of(const TestWork& work, std::size_t subject) {

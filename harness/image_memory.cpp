@@ -6,6 +6,8 @@
 #include <fstream>
 #include <limits>
 
+#include "harness/picture_stream.h"
+
 namespace assay::harness {
 namespace {
 
@@ -17,12 +19,24 @@ constexpr double gigabyte = 1e9;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-double bytes_of(const PreparedEstimator& estimator) {
+/// Of an estimator's pictures themselves.
+double bytes_of_pictures(const PreparedEstimator& estimator, double numbers,
+                         const StreamedClaims& streamed) {
+  for (const Question* const question : streamed) {
+    for (const Subject& side : question->subjects) {
+      if (side.estimator->name == estimator.name) return streamed_bytes(side);
+    }
+  }
+  return bytes_of_number * numbers;
+}
+
+double bytes_of(const PreparedEstimator& estimator, const StreamedClaims& streamed) {
   const auto image = estimator.setup->image();
   const auto pictures = estimator.setup->observations();
   if (!image || !pictures || *pictures == 0) return 0;
-  return static_cast<double>(image->elements()) *
-         (bytes_of_number * static_cast<double>(*pictures) + bytes_of_element);
+  const auto elements = static_cast<double>(image->elements());
+  return bytes_of_pictures(estimator, elements * static_cast<double>(*pictures), streamed) +
+         elements * bytes_of_element;
 }
 
 /// The number in a file of one.
@@ -49,20 +63,23 @@ double of_control_group() {
 
 }  // namespace
 
-double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators) {
+double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators,
+                     const StreamedClaims& streamed) {
   double bytes = 0;
-  for (const auto& [name, estimator] : estimators) bytes += bytes_of(estimator);
+  for (const auto& [name, estimator] : estimators) bytes += bytes_of(estimator, streamed);
   return bytes;
 }
 
 double available_bytes() { return std::min(of_system(), of_control_group()); }
 
-void require_memory(const std::map<std::string, PreparedEstimator>& estimators, double available) {
-  const double needed = picture_bytes(estimators);
+void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
+                    const StreamedClaims& streamed, double available) {
+  const double needed = picture_bytes(estimators, streamed);
   if (needed <= available) return;
-  const auto largest = std::max_element(
-      estimators.begin(), estimators.end(),
-      [](const auto& a, const auto& b) { return bytes_of(a.second) < bytes_of(b.second); });
+  const auto largest =
+      std::max_element(estimators.begin(), estimators.end(), [&](const auto& a, const auto& b) {
+        return bytes_of(a.second, streamed) < bytes_of(b.second, streamed);
+      });
   const PreparedEstimator& estimator = largest->second;
   const ImageShape shape = *estimator.setup->image();
   throw InputError(

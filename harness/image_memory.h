@@ -5,19 +5,26 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "harness/prepare.h"
+#include "harness/question.h"
 
 namespace assay::harness {
 
+/// Claims that are answered from rows of their estimators' pictures (picture_stream.h).
+using StreamedClaims = std::vector<const Question*>;
+
 /// Bytes that testing the pictures of files takes at its peak, of all these estimators together.
-double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators);
+double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators,
+                     const StreamedClaims& streamed);
 
 /// Bytes that this process may still take: what the system, or the control group that it runs in,
 /// has available. Infinity where neither tells.
 double available_bytes();
 
 /// Throws InputError at the estimator with most pictures where they need more than `available`.
-void require_memory(const std::map<std::string, PreparedEstimator>& estimators, double available);
+void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
+                    const StreamedClaims& streamed, double available);
 
 }  // namespace assay::harness

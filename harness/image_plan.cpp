@@ -175,6 +175,13 @@ struct Replicates {
 /// more as the sum over the whole image needs. It always takes part.
 std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                            const Replicates& replicates, Plan& plan) {
+  const auto note = [&](const std::vector<stats::CellTails>& tails) {
+    plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
+  };
+  if (plan.look) {
+    note(plan.look->tails);
+    return replicates.first;
+  }
   const double level = smallest_level(question, place);
   PilotSides pilot(question, plan, pilots);
   for (std::uint64_t count = replicates.first;; count *= 2) {
@@ -182,7 +189,7 @@ std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, c
     const std::vector<stats::CellTails> tails =
         stats::cell_tails(pilot.sides(), level, plan.method.frozen.weights, on_all_threads);
     if (keeps_level(tails.back()) || 2 * count > replicates.most) {
-      plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
+      note(tails);
       return count;
     }
   }
@@ -237,16 +244,25 @@ std::vector<double> image_weights(const Question& question, const Pilots& pilots
   return stats::cell_weights(PilotSides(question, plan, pilots).sides());
 }
 
+bool plans_replicates(const Question& question) {
+  return question.test->detect || question.test->claim.relation == Relation::within;
+}
+
+std::uint64_t usual_replicates(const Question& question, std::uint64_t most) {
+  const std::uint64_t size =
+      plans_replicates(question) ? stats::least_replicates : classical_replicates;
+  return std::min(question.test->secondaries.value_or(size), most);
+}
+
 std::uint64_t choose_for_image(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  if (const Pilot* const pilot = pilot_of(question.subjects[0], pilots)) plan.look = pilot->look;
   if (!all_piloted(question, pilots)) return stats::least_replicates;
-  const bool planned = question.test->detect || question.test->claim.relation == Relation::within;
-  std::uint64_t size = planned ? stats::least_replicates : classical_replicates;
-  size = std::min(question.test->secondaries.value_or(size), most);
+  const std::uint64_t size = usual_replicates(question, most);
   freeze(question, pilots, plan);
   note_repeated_images(question, pilots, plan);
   judge_skewness(question, pilots, plan);
-  const bool in_looks = planned && !question.test->secondaries;
+  const bool in_looks = plans_replicates(question) && !question.test->secondaries;
   const std::uint64_t largest = in_looks ? std::min(most, most_first_look) : size;
   const std::uint64_t first =
       choose_cells(question, place, pilots, {.first = size, .most = largest}, plan);

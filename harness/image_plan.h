@@ -14,6 +14,11 @@ namespace assay::harness {
 /// Replicates of a claim on images without `detect`.
 inline constexpr std::uint64_t classical_replicates = 64;
 
+/// The replicates that a claim without `detect` or `within` is planned for, of so many at most.
+std::uint64_t usual_replicates(const Question& question, std::uint64_t most);
+/// Whether something asks for more or fewer of them.
+bool plans_replicates(const Question& question);
+
 /// Weights of the elements in sums over cells: from the pilot, whose images are more than a test's
 /// and not its own. Empty where they are its own, rows of a file: there halves weigh each other.
 std::vector<double> image_weights(const Question& question, const Pilots& pilots, const Plan& plan);

@@ -19,7 +19,7 @@ template <class Real>
 ChannelSummary one_by_one(const stats::ImageStack<Real>& stack, std::size_t channel) {
   ChannelSummary summary;
   for (std::size_t i = 0; i < stack.images.size(); ++i) {
-    add_observation(summary, stack.images[i][channel], i);
+    add_observation(summary, *stack.at(i, channel), i);
   }
   return summary;
 }
@@ -37,11 +37,14 @@ void take(const stats::ImageStack<Real>& stack, std::size_t first, std::span<Cha
   }
 }
 
+/// Of a range of the elements.
 template <class Real>
-void take_all(const stats::ImageStack<Real>& stack, std::span<ChannelSummary> out) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, out.size(), channels_at_a_time),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      take(stack, range.begin(), out.subspan(range.begin(), range.size()));
+void take_all(const stats::ImageStack<Real>& stack, stats::ElementRange range,
+              std::span<ChannelSummary> out) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(range.first, range.last, channels_at_a_time),
+                    [&](const tbb::blocked_range<std::size_t>& some) {
+                      take(stack, some.begin(),
+                           out.subspan(some.begin() - range.first, some.size()));
                     });
 }
 
@@ -49,7 +52,7 @@ std::vector<ChannelSummary> sums_of(std::span<const std::vector<double>> observa
   const std::size_t channels = observations.front().size();
   std::vector<ChannelSummary> sums(channels);
   take_all<double>({{.width = channels, .height = 1}, {observations.begin(), observations.end()}},
-                   sums);
+                   {0, channels}, sums);
   return sums;
 }
 
@@ -72,15 +75,26 @@ std::vector<ChannelSummary> sums_of(std::span<const std::span<const float>> pict
   const std::size_t elements = pictures.front().size();
   std::vector<ChannelSummary> sums(elements + 1);
   take_all<float>({{.width = elements, .height = 1}, {pictures.begin(), pictures.end()}},
-                  std::span(sums).first(elements));
-  const std::vector<double> averages = averages_of(pictures);
-  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
-  for (const double& average : averages) stack.images.emplace_back(&average, 1);
-  take_all(stack, std::span(sums).last(1));
+                  {0, elements}, sums);
+  sums.back() = sum_of(averages_of(pictures));
   return sums;
 }
 
 }  // namespace
+
+void sum_rows(const stats::ImageStack<float>& pictures, stats::RowRange rows,
+              std::span<ChannelSummary> sums) {
+  const stats::ElementRange range = rows.elements(pictures.extent);
+  take_all(pictures, range, sums.subspan(range.first, range.size()));
+}
+
+ChannelSummary sum_of(std::span<const double> averages) {
+  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
+  for (const double& average : averages) stack.images.emplace_back(&average, 1);
+  ChannelSummary sum;
+  take(stack, 0, {&sum, 1});
+  return sum;
+}
 
 std::vector<ChannelSummary> sums_of_kept(const Observations& observations) {
   return std::visit([](const auto& each) { return sums_of(each); }, observations);

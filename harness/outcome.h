@@ -2,6 +2,7 @@
 
 // What came of a test: numbers of each channel, then a verdict in words.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ struct Plan {
   std::vector<reports::Gate> gates = {};      ///< of the pilot
   std::uint32_t smallest_cell = 1;            ///< of an image: smaller ones do not keep their level
   std::string invalid = "";                   ///< why no method is valid, if none is
+  /// Of pictures that were looked at when they were read.
+  std::shared_ptr<const PictureLook> look = {};
 
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }
 };

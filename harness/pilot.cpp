@@ -16,17 +16,6 @@ constexpr std::uint64_t other_observations = 512;
 // Of images as many as this many elements pay for, at least the fewest that tell their variance.
 constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
 constexpr std::uint64_t least_images = 2 * stats::least_replicates;
-// Of an image's thousands of channels only the moments are kept.
-constexpr std::size_t kept_channels = 64;
-
-/// Images that a pilot takes of an estimator of them.
-std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
-  const auto image = setup.image();
-  if (!image) return std::nullopt;
-  return std::clamp(image_elements / (image->elements() * primaries), least_images,
-                    other_observations);
-}
-
 std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
   const bool averages = estimator.nature().averages;
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
@@ -38,7 +27,7 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
     pool->keep_observations(usual);  // those of files are kept anyway
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
-  if (pool->channels() <= kept_channels) {
+  if (pool->channels() <= most_kept_channels) {
     for (ChannelPlan& channel : pool->plans()) channel.keep = count;
   }
   pool->request(count);
@@ -89,6 +78,13 @@ Pilot read(const Pool& pool) {
 }
 
 }  // namespace
+
+std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
+  const auto image = setup.image();
+  if (!image) return std::nullopt;
+  return std::clamp(image_elements / (image->elements() * primaries), least_images,
+                    other_observations);
+}
 
 std::string pilot_name(const Subject& subject) {
   return subject.estimator->name + (subject.purpose.empty() ? "" : "." + subject.purpose);

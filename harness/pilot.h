@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/picture_look.h"
 #include "harness/pool.h"
 #include "harness/progress.h"
 #include "harness/question.h"
@@ -26,14 +27,22 @@ struct Pilot {
   Observations images = {};
   std::shared_ptr<const KeptObservations> kept = {};
   std::string trouble = "";  ///< why there are no numbers: the estimator threw
+  /// At pictures, in place of `images`: they were looked at when they were read.
+  std::shared_ptr<const PictureLook> look = {};
 
   std::size_t image_count() const {
+    if (look) return look->piloted;
     return std::visit([](const auto& each) { return each.size(); }, images);
   }
   const stats::Moments& moments(std::size_t channel) const {
     return sums->channels[channel].moments;
   }
 };
+
+/// Images that a pilot takes of an estimator of them.
+std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries);
+/// Of estimators of no more channels a pilot keeps their values.
+inline constexpr std::size_t most_kept_channels = 64;
 
 /// By pilot_name. Averaging estimators at one primary, others at the suite's `primaries`. Of
 /// ready-made data it is all rows, which are the test's own: only the method is chosen by them.

@@ -11,6 +11,7 @@
 #include "harness/frozen.h"
 #include "harness/image_memory.h"
 #include "harness/interrupt.h"
+#include "harness/picture_stream.h"
 #include "harness/plan.h"
 #include "stats/image.h"
 
@@ -129,6 +130,31 @@ std::vector<const Subject*> piloted_draws(const std::vector<Question>& questions
   return all;
 }
 
+/// The pilots of a suite's estimators: those of pictures that are taken rows after rows, then the
+/// others.
+Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
+               const std::vector<bool>& chosen, std::vector<const PreparedEstimator*> used,
+               const RunOptions& options, Progress& progress) {
+  const std::vector<FamilyPlace> place = places(run.suite, questions);
+  Pilots pilots;
+  for (const Question* const question : streamed(questions, chosen)) {
+    const auto index = static_cast<std::size_t>(question - questions.data());
+    Pilots of_pictures = stream_pictures(*question, place[index], progress);
+    stop_if_interrupted();
+    if (of_pictures.empty()) require_memory(run.estimators, {}, available_bytes());
+    pilots.merge(of_pictures);
+  }
+  std::erase_if(used, [&](const PreparedEstimator* each) { return pilots.contains(each->name); });
+  if (used.empty()) return pilots;
+  pilots.merge(run_pilots(with_sweeps(used, questions, chosen),
+                          {.seed = run.seed,
+                           .threads = options.threads,
+                           .with_cost = costly(questions),
+                           .draws = piloted_draws(questions, chosen)},
+                          progress));
+  return pilots;
+}
+
 void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& used,
                   const Primaries& primaries, const Pilots& pilots, Pools& pools) {
   for (const PreparedEstimator* estimator : used) {
@@ -165,12 +191,7 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
   const std::vector<FamilyPlace> place = places(run.suite, questions);
   const auto used = used_by(questions, chosen, run, options);
-  run.pilots = run_pilots(with_sweeps(used, questions, chosen),
-                          {.seed = run.seed,
-                           .threads = options.threads,
-                           .with_cost = costly(questions),
-                           .draws = piloted_draws(questions, chosen)},
-                          progress);
+  run.pilots = piloted(run, questions, chosen, used, options, progress);
   const Pilots& pilots = run.pilots;
   stop_if_interrupted();
   const Primaries primaries = choose_primaries(questions, place, pilots);
@@ -204,11 +225,13 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
   run->lack = lack_of(suite);
   if (!run->lack.empty()) return run;
   run->estimators = prepare_all(run->suite);
-  require_memory(run->estimators, available_bytes());
+  std::vector<Question> questions;
   for (const TestEntry& test : run->suite.tests) {
-    const Question question = ask(test, run->estimators, run->seed);
-    if (test.method) find_method(question, *test.method);
+    questions.push_back(ask(test, run->estimators, run->seed));
+    if (test.method) find_method(questions.back(), *test.method);
   }
+  require_memory(run->estimators, streamed(questions, std::vector<bool>(questions.size(), true)),
+                 available_bytes());
   return run;
 }
 

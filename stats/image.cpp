@@ -1,5 +1,6 @@
 #include "stats/image.h"
 
+#include <algorithm>
 #include <string>
 
 #include "stats/check.h"
@@ -34,8 +35,12 @@ template <class Real>
 void image_stack(const char* function, const ImageStack<Real>& stack) {
   extent_of(function, stack.extent);
   replicates(function, stack.images.size());
+  const std::size_t elements = stack.extent.elements();
+  const std::size_t last = std::min(stack.there.last, elements);
   for (const auto& image : stack.images) {
+    if (image.size() + stack.there.first == last) continue;
     size_of({function, "size of an image"}, image.size(), stack.extent);
+    fail({function, "size of an image"}, image.size(), "the number of elements that are there");
   }
 }
 

@@ -15,15 +15,40 @@ struct ImageExtent {
   std::size_t height = 0;
   std::size_t channels = 1;
 
-  std::size_t elements() const { return width * height * channels; }
+  std::size_t row() const { return width * channels; }
+  std::size_t elements() const { return row() * height; }
   friend bool operator==(const ImageExtent&, const ImageExtent&) = default;
 };
 
-// Replicates of one image: independent, of one law, each with extent.elements() finite values.
+struct ElementRange {
+  std::size_t first = 0;
+  std::size_t last = std::numeric_limits<std::size_t>::max();  // one past the end
+
+  std::size_t size() const { return last - first; }
+};
+
+// Rows of an image.
+struct RowRange {
+  std::size_t first = 0;
+  std::size_t last = 0;  // one past the end
+
+  ElementRange elements(const ImageExtent& extent) const {
+    return {first * extent.row(), last * extent.row()};
+  }
+};
+
+// Replicates of one image: independent, of one law, each with extent.elements() finite values, or
+// with those alone that are `there`.
 template <class Real>
 struct ImageStack {
   ImageExtent extent;
   std::vector<std::span<const Real>> images;
+  ElementRange there = {};
+
+  // From that element on.
+  const Real* at(std::size_t image, std::size_t element) const {
+    return images[image].data() + (element - there.first);
+  }
 };
 
 // A stack in whichever precision it is kept.
@@ -42,18 +67,31 @@ struct ImageReference {
   std::span<const double> standard_error = {};
 };
 
-struct ElementRange {
-  std::size_t first = 0;
-  std::size_t last = std::numeric_limits<std::size_t>::max();  // one past the end
+// A stack and what it is held against, a second stack or a reference: exactly one is not null.
+template <class Real>
+struct ImagePair {
+  const ImageStack<Real>& a;
+  const ImageStack<Real>* b = nullptr;
+  const ImageReference* reference = nullptr;
 };
+
+template <class Real>
+ImagePair<Real> pair_of(const ImageStack<Real>& a, const ImageStack<Real>& b) {
+  return {a, &b, nullptr};
+}
+template <class Real>
+ImagePair<Real> pair_of(const ImageStack<Real>& a, const ImageReference& b) {
+  return {a, nullptr, &b};
+}
 
 // What the methods on images need as a variance of its own: with fewer, Student's tails at the
 // level that thousands of elements demand reject nothing (15 degrees: |t| > 12 at 5e-9).
 inline constexpr std::size_t least_replicates = 16;
 
 namespace check {
-// Throw std::domain_error: empty extent, wrong sizes, fewer than least_replicates images (saying
-// why); reference_error: 0 without standard errors, throws when negative or not finite.
+// Throw std::domain_error: empty extent, wrong sizes (of a stack: other than what it says is
+// there), fewer than least_replicates images (saying why); reference_error: 0 without standard
+// errors, throws when negative or not finite.
 template <class Real>
 void image_stack(const char* function, const ImageStack<Real>& stack);
 void image_reference(const char* function, const ImageReference& reference);

@@ -43,9 +43,6 @@ struct Level {
   std::vector<double> m3;
 
   explicit Level(std::size_t size) : sum(size), mean(size), m2(size), m3(size) {}
-  void clear() {
-    for (std::vector<double>* each : {&mean, &m2, &m3}) std::ranges::fill(*each, 0.0);
-  }
   void take(double count) {
     update({sum.data(), mean.data(), m2.data(), m3.data()}, count, sum.size());
   }
@@ -104,7 +101,8 @@ ASSAY_VECTOR_COPIES void part(const double* from, const ThreeRows& to, std::size
 
 std::size_t tiles_in(std::size_t count, std::size_t side) { return (count + side - 1) / side; }
 
-// A tile's sums and moments: of each channel those of sides 1, 2, 4, … up to its own.
+// A tile's sums, which stay 0 beyond the edge, and moments: of each channel those of sides 1, 2, 4,
+// … up to its own.
 class TileLevels {
  public:
   TileLevels(std::size_t side, std::size_t channels) : side_(side), row_(side * channels) {
@@ -114,12 +112,6 @@ class TileLevels {
     }
   }
 
-  void clear() {
-    for (std::vector<Level>& levels : channels_) {
-      for (Level& level : levels) level.clear();
-      std::ranges::fill(levels[0].sum, 0.0);  // beyond the edge it stays
-    }
-  }
   // Row y of an image's tile: where its numbers are to be put, channels side by side, and then
   // taken from.
   double* row() { return row_.data(); }
@@ -155,122 +147,77 @@ class TileLevels {
   std::vector<std::vector<Level>> channels_;
 };
 
+// The cells of a band of tiles, and the sums over its tiles.
 template <class Real>
-class Cells {
+class Band {
  public:
-  Cells(const WeightedImages<Real>& images, const std::vector<WindowGroup>& groups)
-      : images_(images),
-        groups_(groups),
-        extent_(images.stack.extent),
-        side_(std::min(largest_tile, std::bit_ceil(std::max(extent_.width, extent_.height)))),
-        tiles_{tiles_in(extent_.width, side_), tiles_in(extent_.height, side_), 1},
-        taken_(images.taken()) {
-    const std::vector<std::vector<double>> sums(taken_.size(),
-                                                std::vector<double>(tiles_.elements()));
-    tile_sums_.assign(extent_.channels, sums);
-    std::size_t count = 0;
-    for (const WindowGroup& group : groups) {
-      first_.push_back(count);
-      count += group.windows.size();
+  Band(const WeightedImages<Real>& images, const ImageExtent& tiles, std::size_t side)
+      : images_(images), extent_(images.stack.extent), tiles_(tiles), side_(side) {}
+
+  // Where the cells of a size that begin in the band's rows go, of each channel.
+  struct Cells {
+    std::size_t size;
+    std::size_t first;  // in the channel's moments
+    std::size_t row;    // of cells that the first is in
+  };
+
+  void take_tile(std::size_t x, std::size_t y, std::span<const std::size_t> taken,
+                 std::vector<std::vector<std::vector<double>>>& tile_sums) {
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      load(taken[i], x * side_, y * side_);
+      levels_.take_image(static_cast<double>(i + 1));
+      for (std::size_t c = 0; c < extent_.channels; ++c) {
+        tile_sums[c][i][y * tiles_.width + x] = levels_.sum(c);
+      }
     }
-    moments_.assign(extent_.channels, std::vector<CellMoments>(count));
   }
 
-  // A row of tiles after the other, or several at a time.
-  std::vector<std::vector<CellMoments>> moments(const ForEach& for_each) {
-    for_each(tiles_.height, [&](std::size_t y) {
-      TileLevels levels(side_, extent_.channels);
-      for (std::size_t x = 0; x < tiles_.width; ++x) take_tile(x, y, levels);
-    });
-    for_each(extent_.channels, [&](std::size_t channel) {
-      for (std::size_t g = 0; g < groups_.size(); ++g) {
-        if (!in_tiles(groups_[g])) take_large(g, channel);
+  void keep(const Cells& cells, std::size_t left, std::size_t top, ChannelMoments& to) const {
+    const std::size_t in_row = side_ / cells.size;
+    const std::size_t row = tiles_in(extent_.width, cells.size);
+    for (std::size_t c = 0; c < extent_.channels; ++c) {
+      const Level& level = levels_.of_side(c, cells.size);
+      for (std::size_t y = 0; y < in_row && top + y * cells.size < extent_.height; ++y) {
+        for (std::size_t x = 0; x < in_row && left + x * cells.size < extent_.width; ++x) {
+          const std::size_t cell = (top / cells.size + y - cells.row) * row + left / cells.size + x;
+          const std::size_t i = y * in_row + x;
+          to[c][cells.first + cell] = {level.m2[i], level.m3[i]};
+        }
       }
-    });
-    return std::move(moments_);
+    }
   }
 
  private:
-  bool in_tiles(const WindowGroup& group) const {
-    return std::has_single_bit(group.size) && group.size <= side_;
-  }
-
-  void load(std::size_t image, std::size_t left, std::size_t top, TileLevels& levels) const {
-    const Real* const value = images_.stack.images[image].data();
-    const Real* const first = images_.stack.images[0].data();
+  void load(std::size_t image, std::size_t left, std::size_t top) {
     const std::size_t width = std::min(side_, extent_.width - left);
     for (std::size_t y = 0; y < side_ && top + y < extent_.height; ++y) {
       const std::size_t e = ((top + y) * extent_.width + left) * extent_.channels;
-      weigh(value + e, first + e, {images_.weights.data() + e, levels.row()},
+      weigh(images_.stack.at(image, e), images_.stack.at(0, e),
+            {images_.weights.data() + (e - images_.first_weight), levels_.row()},
             width * extent_.channels);
-      levels.take_row(y, width);
-    }
-  }
-
-  void take_tile(std::size_t x, std::size_t y, TileLevels& levels) {
-    levels.clear();
-    for (std::size_t i = 0; i < taken_.size(); ++i) {
-      load(taken_[i], x * side_, y * side_, levels);
-      levels.take_image(static_cast<double>(i + 1));
-      for (std::size_t c = 0; c < extent_.channels; ++c) {
-        tile_sums_[c][i][y * tiles_.width + x] = levels.sum(c);
-      }
-    }
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      if (!in_tiles(groups_[g])) continue;
-      for (std::size_t c = 0; c < extent_.channels; ++c) {
-        keep(g, x * side_, y * side_, levels.of_side(c, groups_[g].size), moments_[c]);
-      }
-    }
-  }
-
-  void keep(std::size_t g, std::size_t left, std::size_t top, const Level& level,
-            std::vector<CellMoments>& moments) const {
-    const std::size_t size = groups_[g].size;
-    const std::size_t in_row = side_ / size;
-    const std::size_t row = tiles_in(extent_.width, size);
-    for (std::size_t y = 0; y < in_row && top + y * size < extent_.height; ++y) {
-      for (std::size_t x = 0; x < in_row && left + x * size < extent_.width; ++x) {
-        const std::size_t cell = (top / size + y) * row + left / size + x;
-        const std::size_t i = y * in_row + x;
-        moments[first_[g] + cell] = {level.m2[i], level.m3[i]};
-      }
-    }
-  }
-
-  void take_large(std::size_t g, std::size_t channel) {
-    WindowGroup group = groups_[g];
-    for (Rectangle& window : group.windows) {
-      const auto in_tiles = [&](std::uint32_t end) {
-        return static_cast<std::uint32_t>(tiles_in(end, side_));
-      };
-      const std::uint32_t x = in_tiles(window.x);
-      const std::uint32_t y = in_tiles(window.y);
-      window = {x, y, in_tiles(window.x + window.width) - x,
-                in_tiles(window.y + window.height) - y};
-    }
-    WindowSums sums(tiles_);
-    Level level(group.windows.size());
-    for (std::size_t i = 0; i < taken_.size(); ++i) {
-      sums.load(tile_sums_[channel][i]);
-      for (std::size_t w = 0; w < level.sum.size(); ++w) level.sum[w] = sums.of(group, w);
-      level.take(static_cast<double>(i + 1));
-    }
-    for (std::size_t w = 0; w < level.sum.size(); ++w) {
-      moments_[channel][first_[g] + w] = {level.m2[w], level.m3[w]};
+      levels_.take_row(y, width);
     }
   }
 
   const WeightedImages<Real>& images_;
-  const std::vector<WindowGroup>& groups_;
   const ImageExtent& extent_;
+  const ImageExtent& tiles_;
   std::size_t side_;
-  ImageExtent tiles_;
-  std::vector<std::size_t> taken_;                           // images
-  std::vector<std::size_t> first_;                           // window of each group
-  std::vector<std::vector<std::vector<double>>> tile_sums_;  // of a channel's images
-  std::vector<std::vector<CellMoments>> moments_;            // of a channel
+  TileLevels levels_{side_, extent_.channels};
 };
+
+// A group's windows in tiles of that side.
+WindowGroup in_tiles(WindowGroup group, std::size_t side) {
+  for (Rectangle& window : group.windows) {
+    const auto tiles = [&](std::uint32_t end) {
+      return static_cast<std::uint32_t>(tiles_in(end, side));
+    };
+    const std::uint32_t x = tiles(window.x);
+    const std::uint32_t y = tiles(window.y);
+    window = {x, y, tiles(window.x + window.width) - x, tiles(window.y + window.height) - y};
+  }
+  return group;
+}
 
 }  // namespace
 
@@ -283,20 +230,85 @@ std::vector<std::size_t> WeightedImages<Real>::taken() const {
   return taken;
 }
 
+RowCellMoments::RowCellMoments(const ImageExtent& extent, std::vector<WindowGroup> groups)
+    : extent_(extent),
+      groups_(std::move(groups)),
+      side_(std::min(row_unit, std::bit_ceil(std::max(extent.width, extent.height)))),
+      tiles_{tiles_in(extent.width, side_), tiles_in(extent.height, side_), 1},
+      tile_sums_(extent.channels) {
+  for (const WindowGroup& group : groups_) {
+    if (is_larger(group)) larger_.push_back(in_tiles(group, side_));
+  }
+}
+
+bool RowCellMoments::is_larger(const WindowGroup& group) const {
+  return !std::has_single_bit(group.size) || group.size > side_;
+}
+
+std::size_t RowCellMoments::cells_in(const WindowGroup& group, RowRange rows) const {
+  const std::size_t lines = tiles_in(rows.last, group.size) - rows.first / group.size;
+  return lines * tiles_in(extent_.width, group.size);
+}
+
 template <class Real>
-std::vector<std::vector<CellMoments>> cell_moments(const WeightedImages<Real>& images,
-                                                   const std::vector<WindowGroup>& groups,
-                                                   const ForEach& for_each) {
-  return Cells<Real>(images, groups).moments(for_each);
+ChannelMoments RowCellMoments::take(const WeightedImages<Real>& images, RowRange rows,
+                                    const ForEach& for_each) {
+  const std::vector<std::size_t> taken = images.taken();
+  for (auto& of_channel : tile_sums_) {
+    of_channel.resize(taken.size(), std::vector<double>(tiles_.elements()));
+  }
+  std::vector<typename Band<Real>::Cells> cells;
+  std::size_t count = 0;
+  for (const WindowGroup& group : groups_) {
+    if (is_larger(group)) continue;
+    cells.push_back({group.size, count, rows.first / group.size});
+    count += cells_in(group, rows);
+  }
+  ChannelMoments moments(extent_.channels, std::vector<CellMoments>(count));
+  const std::size_t bands = tiles_in(rows.last, side_) - rows.first / side_;
+  for_each(bands * tiles_.width, [&](std::size_t i) {
+    const std::size_t x = i % tiles_.width;
+    const std::size_t y = rows.first / side_ + i / tiles_.width;
+    Band<Real> band(images, tiles_, side_);
+    band.take_tile(x, y, taken, tile_sums_);
+    for (const auto& each : cells) band.keep(each, x * side_, y * side_, moments);
+  });
+  return moments;
+}
+
+std::vector<double> RowCellMoments::larger_sums(const std::vector<double>& of_tiles) const {
+  WindowSums sums(tiles_);
+  sums.load(of_tiles);
+  std::vector<double> of_cells;
+  for (const WindowGroup& group : larger_) {
+    for (std::size_t w = 0; w < group.windows.size(); ++w) of_cells.push_back(sums.of(group, w));
+  }
+  return of_cells;
+}
+
+ChannelMoments RowCellMoments::larger(const ForEach& for_each) const {
+  ChannelMoments moments(extent_.channels);
+  for_each(extent_.channels, [&](std::size_t channel) {
+    Level level(0);
+    double count = 0;
+    for (const std::vector<double>& of_tiles : tile_sums_[channel]) {
+      std::vector<double> sums = larger_sums(of_tiles);
+      if (count == 0) level = Level(sums.size());
+      level.sum = std::move(sums);
+      level.take(++count);
+    }
+    for (std::size_t w = 0; w < level.sum.size(); ++w) {
+      moments[channel].push_back({level.m2[w], level.m3[w]});
+    }
+  });
+  return moments;
 }
 
 template struct WeightedImages<float>;
 template struct WeightedImages<double>;
-template std::vector<std::vector<CellMoments>> cell_moments(const WeightedImages<float>&,
-                                                            const std::vector<WindowGroup>&,
-                                                            const ForEach&);
-template std::vector<std::vector<CellMoments>> cell_moments(const WeightedImages<double>&,
-                                                            const std::vector<WindowGroup>&,
-                                                            const ForEach&);
+template ChannelMoments RowCellMoments::take(const WeightedImages<float>&, RowRange,
+                                             const ForEach&);
+template ChannelMoments RowCellMoments::take(const WeightedImages<double>&, RowRange,
+                                             const ForEach&);
 
 }  // namespace assay::stats

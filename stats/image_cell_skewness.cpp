@@ -32,7 +32,7 @@ struct SidePart {
   double replicates;
 };
 
-ASSAY_VECTOR_COPIES void add_side(std::vector<Cumulants>& cells, const SidePart& side) {
+ASSAY_VECTOR_COPIES void add_part(std::vector<Cumulants>& cells, const SidePart& side) {
   const CellMoments* const moments = side.cells.data();
   Cumulants* const __restrict sum = cells.data();
   const std::size_t size = cells.size();
@@ -57,56 +57,49 @@ std::size_t step_of(const CellPilot& side) {
   return static_cast<std::size_t>(std::max(steps, static_cast<double>(halves)));
 }
 
-// Of every `step`-th image from `first` on.
+// What every `step`-th image of a side from `start` on adds to the variance of the difference, of
+// the elements from `first` on.
+void add_variance(const CellPilot& side, EveryImage which, std::size_t first,
+                  std::span<double> variance) {
+  std::vector<double> mean(variance.size());
+  std::vector<double> m2(variance.size());
+  std::visit(
+      [&](const auto& stack) {
+        moments_of_range(stack, first, {mean, m2}, which);
+      },
+      side.stack);
+  const std::size_t count = (replicates_of(side.stack) + which.step - 1 - which.start) / which.step;
+  const double scale = side.factor * side.factor / side.replicates / static_cast<double>(count - 1);
+  for (std::size_t i = 0; i < m2.size(); ++i) variance[i] += scale * m2[i];
+}
+
+// Of these rows and their neighbours, right of the rows alone.
 std::vector<double> weights_of(std::span<const CellPilot> sides,
-                               const std::vector<EveryImage>& which) {
+                               const std::vector<EveryImage>& which, RowRange rows,
+                               const ForEach& for_each) {
+  constexpr std::size_t at_a_time = std::size_t{1} << 15;
   const ImageExtent& extent = extent_of(sides[0].stack);
-  std::vector<double> variance(extent.elements());
-  for (std::size_t s = 0; s < sides.size(); ++s) {
-    const CellPilot& side = sides[s];
-    std::vector<double> mean(extent.elements());
-    std::vector<double> m2(extent.elements());
-    std::visit(
-        [&](const auto& stack) {
-          moments_of_range(stack, 0, {mean, m2}, which[s]);
-        },
-        side.stack);
-    const std::size_t step = which[s].step;
-    const std::size_t count = (replicates_of(side.stack) + step - 1 - which[s].start) / step;
-    const double scale =
-        side.factor * side.factor / side.replicates / static_cast<double>(count - 1);
-    for (std::size_t i = 0; i < m2.size(); ++i) variance[i] += scale * m2[i];
-  }
-  std::vector<double> weight = steadied(extent, variance);
+  const RowRange wider = with_neighbours(rows, extent);
+  const ElementRange range = wider.elements(extent);
+  std::vector<double> variance(range.size());
+  for_each((range.size() + at_a_time - 1) / at_a_time, [&](std::size_t i) {
+    const std::size_t done = i * at_a_time;
+    const auto some =
+        std::span(variance).subspan(done, std::min(at_a_time, variance.size() - done));
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      add_variance(sides[s], which[s], range.first + done, some);
+    }
+  });
+  std::vector<double> weight =
+      steadied({extent.width, wider.last - wider.first, extent.channels}, variance);
   for (double& value : weight) value = value > 0 ? 1 / std::sqrt(value) : 0;
   return weight;
 }
 
-std::vector<double> weights_of_choice(std::span<const CellPilot> sides, std::size_t first) {
+std::vector<EveryImage> images_of_choice(std::span<const CellPilot> sides, std::size_t first) {
   std::vector<EveryImage> which;
   for (const CellPilot& side : sides) which.push_back({first, step_of(side)});
-  return weights_of(sides, which);
-}
-
-struct Weights {
-  std::span<const double> value;
-  std::optional<std::size_t> choice;  // of the images they come from; none: from elsewhere
-};
-
-// Whether anything varied in them; counted in integers, where sums leave no rounding.
-std::vector<bool> varied_windows(const ImageExtent& extent, const Groups& groups,
-                                 std::span<const double> weight, std::size_t channel) {
-  std::vector<double> values(extent.width * extent.height);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = weight[i * extent.channels + channel] > 0 ? 1 : 0;
-  }
-  WindowSums sums(extent);
-  sums.load(values);
-  std::vector<bool> varied;
-  for (const WindowGroup& group : groups) {
-    for (std::size_t i = 0; i < group.windows.size(); ++i) varied.push_back(sums.of(group, i) > 0);
-  }
-  return varied;
+  return which;
 }
 
 Groups aligned_groups(const ImageExtent& extent) {
@@ -114,67 +107,6 @@ Groups aligned_groups(const ImageExtent& extent) {
   std::erase_if(groups, [](const WindowGroup& group) { return group.grid != Grid::aligned; });
   return groups;
 }
-
-// Of every size of cell.
-class FactorMeans {
- public:
-  FactorMeans(const ImageExtent& extent, double level, const ForEach& for_each)
-      : extent_(extent), groups_(aligned_groups(extent)), for_each_(for_each) {
-    for (const WindowGroup& group : groups_) {
-      const double cells = static_cast<double>(group.windows.size() * extent.channels);
-      const double tail = level * group.share / cells / 2;
-      factors_.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
-    }
-  }
-
-  void add(std::span<const CellPilot> sides, const Weights& weights) {
-    std::vector<std::vector<Cumulants>> cells(extent_.channels);
-    for (const CellPilot& side : sides) {
-      const auto of_stack = [&](const auto& stack) {
-        const WeightedImages images{stack, weights.value, step_of(side), weights.choice};
-        const double count = static_cast<double>(images.taken().size());
-        const auto moments = cell_moments(images, groups_, for_each_);
-        for_each_(extent_.channels, [&](std::size_t c) {
-          cells[c].resize(moments[c].size());
-          add_side(cells[c], {moments[c], count, side.factor, side.replicates});
-        });
-      };
-      std::visit(of_stack, side.stack);
-    }
-    for (std::size_t c = 0; c < extent_.channels; ++c) {
-      add_cells(cells[c], varied_windows(extent_, groups_, weights.value, c));
-    }
-  }
-
-  std::vector<CellTails> tails() const {
-    std::vector<CellTails> tails;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      CellTails& tail = tails.emplace_back();
-      tail.size = groups_[g].size;
-      if (factors_[g].count() == 0) continue;
-      tail.factor = factors_[g].factor();
-      // Channels may depend on each other, cells count.
-      const double cells = static_cast<double>(groups_[g].windows.size());
-      tail.scatter = factors_[g].excess() / std::sqrt(cells);
-    }
-    return tails;
-  }
-
- private:
-  void add_cells(const std::vector<Cumulants>& cells, const std::vector<bool>& varied) {
-    std::size_t first = 0;
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      const std::size_t count = groups_[g].windows.size();
-      factors_[g].add(std::span(cells).subspan(first, count), varied, first);
-      first += count;
-    }
-  }
-
-  ImageExtent extent_;
-  Groups groups_;
-  const ForEach& for_each_;
-  std::vector<LevelFactors> factors_;  // of each group
-};
 
 void check_sides(const char* function, std::span<const CellPilot> sides) {
   for (const CellPilot& side : sides) {
@@ -185,30 +117,156 @@ void check_sides(const char* function, std::span<const CellPilot> sides) {
 
 }  // namespace
 
+RowCellTails::RowCellTails(std::span<const CellPilot> sides, double level,
+                           std::span<const double> weights, ForEach for_each)
+    : extent_(extent_of(sides[0].stack)),
+      weights_(weights),
+      for_each_(std::move(for_each)),
+      groups_(aligned_groups(extent_)) {
+  check::inside_unit({function_name, "level"}, level);
+  check_sides(function_name, sides);
+  if (!weights.empty() && weights.size() != extent_.elements()) {
+    check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
+  }
+  std::vector<LevelFactors> factors;
+  for (const WindowGroup& group : groups_) {
+    const double cells = static_cast<double>(group.windows.size() * extent_.channels);
+    const double tail = level * group.share / cells / 2;
+    factors.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
+  }
+  std::size_t choices = weights.empty() ? most_choices : 1;
+  for (const CellPilot& side : sides) {
+    sides_.push_back({side.factor, side.replicates});
+    if (weights.empty()) choices = std::min(choices, step_of(side));
+  }
+  const RowCellMoments cells(extent_, groups_);
+  const std::vector<double> none(cells.tiles().elements());
+  for (std::size_t i = 0; i < choices; ++i) {
+    choices_.push_back({weights.empty() ? std::optional(i) : std::nullopt,
+                        std::vector<RowCellMoments>(sides.size(), cells),
+                        std::vector<std::vector<double>>(extent_.channels, none),
+                        std::vector<std::vector<LevelFactors>>(extent_.channels, factors)});
+  }
+}
+
+void RowCellTails::take(std::span<const CellPilot> sides, RowRange rows) {
+  for (Choice& choice : choices_) take(sides, rows, choice);
+}
+
+void RowCellTails::add_side(const Side& side, double count, const ChannelMoments& moments,
+                            ChannelCumulants& cells) const {
+  cells.resize(extent_.channels);
+  for_each_(extent_.channels, [&](std::size_t c) {
+    cells[c].resize(moments[c].size());
+    add_part(cells[c], {moments[c], count, side.factor, side.replicates});
+  });
+}
+
+void RowCellTails::take(std::span<const CellPilot> sides, RowRange rows, Choice& choice) {
+  std::vector<double> own;
+  if (choice.images)
+    own = weights_of(sides, images_of_choice(sides, *choice.images), rows, for_each_);
+  const std::span<const double> weights = choice.images ? std::span<const double>(own) : weights_;
+  const std::size_t first_weight =
+      choice.images ? with_neighbours(rows, extent_).elements(extent_).first : 0;
+  count_weighted(weights.subspan(rows.elements(extent_).first - first_weight), rows, choice);
+  ChannelCumulants cells;
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    const auto of_stack = [&](const auto& stack) {
+      return choice.cells[s].take(
+          WeightedImages{stack, weights, first_weight, step_of(sides[s]), choice.images}, rows,
+          for_each_);
+    };
+    const ChannelMoments moments = std::visit(of_stack, sides[s].stack);
+    add_side(sides_[s], static_cast<double>(choice.cells[s].images()), moments, cells);
+  }
+  for_each_(extent_.channels, [&](std::size_t c) {
+    std::size_t done = 0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (choice.cells[0].is_larger(groups_[g])) continue;
+      const std::size_t count = choice.cells[0].cells_in(groups_[g], rows);
+      choice.factors[c][g].add(std::span(cells[c]).subspan(done, count));
+      done += count;
+    }
+  });
+}
+
+// Of weights from the first of these rows on.
+void RowCellTails::count_weighted(std::span<const double> weights, RowRange rows,
+                                  Choice& choice) const {
+  const RowCellMoments& cells = choice.cells[0];
+  std::size_t i = 0;
+  for (std::size_t y = rows.first; y < rows.last; ++y) {
+    const std::size_t row = y / cells.tile_side() * cells.tiles().width;
+    for (std::size_t x = 0; x < extent_.width; ++x) {
+      for (std::size_t c = 0; c < extent_.channels; ++c) {
+        choice.weighted[c][row + x / cells.tile_side()] += weights[i++] > 0 ? 1 : 0;
+      }
+    }
+  }
+}
+
+void RowCellTails::add_larger(Choice& choice) const {
+  ChannelCumulants cells;
+  for (std::size_t s = 0; s < sides_.size(); ++s) {
+    add_side(sides_[s], static_cast<double>(choice.cells[s].images()),
+             choice.cells[s].larger(for_each_), cells);
+  }
+  for (std::size_t c = 0; c < extent_.channels; ++c) {
+    const std::vector<double> weighted = choice.cells[0].larger_sums(choice.weighted[c]);
+    for (std::size_t i = 0; i < weighted.size(); ++i) {
+      // Nothing varied in it: what is left is the rounding of larger sums that it was taken from.
+      if (weighted[i] == 0) cells[c][i] = {};
+    }
+    std::size_t done = 0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (!choice.cells[0].is_larger(groups_[g])) continue;
+      const std::size_t count = groups_[g].windows.size();
+      choice.factors[c][g].add(std::span(cells[c]).subspan(done, count));
+      done += count;
+    }
+  }
+}
+
+LevelFactors RowCellTails::factors_of(std::size_t group) const {
+  LevelFactors sum = choices_[0].factors[0][group];
+  for (std::size_t i = 1; i < choices_.size() * extent_.channels; ++i) {
+    sum.merge(choices_[i / extent_.channels].factors[i % extent_.channels][group]);
+  }
+  return sum;
+}
+
+std::vector<CellTails> RowCellTails::tails() {
+  for (Choice& choice : choices_) add_larger(choice);
+  std::vector<CellTails> tails;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const LevelFactors factors = factors_of(g);
+    CellTails& tail = tails.emplace_back();
+    tail.size = groups_[g].size;
+    if (factors.count() == 0) continue;
+    tail.factor = factors.factor();
+    // Channels may depend on each other, cells count.
+    tail.scatter = factors.excess() / std::sqrt(static_cast<double>(groups_[g].windows.size()));
+  }
+  return tails;
+}
+
 std::vector<double> cell_weights(std::span<const CellPilot> sides) {
   check_sides("cell_weights", sides);
-  return weights_of(sides, std::vector<EveryImage>(sides.size()));
+  const RowRange all{0, extent_of(sides[0].stack).height};
+  return weights_of(sides, std::vector<EveryImage>(sides.size()), all, one_by_one);
 }
 
 std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
                                   std::span<const double> weights, const ForEach& for_each) {
-  check::inside_unit({function_name, "level"}, level);
-  check_sides(function_name, sides);
-  const ImageExtent& extent = extent_of(sides[0].stack);
-  if (!weights.empty() && weights.size() != extent.elements()) {
-    check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
+  // What is known of cells is not kept of all rows at a time.
+  constexpr std::size_t rows_at_a_time = 256;
+  RowCellTails tails(sides, level, weights, for_each);
+  const std::size_t height = extent_of(sides[0].stack).height;
+  for (std::size_t row = 0; row < height; row += rows_at_a_time) {
+    tails.take(sides, {row, std::min(row + rows_at_a_time, height)});
   }
-  FactorMeans means(extent, level, for_each);
-  if (!weights.empty()) {
-    means.add(sides, {weights, {}});
-  } else {
-    std::size_t choices = most_choices;
-    for (const CellPilot& side : sides) choices = std::min(choices, step_of(side));
-    for (std::size_t choice = 0; choice < choices; ++choice) {
-      means.add(sides, {weights_of_choice(sides, choice), choice});
-    }
-  }
-  return means.tails();
+  return tails.tails();
 }
 
 }  // namespace assay::stats

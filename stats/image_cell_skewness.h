@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "stats/for_each.h"
 #include "stats/image.h"
+#include "stats/image_cell_moments.h"
+#include "stats/level_factors.h"
 
 namespace assay::stats {
 
@@ -43,6 +46,55 @@ struct CellTails {
 std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
                                   std::span<const double> weights = {},
                                   const ForEach& for_each = one_by_one);
+
+// The same of pilots of which some rows are there at a time, with the same bits.
+class RowCellTails {
+ public:
+  // `sides` tell the extent, the number of images and what the rest of them says.
+  RowCellTails(std::span<const CellPilot> sides, double level, std::span<const double> weights = {},
+               ForEach for_each = one_by_one);
+
+  // Rows that follow on those before: multiples of row_unit, but for the last. The stacks must have
+  // `rows_beside` more at either side, as far as the image has.
+  static constexpr std::size_t row_unit = RowCellMoments::row_unit;
+  static constexpr std::size_t rows_beside = 1;
+  void take(std::span<const CellPilot> sides, RowRange rows);
+
+  // After the last rows.
+  std::vector<CellTails> tails();
+
+ private:
+  // Of one choice of weights.
+  struct Choice {
+    std::optional<std::size_t> images;  // that they come from; none: from elsewhere
+    std::vector<RowCellMoments> cells;  // of each side
+    // How many of a tile's elements have a weight, of each channel: counted in integers, where sums
+    // leave no rounding.
+    std::vector<std::vector<double>> weighted;
+    std::vector<std::vector<LevelFactors>> factors;  // of a channel's groups
+  };
+
+  // What one side of the comparison is beside its stack.
+  struct Side {
+    double factor;
+    double replicates;
+  };
+  using ChannelCumulants = std::vector<std::vector<Cumulants>>;
+
+  void take(std::span<const CellPilot> sides, RowRange rows, Choice& choice);
+  void count_weighted(std::span<const double> weights, RowRange rows, Choice& choice) const;
+  void add_side(const Side& side, double count, const ChannelMoments& moments,
+                ChannelCumulants& cells) const;
+  void add_larger(Choice& choice) const;
+  LevelFactors factors_of(std::size_t group) const;
+
+  ImageExtent extent_;
+  std::span<const double> weights_;
+  ForEach for_each_;
+  std::vector<WindowGroup> groups_;
+  std::vector<Side> sides_;
+  std::vector<Choice> choices_;
+};
 
 // Weights for image_pyramid.h: 1 / sqrt of the difference's variance at each element, steadied by
 // its 3 x 3 neighbours; 0 where nothing varied. Throws std::domain_error as cell_tails does.

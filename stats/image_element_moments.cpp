@@ -64,9 +64,9 @@ template <class Real>
 void moments_of_block(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out) {
   Sums sums;
   const double count = static_cast<double>(stack.images.size());
-  const Real* const origin = stack.images[0].data() + first;
-  for (const auto& image : stack.images) {
-    differences(image.data() + first, origin, sums.mean.data(), out.size());
+  const Real* const origin = stack.at(0, first);
+  for (std::size_t r = 0; r < stack.images.size(); ++r) {
+    differences(stack.at(r, first), origin, sums.mean.data(), out.size());
   }
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double value = static_cast<double>(origin[i]);
@@ -74,7 +74,9 @@ void moments_of_block(const ImageStack<Real>& stack, std::size_t first, std::spa
     sums.minimum[i] = value;
     sums.maximum[i] = value;
   }
-  for (const auto& image : stack.images) powers(image.data() + first, sums, out.size());
+  for (std::size_t r = 0; r < stack.images.size(); ++r) {
+    powers(stack.at(r, first), sums, out.size());
+  }
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = {.count = stack.images.size(),
               .mean = sums.mean[i],
@@ -93,7 +95,8 @@ template <class Real>
 void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out) {
   check::at_least({"element_moments", "images"}, stack.images.size(), 1);
   for (const auto& image : stack.images) {
-    check::at_least({"element_moments", "size of an image"}, image.size(), first + out.size());
+    check::at_least({"element_moments", "size of an image"}, image.size() + stack.there.first,
+                    first + out.size());
   }
   for (std::size_t done = 0; done < out.size(); done += block_size) {
     const std::size_t size = std::min(block_size, out.size() - done);

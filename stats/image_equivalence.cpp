@@ -11,6 +11,7 @@
 #include "stats/errors.h"
 #include "stats/image_jackknife.h"
 #include "stats/image_moments.h"
+#include "stats/image_row_distance.h"
 #include "stats/tails.h"
 #include "stats/vector_copies.h"
 
@@ -70,7 +71,7 @@ class StackBlock {
   }
   const Estimates& all() const { return all_; }
   void without(std::size_t r, Estimates& out) const {
-    leave_out(stack_.images[r].data() + first_, {all_.mean, m2_, count()}, out, size_);
+    leave_out(stack_.at(r, first_), {all_.mean, m2_, count()}, out, size_);
   }
 
  private:
@@ -165,8 +166,9 @@ template <std::size_t count, class Real, class Second, class Term>
 Jackknife<count> jackknife_of(const char* function, const ImageStack<Real>& a, const Second& b,
                               const Term& term, const ForEach& for_each = one_by_one) {
   check::same_extent(function, a.extent, b.extent);
-  return jackknife<count>(a.extent.elements(), block_of(function, a), block_of(function, b), term,
-                          for_each);
+  RunningJackknife<count> sums;
+  sums.add({0, a.extent.elements()}, block_of(function, a), block_of(function, b), term, for_each);
+  return sums.finish(Term::kinds_of_a);
 }
 
 template <class Real, class Second, class Term>
@@ -176,15 +178,18 @@ SquaredBias bias_of(const char* function, const ImageStack<Real>& a, const Secon
   return {sums.whole[0], std::sqrt(sums.covariance(0, 0)), sums.degrees()};
 }
 
-template <class Real, class Second>
-ImageDistance distance_of(const ImageStack<Real>& a, const Second& b, const ForEach& for_each) {
-  const auto sums = jackknife_of<2>("image_distance", a, b, BiasAndNorm{}, for_each);
+ImageDistance distance_of(const Jackknife<2>& sums) {
   return {.squared_bias = sums.whole[0],
           .squared_norm = sums.whole[1],
           .bias_variance = sums.covariance(0, 0),
           .norm_variance = sums.covariance(1, 1),
           .covariance = sums.covariance(0, 1),
           .degrees = sums.degrees()};
+}
+
+template <class Real, class Second>
+ImageDistance distance_of(const ImageStack<Real>& a, const Second& b, const ForEach& for_each) {
+  return distance_of(jackknife_of<2>("image_distance", a, b, BiasAndNorm{}, for_each));
 }
 
 template <class Real, class Second>
@@ -232,6 +237,26 @@ ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b,
   return distance_of(a, b, for_each);
 }
 
+template <class Real>
+void RowDistance<Real>::take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each) {
+  constexpr const char* function = "image_distance";
+  const auto add = [&](const auto& second) {
+    check::same_extent(function, pair.a.extent, second.extent);
+    sums_.add(rows.elements(pair.a.extent), block_of(function, pair.a), block_of(function, second),
+              BiasAndNorm{}, for_each);
+  };
+  if (pair.b != nullptr) {
+    add(*pair.b);
+  } else {
+    add(*pair.reference);
+  }
+}
+
+template <class Real>
+ImageDistance RowDistance<Real>::distance() {
+  return distance_of(sums_.finish(BiasAndNorm::kinds_of_a));
+}
+
 ImageDistance with_norm(ImageDistance distance, double squared_norm) {
   check::positive({"with_norm", "squared norm"}, squared_norm);
   distance.squared_norm = squared_norm;
@@ -273,5 +298,7 @@ TestResult image_equivalence(const ImageStack<Real>& a, const ImageReference& b,
 ASSAY_FOR_REAL(float);
 ASSAY_FOR_REAL(double);
 #undef ASSAY_FOR_REAL
+template class RowDistance<float>;
+template class RowDistance<double>;
 
 }  // namespace assay::stats

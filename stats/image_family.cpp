@@ -26,6 +26,16 @@ void decide(ImageFamily& family) {
   family.log_p = family.winner.adjusted_log_p;
 }
 
+void leave_out_cells(ImageFamily& family, std::uint32_t smallest) {
+  if (family.different_constants > 0) return;
+  std::erase_if(family.groups, [&](const ImageFinding& finding) {
+    return finding.statistic == ImageStatistic::window && finding.size < smallest;
+  });
+  family.log_p = 0;
+  family.winner = {};
+  decide(family);
+}
+
 void add_energy(ImageFamily& family, const ImageExtent& extent, double log_p) {
   check::log_probability({"add_energy", "log_p"}, log_p);
   ImageFinding finding = whole_image(ImageStatistic::energy, extent);

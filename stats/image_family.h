@@ -50,6 +50,9 @@ double adjusted(double log_p, GroupSize group);
 // min over the groups.
 void decide(ImageFamily& family);
 
+// Cells smaller than this leave the family; certain differences do not.
+void leave_out_cells(ImageFamily& family, std::uint32_t smallest);
+
 // The energy by a p-value found elsewhere, of flips of signs for one, joins the family.
 // energy_notice: ln of the p-value below which it would be the family's smallest, the only one that
 // counts. Whoever cannot get below it need not look.

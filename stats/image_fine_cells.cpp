@@ -80,13 +80,14 @@ ASSAY_VECTOR_COPIES void add_row(const ColumnSums& to, double sign, std::size_t 
 // Asks for the rows of a tile before they are needed: a tile's rows are too short for the machine
 // to see that more of them follow.
 template <class Real>
-void fetch_ahead(const Tile& tile, const Real* image) {
+void fetch_ahead(const Tile& tile, const ImageStack<Real>& stack, std::size_t image) {
   constexpr std::size_t line = 64 / sizeof(Real);
   const ImageExtent& extent = tile.extent;
   const std::size_t size = std::min(tile.stride(), (extent.width - tile.x) * extent.channels);
   const std::size_t rows = std::min(tile.height() + Tile::halo, extent.height - tile.y);
   for (std::size_t row = 0; row < rows; ++row) {
-    const Real* const first = image + ((tile.y + row) * extent.width + tile.x) * extent.channels;
+    const Real* const first =
+        stack.at(image, ((tile.y + row) * extent.width + tile.x) * extent.channels);
     for (std::size_t i = 0; i < size; i += line) __builtin_prefetch(first + i);
   }
 }
@@ -147,17 +148,18 @@ class FineTiles {
   };
 
   void take_half(const Tile& tile, const ImageStack<Real>& stack, Part part, double factor) {
-    const std::vector<double>& weight = cells_.half[1 - part.half].weight;
+    const Half& other = cells_.half[1 - part.half];
     std::vector<BlockSums>& kept = coarse_.images[part.half][part.side];
     double count = 0;
     for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
-      if (r + halves < stack.images.size()) fetch_ahead(tile, stack.images[r + halves].data());
+      if (r + halves < stack.images.size()) fetch_ahead(tile, stack, r + halves);
       fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
-        const Real* const value = stack.images[r].data() + first;
+        const Real* const value = stack.at(r, first);
+        const double* const weight = other.weight.data() + (first - other.first);
         if (cells_.pair.b != nullptr) {
-          weigh(value, cells_.pair.b->images[0].data() + first, weight.data() + first, out);
+          weigh(value, cells_.pair.b->at(0, first), weight, out);
         } else {
-          weigh(value, cells_.pair.reference->value.data() + first, weight.data() + first, out);
+          weigh(value, cells_.pair.reference->value.data() + first, weight, out);
         }
       });
       sums_.add_up(tile);
@@ -224,11 +226,13 @@ class FineTiles {
   // they are the same in every replicate, to the last bit. Those of larger
   // cells need the count.
   void count_varied(const Tile& tile, std::size_t h) {
-    const std::vector<double>& weight = cells_.half[1 - h].weight;
-    const std::vector<unsigned char>& varied = cells_.half[h].varied;
     fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
+      const double* const weight =
+          cells_.half[1 - h].weight.data() + (first - cells_.half[h].first);
+      const unsigned char* const varied =
+          cells_.half[h].varied.data() + (first - cells_.half[h].first);
       for (std::size_t i = 0; i < out.size(); ++i) {
-        out[i] = weight[first + i] > 0 && varied[first + i] > 0 ? 1 : 0;
+        out[i] = weight[i] > 0 && varied[i] > 0 ? 1 : 0;
       }
     });
     sums_.add_up(tile);
@@ -243,7 +247,8 @@ class FineTiles {
     fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
       for (std::size_t i = 0; i < out.size(); ++i) {
         const std::size_t e = first + i;
-        const double weight = (cells_.half[0].weight[e] + cells_.half[1].weight[e]) / 2;
+        const std::size_t here = e - cells_.half[0].first;
+        const double weight = (cells_.half[0].weight[here] + cells_.half[1].weight[here]) / 2;
         const double error = weight * cells_.pair.reference->standard_error[e];
         out[i] = error * error;
       }
@@ -305,10 +310,20 @@ class FineTiles {
 // Rows of an image are looked at in bands of tiles, which have sums with alternating signs of their
 // own until all are there.
 constexpr std::size_t band_rows = 2 * Tile::rows;
+static_assert(fine_rows % band_rows == 0 && fine_rows_ahead == Tile::halo);
+
+}  // namespace
+
+bool is_fine(const WindowGroup& group) {
+  return group.grid != Grid::alternating &&
+         std::ranges::any_of(fine_squares,
+                             [&](const Squares& squares) { return squares.side == group.size; });
+}
 
 template <class Real>
-CoarseImages empty_blocks(const ImagePair<Real>& pair, std::size_t bands) {
+CoarseImages empty_blocks(const ImagePair<Real>& pair) {
   const ImageExtent& extent = pair.a.extent;
+  const std::size_t bands = (extent.height + band_rows - 1) / band_rows;
   CoarseImages coarse;
   coarse.extent = {blocks_of(extent.width), blocks_of(extent.height), extent.channels};
   const BlockSums none{std::vector<double>(coarse.extent.elements()),
@@ -327,8 +342,26 @@ CoarseImages empty_blocks(const ImagePair<Real>& pair, std::size_t bands) {
   return coarse;
 }
 
-void add_up_bands(const ImageExtent& extent, CoarseImages& coarse) {
-  const std::size_t size = extent.channels * alternations;
+template <class Real>
+void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
+                      const ForEach& for_each) {
+  const ImageExtent& extent = cells.pair.a.extent;
+  std::vector<std::vector<BestCell>> best((rows.last - rows.first + band_rows - 1) / band_rows);
+  for_each(best.size(), [&](std::size_t i) {
+    const std::size_t first = rows.first + i * band_rows;
+    FineTiles<Real> tiles(cells, first / band_rows, found.coarse);
+    for (std::size_t y = first; y < std::min(first + band_rows, rows.last); y += Tile::rows) {
+      for (std::size_t x = 0; x < extent.width; x += Tile::columns) tiles.take({extent, x, y});
+    }
+    best[i] = tiles.best();
+  });
+  for (const std::vector<BestCell>& of_band : best) {
+    for (std::size_t g = 0; g < found.best.size(); ++g) join(found.best[g], of_band[g]);
+  }
+}
+
+void add_up_alternating(CoarseImages& coarse) {
+  const std::size_t size = coarse.extent.channels * alternations;
   for (auto& half : coarse.images) {
     for (std::vector<BlockSums>& side : half) {
       for (BlockSums& image : side) {
@@ -341,39 +374,9 @@ void add_up_bands(const ImageExtent& extent, CoarseImages& coarse) {
   }
 }
 
-}  // namespace
-
-bool is_fine(const WindowGroup& group) {
-  return group.grid != Grid::alternating &&
-         std::ranges::any_of(fine_squares,
-                             [&](const Squares& squares) { return squares.side == group.size; });
-}
-
-template <class Real>
-CoarseImages offer_fine_cells(const FineCells<Real>& cells, std::vector<BestCell>& best,
-                              const ForEach& for_each) {
-  const ImageExtent& extent = cells.pair.a.extent;
-  const std::size_t bands = (extent.height + band_rows - 1) / band_rows;
-  CoarseImages coarse = empty_blocks(cells.pair, bands);
-  std::vector<std::vector<BestCell>> found(bands);
-  for_each(bands, [&](std::size_t band) {
-    FineTiles<Real> tiles(cells, band, coarse);
-    const std::size_t first = band * band_rows;
-    for (std::size_t y = first; y < std::min(first + band_rows, extent.height); y += Tile::rows) {
-      for (std::size_t x = 0; x < extent.width; x += Tile::columns) tiles.take({extent, x, y});
-    }
-    found[band] = tiles.best();
-  });
-  for (const std::vector<BestCell>& of_band : found) {
-    for (std::size_t g = 0; g < best.size(); ++g) join(best[g], of_band[g]);
-  }
-  add_up_bands(extent, coarse);
-  return coarse;
-}
-
-template CoarseImages offer_fine_cells(const FineCells<float>&, std::vector<BestCell>&,
-                                       const ForEach&);
-template CoarseImages offer_fine_cells(const FineCells<double>&, std::vector<BestCell>&,
-                                       const ForEach&);
+template CoarseImages empty_blocks(const ImagePair<float>&);
+template CoarseImages empty_blocks(const ImagePair<double>&);
+template void offer_fine_cells(const FineCells<float>&, RowRange, FineFindings&, const ForEach&);
+template void offer_fine_cells(const FineCells<double>&, RowRange, FineFindings&, const ForEach&);
 
 }  // namespace assay::stats

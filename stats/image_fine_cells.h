@@ -51,10 +51,26 @@ struct FineCells {
   const std::vector<WindowGroup>& groups;
 };
 
-// Offers every fine cell to the best of its group, `best` by group, and returns
-// the blocks.
+struct FineFindings {
+  CoarseImages coarse;
+  std::vector<BestCell> best;  // by group
+};
+
 template <class Real>
-CoarseImages offer_fine_cells(const FineCells<Real>& cells, std::vector<BestCell>& best,
-                              const ForEach& for_each = one_by_one);
+CoarseImages empty_blocks(const ImagePair<Real>& pair);
+
+// Rows are taken in multiples of so many, but for the image's last. Cells that begin in them reach
+// into so many rows more, which the images and the halves must have.
+inline constexpr std::size_t fine_rows = 64;
+inline constexpr std::size_t fine_rows_ahead = 8;
+
+// Offers every fine cell that begins in these rows to the best of its group, and fills in their
+// blocks.
+template <class Real>
+void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
+                      const ForEach& for_each = one_by_one);
+
+// After the last rows.
+void add_up_alternating(CoarseImages& coarse);
 
 }  // namespace assay::stats

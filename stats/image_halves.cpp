@@ -1,7 +1,9 @@
 #include "stats/image_halves.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "stats/image_moments.h"
 
@@ -19,12 +21,19 @@ std::size_t half_count(std::size_t replicates, std::size_t half) {
 }
 
 template <class Real>
-HalfMoments half_moments(const ImageStack<Real>& stack, std::size_t half) {
-  HalfMoments moments{std::vector<double>(stack.extent.elements()),
-                      std::vector<double>(stack.extent.elements())};
-  moments_of_range(stack, 0, {moments.mean, moments.squared_error}, {half, halves});
+HalfMoments half_moments(const ImageStack<Real>& stack, std::size_t half, ElementRange range,
+                         const ForEach& for_each) {
+  constexpr std::size_t at_a_time = std::size_t{1} << 15;
+  HalfMoments moments{std::vector<double>(range.size()), std::vector<double>(range.size())};
   const double n = static_cast<double>(half_count(stack.images.size(), half));
-  for (double& m2 : moments.squared_error) m2 /= n * (n - 1);
+  for_each((range.size() + at_a_time - 1) / at_a_time, [&](std::size_t i) {
+    const std::size_t done = i * at_a_time;
+    const std::size_t size = std::min(at_a_time, range.size() - done);
+    const std::span<double> errors = std::span(moments.squared_error).subspan(done, size);
+    moments_of_range(stack, range.first + done,
+                     {std::span(moments.mean).subspan(done, size), errors}, {half, halves});
+    for (double& m2 : errors) m2 /= n * (n - 1);
+  });
   return moments;
 }
 
@@ -65,34 +74,39 @@ std::vector<double> smoothed(const ImageExtent& extent, std::vector<double> valu
 
 // The reference leaves the difference, and its error joins the variance. It joins that of the
 // weight only where something varied: alone, an error of 1e-17 would weigh 1e17.
-void add_reference(const ImageReference& reference, Half& half) {
+void add_reference(const ImageReference& reference, const ImageExtent& rows, Half& half) {
   std::vector<double> squared(half.difference.size());
   for (std::size_t i = 0; i < squared.size(); ++i) {
-    const double error = check::reference_error("image_pyramid", reference, i);
+    const double error = check::reference_error("image_pyramid", reference, half.first + i);
     squared[i] = error * error;
-    half.difference[i] -= reference.value[i];
+    half.difference[i] -= reference.value[half.first + i];
     half.variance[i] += squared[i];
   }
-  const std::vector<double> steady = steadied(reference.extent, squared);
+  const std::vector<double> steady = steadied(rows, squared);
   for (std::size_t i = 0; i < squared.size(); ++i) {
     if (half.weight[i] > 0) half.weight[i] += steady[i];
   }
 }
 
 template <class Real>
-Half half_of(const ImagePair<Real>& pair, std::size_t half) {
-  HalfMoments a = half_moments(pair.a, half);
-  Half result{std::move(a.mean), std::move(a.squared_error), {}, {}};
+Half half_of(const ImagePair<Real>& pair, std::size_t half, RowRange rows,
+             const ForEach& for_each) {
+  const ImageExtent& extent = pair.a.extent;
+  const ElementRange range = rows.elements(extent);
+  const ImageExtent part{extent.width, rows.last - rows.first, extent.channels};
+  HalfMoments a = half_moments(pair.a, half, range, for_each);
+  Half result{range.first, std::move(a.mean), std::move(a.squared_error), {}, {}};
   if (pair.b != nullptr) {
-    const HalfMoments b = half_moments(*pair.b, half);
+    const HalfMoments b = half_moments(*pair.b, half, range, for_each);
     for (std::size_t i = 0; i < b.mean.size(); ++i) {
       result.difference[i] -= b.mean[i];
       result.variance[i] += b.squared_error[i];
     }
   }
+  result.varied.reserve(range.size());
   for (const double variance : result.variance) result.varied.push_back(variance > 0);
-  result.weight = steadied(pair.a.extent, result.variance);
-  if (pair.reference != nullptr) add_reference(*pair.reference, result);
+  result.weight = steadied(part, result.variance);
+  if (pair.reference != nullptr) add_reference(*pair.reference, part, result);
   for (double& weight : result.weight) weight = weight > 0 ? 1 / std::sqrt(weight) : 0;
   return result;
 }
@@ -105,14 +119,21 @@ std::vector<double> steadied(const ImageExtent& extent, const std::vector<double
   return steady;
 }
 
+RowRange with_neighbours(RowRange rows, const ImageExtent& extent) {
+  return {rows.first - std::min<std::size_t>(rows.first, 1),
+          std::min(rows.last + 1, extent.height)};
+}
+
 template <class Real>
-std::array<Half, halves> halves_of(const ImagePair<Real>& pair, const ForEach& for_each) {
+std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
+                                   const ForEach& for_each) {
   std::array<Half, halves> both;
-  for_each(halves, [&](std::size_t half) { both[half] = half_of(pair, half); });
+  const RowRange wider = with_neighbours(rows, pair.a.extent);
+  for_each(halves, [&](std::size_t half) { both[half] = half_of(pair, half, wider, for_each); });
   return both;
 }
 
-template std::array<Half, halves> halves_of(const ImagePair<float>&, const ForEach&);
-template std::array<Half, halves> halves_of(const ImagePair<double>&, const ForEach&);
+template std::array<Half, halves> halves_of(const ImagePair<float>&, RowRange, const ForEach&);
+template std::array<Half, halves> halves_of(const ImagePair<double>&, RowRange, const ForEach&);
 
 }  // namespace assay::stats

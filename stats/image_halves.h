@@ -17,6 +17,7 @@ inline constexpr std::size_t halves = 2;
 // replicate of the half varied in these elements. A single element's v is from few values and can
 // be tiny by chance; its weight alone would then carry the whole sum.
 struct Half {
+  std::size_t first = 0;  // element that they begin with
   std::vector<double> difference;
   std::vector<double> variance;
   std::vector<unsigned char> varied;  // whether any replicate of the half differs from another
@@ -26,16 +27,14 @@ struct Half {
 // The mean of each element's variance and that of its 3 x 3 neighbourhood in the channel.
 std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance);
 
-// A stack and what it is held against, a second stack or a reference: exactly one is not null.
-template <class Real>
-struct ImagePair {
-  const ImageStack<Real>& a;
-  const ImageStack<Real>* b = nullptr;
-  const ImageReference* reference = nullptr;
-};
+// These rows and one more at either side, where the image has one: whose variances their steadied
+// ones are taken from.
+RowRange with_neighbours(RowRange rows, const ImageExtent& extent);
 
+// Of the elements of these rows, and of one more row at either side where the image has one.
+// Weights are right of these rows alone.
 template <class Real>
-std::array<Half, halves> halves_of(const ImagePair<Real>& pair,
+std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
                                    const ForEach& for_each = one_by_one);
 
 }  // namespace assay::stats

@@ -95,10 +95,9 @@ void add_without(std::vector<Sums<count>>& sums, std::size_t kinds, std::size_t 
   }
 }
 
-// Of a range of elements.
+// Adds up a range of elements that follows on those before.
 template <std::size_t count, class First, class Second, class Term>
-Jackknife<count> jackknife(ElementRange range, First a, Second b, const Term& term) {
-  Jackknife<count> sums;
+void add_range(Jackknife<count>& sums, ElementRange range, First a, Second b, const Term& term) {
   sums.without_a.resize(a.left_out());
   sums.without_b.resize(b.left_out());
   const auto step = std::make_unique<Step<count>>();
@@ -121,7 +120,6 @@ Jackknife<count> jackknife(ElementRange range, First a, Second b, const Term& te
       term(a.all(), *one, terms, size);
     });
   }
-  return sums;
 }
 
 template <std::size_t count>
@@ -134,29 +132,54 @@ void add(std::vector<Sums<count>>& to, const std::vector<Sums<count>>& others) {
   for (std::size_t i = 0; i < to.size(); ++i) add(to[i], others[i]);
 }
 
-// Of all elements, from the sums over equal ranges of them in their order.
-template <std::size_t count, class First, class Second, class Term>
-Jackknife<count> jackknife(std::size_t elements, const First& a, const Second& b, const Term& term,
-                           const ForEach& for_each) {
-  std::vector<Jackknife<count>> parts((elements + range_size - 1) / range_size);
-  for_each(parts.size(), [&](std::size_t i) {
-    const std::size_t first = i * range_size;
-    parts[i] = jackknife<count>({first, std::min(first + range_size, elements)}, a, b, term);
-  });
-  Jackknife<count> sums = std::move(parts[0]);
-  for (std::size_t i = 1; i < parts.size(); ++i) {
-    add(sums.whole, parts[i].whole);
-    add(sums.without_a, parts[i].without_a);
-    add(sums.without_b, parts[i].without_b);
+// Of elements in their order: the sums over equal ranges of them, added up in theirs.
+template <std::size_t count>
+class RunningJackknife {
+ public:
+  // Elements that follow on those before, wherever these end.
+  template <class First, class Second, class Term>
+  void add(ElementRange elements, const First& a, const Second& b, const Term& term,
+           const ForEach& for_each) {
+    const std::size_t begin = elements.first / range_size;
+    std::vector<Jackknife<count>> parts((elements.last - 1) / range_size + 1 - begin);
+    if (elements.first % range_size != 0) parts[0] = std::move(open_);
+    for_each(parts.size(), [&](std::size_t i) {
+      const std::size_t first = (begin + i) * range_size;
+      add_range(parts[i],
+                {std::max(first, elements.first), std::min(first + range_size, elements.last)}, a,
+                b, term);
+    });
+    open_ = {};
+    if (elements.last % range_size != 0) {
+      open_ = std::move(parts.back());
+      parts.pop_back();
+    }
+    for (const Jackknife<count>& part : parts) take(part);
   }
-  for (Sums<count>& without : sums.without_a) {
-    std::copy(sums.whole.begin() + Term::kinds_of_a, sums.whole.end(),
-              without.begin() + Term::kinds_of_a);
+
+  // After the last of them. The first `kinds_of_a` terms depend on a.
+  Jackknife<count> finish(std::size_t kinds_of_a) {
+    if (!open_.without_a.empty()) take(open_);
+    for (Sums<count>& without : sums_.without_a) {
+      std::copy(sums_.whole.begin() + kinds_of_a, sums_.whole.end(), without.begin() + kinds_of_a);
+    }
+    for (const double sum : sums_.whole) {
+      if (!std::isfinite(sum)) check::fail({"squared_bias", "sum over the image"}, sum, "finite");
+    }
+    return sums_;
   }
-  for (const double sum : sums.whole) {
-    if (!std::isfinite(sum)) check::fail({"squared_bias", "sum over the image"}, sum, "finite");
+
+ private:
+  void take(const Jackknife<count>& part) {
+    sums_.without_a.resize(part.without_a.size());
+    sums_.without_b.resize(part.without_b.size());
+    jackknifed::add(sums_.whole, part.whole);
+    jackknifed::add(sums_.without_a, part.without_a);
+    jackknifed::add(sums_.without_b, part.without_b);
   }
-  return sums;
-}
+
+  Jackknife<count> sums_;
+  Jackknife<count> open_;  // of a range that is not complete
+};
 
 }  // namespace assay::stats::jackknifed

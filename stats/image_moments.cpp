@@ -60,12 +60,12 @@ std::size_t moments_of_block(const ImageStack<Real>& stack, std::size_t first, M
   std::array<double, block_size> squares{};
   const std::size_t size = out.mean.size();
   const auto& images = stack.images;
-  const Real* const origin = images[which.start].data() + first;
+  const Real* const origin = stack.at(which.start, first);
   std::size_t count = 1;
   for (std::size_t i = which.start + which.step; i < images.size();) {
     FourImages<Real> four{origin, {origin, origin, origin, origin}};
     for (std::size_t k = 0; k < 4 && i < images.size(); ++k, i += which.step, ++count) {
-      four.image[k] = images[i].data() + first;
+      four.image[k] = stack.at(i, first);
     }
     add_four_images(four, {sum.data(), squares.data()}, size);
   }

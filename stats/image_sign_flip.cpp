@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 
 #include "stats/check.h"
@@ -14,58 +15,130 @@ namespace {
 constexpr std::size_t block_size = 256;
 constexpr std::size_t most_enumerated = 25;
 
-// Differences of a block of elements, replicate by replicate, each element divided by its
-// root sum of squares. An element that never differs drops out as zeros.
-void studentise(std::vector<double>& block, std::size_t replicates, std::size_t size) {
+// Differences of a block of elements: replicate by replicate, then element by element, each with
+// so many numbers that the replicates fill whole pieces.
+constexpr std::size_t piece = 16;
+struct FlipBlock {
+  explicit FlipBlock(std::size_t count)
+      : replicates(count),
+        stride((count + piece - 1) / piece * piece),
+        difference(count * block_size),
+        element(stride * block_size) {}
+
+  std::size_t replicates;
+  std::size_t stride;
+  std::vector<double> difference;
+  std::vector<double> element;
+  std::array<double, block_size> factor{};
+};
+
+template <class Real, class Other>
+inline void subtract(const Real* a, const Other* b, double* out, std::size_t size) {
+  double* const __restrict difference = out;
   for (std::size_t i = 0; i < size; ++i) {
-    double squares = 0;
-    for (std::size_t r = 0; r < replicates; ++r) {
-      squares += block[r * block_size + i] * block[r * block_size + i];
-    }
+    difference[i] = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+  }
+}
+
+// Each element is to be divided by its root sum of squares. One that never differs drops out as
+// zeros.
+ASSAY_VECTOR_COPIES void add_squares(const double* difference, double* sum, std::size_t size) {
+  double* const __restrict squares = sum;
+  for (std::size_t i = 0; i < size; ++i) squares[i] += difference[i] * difference[i];
+}
+
+void studentise(FlipBlock& block, std::size_t size) {
+  block.factor.fill(0);
+  for (std::size_t r = 0; r < block.replicates; ++r) {
+    add_squares(block.difference.data() + r * block_size, block.factor.data(), size);
+  }
+  for (double& squares : std::span(block.factor).first(size)) {
     if (!std::isfinite(squares)) {
       check::fail({"flip_matrix", "sum of squared differences"}, squares, "finite");
     }
-    const double factor = squares > 0 ? 1 / std::sqrt(squares) : 0;
-    for (std::size_t r = 0; r < replicates; ++r) block[r * block_size + i] *= factor;
+    squares = squares > 0 ? 1 / std::sqrt(squares) : 0;
   }
-}
-
-void add_products(std::vector<double>& matrix, const std::vector<double>& block,
-                  std::size_t replicates, std::size_t size) {
-  for (std::size_t r = 0; r < replicates; ++r) {
-    for (std::size_t s = 0; s <= r; ++s) {
-      double sum = 0;
-      for (std::size_t i = 0; i < size; ++i) {
-        sum += block[r * block_size + i] * block[s * block_size + i];
-      }
-      matrix[r * replicates + s] += sum;
+  for (std::size_t r = 0; r < block.replicates; ++r) {
+    const double* const difference = block.difference.data() + r * block_size;
+    for (std::size_t i = 0; i < size; ++i) {
+      block.element[i * block.stride + r] = difference[i] * block.factor[i];
     }
   }
 }
 
-// second(r, element) is what replicate r is held against.
-template <class Real, class Second>
-FlipMatrix matrix_of(const ImageStack<Real>& a, const Second& second) {
-  const std::size_t replicates = a.images.size();
-  std::vector<double> matrix(replicates * replicates);
-  std::vector<double> block(replicates * block_size);
-  for (std::size_t first = 0; first < a.extent.elements(); first += block_size) {
-    const std::size_t size = std::min(block_size, a.extent.elements() - first);
-    for (std::size_t r = 0; r < replicates; ++r) {
-      for (std::size_t i = 0; i < size; ++i) {
-        block[r * block_size + i] =
-            static_cast<double>(a.images[r][first + i]) - second(r, first + i);
-      }
+// Of four replicates, side by side, and the first `count` of all of them, whole pieces: the sums
+// over the block's elements.
+struct FourRows {
+  const double* replicates;
+  double* sums;  // four rows of `count`
+  std::size_t count;
+};
+ASSAY_VECTOR_COPIES void add_products(const FlipBlock& block, const FourRows& four,
+                                      std::size_t size) {
+  const std::size_t count = four.count;
+  double* const __restrict first = four.sums;
+  double* const __restrict second = first + count;
+  double* const __restrict third = second + count;
+  double* const __restrict fourth = third + count;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double* const all = block.element.data() + i * block.stride;
+    const double* const row = four.replicates + i * block.stride;
+    const double p = row[0];
+    const double q = row[1];
+    const double r = row[2];
+    const double t = row[3];
+    for (std::size_t s = 0; s < count; ++s) {
+      first[s] += p * all[s];
+      second[s] += q * all[s];
+      third[s] += r * all[s];
+      fourth[s] += t * all[s];
     }
-    studentise(block, replicates, size);
-    add_products(matrix, block, replicates, size);
   }
-  for (std::size_t r = 0; r < replicates; ++r) {
-    for (std::size_t s = r + 1; s < replicates; ++s) {
-      matrix[r * replicates + s] = matrix[s * replicates + r];
+}
+
+// The matrix has rows of `stride`, of which those up to the diagonal are meant.
+void add_block(std::vector<double>& matrix, const FlipBlock& block, std::size_t size) {
+  std::vector<double> sums(4 * block.stride);
+  for (std::size_t r = 0; r < block.stride; r += 4) {
+    const std::size_t count = r / piece * piece + piece;
+    std::ranges::fill(sums, 0.0);
+    add_products(block, {block.element.data() + r, sums.data(), count}, size);
+    for (std::size_t i = 0; i < 4 * count; ++i) {
+      matrix[(r + i / count) * block.stride + i % count] += sums[i];
     }
   }
-  return {replicates, std::move(matrix)};
+}
+
+template <class Real>
+void load(const ImagePair<Real>& pair, std::size_t first, FlipBlock& block, std::size_t size) {
+  for (std::size_t r = 0; r < block.replicates; ++r) {
+    double* const out = block.difference.data() + r * block_size;
+    if (pair.b != nullptr) {
+      subtract(pair.a.at(r, first), pair.b->at(r, first), out, size);
+    } else {
+      subtract(pair.a.at(r, first), pair.reference->value.data() + first, out, size);
+    }
+  }
+}
+
+template <class Real>
+std::vector<double> products_of(const ImagePair<Real>& pair, ElementRange range) {
+  FlipBlock block(pair.a.images.size());
+  std::vector<double> matrix(block.stride * block.stride);
+  for (std::size_t first = range.first; first < range.last; first += block_size) {
+    const std::size_t size = std::min(block_size, range.last - first);
+    load(pair, first, block, size);
+    studentise(block, size);
+    add_block(matrix, block, size);
+  }
+  return matrix;
+}
+
+template <class Real>
+FlipMatrix matrix_of(const ImagePair<Real>& pair, const ForEach& for_each) {
+  RowFlips<Real> flips;
+  flips.take(pair, {0, pair.a.extent.height}, for_each);
+  return flips.matrix();
 }
 
 using Energies = std::array<double, FlipMatrix::together>;
@@ -116,21 +189,48 @@ std::array<double, FlipMatrix::together> FlipMatrix::energies(
 }
 
 template <class Real>
-FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageStack<Real>& b) {
-  check::image_stack("flip_matrix", a);
-  check::image_stack("flip_matrix", b);
-  check::same_extent("flip_matrix", a.extent, b.extent);
-  if (a.images.size() != b.images.size()) {
-    check::fail({"flip_matrix", "replicates of the second stack"}, b.images.size(),
-                "as many as of the first, " + std::to_string(a.images.size()));
+void RowFlips<Real>::take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each) {
+  if (pair.b != nullptr && pair.b->images.size() != pair.a.images.size()) {
+    check::fail({"flip_matrix", "replicates of the second stack"}, pair.b->images.size(),
+                "as many as of the first, " + std::to_string(pair.a.images.size()));
   }
-  return matrix_of(a, [&](std::size_t r, std::size_t element) {
-    return static_cast<double>(b.images[r][element]);
+  std::vector<std::vector<double>> parts((rows.last - rows.first + row_unit - 1) / row_unit);
+  for_each(parts.size(), [&](std::size_t i) {
+    const std::size_t first = rows.first + i * row_unit;
+    const RowRange some{first, std::min(first + row_unit, rows.last)};
+    parts[i] = products_of(pair, some.elements(pair.a.extent));
   });
+  replicates_ = pair.a.images.size();
+  sums_.resize(parts.at(0).size());
+  for (const std::vector<double>& part : parts) {
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += part[i];
+  }
 }
 
 template <class Real>
-FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageReference& b) {
+FlipMatrix RowFlips<Real>::matrix() const {
+  const std::size_t stride = FlipBlock(replicates_).stride;
+  std::vector<double> matrix(replicates_ * replicates_);
+  for (std::size_t r = 0; r < replicates_; ++r) {
+    for (std::size_t s = 0; s < replicates_; ++s) {
+      matrix[r * replicates_ + s] = sums_[std::max(r, s) * stride + std::min(r, s)];
+    }
+  }
+  return {replicates_, std::move(matrix)};
+}
+
+template <class Real>
+FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageStack<Real>& b,
+                       const ForEach& for_each) {
+  check::image_stack("flip_matrix", a);
+  check::image_stack("flip_matrix", b);
+  check::same_extent("flip_matrix", a.extent, b.extent);
+  return matrix_of<Real>({a, &b, nullptr}, for_each);
+}
+
+template <class Real>
+FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageReference& b,
+                       const ForEach& for_each) {
   check::image_stack("flip_matrix", a);
   check::image_reference("flip_matrix", b);
   check::same_extent("flip_matrix", a.extent, b.extent);
@@ -138,13 +238,16 @@ FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageReference& b) {
     check::fail({"flip_matrix", "size of the standard errors"}, b.standard_error.size(),
                 "0: a reference's error is the same in every replicate and does not flip");
   }
-  return matrix_of(a, [&](std::size_t, std::size_t element) { return b.value[element]; });
+  return matrix_of<Real>({a, nullptr, &b}, for_each);
 }
 
-template FlipMatrix flip_matrix(const ImageStack<float>&, const ImageStack<float>&);
-template FlipMatrix flip_matrix(const ImageStack<double>&, const ImageStack<double>&);
-template FlipMatrix flip_matrix(const ImageStack<float>&, const ImageReference&);
-template FlipMatrix flip_matrix(const ImageStack<double>&, const ImageReference&);
+template class RowFlips<float>;
+template class RowFlips<double>;
+template FlipMatrix flip_matrix(const ImageStack<float>&, const ImageStack<float>&, const ForEach&);
+template FlipMatrix flip_matrix(const ImageStack<double>&, const ImageStack<double>&,
+                                const ForEach&);
+template FlipMatrix flip_matrix(const ImageStack<float>&, const ImageReference&, const ForEach&);
+template FlipMatrix flip_matrix(const ImageStack<double>&, const ImageReference&, const ForEach&);
 
 // The first sign stays: Q(s) = Q(-s).
 SignFlip sign_flip(const FlipMatrix& matrix, double share) {

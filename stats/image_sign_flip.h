@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "stats/for_each.h"
 #include "stats/image.h"
 #include "stats/test_result.h"
 
@@ -43,9 +44,26 @@ class FlipMatrix {
 
 // Throw std::domain_error as welch_z does, and for stacks of different counts.
 template <class Real>
-FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageStack<Real>& b);
+FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageStack<Real>& b,
+                       const ForEach& for_each = one_by_one);
 template <class Real>
-FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageReference& b);
+FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageReference& b,
+                       const ForEach& for_each = one_by_one);
+
+// The same of images of which some rows are there at a time, with the same bits.
+template <class Real>
+class RowFlips {
+ public:
+  // Rows that follow on those before: multiples of row_unit, but for the last.
+  static constexpr std::size_t row_unit = 16;
+  void take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each = one_by_one);
+  // After the last rows.
+  FlipMatrix matrix() const;
+
+ private:
+  std::size_t replicates_ = 0;
+  std::vector<double> sums_;
+};
 
 enum class FlipMethod { enumerated, monte_carlo };
 

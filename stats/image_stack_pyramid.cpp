@@ -11,15 +11,18 @@
 #include "stats/image_fine_cells.h"
 #include "stats/image_halves.h"
 #include "stats/image_pyramid.h"
+#include "stats/image_row_pyramid.h"
 #include "stats/image_welch.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
 namespace {
 
-using Groups = std::vector<WindowGroup>;
-
 constexpr const char* function_name = "image_pyramid";
+
+// Of images that are there as a whole, so many rows are taken at a time: what is known of their
+// elements is not kept of all of them.
+constexpr std::size_t rows_at_a_time = 512;
 
 double two_sided(LogTails tails) {
   return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
@@ -30,40 +33,29 @@ LogTails tails_of(StudentValue value) {
                                    : student_t_tails(value.t, value.degrees);
 }
 
-// u of the header, and the normal upper tail of its self-normalised sum.
-void offer_energy(BestCell& best, const ImageExtent& extent, const std::array<Half, halves>& half,
-                  std::size_t channel, const ImageReference* reference) {
-  double sum = 0;
-  double squares = 0;
-  for (std::size_t i = channel; i < extent.elements(); i += extent.channels) {
-    const double w0 = half[0].weight[i];
-    const double w1 = half[1].weight[i];
-    const double d0 = half[0].difference[i];
-    const double d1 = half[1].difference[i];
-    const double error =
-        reference == nullptr ? 0 : check::reference_error(function_name, *reference, i);
-    const double u = w1 * w1 * (d0 * d0 - half[0].variance[i]) +
-                     w0 * w0 * (d1 * d1 - half[1].variance[i]) +
-                     2 * w0 * w1 * (d0 * d1 - error * error);
-    sum += u;
-    squares += u * u;
-  }
-  if (squares == 0) return;
-  ++best.windows;
-  const double z = sum / std::sqrt(squares);
-  if (best.windows > 1 && z <= best.finding.z) return;
-  best.finding = whole_image(ImageStatistic::energy, extent);
-  best.finding.channel = channel;
-  best.finding.z = z;
+// u of the header, of an element.
+double energy_of(const std::array<Half, halves>& half, std::size_t element,
+                 const ImageReference* reference) {
+  const std::size_t i = element - half[0].first;
+  const double w0 = half[0].weight[i];
+  const double w1 = half[1].weight[i];
+  const double d0 = half[0].difference[i];
+  const double d1 = half[1].difference[i];
+  const double error =
+      reference == nullptr ? 0 : check::reference_error(function_name, *reference, element);
+  return w1 * w1 * (d0 * d0 - half[0].variance[i]) + w0 * w0 * (d1 * d1 - half[1].variance[i]) +
+         2 * w0 * w1 * (d0 * d1 - error * error);
 }
 
 template <class Real>
-WelchCounts element_map(const ImagePair<Real>& pair, std::span<double> z, const ForEach& for_each) {
+WelchCounts element_map(const ImagePair<Real>& pair, std::size_t begin, std::span<double> z,
+                        const ForEach& for_each) {
   constexpr std::size_t at_a_time = std::size_t{1} << 15;
   std::vector<WelchCounts> counts((z.size() + at_a_time - 1) / at_a_time);
   for_each(counts.size(), [&](std::size_t i) {
-    const std::size_t first = i * at_a_time;
-    const std::span<double> some = z.subspan(first, std::min(at_a_time, z.size() - first));
+    const std::size_t done = i * at_a_time;
+    const std::size_t first = begin + done;
+    const std::span<double> some = z.subspan(done, std::min(at_a_time, z.size() - done));
     counts[i] = pair.b != nullptr ? welch_z(pair.a, *pair.b, first, some)
                                   : welch_z(pair.a, *pair.reference, first, some);
   });
@@ -84,48 +76,6 @@ std::size_t largest(std::span<const double> z) {
   return static_cast<std::size_t>(at - z.begin());
 }
 
-// Single elements: the best by z, its p-value exactly.
-template <class Real>
-void add_elements(ImageFamily& family, const ImagePair<Real>& pair, const PyramidOptions& options,
-                  double share) {
-  std::vector<double> own(options.z.empty() ? pair.a.extent.elements() : 0);
-  const std::span<double> z = options.z.empty() ? std::span(own) : options.z;
-  const WelchCounts counts = element_map(pair, z, options.for_each);
-  family.tested = counts.tested;
-  family.equal_constants = counts.equal_constants;
-  family.different_constants = counts.different_constants;
-  const bool wanted = options.smallest <= 1 && counts.tested > 0;
-  if (!wanted && counts.different_constants == 0) return;
-  const std::size_t element = largest(z);
-  ImageFinding finding = certain_finding(pair.a.extent, element, z[element]);
-  if (counts.different_constants == 0) {
-    finding.z = z[element];
-    finding.log_p = element_log_p(pair, element);
-    finding.adjusted_log_p = adjusted(finding.log_p, {static_cast<double>(counts.tested), share});
-  }
-  family.groups.push_back(finding);
-}
-
-void add_best_windows(ImageFamily& family, const std::vector<BestCell>& best, const Groups& groups,
-                      std::uint32_t smallest) {
-  for (std::size_t g = 1; g < groups.size(); ++g) {
-    if (best[g].windows == 0 || groups[g].size < smallest) continue;
-    ImageFinding finding = best[g].finding;
-    finding.log_p = two_sided(tails_of(best[g].value));
-    finding.adjusted_log_p = adjusted(finding.log_p, {best[g].windows, groups[g].share});
-    family.groups.push_back(finding);
-  }
-}
-
-// The energy's channels may depend on each other: the union bound joins them.
-void add_best_energy(ImageFamily& family, const BestCell& best) {
-  if (best.windows == 0) return;
-  ImageFinding finding = best.finding;
-  finding.log_p = normal_tails(finding.z).upper;
-  finding.adjusted_log_p = std::min(0.0, finding.log_p + std::log(best.windows / energy_share));
-  family.groups.push_back(finding);
-}
-
 void check_weights(std::span<const double> weights, const ImageExtent& extent) {
   if (!weights.empty() && weights.size() != extent.elements()) {
     check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
@@ -135,42 +85,152 @@ void check_weights(std::span<const double> weights, const ImageExtent& extent) {
 
 template <class Real>
 ImageFamily family_of(const ImagePair<Real>& pair, const PyramidOptions& options) {
-  const ImageExtent& extent = pair.a.extent;
-  check_weights(options.weights, extent);
-  if (!options.z.empty() && options.z.size() != extent.elements()) {
-    check::fail({function_name, "z.size()"}, options.z.size(), "that of the elements");
+  RowPyramid<Real> pyramid(pair, options);
+  const std::size_t height = pair.a.extent.height;
+  for (std::size_t row = 0; row < height; row += rows_at_a_time) {
+    pyramid.take(pair, {row, std::min(row + rows_at_a_time, height)});
   }
-  const Groups groups = window_groups(extent, 1 - energy_share);
-  ImageFamily family;
-  add_elements(family, pair, options, groups[0].share);
-  if (family.different_constants == 0) {
-    auto half = halves_of(pair, options.for_each);
-    if (!options.weights.empty()) {
-      for (Half& each : half) each.weight.assign(options.weights.begin(), options.weights.end());
-    }
-    std::vector<BestCell> best(groups.size());
-    BestCell energy;
-    const CoarseImages coarse =
-        offer_fine_cells<Real>({pair, half, groups}, best, options.for_each);
-    std::vector<std::vector<BestCell>> of_channels(extent.channels,
-                                                   std::vector<BestCell>(groups.size()));
-    options.for_each(extent.channels,
-                     [&](std::size_t c) { offer_coarse_cells(coarse, groups, c, of_channels[c]); });
-    for (std::size_t c = 0; c < extent.channels; ++c) {
-      for (std::size_t g = 0; g < groups.size(); ++g) join(best[g], of_channels[c][g]);
-      if (options.energy) offer_energy(energy, extent, half, c, pair.reference);
-    }
-    add_best_windows(family, best, groups, options.smallest);
-    add_best_energy(family, energy);
+  return pyramid.family();
+}
+
+template <class Real>
+void check_pair(const ImagePair<Real>& pair) {
+  check::image_stack(function_name, pair.a);
+  if (pair.b != nullptr) {
+    check::image_stack(function_name, *pair.b);
+    check::same_extent(function_name, pair.a.extent, pair.b->extent);
+  } else {
+    check::image_reference(function_name, *pair.reference);
+    check::same_extent(function_name, pair.a.extent, pair.reference->extent);
   }
-  decide(family);
-  return family;
 }
 
 }  // namespace
 
+template <class Real>
+RowPyramid<Real>::RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& options)
+    : extent_(pair.a.extent), options_(options) {
+  check_pair(pair);
+  check_weights(options.weights, extent_);
+  if (!options.z.empty() && options.z.size() != extent_.elements()) {
+    check::fail({function_name, "z.size()"}, options.z.size(), "that of the elements");
+  }
+  if (options.z.empty()) own_z_.resize(extent_.elements());
+  z_ = options.z.empty() ? std::span(own_z_) : options.z;
+  groups_ = window_groups(extent_, 1 - energy_share);
+  found_ = {empty_blocks(pair), std::vector<BestCell>(groups_.size())};
+  energy_.resize(extent_.channels);
+}
+
+template <class Real>
+void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
+  take_elements(pair, rows);
+  if (counts_.different_constants == 0) take_cells(pair, rows);
+}
+
+// The best by z, its p-value exactly.
+template <class Real>
+void RowPyramid<Real>::take_elements(const ImagePair<Real>& pair, RowRange rows) {
+  const ElementRange range = rows.elements(extent_);
+  const std::span<double> z = z_.subspan(range.first, range.size());
+  counts_.merge(element_map(pair, range.first, z, options_.for_each));
+  const std::size_t element = range.first + largest(z);
+  if (std::abs(z_[element]) <= std::abs(z_[best_element_]) && element != best_element_) return;
+  best_element_ = element;
+  if (std::isfinite(z_[element]) && z_[element] != 0) best_log_p_ = element_log_p(pair, element);
+}
+
+template <class Real>
+void RowPyramid<Real>::take_cells(const ImagePair<Real>& pair, RowRange rows) {
+  const RowRange reached{rows.first, std::min(rows.last + fine_rows_ahead, extent_.height)};
+  std::array<Half, halves> half = halves_of(pair, reached, options_.for_each);
+  for (Half& each : half) {
+    if (options_.weights.empty()) continue;
+    const auto weights = options_.weights.subspan(each.first, each.weight.size());
+    each.weight.assign(weights.begin(), weights.end());
+  }
+  offer_fine_cells<Real>({pair, half, groups_}, rows, found_, options_.for_each);
+  const ElementRange range = rows.elements(extent_);
+  options_.for_each(options_.energy ? extent_.channels : 0, [&](std::size_t channel) {
+    Energy& energy = energy_[channel];
+    for (std::size_t i = range.first + channel; i < range.last; i += extent_.channels) {
+      const double u = energy_of(half, i, pair.reference);
+      energy.sum += u;
+      energy.squares += u * u;
+    }
+  });
+}
+
+template <class Real>
+void RowPyramid<Real>::add_elements(ImageFamily& family) const {
+  family.tested = counts_.tested;
+  family.equal_constants = counts_.equal_constants;
+  family.different_constants = counts_.different_constants;
+  if (counts_.tested == 0 && counts_.different_constants == 0) return;
+  ImageFinding finding = certain_finding(extent_, best_element_, z_[best_element_]);
+  if (counts_.different_constants == 0) {
+    finding.z = z_[best_element_];
+    finding.log_p = best_log_p_;
+    finding.adjusted_log_p =
+        adjusted(finding.log_p, {static_cast<double>(counts_.tested), groups_[0].share});
+  }
+  family.groups.push_back(finding);
+}
+
+template <class Real>
+void RowPyramid<Real>::add_best_windows(ImageFamily& family) const {
+  for (std::size_t g = 1; g < groups_.size(); ++g) {
+    const BestCell& best = found_.best[g];
+    if (best.windows == 0) continue;
+    ImageFinding finding = best.finding;
+    finding.log_p = two_sided(tails_of(best.value));
+    finding.adjusted_log_p = adjusted(finding.log_p, {best.windows, groups_[g].share});
+    family.groups.push_back(finding);
+  }
+}
+
+// The largest of the channels; they may depend on each other: the union bound joins them.
+template <class Real>
+void RowPyramid<Real>::add_best_energy(ImageFamily& family) const {
+  ImageFinding best = whole_image(ImageStatistic::energy, extent_);
+  double channels = 0;
+  for (std::size_t c = 0; c < energy_.size(); ++c) {
+    if (energy_[c].squares == 0) continue;
+    const double z = energy_[c].sum / std::sqrt(energy_[c].squares);
+    if (channels++ > 0 && z <= best.z) continue;
+    best.channel = c;
+    best.z = z;
+  }
+  if (channels == 0) return;
+  best.log_p = normal_tails(best.z).upper;
+  best.adjusted_log_p = std::min(0.0, best.log_p + std::log(channels / energy_share));
+  family.groups.push_back(best);
+}
+
+template <class Real>
+ImageFamily RowPyramid<Real>::family() {
+  ImageFamily family;
+  add_elements(family);
+  if (family.different_constants == 0) {
+    add_up_alternating(found_.coarse);
+    std::vector<std::vector<BestCell>> of_channels(extent_.channels,
+                                                   std::vector<BestCell>(groups_.size()));
+    options_.for_each(extent_.channels, [&](std::size_t c) {
+      offer_coarse_cells(found_.coarse, groups_, c, of_channels[c]);
+    });
+    for (const std::vector<BestCell>& of_channel : of_channels) {
+      for (std::size_t g = 0; g < groups_.size(); ++g) join(found_.best[g], of_channel[g]);
+    }
+    add_best_windows(family);
+    add_best_energy(family);
+  }
+  decide(family);
+  leave_out_cells(family, options_.smallest);
+  return family;
+}
+
 double whole_image_share(const ImageExtent& extent) {
-  const Groups groups = window_groups(extent, 1 - energy_share);
+  const std::vector<WindowGroup> groups = window_groups(extent, 1 - energy_share);
   const auto whole = std::max_element(
       groups.begin(), groups.end(), [](const WindowGroup& a, const WindowGroup& b) {
         const auto rank = [](const WindowGroup& g) { return g.grid == Grid::aligned ? g.size : 0; };
@@ -191,6 +251,8 @@ ImageFamily image_pyramid(const ImageStack<Real>& a, const ImageReference& b,
   return family_of<Real>({a, nullptr, &b}, options);
 }
 
+template class RowPyramid<float>;
+template class RowPyramid<double>;
 template ImageFamily image_pyramid(const ImageStack<float>&, const ImageStack<float>&,
                                    const PyramidOptions&);
 template ImageFamily image_pyramid(const ImageStack<double>&, const ImageStack<double>&,

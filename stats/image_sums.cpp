@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace assay::stats {
 namespace {
@@ -10,32 +11,43 @@ constexpr std::size_t in_step = 8;
 
 // Images that are missing to the last eight are the last one again.
 template <class Real>
-std::array<double, in_step> sums_from(const ImageStack<Real>& stack, std::size_t first) {
+void add_in_step(std::span<double> sums, const ImageStack<Real>& stack, std::size_t first,
+                 ElementRange range) {
   std::array<const Real*, in_step> image{};
-  for (std::size_t k = 0; k < in_step; ++k) {
-    image[k] = stack.images[std::min(first + k, stack.images.size() - 1)].data();
-  }
   std::array<double, in_step> sum{};
-  const std::size_t size = stack.images[first].size();
-  for (std::size_t i = 0; i < size; ++i) {
+  for (std::size_t k = 0; k < in_step; ++k) {
+    image[k] = stack.at(std::min(first + k, stack.images.size() - 1), range.first);
+  }
+  std::ranges::copy(sums, sum.begin());
+  for (std::size_t i = 0; i < range.size(); ++i) {
     for (std::size_t k = 0; k < in_step; ++k) sum[k] += static_cast<double>(image[k][i]);
   }
-  return sum;
+  std::copy_n(sum.begin(), sums.size(), sums.begin());
 }
 
 }  // namespace
 
 template <class Real>
-std::vector<double> image_sums(const ImageStack<Real>& stack, const ForEach& for_each) {
-  std::vector<double> sums(stack.images.size());
+void add_to_sums(std::vector<double>& sums, const ImageStack<Real>& stack, ElementRange range,
+                 const ForEach& for_each) {
   for_each((sums.size() + in_step - 1) / in_step, [&](std::size_t i) {
     const std::size_t first = i * in_step;
-    const auto some = sums_from(stack, first);
-    std::copy_n(some.begin(), std::min(in_step, sums.size() - first), sums.data() + first);
+    const std::size_t size = std::min(in_step, sums.size() - first);
+    add_in_step(std::span(sums).subspan(first, size), stack, first, range);
   });
+}
+
+template <class Real>
+std::vector<double> image_sums(const ImageStack<Real>& stack, const ForEach& for_each) {
+  std::vector<double> sums(stack.images.size());
+  add_to_sums(sums, stack, {0, stack.extent.elements()}, for_each);
   return sums;
 }
 
+template void add_to_sums(std::vector<double>&, const ImageStack<float>&, ElementRange,
+                          const ForEach&);
+template void add_to_sums(std::vector<double>&, const ImageStack<double>&, ElementRange,
+                          const ForEach&);
 template std::vector<double> image_sums(const ImageStack<float>&, const ForEach&);
 template std::vector<double> image_sums(const ImageStack<double>&, const ForEach&);
 

@@ -12,4 +12,9 @@ namespace assay::stats {
 template <class Real>
 std::vector<double> image_sums(const ImageStack<Real>& stack, const ForEach& for_each = one_by_one);
 
+// The same of elements that follow those in `sums`.
+template <class Real>
+void add_to_sums(std::vector<double>& sums, const ImageStack<Real>& stack, ElementRange range,
+                 const ForEach& for_each = one_by_one);
+
 }  // namespace assay::stats

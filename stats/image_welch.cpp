@@ -135,7 +135,9 @@ void check_moments(const ImageMoments& moments) { check::replicates("welch_z", m
 template <class Real>
 Moments element_moments(const ImageStack<Real>& stack, std::size_t element) {
   Moments moments;
-  for (const auto& image : stack.images) moments.add(static_cast<double>(image[element]));
+  for (std::size_t r = 0; r < stack.images.size(); ++r) {
+    moments.add(static_cast<double>(*stack.at(r, element)));
+  }
   return moments;
 }
 

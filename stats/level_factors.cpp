@@ -25,10 +25,20 @@ inline double exponential(double x) {
   const double shifted = x * 0x1.71547652b82fep0 + to_integer;
   const double k = shifted - to_integer;
   const double r = (x - k * ln2_high) - k * ln2_low;
-  constexpr std::array<double, 14> series{
-      1.0 / 6227020800, 1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880,
-      1.0 / 40320,      1.0 / 5040,      1.0 / 720,      1.0 / 120,     1.0 / 24,
-      1.0 / 6,          1.0 / 2,         1.0,            1.0};
+  constexpr std::array<double, 14> series{1.0 / 6227020800,
+                                          1.0 / 479001600,
+                                          1.0 / 39916800,
+                                          1.0 / 3628800,
+                                          1.0 / 362880,
+                                          1.0 / 40320,
+                                          1.0 / 5040,
+                                          1.0 / 720,
+                                          1.0 / 120,
+                                          1.0 / 24,
+                                          1.0 / 6,
+                                          1.0 / 2,
+                                          1.0,
+                                          1.0};
   double sum = series[0];
 #pragma GCC unroll 14
   for (std::size_t i = 1; i < series.size(); ++i) sum = sum * r + series[i];
@@ -63,19 +73,24 @@ ASSAY_VECTOR_COPIES void factors_of(std::span<const Cumulants> cells, double sca
 
 }  // namespace
 
-void LevelFactors::add(std::span<const Cumulants> cells, const std::vector<bool>& counts,
-                       std::size_t first) {
+void LevelFactors::add(std::span<const Cumulants> cells) {
   Factors factors;
   for (std::size_t done = 0; done < cells.size(); done += block_size) {
     const auto some = cells.subspan(done, std::min(block_size, cells.size() - done));
     factors_of(some, scale_, factors);
     for (std::size_t i = 0; i < some.size(); ++i) {
-      if (!counts[first + done + i] || !(some[i].variance > 0)) continue;
+      if (!(some[i].variance > 0)) continue;
       ++count_;
       sum_ += factors.argument[i] > largest ? std::cosh(factors.argument[i]) : factors.factor[i];
       excess_ += factors.excess[i];
     }
   }
+}
+
+void LevelFactors::merge(const LevelFactors& other) {
+  count_ += other.count_;
+  sum_ += other.sum_;
+  excess_ += other.excess_;
 }
 
 }  // namespace assay::stats

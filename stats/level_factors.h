@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
-#include <vector>
 
 namespace assay::stats {
 
@@ -18,8 +16,10 @@ class LevelFactors {
  public:
   explicit LevelFactors(double x) : scale_(x * x * x / 3) {}
 
-  // Those of them that `counts` and that vary.
-  void add(std::span<const Cumulants> cells, const std::vector<bool>& counts, std::size_t first);
+  // Those of them that vary.
+  void add(std::span<const Cumulants> cells);
+  // As if the other's had been added here.
+  void merge(const LevelFactors& other);
 
   double count() const { return count_; }
   double factor() const { return sum_ / count_; }

@@ -10,9 +10,36 @@ namespace assay::recorded {
 
 namespace {
 
+using SharedStack = std::shared_ptr<const PictureStack>;
+
+/// Which pictures of a stack have been seen, by whoever reads them.
+class Seen {
+ public:
+  explicit Seen(SharedStack stack) : stack_(std::move(stack)) {}
+
+  /// Copies are no independent observations: they would make the variance too small.
+  void refuse_a_copy(std::uint64_t index, const PictureDigest& digest) {
+    const auto other = pictures_.note(index, digest);
+    if (!other) return;
+    const auto [first, second] = std::minmax(*other, index);
+    throw InputError({.file = stack_->files[second]},
+                     "is the same picture as `" + stack_->files[first] +
+                         "`, bit for bit: give each render a seed of its own, or leave it out");
+  }
+  const SeenPictures& pictures() const { return pictures_; }
+
+ private:
+  SharedStack stack_;
+  SeenPictures pictures_;
+};
+
+std::size_t row_of(const PictureStack& stack) {
+  return stack.window.width * stack.channels.names.size();
+}
+
 class Picture final : public Estimator {
  public:
-  Picture(std::shared_ptr<const PictureStack> stack, std::shared_ptr<SeenPictures> seen)
+  Picture(SharedStack stack, std::shared_ptr<Seen> seen)
       : stack_(std::move(stack)), seen_(std::move(seen)) {}
 
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
@@ -29,30 +56,57 @@ class Picture final : public Estimator {
                               ", there are " + std::to_string(stack_->files.size()) + " files");
     }
     stack_->read(index, texels);
-    refuse_a_copy(index, texels);
+    PictureDigest digest(row_of(*stack_));
+    digest.add(texels);
+    seen_->refuse_a_copy(index, digest);
     cost.samples += 1;
   }
 
  private:
-  /// Copies are no independent observations: they would make the variance too small.
-  void refuse_a_copy(std::uint64_t index, std::span<const float> texels) {
-    const auto other = seen_->note(index, texels);
-    if (!other) return;
-    const auto [first, second] = std::minmax(*other, index);
-    throw InputError({.file = stack_->files[second]},
-                     "is the same picture as `" + stack_->files[first] +
-                         "`, bit for bit: give each render a seed of its own, or leave it out");
+  SharedStack stack_;
+  std::shared_ptr<Seen> seen_;
+  std::vector<float> texels_;  // scratch
+};
+
+class StackRows final : public PictureRows {
+ public:
+  StackRows(SharedStack stack, std::shared_ptr<Seen> seen)
+      : stack_(std::move(stack)),
+        seen_(std::move(seen)),
+        pictures_(stack_->files.size(), {nullptr, PictureDigest(row_of(*stack_)), 0}) {}
+
+  bool read(std::uint64_t index, std::span<float> texels) override {
+    Reading& picture = pictures_.at(index);
+    if (!picture.file) picture.file = stack_->open(index);
+    picture.file->read(stack_->channels.names, texels, picture.rows);
+    picture.digest.add(texels);
+    picture.rows += texels.size() / row_of(*stack_);
+    const bool last = picture.rows == stack_->window.height;
+    if (last) seen_->refuse_a_copy(index, picture.digest);
+    if (last || pictures_.size() > most_open) picture.file.reset();
+    return picture.digest.finite();
   }
 
-  std::shared_ptr<const PictureStack> stack_;
-  std::shared_ptr<SeenPictures> seen_;
-  std::vector<float> texels_;  // scratch
+ private:
+  // Of one stack: a process may have a thousand, each of these takes two.
+  static constexpr std::size_t most_open = 128;
+
+  struct Reading {
+    std::shared_ptr<const ExrFile> file;
+    PictureDigest digest;
+    std::size_t rows = 0;
+  };
+
+  SharedStack stack_;
+  std::shared_ptr<Seen> seen_;
+  std::vector<Reading> pictures_;
 };
 
 class PictureSetup final : public Setup {
  public:
   PictureSetup(PictureStack stack, bool independent, std::string data_file)
       : stack_(std::make_shared<const PictureStack>(std::move(stack))),
+        seen_(std::make_shared<Seen>(stack_)),
         shape_(stack_->shape(independent)),
         data_file_(std::move(data_file)) {}
 
@@ -67,6 +121,7 @@ class PictureSetup final : public Setup {
   }
   std::optional<std::uint64_t> observations() const override { return stack_->files.size(); }
   std::string data_file() const override { return data_file_; }
+  std::unique_ptr<PictureRows> rows() const { return std::make_unique<StackRows>(stack_, seen_); }
   std::size_t channel_count() const { return shape_.elements() + 1; }
   std::string file(std::uint64_t index) const {
     return index < stack_->files.size() ? stack_->files[index] : "";
@@ -74,14 +129,14 @@ class PictureSetup final : public Setup {
   std::optional<std::pair<std::string, std::string>> shared_with(const PictureSetup& other,
                                                                  std::uint64_t count) const {
     if (seen_ == other.seen_) return {};
-    const auto indices = seen_->shared_with(*other.seen_, count);
+    const auto indices = seen_->pictures().shared_with(other.seen_->pictures(), count);
     if (!indices) return {};
     return std::pair(file(indices->first), other.file(indices->second));
   }
 
  private:
-  std::shared_ptr<const PictureStack> stack_;
-  std::shared_ptr<SeenPictures> seen_ = std::make_shared<SeenPictures>();
+  SharedStack stack_;
+  std::shared_ptr<Seen> seen_;
   ImageShape shape_;
   std::string data_file_;
 };
@@ -124,6 +179,11 @@ std::optional<std::size_t> unknown_channels(const Setup& setup) {
 
 void read_picture(Estimator& pictures, std::uint64_t index, std::span<float> texels, Cost& cost) {
   dynamic_cast<Picture&>(pictures).read(index, texels, cost);
+}
+
+std::unique_ptr<PictureRows> picture_rows(const Setup& setup) {
+  const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
+  return pictures == nullptr ? nullptr : pictures->rows();
 }
 
 double average_of(std::span<const float> texels) {

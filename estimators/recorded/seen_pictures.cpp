@@ -15,11 +15,7 @@ std::uint64_t step(std::uint64_t digest, std::uint64_t value) {
   return digest ^ digest >> 32;  // the product alone never carries a high bit down
 }
 
-struct Digest {
-  std::uint64_t value = 0xcbf29ce484222325;
-  bool finite = true;
-  bool one_value = true;
-};
+constexpr std::uint64_t basis = 0xcbf29ce484222325;
 
 std::uint64_t word(const float* texels) {
   std::uint64_t bits = 0;
@@ -31,52 +27,47 @@ std::uint64_t word(const float* texels) {
 /// the last.
 std::uint64_t digest_of_bits(std::span<const float> texels) {
   constexpr std::size_t lanes = 8;
-  Digest whole;
+  std::uint64_t whole = basis;
   std::array<std::uint64_t, lanes> digests;
-  digests.fill(whole.value);
+  digests.fill(whole);
   std::size_t i = 0;
   for (; i + 2 * lanes <= texels.size(); i += 2 * lanes) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       digests[lane] = step(digests[lane], word(texels.data() + i + 2 * lane));
     }
   }
-  for (const std::uint64_t digest : digests) whole.value = step(whole.value, digest);
+  for (const std::uint64_t digest : digests) whole = step(whole, digest);
   for (; i < texels.size(); ++i) {
-    whole.value = step(whole.value, std::bit_cast<std::uint32_t>(texels[i]));
-  }
-  return whole.value;
-}
-
-/// By pieces that stay in the cache from one question to the next.
-Digest digest_of(std::span<const float> texels) {
-  constexpr std::size_t piece = 4096;
-  Digest whole;
-  for (std::size_t first = 0; first < texels.size(); first += piece) {
-    const std::span<const float> some =
-        texels.subspan(first, std::min(piece, texels.size() - first));
-    whole.value = step(whole.value, digest_of_bits(some));
-    std::uint32_t beyond = 0;
-    std::uint32_t differs = 0;
-    for (const float texel : some) {
-      constexpr std::uint32_t exponent = 0x7f800000;
-      const auto bits = std::bit_cast<std::uint32_t>(texel);
-      beyond |= (bits & exponent) == exponent ? 1U : 0U;
-      differs |= texel != texels[0] ? 1U : 0U;
-    }
-    whole.finite &= beyond == 0;
-    whole.one_value &= differs == 0;
+    whole = step(whole, std::bit_cast<std::uint32_t>(texels[i]));
   }
   return whole;
 }
 
 }  // namespace
 
-std::optional<std::uint64_t> SeenPictures::note(std::uint64_t index,
-                                                std::span<const float> texels) {
-  const Digest digest = digest_of(texels);
-  if (!digest.finite || digest.one_value) return {};
+// By rows, which stay in the cache from one question to the next.
+void PictureDigest::add(std::span<const float> texels) {
+  if (!first_ && !texels.empty()) first_ = texels[0];
+  for (std::size_t begin = 0; begin < texels.size(); begin += row_) {
+    const std::span<const float> some = texels.subspan(begin, row_);
+    value_ = step(value_, digest_of_bits(some));
+    std::uint32_t beyond = 0;
+    std::uint32_t differs = 0;
+    for (const float texel : some) {
+      constexpr std::uint32_t exponent = 0x7f800000;
+      const auto bits = std::bit_cast<std::uint32_t>(texel);
+      beyond |= (bits & exponent) == exponent ? 1U : 0U;
+      differs |= texel != *first_ ? 1U : 0U;
+    }
+    finite_ &= beyond == 0;
+    one_value_ &= differs == 0;
+  }
+}
+
+std::optional<std::uint64_t> SeenPictures::note(std::uint64_t index, const PictureDigest& digest) {
+  if (!digest.finite() || digest.one_value()) return {};
   const std::scoped_lock lock(mutex_);
-  const std::uint64_t first = by_digest_.try_emplace(digest.value, index).first->second;
+  const std::uint64_t first = by_digest_.try_emplace(digest.value(), index).first->second;
   return first == index ? std::nullopt : std::optional(first);
 }
 

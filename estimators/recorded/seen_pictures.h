@@ -2,6 +2,7 @@
 
 // Which pictures were read: two that are the same bit for bit are one, and no two observations.
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -11,13 +12,34 @@
 
 namespace assay::recorded {
 
+/// What a picture's texels come to (64 bits), whole rows of them after whole rows, in whichever
+/// portions they come.
+class PictureDigest {
+ public:
+  /// Of rows of so many texels.
+  explicit PictureDigest(std::size_t row) : row_(row) {}
+
+  void add(std::span<const float> texels);
+
+  std::uint64_t value() const { return value_; }
+  bool finite() const { return finite_; }
+  bool one_value() const { return one_value_; }
+
+ private:
+  std::size_t row_;
+  std::uint64_t value_ = 0;
+  std::optional<float> first_ = {};
+  bool finite_ = true;
+  bool one_value_ = true;
+};
+
 class SeenPictures {
  public:
-  /// Notes the picture of an observation by a digest of its texels (64 bits). Returns another one
-  /// that had the same; nullopt where there is none, and for a picture of one value throughout,
-  /// which noise may never have reached, or with texels that are not finite, whose observation is
-  /// an error in itself. Thread-safe.
-  std::optional<std::uint64_t> note(std::uint64_t index, std::span<const float> texels);
+  /// Notes the picture of an observation by its digest. Returns another one that had the same;
+  /// nullopt where there is none, and for a picture of one value throughout, which noise may never
+  /// have reached, or with texels that are not finite, whose observation is an error in itself.
+  /// Thread-safe.
+  std::optional<std::uint64_t> note(std::uint64_t index, const PictureDigest& digest);
 
   /// Indices below `count` of a picture here and of one there that had the same digest, the first
   /// there; nullopt where no two do. Of what was noted so far: pictures of one value throughout,

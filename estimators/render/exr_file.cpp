@@ -95,6 +95,7 @@ std::string listed(const std::vector<ExrChannel>& channels) {
 
 struct ExrFile::Parts {
   std::string name;
+  std::shared_ptr<render::CoreFile> core;
   std::unique_ptr<Imf::MultiPartInputFile> input;
   std::vector<ExrChannel> channels;
   std::optional<std::uint64_t> samples;
@@ -107,7 +108,7 @@ struct ExrFile::Parts {
 
   void open();
   void add_part(int part, double bytes);
-  void read_part(int part, const std::map<std::string, float*>& to, std::size_t apart) const;
+  void read_part(const render::ScanLineTexels& to) const;
 };
 
 void ExrFile::Parts::open() {
@@ -138,20 +139,20 @@ void ExrFile::Parts::add_part(int part, double bytes) {
   }
 }
 
-void ExrFile::Parts::read_part(int part, const std::map<std::string, float*>& to,
-                               std::size_t apart) const {
-  const ExrWindow window = window_of(input->header(part));
-  if (render::read_scan_lines(name, {part, to, window.width, window.height, apart})) return;
-  Imf::InputPart input_part(*input, part);
-  const Imath::Box2i box = input_part.header().dataWindow();
-  const std::size_t stride = apart * sizeof(float);
+void ExrFile::Parts::read_part(const render::ScanLineTexels& to) const {
+  if (render::read_scan_lines(*core, to)) return;
+  Imf::InputPart input_part(*input, to.part);
+  Imath::Box2i box = input_part.header().dataWindow();
+  box.max.y = box.min.y + static_cast<int>(to.last) - 1;
+  box.min.y += static_cast<int>(to.first);
+  const std::size_t stride = to.apart * sizeof(float);
   Imf::FrameBuffer buffer;
-  for (const auto& [channel, first] : to) {
+  for (const auto& [channel, first] : to.channels) {
     const Imf::Channel& described = input_part.header().channels()[channel.c_str()];
     if (described.xSampling != 1 || described.ySampling != 1) {
       refuse(name, "channel `" + channel + "` is sub-sampled; store it at full resolution");
     }
-    buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, first, box, stride, stride * window.width));
+    buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, first, box, stride, stride * to.width));
   }
   input_part.setFrameBuffer(buffer);
   input_part.readPixels(box.min.y, box.max.y);
@@ -186,7 +187,7 @@ ExrFile::ExrFile(const std::string& file) : parts_(std::make_unique<Parts>()) {
   if (std::filesystem::is_directory(file, ignored)) refuse(file, "it is a folder, not a picture");
   if (!std::ifstream(file)) refuse(file, std::string("it does not open: ") + std::strerror(errno));
   if (!is_exr(file)) refuse(file, "it is no OpenEXR picture; convert it to OpenEXR");
-  render::require_sound_headers(file);
+  parts_->core = render::open_sound_file(file);
   in_our_words(file, [&] { parts_->open(); });
 }
 
@@ -206,21 +207,29 @@ ExrWindow ExrFile::window(std::span<const std::string> names) const {
   return first.window;
 }
 
-void ExrFile::read(std::span<const std::string> names, std::span<float> texels) const {
+void ExrFile::read(std::span<const std::string> names, std::span<float> texels,
+                   std::size_t first) const {
   const ExrWindow whole = window(names);
-  if (texels.size() != whole.width * whole.height * names.size()) {
+  const std::size_t row = whole.width * names.size();
+  const std::size_t last = first + texels.size() / row;
+  if (texels.size() % row != 0 || last > whole.height) {
     throw std::invalid_argument("ExrFile::read: there is room for " +
                                 std::to_string(texels.size()) + " texels");
   }
-  std::map<int, std::map<std::string, float*>> wanted;
+  std::map<int, render::ScanLineTexels> wanted;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const ExrChannel& channel = parts_->find(names[i]);
-    wanted[channel.part].emplace(channel.in_part, texels.data() + i);
+    render::ScanLineTexels& to = wanted[channel.part];
+    to.channels.emplace(channel.in_part, texels.data() + i);
+    to.part = channel.part;
+    to.width = whole.width;
+    to.height = whole.height;
+    to.first = first;
+    to.last = last;
+    to.apart = names.size();
   }
   in_our_words(parts_->name, [&] {
-    for (const auto& [part, to] : wanted) {
-      parts_->read_part(part, to, names.size());
-    }
+    for (const auto& [part, to] : wanted) parts_->read_part(to);
   });
 }
 

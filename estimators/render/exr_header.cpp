@@ -1,8 +1,7 @@
 #include "render/exr_header.h"
 
-#include <openexr.h>
-
 #include "estimators/value.h"
+#include "render/core_file.h"
 
 namespace assay::render {
 
@@ -18,18 +17,28 @@ void keep_message(exr_const_context_t context, exr_result_t, const char* message
 
 }  // namespace
 
-void require_sound_headers(const std::string& file) {
-  std::string message;
+CoreFile::CoreFile(const std::string& file) {
   exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  settings.user_data = &message;
+  settings.user_data = &message_;
   settings.error_handler_fn = keep_message;
-  exr_context_t context = nullptr;
-  const exr_result_t result = exr_start_read(&context, file.c_str(), &settings);
-  if (result == EXR_ERR_SUCCESS) exr_finish(&context);
-  if (result == EXR_ERR_SUCCESS && message.empty()) return;
-  if (message.empty()) message = exr_get_default_error_message(result);
+  result_ = exr_start_read(&context_, file.c_str(), &settings);
+}
+
+CoreFile::~CoreFile() {
+  if (result_ == EXR_ERR_SUCCESS) exr_finish(&context_);
+}
+
+std::string CoreFile::trouble() const {
+  if (!message_.empty() || result_ == EXR_ERR_SUCCESS) return message_;
+  return exr_get_default_error_message(result_);
+}
+
+std::shared_ptr<CoreFile> open_sound_file(const std::string& file) {
+  auto opened = std::make_shared<CoreFile>(file);
+  const std::string trouble = opened->trouble();
+  if (trouble.empty()) return opened;
   throw InputError({.file = file},
-                   "it cannot be read as OpenEXR, damaged or cut short: " + message);
+                   "it cannot be read as OpenEXR, damaged or cut short: " + trouble);
 }
 
 }  // namespace assay::render

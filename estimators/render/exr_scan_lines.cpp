@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "render/core_file.h"
 #include "render/zip_chunk.h"
 
 namespace assay::render {
@@ -15,25 +16,20 @@ namespace {
 // From one line to the next: the core counts bytes in 32 bits.
 constexpr std::size_t most_apart = std::numeric_limits<std::int32_t>::max() / sizeof(float);
 
-void say_nothing(exr_const_context_t, exr_result_t, const char*) {}
-
 class ScanLines {
  public:
-  ScanLines(const std::string& file, const ScanLineTexels& to) : to_(to) {
-    exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    settings.error_handler_fn = say_nothing;
-    opened_ = exr_start_read(&context_, file.c_str(), &settings) == EXR_ERR_SUCCESS;
-  }
+  ScanLines(const CoreFile& file, const ScanLineTexels& to) : to_(to), context_(file.context()) {}
   ~ScanLines() {
     if (initialized_) exr_decoding_destroy(context_, &pipeline_);
-    if (opened_) exr_finish(&context_);
   }
   ScanLines(const ScanLines&) = delete;
   ScanLines& operator=(const ScanLines&) = delete;
 
   bool read() {
-    if (!opened_ || !of_this_kind() || !of_this_size()) return false;
-    for (std::size_t row = 0; row < to_.height; row += static_cast<std::size_t>(lines_)) {
+    if (!of_this_kind() || !of_this_size()) return false;
+    const auto lines = static_cast<std::size_t>(lines_);
+    if (to_.first % lines != 0 || (to_.last % lines != 0 && to_.last != to_.height)) return false;
+    for (std::size_t row = to_.first; row < to_.last; row += lines) {
       if (!read_chunk(row)) return false;
     }
     return true;
@@ -105,7 +101,7 @@ class ScanLines {
 
   // Where this chunk's texels go; those of channels that nobody asks for go nowhere.
   bool point_channels(std::size_t row, std::size_t rows) {
-    if (row + rows > to_.height) return false;
+    if (row + rows > to_.last) return false;
     std::size_t found = 0;
     for (int i = 0; i < pipeline_.channel_count; ++i) {
       exr_coding_channel_info_t& channel = pipeline_.channels[i];
@@ -117,7 +113,7 @@ class ScanLines {
       if (!plain) return false;
       ++found;
       const std::size_t texel = to_.apart * sizeof(float);
-      float* const first = wanted->second + row * to_.width * to_.apart;
+      float* const first = wanted->second + (row - to_.first) * to_.width * to_.apart;
       channel.decode_to_ptr = reinterpret_cast<std::uint8_t*>(first);
       channel.user_pixel_stride = static_cast<std::int32_t>(texel);
       channel.user_line_stride = static_cast<std::int32_t>(texel * to_.width);
@@ -129,17 +125,16 @@ class ScanLines {
 
   const ScanLineTexels& to_;
   ZipChunk zip_;
-  exr_context_t context_ = nullptr;
+  exr_const_context_t context_;
   exr_decode_pipeline_t pipeline_ = EXR_DECODE_PIPELINE_INITIALIZER;
   std::int32_t lines_ = 0;
   int top_ = 0;
-  bool opened_ = false;
   bool initialized_ = false;
 };
 
 }  // namespace
 
-bool read_scan_lines(const std::string& file, const ScanLineTexels& to) {
+bool read_scan_lines(const CoreFile& file, const ScanLineTexels& to) {
   return ScanLines(file, to).read();
 }
 

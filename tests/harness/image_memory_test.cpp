@@ -41,14 +41,14 @@ class ImageMemory : public ::testing::Test {
 
 // Of the pictures of `a` alone: a reference has none to keep, and the other is no image.
 TEST_F(ImageMemory, IsThatOfEveryNumberAndMore) {
-  EXPECT_GT(picture_bytes(estimators_), 4 * pictures * elements);
-  EXPECT_LT(picture_bytes(estimators_), 100 * pictures * elements);
+  EXPECT_GT(picture_bytes(estimators_, {}), 4 * pictures * elements);
+  EXPECT_LT(picture_bytes(estimators_, {}), 100 * pictures * elements);
 }
 
 TEST_F(ImageMemory, ThatIsNotThereIsAnErrorThatSaysHowMuch) {
-  const double needed = picture_bytes(estimators_);
-  EXPECT_NO_THROW(require_memory(estimators_, needed));
-  const std::string message = refusal([&] { require_memory(estimators_, needed - 1); });
+  const double needed = picture_bytes(estimators_, {});
+  EXPECT_NO_THROW(require_memory(estimators_, {}, needed));
+  const std::string message = refusal([&] { require_memory(estimators_, {}, needed - 1); });
   EXPECT_THAT(message, HasSubstr("3:"));
   EXPECT_THAT(message, HasSubstr("20 pictures of 8 x 6 pixels of 3 components"));
   EXPECT_THAT(message, HasSubstr("GB are free; take fewer pictures"));

@@ -94,11 +94,16 @@ void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
   const ImageStack<float> a = first.view();
   const ImageStack<float> b = second.view();
   const ImagePair<float> pair{a, &b, nullptr};
-  const std::array<Half, halves> half = halves_of(pair);
+  const RowRange rows{0, extent.height};
+  const std::array<Half, halves> half = halves_of(pair, rows);
   const Groups groups = window_groups(extent, 1);
-  std::vector<BestCell> best(groups.size());
-  const CoarseImages coarse = offer_fine_cells<float>({pair, half, groups}, best);
-  for (std::size_t c = 0; c < extent.channels; ++c) offer_coarse_cells(coarse, groups, c, best);
+  FineFindings found{empty_blocks(pair), std::vector<BestCell>(groups.size())};
+  offer_fine_cells<float>({pair, half, groups}, rows, found);
+  add_up_alternating(found.coarse);
+  std::vector<BestCell>& best = found.best;
+  for (std::size_t c = 0; c < extent.channels; ++c) {
+    offer_coarse_cells(found.coarse, groups, c, best);
+  }
   const std::vector<BestCell> expected = one_by_one(pair, half, groups);
   for (std::size_t g = 1; g < groups.size(); ++g) {
     SCOPED_TRACE(testing::Message() << extent.width << " x " << extent.height << ", group " << g);

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
+#include "estimators/render/exr_header.h"
 #include "estimators/render/exr_scan_lines.h"
 #include "estimators/value.h"
 #include "tests/estimators/exr_kinds.h"
@@ -17,6 +20,10 @@ namespace {
 using namespace assay::draws;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+
+bool by_core(const std::string& file, const render::ScanLineTexels& to) {
+  return render::read_scan_lines(*render::open_sound_file(file), to);
+}
 
 class ExrFiles : public ::testing::Test {
  protected:
@@ -40,7 +47,20 @@ class ExrFiles : public ::testing::Test {
     const ExrWindow window = file.window(channels);
     std::vector<float> texels(window.width * window.height * channels.size());
     file.read(channels, texels);
+    expect_same_in_portions(file, channels, texels);
     return texels;
+  }
+  // One row, and then the rest: neither begins or ends where a chunk does.
+  static void expect_same_in_portions(const ExrFile& file, const std::vector<std::string>& channels,
+                                      const std::vector<float>& expected) {
+    const std::size_t row = file.window(channels).width * channels.size();
+    std::vector<float> texels(expected.size());
+    const std::span<float> all(texels);
+    file.read(channels, all.first(row));
+    file.read(channels, all.subspan(row), 1);
+    EXPECT_TRUE(std::ranges::equal(texels, expected, [](float a, float b) {
+      return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+    }));
   }
   // Channels in the order asked for, not that of the file.
   void expect_read(const Part& part) const {
@@ -129,27 +149,40 @@ TEST_F(ExrFiles, ReadsChunksThatDoNotCompress) {
   }
   std::vector<float> read(texels.size());
   EXPECT_TRUE(
-      render::read_scan_lines(file_, {.channels = {{"R", read.data()}}, .width = 5, .height = 32}));
+      by_core(file_, {.channels = {{"R", read.data()}}, .width = 5, .height = 32, .last = 32}));
   EXPECT_EQ(read, texels);
+  const auto rows = [&](std::size_t first, std::size_t last) {
+    std::vector<float> some(5 * (last - first));
+    EXPECT_EQ(by_core(file_, {.channels = {{"R", some.data()}},
+                              .width = 5,
+                              .height = 32,
+                              .first = first,
+                              .last = last}),
+              first % 16 == 0 && last % 16 == 0);
+    return some;
+  };
+  EXPECT_EQ(rows(16, 32), std::vector<float>(texels.begin() + 5 * 16, texels.end()));
+  rows(8, 16);
+  rows(16, 31);
 }
 
 TEST_F(ExrFiles, OfPlainFloatsAreReadByTheCore) {
-  const auto by_core = [&](const Part& part) {
+  const auto is_read = [&](const Part& part) {
     write_scan_lines(file_, part);
     std::vector<float> texels(12);
-    const bool read = render::read_scan_lines(
-        file_, {.channels = {{"R", texels.data()}}, .width = 4, .height = 3});
+    const bool read =
+        by_core(file_, {.channels = {{"R", texels.data()}}, .width = 4, .height = 3, .last = 3});
     EXPECT_EQ(texels[6], read ? expected_texel(2, 1, 0) : 0);
     return read;
   };
-  EXPECT_TRUE(by_core({.channels = {"R"}}));
-  EXPECT_TRUE(by_core({.channels = {"R"}, .compression = Imf::ZIPS_COMPRESSION}));
-  EXPECT_FALSE(by_core({.channels = {"R"}, .compression = Imf::RLE_COMPRESSION}));
-  EXPECT_FALSE(by_core({.channels = {"R"}, .type = Imf::HALF}));
-  EXPECT_FALSE(by_core({.channels = {"R"}, .compression = Imf::PIZ_COMPRESSION}));
-  EXPECT_FALSE(by_core({.channels = {"G"}}));
-  EXPECT_FALSE(by_core({.width = 5, .channels = {"R"}}));
-  EXPECT_FALSE(by_core({.height = 4, .channels = {"R"}}));
+  EXPECT_TRUE(is_read({.channels = {"R"}}));
+  EXPECT_TRUE(is_read({.channels = {"R"}, .compression = Imf::ZIPS_COMPRESSION}));
+  EXPECT_FALSE(is_read({.channels = {"R"}, .compression = Imf::RLE_COMPRESSION}));
+  EXPECT_FALSE(is_read({.channels = {"R"}, .type = Imf::HALF}));
+  EXPECT_FALSE(is_read({.channels = {"R"}, .compression = Imf::PIZ_COMPRESSION}));
+  EXPECT_FALSE(is_read({.channels = {"G"}}));
+  EXPECT_FALSE(is_read({.width = 5, .channels = {"R"}}));
+  EXPECT_FALSE(is_read({.height = 4, .channels = {"R"}}));
 }
 
 TEST_F(ExrFiles, ReadsTilesThatDoNotDivideThePicture) {

@@ -1,0 +1,293 @@
+#include "harness/picture_stream.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <ctime>
+#include <stdexcept>
+
+#include "estimators/ready_made.h"
+#include "harness/critical.h"
+#include "harness/image_flips.h"
+#include "harness/image_pair.h"
+#include "harness/image_plan.h"
+#include "harness/interrupt.h"
+#include "harness/kept_sums.h"
+#include "harness/parallel.h"
+#include "stats/image_row_distance.h"
+#include "stats/image_row_pyramid.h"
+#include "stats/image_sums.h"
+
+namespace assay::harness {
+namespace {
+
+using Stack = stats::ImageStack<float>;
+using Pyramid = stats::RowPyramid<float>;
+
+constexpr std::size_t row_unit = Pyramid::row_unit;
+static_assert(row_unit % stats::RowCellTails::row_unit == 0 &&
+              row_unit % GroupedFlips<float>::row_unit == 0 &&
+              Pyramid::rows_before >= stats::RowCellTails::rows_beside &&
+              Pyramid::rows_ahead >= stats::RowCellTails::rows_beside);
+// Rows are read up to a multiple of so many: most files compress 16 or 32 of them together.
+constexpr std::size_t read_unit = 32;
+// Of what is taken at a time, where so few rows are enough.
+constexpr std::size_t most_texels = std::size_t{1} << 26;
+
+std::size_t rounded_up(std::size_t count, std::size_t unit) {
+  return (count + unit - 1) / unit * unit;
+}
+
+/// Rows that are taken at a time.
+std::size_t rows_at_a_time(const stats::ImageExtent& extent, std::size_t pictures) {
+  const std::size_t rows = most_texels / (extent.row() * pictures) / row_unit * row_unit;
+  return std::clamp(rows, row_unit, rounded_up(extent.height, row_unit));
+}
+
+std::size_t rows_there(const stats::ImageExtent& extent, std::size_t pictures) {
+  return std::min(rows_at_a_time(extent, pictures) + Pyramid::rows_before +
+                      rounded_up(Pyramid::rows_ahead, read_unit),
+                  extent.height);
+}
+
+std::uint64_t pictures_of(const Subject& side) { return side.setup->observations().value_or(0); }
+
+double thread_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// One side's pictures, as far as their rows are there.
+class Side {
+ public:
+  explicit Side(const Subject& side)
+      : extent_(extent_of(*side.image)),
+        reader_(recorded::picture_rows(*side.setup)),
+        pictures_(pictures_of(side)),
+        size_(rows_there(extent_, 2 * pictures_) * extent_.row()),
+        texels_(std::make_unique_for_overwrite<float[]>(pictures_ * size_)),
+        seconds_(pictures_) {}
+
+  /// Lets go of rows before those of the range and reads on to its last. False where a texel is not
+  /// finite.
+  bool move_to(stats::RowRange rows) {
+    std::atomic<bool> finite = true;
+    on_all_threads(pictures_, [&](std::size_t i) {
+      const double start = thread_seconds();
+      if (!move_to(rows, i)) finite = false;
+      seconds_[i] += thread_seconds() - start;
+    });
+    there_ = rows;
+    return finite;
+  }
+
+  Stack stack(std::size_t pictures) const {
+    Stack stack{extent_, {}, there_.elements(extent_)};
+    for (std::size_t i = 0; i < pictures; ++i) {
+      stack.images.emplace_back(texels_.get() + i * size_, stack.there.size());
+    }
+    return stack;
+  }
+  Stack stack() const { return stack(pictures_); }
+
+  double seconds() const {
+    double sum = 0;
+    for (const double seconds : seconds_) sum += seconds;
+    return sum;
+  }
+
+ private:
+  bool move_to(stats::RowRange rows, std::size_t picture) {
+    float* const begin = texels_.get() + picture * size_;
+    const std::size_t kept = (there_.last - rows.first) * extent_.row();
+    std::memmove(begin, begin + (rows.first - there_.first) * extent_.row(), kept * sizeof(float));
+    if (rows.last == there_.last) return true;
+    return reader_->read(picture, {begin + kept, (rows.last - there_.last) * extent_.row()});
+  }
+
+  stats::ImageExtent extent_;
+  std::unique_ptr<recorded::PictureRows> reader_;
+  std::size_t pictures_;
+  std::size_t size_;  // texels of a picture that there is room for
+  std::unique_ptr<float[]> texels_;
+  std::vector<double> seconds_;
+  stats::RowRange there_;
+};
+
+/// What is taken of rows.
+class Looking {
+ public:
+  Looking(const Question& question, const FamilyPlace& place)
+      : question_(question),
+        place_(place),
+        extent_(extent_of(*question.subjects[0].image)),
+        pictures_(pictures_of(question.subjects[0])),
+        piloted_(usual_images(*question.subjects[0].setup, 1).value_or(0)) {
+    look_->pictures = pictures_;
+    look_->piloted = piloted_ = std::min<std::uint64_t>(piloted_, pictures_);
+    look_->z.resize(extent_.elements());
+    for (const Subject& subject : question.subjects) {
+      sides_.emplace_back(subject);
+      sums_.push_back(std::make_shared<Summary>(extent_.elements() + 1));
+      of_pictures_.emplace_back(pictures_);
+    }
+  }
+
+  /// False where it cannot be taken to its end.
+  bool take_all(Progress& progress) {
+    const std::size_t step = rows_at_a_time(extent_, 2 * pictures_);
+    for (std::size_t row = 0; row < extent_.height; row += step) {
+      const stats::RowRange rows{row, std::min(row + step, extent_.height)};
+      if (interrupted() || !move_to(rows)) return false;
+      take(rows);
+      progress.advance(2 * pictures_ * rows.last / extent_.height);
+    }
+    finish();
+    return true;
+  }
+
+  Pilots pilots() const {
+    Pilots pilots;
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      auto kept = std::make_shared<KeptObservations>();
+      kept->costs.assign(pictures_, Cost{.samples = 1});
+      kept->sums[pictures_] = sums_[s];
+      Pilot pilot{.sums = sums_[s], .kept = std::move(kept)};
+      pilot.look = look_;
+      pilots.emplace(pilot_name(question_.subjects[s]), std::move(pilot));
+    }
+    return pilots;
+  }
+
+ private:
+  bool move_to(stats::RowRange rows) {
+    const std::size_t ahead = rounded_up(rows.last + Pyramid::rows_ahead, read_unit);
+    const stats::RowRange there{rows.first - std::min(rows.first, Pyramid::rows_before),
+                                std::min(ahead, extent_.height)};
+    return std::ranges::all_of(sides_, [&](Side& side) { return side.move_to(there); });
+  }
+
+  void take(stats::RowRange rows) {
+    const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
+    const stats::ImagePair<float> pair = stats::pair_of(stacks[0], stacks[1]);
+    if (rows.first == 0) begin(pair);
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      sum_rows(stacks[s], rows, sums_[s]->channels);
+      stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
+    }
+    distance_.take(pair, rows, on_all_threads);
+    pyramid_->take(pair, rows);
+    if (tails_) tails_->take(pilot_sides(), rows);
+    if (flips_) flips_->take(pair, rows);
+  }
+
+  void begin(const stats::ImagePair<float>& pair) {
+    const bool independent = std::ranges::all_of(
+        question_.subjects, [](const Subject& side) { return side.image->independent; });
+    pyramid_.emplace(pair, stats::PyramidOptions{
+                               .energy = independent, .z = look_->z, .for_each = on_all_threads});
+    if (piloted_ >= 2 * stats::least_replicates) {
+      tails_.emplace(pilot_sides(), smallest_level(question_, place_), std::span<const double>(),
+                     on_all_threads);
+    }
+    if (!independent && flip_size(place_.share, pictures_)) flips_.emplace();
+  }
+
+  std::vector<stats::CellPilot> pilot_sides() const {
+    const auto replicates = static_cast<double>(usual_replicates(question_, pictures_));
+    return {{.stack = sides_[0].stack(piloted_), .factor = 1, .replicates = replicates},
+            {.stack = sides_[1].stack(piloted_), .factor = -1, .replicates = replicates}};
+  }
+
+  void finish() {
+    look_->distance = distance_.distance();
+    look_->family = pyramid_->family();
+    if (tails_) look_->tails = tails_->tails();
+    if (flips_) look_->flips = flips_->matrix();
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      stats::Moments& means = look_->means.emplace_back();
+      for (double& sum : of_pictures_[s]) {
+        sum /= static_cast<double>(extent_.elements());
+        means.add(sum);
+      }
+      sums_[s]->channels.back() = sum_of(of_pictures_[s]);
+      sums_[s]->count = pictures_;
+      sums_[s]->cost.samples = pictures_;
+      sums_[s]->seconds = sides_[s].seconds();
+    }
+  }
+
+  const Question& question_;
+  const FamilyPlace& place_;
+  stats::ImageExtent extent_;
+  std::size_t pictures_;
+  std::size_t piloted_;
+  std::vector<Side> sides_;
+  std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
+  std::vector<std::shared_ptr<Summary>> sums_;
+  std::vector<std::vector<double>> of_pictures_;  // sums, at last averages
+  stats::RowDistance<float> distance_;
+  std::optional<Pyramid> pyramid_;
+  std::optional<stats::RowCellTails> tails_;
+  std::optional<GroupedFlips<float>> flips_;
+};
+
+bool is_streamed(const Subject& side, const Subject& other) {
+  const auto channels = recorded::unknown_channels(*side.setup);
+  return channels && *channels > most_kept_channels && side.image && !side.averages &&
+         side.channels.size() + 1 == *channels && pictures_of(side) == pictures_of(other) &&
+         pictures_of(side) >= stats::least_replicates;
+}
+
+bool is_about(const Question& question, const Subject& side) {
+  return std::ranges::any_of(
+      question.subjects, [&](const Subject& other) { return other.estimator == side.estimator; });
+}
+
+}  // namespace
+
+bool is_streamed(const Question& question) {
+  return question.kind == QuestionKind::image && question.of_two() && question.factor == 1 &&
+         question.offset == 0 && !plans_replicates(question) && !question.test->secondaries &&
+         !question.test->budget &&
+         question.subjects[0].estimator != question.subjects[1].estimator &&
+         is_streamed(question.subjects[0], question.subjects[1]) &&
+         is_streamed(question.subjects[1], question.subjects[0]);
+}
+
+std::vector<const Question*> streamed(const std::vector<Question>& questions,
+                                      const std::vector<bool>& chosen) {
+  std::vector<const Question*> found;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!chosen[i] || !is_streamed(questions[i])) continue;
+    const bool alone = std::ranges::all_of(questions, [&](const Question& other) {
+      return &other == &questions[i] || (!is_about(other, questions[i].subjects[0]) &&
+                                         !is_about(other, questions[i].subjects[1]));
+    });
+    if (alone) found.push_back(&questions[i]);
+  }
+  return found;
+}
+
+double streamed_bytes(const Subject& side) {
+  const stats::ImageExtent extent = extent_of(*side.image);
+  const std::size_t pictures = pictures_of(side);
+  return static_cast<double>(pictures * rows_there(extent, 2 * pictures) * extent.row() *
+                             sizeof(float));
+}
+
+Pilots stream_pictures(const Question& question, const FamilyPlace& place, Progress& progress) {
+  progress.begin("pictures", 2 * pictures_of(question.subjects[0]));
+  try {
+    Looking looking(question, place);
+    const bool whole = looking.take_all(progress);
+    progress.end();
+    return whole ? looking.pilots() : Pilots();
+  } catch (const std::domain_error&) {
+    progress.end();
+    return {};
+  }
+}
+
+}  // namespace assay::harness

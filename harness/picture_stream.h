@@ -1,0 +1,32 @@
+#pragma once
+
+// Claims on two stacks of pictures of files, of which no picture is ever there as a whole: they are
+// read once, rows after rows, and what the pilot and the test ask of rows is taken before the next.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "harness/family.h"
+#include "harness/pilot.h"
+#include "harness/progress.h"
+#include "harness/question.h"
+
+namespace assay::harness {
+
+/// Whether this claim, the only one of its estimators, is answered from rows: it asks whether as
+/// many pictures of either side, and all of them, are equal.
+bool is_streamed(const Question& question);
+/// Which of the claims are.
+std::vector<const Question*> streamed(const std::vector<Question>& questions,
+                                      const std::vector<bool>& chosen);
+
+/// Bytes that the pictures of one of its sides take at a time.
+double streamed_bytes(const Subject& side);
+
+/// The pilots of a streamed claim's estimators, with the look at their pictures. Empty where its
+/// numbers are beyond what rows can be tested on, which the pictures as a whole will tell; and
+/// where the user interrupts. InputError as reading pictures does.
+Pilots stream_pictures(const Question& question, const FamilyPlace& place, Progress& progress);
+
+}  // namespace assay::harness
