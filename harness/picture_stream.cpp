@@ -31,7 +31,7 @@ static_assert(row_unit % stats::RowCellTails::row_unit == 0 &&
 // Rows are read up to a multiple of so many: most files compress 16 of them together.
 constexpr std::size_t read_unit = 16;
 // Of what is taken at a time, where so few rows are enough.
-constexpr std::size_t most_texels = std::size_t{1} << 26;
+constexpr std::size_t most_texels = std::size_t{1} << 22;
 
 std::size_t rounded_up(std::size_t count, std::size_t unit) {
   return (count + unit - 1) / unit * unit;
