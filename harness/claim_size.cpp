@@ -16,8 +16,8 @@ namespace {
 // A pilot that does not see the power law cannot say how much it takes to measure its exponent.
 constexpr double least_visibility = 3;
 
-const stats::Moments& moments_of(const Question& question, std::size_t subject, std::size_t channel,
-                                 const Pilots& pilots) {
+stats::Moments moments_of(const Question& question, std::size_t subject, std::size_t channel,
+                          const Pilots& pilots) {
   return pilot_channel(question, subject, channel, pilots).moments;
 }
 

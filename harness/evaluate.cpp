@@ -325,13 +325,13 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
   std::vector<ChannelData> data;
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
     const std::size_t index = work.outcome.question.subjects[subject].channels[channel];
-    const ChannelSummary& summary = summary_of(work, subject).channels[index];
+    const Summary& summary = summary_of(work, subject);
     data.push_back({.primaries = work.outcome.plan.primaries[subject],
-                    .moments = summary.moments,
+                    .moments = summary.moments(index),
                     .values = work.pools[subject]->values(index, work.outcome.secondaries()),
-                    .cells = summary.details().cells,
-                    .with_cost = summary.details().with_cost,
-                    .group_variances = summary_of(work, subject).group_variances});
+                    .cells = summary.details(index).cells,
+                    .with_cost = summary.details(index).with_cost,
+                    .group_variances = summary.group_variances});
     if (work.outcome.plan.method.keeps == Keeps::points) {
       for (const std::size_t each : work.outcome.question.subjects[subject].channels) {
         data.back().all_values.push_back(

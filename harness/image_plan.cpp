@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/critical.h"
+#include "harness/difference_skewness.h"
 #include "harness/frozen.h"
 #include "harness/image_views.h"
 #include "harness/parallel.h"
@@ -48,40 +49,22 @@ bool all_piloted(const Question& question, const Pilots& pilots) {
 
 // ---- Skewness
 
-struct Cumulants {
-  double variance = 0;
-  double third = 0;
-};
-
-/// Of one element of one replicate, times the factor.
-Cumulants cumulants_of(const stats::Moments& pilot, double primaries, double factor) {
-  if (pilot.count < 3 || !(pilot.m2 > 0)) return {};
-  const double variance = pilot.variance();
-  const double third = pilot.skewness() * variance * std::sqrt(variance);
-  return {factor * factor * variance / primaries,
-          factor * factor * factor * third / (primaries * primaries)};
-}
-
 /// Mean over the elements of |skewness of one replicate's difference|.
 double mean_skewness(const Question& question, const Plan& plan, const Pilots& pilots) {
+  if (plan.look) return plan.look->skewness;
   const std::size_t elements = question.subjects[0].channels.size();
-  std::vector<const Pilot*> sides;
+  std::vector<const Pilot*> pilot;
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
-    sides.push_back(&pilot_at(question, s, pilots));
+    pilot.push_back(&pilot_at(question, s, pilots));
   }
   double sum = 0;
   for (std::size_t i = 0; i < elements; ++i) {
-    Cumulants total;
+    std::vector<SkewedSide> sides;
     for (std::size_t s = 0; s < question.subjects.size(); ++s) {
-      const Subject& side = question.subjects[s];
-      const Cumulants part = cumulants_of(sides[s]->moments(side.channels[i]),
-                                          averaged(question, plan, s), factor_of(question, s));
-      total.variance += part.variance;
-      total.third += part.third;
+      sides.push_back({pilot[s]->moments(question.subjects[s].channels[i]),
+                       averaged(question, plan, s), factor_of(question, s)});
     }
-    if (total.variance > 0) {
-      sum += std::abs(total.third) / (total.variance * std::sqrt(total.variance));
-    }
+    sum += difference_skewness(sides);
   }
   return sum / static_cast<double>(elements);
 }

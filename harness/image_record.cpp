@@ -125,7 +125,7 @@ void add_moments(const TestWork& work, std::size_t subject, reports::Test& test)
   mean.reserve(side.channels.size());
   variance.reserve(side.channels.size());
   for (const std::size_t channel : side.channels) {
-    const stats::Moments& moments = summary.channels[channel].moments;
+    const stats::Moments moments = summary.moments(channel);
     mean.push_back(moments.mean);
     variance.push_back(moments.variance());
   }
@@ -171,6 +171,34 @@ std::string file_name(const std::string& id) {
 
 }  // namespace
 
+namespace {
+
+/// What all elements of an image have together.
+struct Extremes {
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
+  std::uint64_t nonzero = 0;
+  std::uint64_t nonfinite = 0;
+};
+
+Extremes extremes_of(const Summary& summary, const std::vector<std::size_t>& channels) {
+  if (summary.elements) {
+    return {summary.elements->minimum, summary.elements->maximum, summary.elements->nonzero};
+  }
+  Extremes extremes;
+  for (const std::size_t channel : channels) {
+    const ChannelSummary& kept = summary.channels[channel];
+    extremes.nonfinite += kept.nonfinite;
+    extremes.nonzero += kept.moments.nonzero;
+    if (kept.moments.count < 2) continue;
+    extremes.minimum = std::min(extremes.minimum, kept.moments.minimum);
+    extremes.maximum = std::max(extremes.maximum, kept.moments.maximum);
+  }
+  return extremes;
+}
+
+}  // namespace
+
 reports::Sample image_sample(const TestWork& work, std::size_t subject) {
   const TestOutcome& outcome = work.outcome;
   const Subject& side = outcome.question.subjects[subject];
@@ -181,25 +209,22 @@ reports::Sample image_sample(const TestWork& work, std::size_t subject) {
                          .channel = image_name(*side.image),
                          .primaries = outcome.plan.primaries[subject],
                          .secondaries = outcome.secondaries()};
+  const Extremes extremes = extremes_of(summary, side.channels);
+  sample.nonfinite = extremes.nonfinite;
+  sample.nonzero = extremes.nonzero;
   stats::Moments means;
   double variance = 0;
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
   for (const std::size_t channel : side.channels) {
-    const ChannelSummary& kept = summary.channels[channel];
-    sample.nonfinite += kept.nonfinite;
-    sample.nonzero += kept.moments.nonzero;
-    if (kept.moments.count < 2) continue;
-    means.add(kept.moments.mean);
-    variance += kept.moments.variance();
-    low = std::min(low, kept.moments.minimum);
-    high = std::max(high, kept.moments.maximum);
+    const stats::Moments moments = summary.moments(channel);
+    if (moments.count < 2) continue;
+    means.add(moments.mean);
+    variance += moments.variance();
   }
   if (means.count > 0) {
     sample.mean = number(means.mean);
     sample.variance = number(variance / static_cast<double>(means.count));
-    sample.minimum = number(low);
-    sample.maximum = number(high);
+    sample.minimum = number(extremes.minimum);
+    sample.maximum = number(extremes.maximum);
   }
   sample.cost = cost_of(summary);
   return sample;
@@ -222,7 +247,7 @@ namespace {
 reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, double mean,
                              double confidence) {
   reports::Estimate estimate{number(mean), {}, {}};
-  const std::uint64_t count = summary.channels[0].moments.count;
+  const std::uint64_t count = summary.moments(0).count;
   if (!shape.independent || count < 2) return estimate;
   double sum = 0;
   double squares = 0;
@@ -230,7 +255,7 @@ reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, do
     double deviation = 0;
     for (std::size_t c = 0; c < shape.components.size(); ++c) {
       const std::size_t element = pixel * shape.components.size() + c;
-      deviation += std::sqrt(summary.channels[element].moments.variance());
+      deviation += std::sqrt(summary.moments(element).variance());
     }
     sum += deviation * deviation;
     squares += std::pow(deviation, 4);
@@ -259,7 +284,7 @@ reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summa
   double reference = 0;
   bool known = !unknown;
   for (std::size_t i = 0; i < shape.elements(); ++i) {
-    const stats::Moments& moments = summary.channels[i].moments;
+    const stats::Moments moments = summary.moments(i);
     mean += moments.mean / elements;
     if (moments.count > 1) variance += picture.averaged * moments.variance() / elements;
     known = known && channels[i].mean.has_value();

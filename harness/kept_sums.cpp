@@ -71,6 +71,14 @@ std::vector<double> averages_of(std::span<const std::span<const float>> pictures
   return averages;
 }
 
+ChannelSummary sum_of(std::span<const double> averages) {
+  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
+  for (const double& average : averages) stack.images.emplace_back(&average, 1);
+  ChannelSummary sum;
+  take(stack, 0, {&sum, 1});
+  return sum;
+}
+
 std::vector<ChannelSummary> sums_of(std::span<const std::span<const float>> pictures) {
   const std::size_t elements = pictures.front().size();
   std::vector<ChannelSummary> sums(elements + 1);
@@ -81,20 +89,6 @@ std::vector<ChannelSummary> sums_of(std::span<const std::span<const float>> pict
 }
 
 }  // namespace
-
-void sum_rows(const stats::ImageStack<float>& pictures, stats::RowRange rows,
-              std::span<ChannelSummary> sums) {
-  const stats::ElementRange range = rows.elements(pictures.extent);
-  take_all(pictures, range, sums.subspan(range.first, range.size()));
-}
-
-ChannelSummary sum_of(std::span<const double> averages) {
-  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
-  for (const double& average : averages) stack.images.emplace_back(&average, 1);
-  ChannelSummary sum;
-  take(stack, 0, {&sum, 1});
-  return sum;
-}
 
 std::vector<ChannelSummary> sums_of_kept(const Observations& observations) {
   return std::visit([](const auto& each) { return sums_of(each); }, observations);

@@ -23,6 +23,7 @@ struct PictureLook {
   std::vector<double> z = {};                   ///< Welch's, of every element
   std::optional<stats::FlipMatrix> flips = {};  ///< where signs of whole images are to be flipped
   std::vector<stats::Moments> means = {};       ///< over each picture, of either side
+  double skewness = 0;  ///< mean over the elements of that of one picture's difference
 };
 
 }  // namespace assay::harness

@@ -12,7 +12,6 @@
 #include "harness/image_pair.h"
 #include "harness/image_plan.h"
 #include "harness/interrupt.h"
-#include "harness/kept_sums.h"
 #include "harness/parallel.h"
 #include "stats/image_row_distance.h"
 #include "stats/image_row_pyramid.h"
@@ -29,10 +28,10 @@ static_assert(row_unit % stats::RowCellTails::row_unit == 0 &&
               row_unit % GroupedFlips<float>::row_unit == 0 &&
               Pyramid::rows_before >= stats::RowCellTails::rows_beside &&
               Pyramid::rows_ahead >= stats::RowCellTails::rows_beside);
-// Rows are read up to a multiple of so many: most files compress 16 or 32 of them together.
-constexpr std::size_t read_unit = 32;
+// Rows are read up to a multiple of so many: most files compress 16 of them together.
+constexpr std::size_t read_unit = 16;
 // Of what is taken at a time, where so few rows are enough.
-constexpr std::size_t most_texels = std::size_t{1} << 26;
+constexpr std::size_t most_texels = std::size_t{1} << 22;
 
 std::size_t rounded_up(std::size_t count, std::size_t unit) {
   return (count + unit - 1) / unit * unit;
@@ -123,13 +122,13 @@ class Looking {
         place_(place),
         extent_(extent_of(*question.subjects[0].image)),
         pictures_(pictures_of(question.subjects[0])),
-        piloted_(usual_images(*question.subjects[0].setup, 1).value_or(0)) {
+        piloted_(usual_images(*question.subjects[0].setup, 1).value_or(0)),
+        sums_(extent_, pictures_) {
     look_->pictures = pictures_;
     look_->piloted = piloted_ = std::min<std::uint64_t>(piloted_, pictures_);
     look_->z.resize(extent_.elements());
     for (const Subject& subject : question.subjects) {
       sides_.emplace_back(subject);
-      sums_.push_back(std::make_shared<Summary>(extent_.elements() + 1));
       of_pictures_.emplace_back(pictures_);
     }
   }
@@ -143,17 +142,24 @@ class Looking {
       take(rows);
       progress.advance(2 * pictures_ * rows.last / extent_.height);
     }
-    finish();
-    return true;
+    return sums_.sound();
   }
 
-  Pilots pilots() const {
+  /// After the last rows.
+  Pilots pilots() {
+    finish();
+    std::vector<ElementSums> sums = sums_.finish(of_pictures_);
     Pilots pilots;
     for (std::size_t s = 0; s < sides_.size(); ++s) {
+      auto summary = std::make_shared<Summary>();
+      summary->count = pictures_;
+      summary->cost.samples = pictures_;
+      summary->seconds = sides_[s].seconds();
+      summary->elements = std::make_shared<const ElementSums>(std::move(sums[s]));
       auto kept = std::make_shared<KeptObservations>();
       kept->costs.assign(pictures_, Cost{.samples = 1});
-      kept->sums[pictures_] = sums_[s];
-      Pilot pilot{.sums = sums_[s], .kept = std::move(kept)};
+      kept->sums[pictures_] = summary;
+      Pilot pilot{.sums = std::move(summary), .kept = std::move(kept)};
       pilot.look = look_;
       pilots.emplace(pilot_name(question_.subjects[s]), std::move(pilot));
     }
@@ -172,8 +178,8 @@ class Looking {
     const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
     const stats::ImagePair<float> pair = stats::pair_of(stacks[0], stacks[1]);
     if (rows.first == 0) begin(pair);
+    sums_.take(pair, rows);
     for (std::size_t s = 0; s < sides_.size(); ++s) {
-      sum_rows(stacks[s], rows, sums_[s]->channels);
       stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
     }
     distance_.take(pair, rows, on_all_threads);
@@ -205,16 +211,13 @@ class Looking {
     look_->family = pyramid_->family();
     if (tails_) look_->tails = tails_->tails();
     if (flips_) look_->flips = flips_->matrix();
+    look_->skewness = sums_.skewness();
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       stats::Moments& means = look_->means.emplace_back();
       for (double& sum : of_pictures_[s]) {
         sum /= static_cast<double>(extent_.elements());
         means.add(sum);
       }
-      sums_[s]->channels.back() = sum_of(of_pictures_[s]);
-      sums_[s]->count = pictures_;
-      sums_[s]->cost.samples = pictures_;
-      sums_[s]->seconds = sides_[s].seconds();
     }
   }
 
@@ -225,7 +228,7 @@ class Looking {
   std::size_t piloted_;
   std::vector<Side> sides_;
   std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
-  std::vector<std::shared_ptr<Summary>> sums_;
+  SumsOfTwo sums_;
   std::vector<std::vector<double>> of_pictures_;  // sums, at last averages
   stats::RowDistance<float> distance_;
   std::optional<Pyramid> pyramid_;

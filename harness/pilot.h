@@ -34,9 +34,7 @@ struct Pilot {
     if (look) return look->piloted;
     return std::visit([](const auto& each) { return each.size(); }, images);
   }
-  const stats::Moments& moments(std::size_t channel) const {
-    return sums->channels[channel].moments;
-  }
+  stats::Moments moments(std::size_t channel) const { return sums->moments(channel); }
 };
 
 /// Images that a pilot takes of an estimator of them.
@@ -62,7 +60,7 @@ std::string pilot_name(const Subject& subject);
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);
 
 struct PilotChannel {
-  const stats::Moments& moments;
+  stats::Moments moments;
   std::span<const double> values;  ///< empty beyond the channels that are kept
 };
 /// One channel of a subject in its pilot.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "estimators/cost.h"
+#include "harness/element_sums.h"
 #include "stats/joint_moments.h"
 #include "stats/moments.h"
 
@@ -61,6 +62,11 @@ struct ChannelDetails {
   std::vector<stats::JointMoments> with_cost = {};  ///< by CountedCost, where they are kept
 };
 
+inline const ChannelDetails& no_details() {
+  static const ChannelDetails none;
+  return none;
+}
+
 /// The details of a channel that has any, copied with it: the millions of channels of an image have
 /// none and take no room for them.
 class RareDetails {
@@ -95,10 +101,7 @@ struct ChannelSummary {
   RareDetails rare = {};
 
   /// Empty ones where there are none.
-  const ChannelDetails& details() const {
-    static const ChannelDetails none;
-    return rare ? *rare : none;
-  }
+  const ChannelDetails& details() const { return rare ? *rare : no_details(); }
 };
 
 /// What an observation cost, as far as it is counted: the index of a channel's joint moments.
@@ -109,6 +112,8 @@ using ObservationCost = std::array<double, counted_costs>;
 struct Summary {
   std::uint64_t count = 0;
   std::vector<ChannelSummary> channels = {};
+  /// In place of `channels`: of pictures that were read once, rows after rows.
+  std::shared_ptr<const ElementSums> elements = {};
   stats::Moments group_variances = {};  ///< of whole groups, where they are kept (GroupVariance)
   Cost cost = {};
   double seconds = 0;  ///< CPU seconds of drawing
@@ -118,6 +123,13 @@ struct Summary {
   /// Appends the observations that follow: in block order, so that the result is a function of the
   /// blocks and not of who drew them.
   void append(const Summary& next);
+
+  stats::Moments moments(std::size_t channel) const {
+    return elements ? elements->moments(channel) : channels[channel].moments;
+  }
+  const ChannelDetails& details(std::size_t channel) const {
+    return elements ? no_details() : channels[channel].details();
+  }
 };
 
 /// Takes a finite value and what its observation cost.

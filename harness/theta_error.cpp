@@ -62,7 +62,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
     if (side.setup->observations()) continue;
     const auto found = pilots.find(side.estimator->name);
     if (found == pilots.end() || !found->second.trouble.empty()) return std::nullopt;
-    const stats::Moments& pilot = found->second.moments(side.channels[channel]);
+    const stats::Moments pilot = found->second.moments(side.channels[channel]);
     if (is_constant(question, i, channel, pilot)) return std::nullopt;
     const double averaged = side.averaged(test.plan.primaries[i]);
     data[i] = {.primaries = test.plan.primaries[i],

@@ -103,7 +103,7 @@ std::vector<EveryImage> images_of_choice(std::span<const CellPilot> sides, std::
 }
 
 Groups aligned_groups(const ImageExtent& extent) {
-  Groups groups = window_groups(extent, 1 - energy_share);
+  Groups groups = window_groups(extent, 1 - energy_share, RowCellMoments::row_unit + 1);
   std::erase_if(groups, [](const WindowGroup& group) { return group.grid != Grid::aligned; });
   return groups;
 }
@@ -130,7 +130,7 @@ RowCellTails::RowCellTails(std::span<const CellPilot> sides, double level,
   }
   std::vector<LevelFactors> factors;
   for (const WindowGroup& group : groups_) {
-    const double cells = static_cast<double>(group.windows.size() * extent_.channels);
+    const double cells = static_cast<double>(aligned_cells(extent_, group.size) * extent_.channels);
     const double tail = level * group.share / cells / 2;
     factors.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
   }
@@ -246,7 +246,8 @@ std::vector<CellTails> RowCellTails::tails() {
     if (factors.count() == 0) continue;
     tail.factor = factors.factor();
     // Channels may depend on each other, cells count.
-    tail.scatter = factors.excess() / std::sqrt(static_cast<double>(groups_[g].windows.size()));
+    tail.scatter =
+        factors.excess() / std::sqrt(static_cast<double>(aligned_cells(extent_, groups_[g].size)));
   }
   return tails;
 }

@@ -23,6 +23,8 @@ inline constexpr std::uint32_t block_side = 4;
 // That cover so many elements of a row or column.
 inline std::size_t blocks_of(std::size_t count) { return (count + block_side - 1) / block_side; }
 
+// The smallest size that is not, but for a whole image.
+inline constexpr std::uint32_t coarse_size = 16;
 // Whether the cells of a group are tested here.
 bool is_fine(const WindowGroup& group);
 

@@ -117,7 +117,7 @@ RowPyramid<Real>::RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& 
   }
   if (options.z.empty()) own_z_.resize(extent_.elements());
   z_ = options.z.empty() ? std::span(own_z_) : options.z;
-  groups_ = window_groups(extent_, 1 - energy_share);
+  groups_ = window_groups(extent_, 1 - energy_share, coarse_size);
   found_ = {empty_blocks(pair), std::vector<BestCell>(groups_.size())};
   energy_.resize(extent_.channels);
 }
@@ -230,7 +230,8 @@ ImageFamily RowPyramid<Real>::family() {
 }
 
 double whole_image_share(const ImageExtent& extent) {
-  const std::vector<WindowGroup> groups = window_groups(extent, 1 - energy_share);
+  constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+  const std::vector<WindowGroup> groups = window_groups(extent, 1 - energy_share, none);
   const auto whole = std::max_element(
       groups.begin(), groups.end(), [](const WindowGroup& a, const WindowGroup& b) {
         const auto rank = [](const WindowGroup& g) { return g.grid == Grid::aligned ? g.size : 0; };

@@ -40,14 +40,25 @@ std::vector<Rectangle> product(const std::vector<Side>& rows, const std::vector<
   return windows;
 }
 
-void add_level(std::vector<WindowGroup>& groups, const ImageExtent& extent, std::uint32_t size) {
+bool any_between(const std::vector<Side>& sides, std::uint32_t size) {
+  return std::ranges::any_of(sides, [&](const Side& side) { return side.start % size != 0; });
+}
+
+void add_level(std::vector<WindowGroup>& groups, const ImageExtent& extent, std::uint32_t size,
+               bool listed) {
   const std::uint32_t width = narrow(extent.width);
   const std::uint32_t height = narrow(extent.height);
-  groups.push_back(
-      {size, Grid::aligned, 0, product(aligned_sides(height, size), aligned_sides(width, size))});
-  std::vector<Rectangle> shifted = product(shifted_sides(height, size), shifted_sides(width, size));
+  const std::vector<Side> rows = shifted_sides(height, size);
+  const std::vector<Side> columns = shifted_sides(width, size);
+  groups.push_back({size, Grid::aligned, 0, {}});
+  if (listed)
+    groups.back().windows = product(aligned_sides(height, size), aligned_sides(width, size));
+  if (!any_between(rows, size) && !any_between(columns, size)) return;
+  groups.push_back({size, Grid::shifted, 0, {}});
+  if (!listed) return;
+  std::vector<Rectangle>& shifted = groups.back().windows;
+  shifted = product(rows, columns);
   std::erase_if(shifted, [&](const Rectangle& w) { return w.x % size == 0 && w.y % size == 0; });
-  if (!shifted.empty()) groups.push_back({size, Grid::shifted, 0, std::move(shifted)});
 }
 
 // Every level the same share, the whole image twice that; a level's parts the same part of it.
@@ -63,13 +74,15 @@ void share_out(std::vector<WindowGroup>& groups, std::size_t levels, double shar
 
 }  // namespace
 
-std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share) {
+std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share,
+                                       std::uint32_t listed) {
   const std::uint32_t longest = narrow(std::max(extent.width, extent.height));
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t size = 1; size < longest; size *= 2) sizes.push_back(size);
   sizes.push_back(longest);
   std::vector<WindowGroup> groups;
-  for (const std::uint32_t size : sizes) add_level(groups, extent, size);
+  for (const std::uint32_t size : sizes)
+    add_level(groups, extent, size, size >= listed || size == longest);
   if (longest == 1) {
     share_out(groups, sizes.size(), share);
     return groups;
@@ -78,6 +91,10 @@ std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share) 
   const Rectangle whole{0, 0, narrow(extent.width), narrow(extent.height)};
   groups.push_back({longest, Grid::alternating, alternating_share, {whole, whole, whole}});
   return groups;
+}
+
+std::size_t aligned_cells(const ImageExtent& extent, std::uint32_t size) {
+  return ((extent.width + size - 1) / size) * ((extent.height + size - 1) / size);
 }
 
 WindowSums::WindowSums(const ImageExtent& extent)

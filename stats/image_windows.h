@@ -36,7 +36,12 @@ struct WindowGroup {
 // The groups and their shares: one for every level and two for the whole image, half of it each for
 // a level's aligned and its shifted cells; the three alternating sums .025. The measured reasons
 // are in README.md.
-std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share);
+// Windows of sizes below `listed`, but for the whole image, are not listed: there are millions.
+std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share,
+                                       std::uint32_t listed = 1);
+
+// How many cells of that size the aligned grid has.
+std::size_t aligned_cells(const ImageExtent& extent, std::uint32_t size);
 
 // Sums over rectangles of one channel by a summed-area table (Crow 1984), in double.
 class WindowSums {

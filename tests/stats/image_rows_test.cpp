@@ -1,0 +1,191 @@
+// What is taken of images rows after rows has the bits of what is taken of them as a whole.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "stats/image_cell_skewness.h"
+#include "stats/image_halves.h"
+#include "stats/image_row_distance.h"
+#include "stats/image_row_pyramid.h"
+#include "stats/image_sign_flip.h"
+#include "stats/image_sums.h"
+#include "tests/stats/image_samples.h"
+#include "tests/stats/last_first.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::OwnedStack;
+
+// Rows of 150, which is no multiple of what a thread takes; the last window has no whole tile.
+constexpr ImageExtent extent{50, 150, 3};
+constexpr std::size_t count = 33;
+
+OwnedStack skewed_stack(std::uint32_t key) {
+  tests::Philox random(key);
+  return tests::draw_stack(extent, count, [&](std::size_t e) {
+    return 1 + static_cast<double>(e % 7) - std::log1p(-random.uniform());
+  });
+}
+
+/// The rows alone that are said to be there; next to them stands what would spoil every sum.
+class Window {
+ public:
+  Window(const OwnedStack& whole, RowRange rows) : stack_{extent, {}, rows.elements(extent)} {
+    for (const std::vector<float>& image : whole.images) {
+      std::vector<float>& copy =
+          copies_.emplace_back(image.size(), std::numeric_limits<float>::quiet_NaN());
+      std::copy(image.begin() + static_cast<std::ptrdiff_t>(stack_.there.first),
+                image.begin() + static_cast<std::ptrdiff_t>(stack_.there.last),
+                copy.begin() + static_cast<std::ptrdiff_t>(stack_.there.first));
+    }
+    for (const std::vector<float>& copy : copies_) {
+      stack_.images.push_back(
+          std::span<const float>(copy).subspan(stack_.there.first, stack_.there.size()));
+    }
+  }
+  const ImageStack<float>& stack() const { return stack_; }
+
+ private:
+  std::vector<std::vector<float>> copies_;
+  ImageStack<float> stack_;
+};
+
+struct Beside {
+  std::size_t before;
+  std::size_t ahead;
+};
+
+/// Calls take(pair, rows) for rows after rows, with as many beside them.
+template <class Take>
+void for_each_window(const OwnedStack& a, const OwnedStack& b, Beside beside, const Take& take) {
+  constexpr std::size_t at_a_time = 64;
+  for (std::size_t row = 0; row < extent.height; row += at_a_time) {
+    const RowRange rows{row, std::min(row + at_a_time, extent.height)};
+    const RowRange there{row - std::min(row, beside.before),
+                         std::min(rows.last + beside.ahead, extent.height)};
+    const Window first(a, there);
+    const Window second(b, there);
+    take(pair_of(first.stack(), second.stack()), rows);
+  }
+}
+
+class ImageRows : public ::testing::Test {
+ protected:
+  const OwnedStack a_ = skewed_stack(880);
+  const OwnedStack b_ = skewed_stack(881);
+};
+
+void expect_same(const ImageFamily& rows, const ImageFamily& whole) {
+  EXPECT_EQ(rows.tested, whole.tested);
+  EXPECT_EQ(rows.log_p, whole.log_p);
+  ASSERT_EQ(rows.groups.size(), whole.groups.size());
+  for (std::size_t g = 0; g < rows.groups.size(); ++g) {
+    EXPECT_EQ(rows.groups[g].z, whole.groups[g].z) << g;
+    EXPECT_EQ(rows.groups[g].log_p, whole.groups[g].log_p) << g;
+    EXPECT_EQ(rows.groups[g].adjusted_log_p, whole.groups[g].adjusted_log_p) << g;
+    EXPECT_EQ(rows.groups[g].window, whole.groups[g].window) << g;
+    EXPECT_EQ(rows.groups[g].channel, whole.groups[g].channel) << g;
+  }
+}
+
+TEST_F(ImageRows, MakeTheFamilyOfTheWhole) {
+  using Pyramid = RowPyramid<float>;
+  for (const std::uint32_t smallest : {1U, 4U}) {
+    std::vector<double> z(extent.elements());
+    std::vector<double> z_of_whole(extent.elements());
+    const PyramidOptions options{.smallest = smallest, .z = z, .for_each = tests::last_first};
+    Pyramid pyramid(pair_of(a_.view(), b_.view()), options);
+    for_each_window(a_, b_, {Pyramid::rows_before, Pyramid::rows_ahead},
+                    [&](const auto& pair, RowRange rows) { pyramid.take(pair, rows); });
+    expect_same(pyramid.family(),
+                image_pyramid(a_.view(), b_.view(), {.smallest = smallest, .z = z_of_whole}));
+    EXPECT_EQ(z, z_of_whole);
+  }
+}
+
+TEST_F(ImageRows, HaveTheDistanceOfTheWhole) {
+  RowDistance<float> distance;
+  for_each_window(a_, b_, {0, 0}, [&](const auto& pair, RowRange rows) {
+    distance.take(pair, rows, tests::last_first);
+  });
+  const ImageDistance rows = distance.distance();
+  const ImageDistance whole = image_distance(a_.view(), b_.view());
+  EXPECT_EQ(rows.squared_bias, whole.squared_bias);
+  EXPECT_EQ(rows.squared_norm, whole.squared_norm);
+  EXPECT_EQ(rows.bias_variance, whole.bias_variance);
+  EXPECT_EQ(rows.norm_variance, whole.norm_variance);
+  EXPECT_EQ(rows.covariance, whole.covariance);
+  EXPECT_EQ(rows.degrees, whole.degrees);
+}
+
+TEST_F(ImageRows, HaveTheTailsOfTheWhole) {
+  const auto sides = [](const ImagePair<float>& pair) {
+    return std::vector<CellPilot>{{.stack = pair.a, .factor = 1, .replicates = 17},
+                                  {.stack = *pair.b, .factor = -1, .replicates = 17}};
+  };
+  const ImageStack<float> a = a_.view();
+  const ImageStack<float> b = b_.view();
+  const std::vector<CellPilot> whole = sides(pair_of(a, b));
+  RowCellTails rows(whole, 0.01, {}, tests::last_first);
+  for_each_window(a_, b_, {RowCellTails::rows_beside, RowCellTails::rows_beside},
+                  [&](const auto& pair, RowRange some) { rows.take(sides(pair), some); });
+  const std::vector<CellTails> found = rows.tails();
+  const std::vector<CellTails> expected = cell_tails(whole, 0.01);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].size, expected[i].size);
+    EXPECT_EQ(found[i].factor, expected[i].factor);
+    EXPECT_EQ(found[i].scatter, expected[i].scatter);
+    EXPECT_NE(found[i].factor, 1);
+  }
+}
+
+TEST_F(ImageRows, HaveTheFlipsOfTheWhole) {
+  RowFlips<float> flips;
+  for_each_window(a_, b_, {0, 0}, [&](const auto& pair, RowRange rows) {
+    flips.take(pair, rows, tests::last_first);
+  });
+  std::vector<double> signs(count, 1);
+  signs[3] = signs[32] = -1;
+  EXPECT_EQ(flips.matrix().energy(signs), flip_matrix(a_.view(), b_.view()).energy(signs));
+}
+
+TEST_F(ImageRows, AddUpToTheSumsOfTheWhole) {
+  std::vector<double> sums(count);
+  for_each_window(a_, b_, {0, 0}, [&](const auto& pair, RowRange rows) {
+    add_to_sums(sums, pair.a, rows.elements(extent), tests::last_first);
+  });
+  EXPECT_EQ(sums, image_sums(a_.view()));
+}
+
+// The difference of one element, by a loop over the replicates.
+double product_of(const OwnedStack& a, const OwnedStack& b, std::size_t r, std::size_t s) {
+  double sum = 0;
+  for (std::size_t e = 0; e < extent.elements(); ++e) {
+    const auto difference = [&](std::size_t i) {
+      return static_cast<double>(a.images[i][e]) - static_cast<double>(b.images[i][e]);
+    };
+    double squares = 0;
+    for (std::size_t i = 0; i < count; ++i) squares += difference(i) * difference(i);
+    sum += difference(r) * difference(s) / squares;
+  }
+  return sum;
+}
+
+// 33 replicates fill no whole piece: Q with one sign turned is less by four times its row.
+TEST_F(ImageRows, FlipsAreThoseOfEveryPairOfReplicates) {
+  const FlipMatrix matrix = flip_matrix(a_.view(), b_.view());
+  const std::vector<double> all(count, 1);
+  for (const std::size_t r : {0U, 17U, 32U}) {
+    double row = 0;
+    for (std::size_t s = 0; s < count; ++s) row += s == r ? 0 : product_of(a_, b_, r, s);
+    std::vector<double> signs = all;
+    signs[r] = -1;
+    EXPECT_NEAR(matrix.energy(all) - matrix.energy(signs), 4 * row, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace assay::stats
