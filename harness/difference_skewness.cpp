@@ -22,14 +22,14 @@ Cumulants cumulants_of(const SkewedSide& side) {
 
 }  // namespace
 
-double difference_skewness(std::span<const SkewedSide> sides) {
+std::optional<double> difference_skewness(std::span<const SkewedSide> sides) {
   Cumulants total;
   for (const SkewedSide& side : sides) {
     const Cumulants part = cumulants_of(side);
     total.variance += part.variance;
     total.third += part.third;
   }
-  if (!(total.variance > 0)) return 0;
+  if (!(total.variance > 0)) return {};
   return std::abs(total.third) / (total.variance * std::sqrt(total.variance));
 }
 

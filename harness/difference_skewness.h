@@ -2,6 +2,7 @@
 
 // How skewed the difference of two images is at one element.
 
+#include <optional>
 #include <span>
 
 #include "stats/moments.h"
@@ -15,7 +16,7 @@ struct SkewedSide {
   double factor = 1;
 };
 
-/// |skewness of one replicate's difference|; 0 where nothing varies.
-double difference_skewness(std::span<const SkewedSide> sides);
+/// |skewness of one replicate's difference|; nullopt where nothing varies.
+std::optional<double> difference_skewness(std::span<const SkewedSide> sides);
 
 }  // namespace assay::harness

@@ -73,7 +73,7 @@ void SumsOfTwo::take(const stats::ImagePair<float>& pair, stats::RowRange rows) 
     }
     for (std::size_t k = 0; k < size; ++k) {
       const SkewedSide sides[] = {{moments[0][k], 1, 1}, {moments[1][k], 1, -1}};
-      parts[i].skewness.push_back(difference_skewness(sides));
+      if (const auto skewness = difference_skewness(sides)) parts[i].skewness.push_back(*skewness);
     }
   });
   for (const Part& part : parts) {
@@ -87,10 +87,11 @@ void SumsOfTwo::take(const stats::ImagePair<float>& pair, stats::RowRange rows) 
       sound_ = sound_ && found.sound;
     }
     for (const double skewness : part.skewness) skewness_ += skewness;
+    varying_ += static_cast<double>(part.skewness.size());
   }
 }
 
-double SumsOfTwo::skewness() const { return skewness_ / static_cast<double>(extent_.elements()); }
+double SumsOfTwo::skewness() const { return varying_ > 0 ? skewness_ / varying_ : 0; }
 
 std::vector<ElementSums> SumsOfTwo::finish(std::span<const std::vector<double>> averages) {
   for (std::size_t s = 0; s < 2; ++s) {

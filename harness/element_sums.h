@@ -35,7 +35,7 @@ class SumsOfTwo {
   void take(const stats::ImagePair<float>& pair, stats::RowRange rows);
   /// After the last rows, with the averages of either side's pictures.
   std::vector<ElementSums> finish(std::span<const std::vector<double>> averages);
-  /// Mean over the elements of |skewness of one picture's difference|.
+  /// Mean over the elements that vary of |skewness of one picture's difference|.
   double skewness() const;
   /// Whether moments can be made of the numbers of every element that is not constant.
   bool sound() const { return sound_; }
@@ -44,6 +44,7 @@ class SumsOfTwo {
   stats::ImageExtent extent_;
   std::vector<ElementSums> sides_;
   double skewness_ = 0;
+  double varying_ = 0;  // elements that it is the sum over
   bool sound_ = true;
 };
 

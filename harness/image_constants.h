@@ -4,6 +4,7 @@
 // never seen may still be there.
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "harness/image_pair.h"
@@ -27,10 +28,18 @@ double z_of(const UnseenElement& unseen);
 /// is one, is among `unseen`. Of two images, constants that differ by no more than rounding are
 /// equal; an element that varied in one image alone is as one against a reference with that image's
 /// standard error, where the other declares a range (without one Welch's test takes what was seen).
+///
+/// Sums over several elements must not lose those that happened not to vary: the rarely lit pixels
+/// that were seen lit would be left, whose means are too high on average. An element with a weight,
+/// one that varied in the pilot, stays in the sums as it is (`in_sums`), whatever it did here; one
+/// without is in no sum. Where no weights are known the halves of the images decide over each
+/// other.
 template <class Real>
 class VaryingPart {
  public:
-  VaryingPart(const Question& question, const ImagePair<Real>& pair);
+  /// `weights` of the elements in sums, as ImageTest has them.
+  VaryingPart(const Question& question, const ImagePair<Real>& pair,
+              std::span<const double> weights);
   VaryingPart(const VaryingPart&) = delete;  // spans point inside
   VaryingPart& operator=(const VaryingPart&) = delete;
 
@@ -45,8 +54,19 @@ class VaryingPart {
     if (of_two_) return use(first_, second_);
     return use(first_, stats::ImageReference{first_.extent, value_, error_});
   }
+  /// The same for sums over elements, of which those in left_to_sums() take no part alone.
+  template <class Use>
+  auto in_sums(const Use& use) const {
+    if (of_two_) return use(first_, second_);
+    return use(first_, stats::ImageReference{first_.extent, value_in_sums_, error_in_sums_});
+  }
+  /// In rising order.
+  const std::vector<std::size_t>& left_to_sums() const { return left_to_sums_; }
 
  private:
+  bool stays_in_sums(std::size_t element) const {
+    return !weights_.empty() && weights_[element] > 0;
+  }
   void settle_against_reference(const Question& question, const ImagePair<Real>& pair);
   void settle_two(const Question& question);
 
@@ -56,6 +76,10 @@ class VaryingPart {
   std::vector<std::vector<Real>> settled_;  // images of which an element was rounded
   std::vector<double> value_;
   std::vector<double> error_;
+  std::vector<double> value_in_sums_;
+  std::vector<double> error_in_sums_;
+  std::span<const double> weights_;
+  std::vector<std::size_t> left_to_sums_;
   std::vector<UnseenElement> unseen_;
   std::size_t constants_ = 0;
 };

@@ -67,9 +67,10 @@ void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test,
   const stats::PyramidOptions options{.energy = test.independent,
                                       .smallest = test.smallest_cell,
                                       .weights = test.weights,
+                                      .only_in_sums = varying.left_to_sums(),
                                       .z = outcome.z,
                                       .for_each = on_all_threads};
-  outcome.family = varying.with(
+  outcome.family = varying.in_sums(
       [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
   if (!test.independent) add_flipped_energy(varying, test, outcome);
 }
@@ -204,7 +205,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   stats::check::replicates("image", pair.replicates());
   const bool relative = is_relative(question, 0);
   const stats::ImageDistance distance = distance_of(pair, relative);
-  const VaryingPart varying(question, pair);
+  const VaryingPart varying(question, pair, test.weights);
   require_spread(question, varying.any(), distance);
   outcome.unseen = varying.unseen();
   outcome.replicates = pair.replicates();
@@ -228,7 +229,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   outcome.smallest_cell = test.smallest_cell;
   outcome.family = look.family;
   outcome.z = look.z;
-  stats::leave_out_cells(outcome.family, test.smallest_cell);
+  stats::leave_out_cells(outcome.family, {test.smallest_cell, true});
   if (look.flips) {
     outcome.by_sign_flips =
         add_flipped_energy(outcome.family, extent, flip_size(test.share, look.pictures).value(),

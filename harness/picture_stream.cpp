@@ -193,7 +193,7 @@ class Looking {
         question_.subjects, [](const Subject& side) { return side.image->independent; });
     pyramid_.emplace(pair, stats::PyramidOptions{
                                .energy = independent, .z = look_->z, .for_each = on_all_threads});
-    if (piloted_ >= 2 * stats::least_replicates) {
+    if (piloted_ >= stats::least_replicates) {
       tails_.emplace(pilot_sides(), smallest_level(question_, place_), std::span<const double>(),
                      on_all_threads);
     }

@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 
+#include "harness/rows.h"
+
 namespace assay::harness {
 namespace {
 
@@ -35,7 +37,7 @@ void note_repeated_images(const Question& question, const Pilots& pilots, Plan& 
   std::set<std::string> seen;
   for (const Subject& subject : question.subjects) {
     const Pilot* pilot = pilot_of(subject, pilots);
-    if (pilot == nullptr || pilot->image_count() < 2) continue;
+    if (is_recorded(subject) || pilot == nullptr || pilot->image_count() < 2) continue;
     if (!seen.insert(pilot_name(subject)).second) continue;
     const std::size_t all = pilot->image_count();
     const std::size_t different = different_images(pilot->images);

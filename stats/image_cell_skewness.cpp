@@ -92,7 +92,9 @@ std::vector<double> weights_of(std::span<const CellPilot> sides,
   });
   std::vector<double> weight =
       steadied({extent.width, wider.last - wider.first, extent.channels}, variance);
-  for (double& value : weight) value = value > 0 ? 1 / std::sqrt(value) : 0;
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    weight[i] = variance[i] > 0 ? 1 / std::sqrt(weight[i]) : 0;
+  }
   return weight;
 }
 
@@ -245,6 +247,7 @@ std::vector<CellTails> RowCellTails::tails() {
     tail.size = groups_[g].size;
     if (factors.count() == 0) continue;
     tail.factor = factors.factor();
+    tail.common = factors.common(static_cast<double>(choices_.size() * extent_.channels));
     // Channels may depend on each other, cells count.
     tail.scatter =
         factors.excess() / std::sqrt(static_cast<double>(aligned_cells(extent_, groups_[g].size)));

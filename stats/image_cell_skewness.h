@@ -25,6 +25,7 @@ struct CellPilot {
 struct CellTails {
   std::uint32_t size = 1;  // side of the cells; the longer side of the image at last
   double factor = 1;
+  double common = 1;   // at least, of the skewness that the cells have in common
   double scatter = 0;  // by so much the factor of a normal pilot exceeds 1 with probability 1e-4
 };
 
@@ -41,6 +42,11 @@ struct CellTails {
 // The pilot's own scatter is divided out: a sample skewness has variance 6 / n at the normal law,
 // and E cosh(c (g + error)) = cosh(c g) exp(c^2 var / 2). What is left of it is `scatter`, for one
 // cell cosh(3.9 c sd) exp(-c^2 var / 2) - 1, a 1 / sqrt(cells) of it for their mean.
+//
+// Of few replicates that says little: skewness 2 in 16 of them is lost in the scatter of one cell.
+// What all cells have in common is not: `common` is cosh(c g) at the cells' mean skewness, with its
+// sign, less 3.9 of its standard errors (those of independent cells; of others it may be too
+// large).
 // Throws std::domain_error as image_stack does, for different extents, and for a level outside
 // (0, 1), or weights of another number than the elements.
 std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
@@ -97,7 +103,8 @@ class RowCellTails {
 };
 
 // Weights for image_pyramid.h: 1 / sqrt of the difference's variance at each element, steadied by
-// its 3 x 3 neighbours; 0 where nothing varied. Throws std::domain_error as cell_tails does.
+// its 3 x 3 neighbours; 0 where it did not vary itself. Throws std::domain_error as cell_tails
+// does.
 std::vector<double> cell_weights(std::span<const CellPilot> sides);
 
 }  // namespace assay::stats

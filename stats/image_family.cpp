@@ -26,10 +26,13 @@ void decide(ImageFamily& family) {
   family.log_p = family.winner.adjusted_log_p;
 }
 
-void leave_out_cells(ImageFamily& family, std::uint32_t smallest) {
+void leave_out_cells(ImageFamily& family, SmallestCell smallest) {
   if (family.different_constants > 0) return;
   std::erase_if(family.groups, [&](const ImageFinding& finding) {
-    return finding.statistic == ImageStatistic::window && finding.size < smallest;
+    if (finding.statistic == ImageStatistic::energy) {
+      return smallest.size > 1 && smallest.own_weights;
+    }
+    return finding.statistic == ImageStatistic::window && finding.size < smallest.size;
   });
   family.log_p = 0;
   family.winner = {};

@@ -29,7 +29,8 @@ ImageFamily image_pyramid(const ZMap& map);
 // element.
 //
 // Cells: the replicates are dealt to two halves; each half's variances, steadied by those of 3 x 3
-// neighbours, give the other half its weights w ~ 1 / sqrt(va + vb), 0 where nothing varied. A
+// neighbours, give the other half its weights w ~ 1 / sqrt(va + vb), 0 where the element did not
+// vary. A
 // replicate's cell value is its weighted sum, T the Welch statistic of (mean of a - mean of b),
 // averaged over the halves, from the variances of the cell values over replicates. Weights and
 // values are independent, so the numerator has mean zero for any law of the elements, and
@@ -54,12 +55,16 @@ ImageFamily image_pyramid(const ZMap& map);
 // both halves then take them. A rare light that half the replicates did not see is weighted like a
 // quiet element by them, and sums of any size are skewed; a larger pilot has seen it.
 //
-// `z` receives welch_z of every element, where it has room for them. `for_each` may look at bands
+// Elements of `only_in_sums`, in rising order, are part of cells and energy and take no part alone:
+// their z is 0, and where they never varied they are no certain difference.
+//
+// `z` receives welch_z of every other element, where it has room for them. `for_each` may look at bands
 // of the images at the same time.
 struct PyramidOptions {
   bool energy = true;
   std::uint32_t smallest = 1;  // 1: single elements too
   std::span<const double> weights = {};
+  std::span<const std::size_t> only_in_sums = {};
   std::span<double> z = {};
   ForEach for_each = one_by_one;
 };

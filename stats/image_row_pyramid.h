@@ -34,6 +34,7 @@ class RowPyramid {
   };
 
   void take_elements(const ImagePair<Real>& pair, RowRange rows);
+  void leave_to_sums(ElementRange range);
   void take_cells(const ImagePair<Real>& pair, RowRange rows);
   void add_elements(ImageFamily& family) const;
   void add_best_windows(ImageFamily& family) const;

@@ -128,12 +128,25 @@ void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
   if (counts_.different_constants == 0) take_cells(pair, rows);
 }
 
+// These elements' z count for nothing, as if both sides were equal there.
+template <class Real>
+void RowPyramid<Real>::leave_to_sums(ElementRange range) {
+  const std::span<const std::size_t> all = options_.only_in_sums;
+  const auto first = std::lower_bound(all.begin(), all.end(), range.first);
+  for (auto each = first; each != all.end() && *each < range.last; ++each) {
+    (std::isfinite(z_[*each]) ? counts_.tested : counts_.different_constants) -= 1;
+    counts_.equal_constants += 1;
+    z_[*each] = 0;
+  }
+}
+
 // The best by z, its p-value exactly.
 template <class Real>
 void RowPyramid<Real>::take_elements(const ImagePair<Real>& pair, RowRange rows) {
   const ElementRange range = rows.elements(extent_);
   const std::span<double> z = z_.subspan(range.first, range.size());
   counts_.merge(element_map(pair, range.first, z, options_.for_each));
+  leave_to_sums(range);
   const std::size_t element = range.first + largest(z);
   if (std::abs(z_[element]) <= std::abs(z_[best_element_]) && element != best_element_) return;
   best_element_ = element;
@@ -225,7 +238,7 @@ ImageFamily RowPyramid<Real>::family() {
     add_best_energy(family);
   }
   decide(family);
-  leave_out_cells(family, options_.smallest);
+  leave_out_cells(family, {options_.smallest, options_.weights.empty()});
   return family;
 }
 

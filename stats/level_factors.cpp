@@ -55,6 +55,7 @@ using Block = std::array<double, block_size>;
 
 struct Factors {
   Block argument;  // of the hyperbolic cosine
+  Block scatter;   // its variance
   Block factor;
   Block excess;
 };
@@ -65,7 +66,8 @@ ASSAY_VECTOR_COPIES void factors_of(std::span<const Cumulants> cells, double sca
     const double unit = scale / (variance * std::sqrt(variance));
     const double scatter = std::min(unit * unit * cells[i].third_variance, 2 * largest);
     const double centred = exponential(-scatter / 2);
-    out.argument[i] = std::abs(unit * cells[i].third);
+    out.argument[i] = unit * cells[i].third;
+    out.scatter[i] = scatter;
     out.factor[i] = hyperbolic_cosine(out.argument[i]) * centred;
     out.excess[i] = hyperbolic_cosine(scatter_quantile * std::sqrt(scatter)) * centred - 1;
   }
@@ -81,8 +83,11 @@ void LevelFactors::add(std::span<const Cumulants> cells) {
     for (std::size_t i = 0; i < some.size(); ++i) {
       if (!(some[i].variance > 0)) continue;
       ++count_;
-      sum_ += factors.argument[i] > largest ? std::cosh(factors.argument[i]) : factors.factor[i];
+      const double argument = factors.argument[i];
+      sum_ += std::abs(argument) > largest ? std::cosh(argument) : factors.factor[i];
       excess_ += factors.excess[i];
+      arguments_ += argument;
+      scatters_ += factors.scatter[i];
     }
   }
 }
@@ -91,6 +96,13 @@ void LevelFactors::merge(const LevelFactors& other) {
   count_ += other.count_;
   sum_ += other.sum_;
   excess_ += other.excess_;
+  arguments_ += other.arguments_;
+  scatters_ += other.scatters_;
+}
+
+double LevelFactors::common(double copies) const {
+  const double scatter = scatter_quantile * std::sqrt(scatters_ * copies) / count_;
+  return std::cosh(std::max(0.0, std::abs(arguments_) / count_ - scatter));
 }
 
 }  // namespace assay::stats

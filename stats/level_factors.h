@@ -24,12 +24,17 @@ class LevelFactors {
   double count() const { return count_; }
   double factor() const { return sum_ / count_; }
   double excess() const { return excess_ / count_; }  // that scatter alone gives
+  // Of the mean of the cells' skewnesses, with its sign, less what scatter alone gives it with
+  // probability 1e-4. Every cell is counted `copies` times, which may depend on each other.
+  double common(double copies) const;
 
  private:
   double scale_;
   double count_ = 0;
   double sum_ = 0;
   double excess_ = 0;
+  double arguments_ = 0;  // c g, with its sign
+  double scatters_ = 0;   // their variances
 };
 
 }  // namespace assay::stats

@@ -152,15 +152,15 @@ TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
   EXPECT_NE(test.message.find("take 16 `secondaries` or more"), std::string::npos);
 }
 
-// One exponential value a pixel has skewness 2.
-TEST(ImageClaims, PixelsThatAreTooSkewedAreInvalidAndSayWhatHelps) {
+// One exponential value a pixel has skewness 2: single pixels take no part. False alarm .01.
+TEST(ImageClaims, PixelsThatAreSkewedAreJudgedInLargerCells) {
   const std::string text =
       "suite: s\nestimators:\n  a: {plugin: analytic/ramp, law: exponential(1), primaries: "
       "1}\ntests:\n"
-      "  - {claim: mean(a) == analytic, secondaries: 32, expect: invalid}\n";
+      "  - {claim: mean(a) == analytic, secondaries: 32}\n";
   const reports::Test test = run_text(text).suites[0].tests[0];
-  EXPECT_TRUE(test.ok) << test.message;
-  EXPECT_NE(test.message.find("`primaries`"), std::string::npos) << test.message;
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_GT(test.image->smallest_cell, 1u);
 }
 
 TEST(ImageClaims, MapsReadBackEqualToTheRecord) {

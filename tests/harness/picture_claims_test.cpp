@@ -220,6 +220,34 @@ TEST(PictureClaims, PicturesOfOneValueAreNoCopies) {
               HasSubstr("all images of `a` are alike, and all of `b` are alike: without spread"));
 }
 
+// Sixteen pictures whose pixels have skewness 2, against the exact one. Judged pixel by pixel, as
+// pictures too few for a pilot were, a true claim failed in 26 of 40 at this level. Wrong alarm: 10
+// or more of 40 by chance in one of 2e4 runs.
+TEST(PictureClaims, FewSkewedPicturesAreJudgedInLargeCells) {
+  const Workplace place;
+  tests::Philox random(77);
+  const std::size_t size = 24;
+  draws::write_exr(place.file("ref.exr"), {size, size, {"Y"}, std::vector<float>(size * size, 1)});
+  const std::string suite =
+      place.write("s.yaml",
+                  "suite: s\nalpha: 0.05\nestimators:\n"
+                  "  a: {plugin: recorded, file: 'a*.exr', pixels: independent}\n"
+                  "  b: {plugin: recorded, file: ref.exr, exact: true}\ntests:\n  - claim: mean(a) "
+                  "== mean(b)\n");
+  int failed = 0;
+  for (int i = 0; i < 40; ++i) {
+    for (int r = 0; r < 16; ++r) {
+      draws::Picture picture{size, size, {"Y"}, std::vector<float>(size * size)};
+      for (float& value : picture.values) {
+        value = static_cast<float>(-std::log1p(-random.uniform()));
+      }
+      draws::write_exr(place.file(fmt::format("a{:02}.exr", r)), picture);
+    }
+    failed += run_files({suite}).suites[0].tests[0].verdict == Verdict::fail ? 1 : 0;
+  }
+  EXPECT_LT(failed, 10);
+}
+
 // What a renderer gives that uses three bits of its seed: files that stand for one are refused, but
 // a program's pictures may repeat by right.
 TEST(PictureClaims, PicturesThatAProgramRepeatsAreCounted) {
@@ -237,8 +265,7 @@ TEST(PictureClaims, PicturesThatAProgramRepeatsAreCounted) {
     if (!gate.name.starts_with("different images")) continue;
     found.push_back(fmt::format("{}: {:g}, {}", gate.name, gate.value.value(), gate.state));
   }
-  EXPECT_THAT(found, testing::ElementsAre("different images of a, pilot: 8, amber",
-                                          "different images of b, pilot: 64, green"));
+  EXPECT_THAT(found, testing::ElementsAre("different images of a, pilot: 8, amber"));
 }
 
 TEST(PictureClaims, ADefectIsFoundWhereItIs) {

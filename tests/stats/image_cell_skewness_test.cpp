@@ -101,6 +101,35 @@ TEST(CellTails, ScatterOfANormalPilotIsNotTakenForSkewness) {
   }
 }
 
+// Skewness 2 in 16 replicates cannot be told of one element, but of all: 1.25 is reached at a
+// hundredth of it. Normal elements have none in common.
+TEST(CellTails, WhatTheCellsHaveInCommonShowsInFewReplicates) {
+  Philox random(868);
+  constexpr ImageExtent large{32, 32, 1};
+  const Images skewed = draw(random, large, 16, exponential);
+  const Images normal = draw(random, large, 16, [](Philox& r, std::size_t) { return r.normal(); });
+  const CellPilot of_skewed = side_of(large, skewed, 16);
+  const CellPilot of_normal = side_of(large, normal, 16);
+  const std::vector<CellTails> tails = cell_tails({&of_skewed, 1}, level);
+  EXPECT_LT(tails[0].factor, 1.25 + tails[0].scatter);
+  EXPECT_GT(tails[0].common, 100);
+  EXPECT_GT(tails[1].common, 1.25);
+  EXPECT_LT(tails.back().common, 1.25);
+  for (const CellTails& cell : cell_tails({&of_normal, 1}, level)) {
+    EXPECT_LT(cell.common, 1.25) << cell.size;
+  }
+}
+
+// An element that did not vary has no weight, whatever its neighbours did.
+TEST(CellWeights, OfAnElementThatDidNotVaryAreZero) {
+  Philox random(869);
+  const Images images =
+      draw(random, eight, 16, [](Philox& r, std::size_t e) { return e == 19 ? 0.25 : r.normal(); });
+  const CellPilot side = side_of(eight, images, 16);
+  const std::vector<double> weights = cell_weights({&side, 1});
+  for (std::size_t e = 0; e < weights.size(); ++e) EXPECT_EQ(weights[e] > 0, e != 19) << e;
+}
+
 // `scatter` is exceeded in one of 1e4 pilots: three or more of 600 by chance once in 3e4 times. A
 // tenth of it is exceeded often: the bound is not so wide that nothing reaches it.
 TEST(CellTails, NormalPilotsRarelyExceedTheirScatter) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "stats/image_pyramid.h"
 #include "tests/stats/image_samples.h"
@@ -29,6 +32,59 @@ TEST(ImageFamily, AnEnergyFromElsewhereCountsBelowItsNoticeAlone) {
   add_energy(noticed, small, notice - 1e-9);
   EXPECT_NEAR(noticed.log_p, without.log_p - 1e-9, 1e-12);
   EXPECT_EQ(noticed.winner.statistic, ImageStatistic::energy);
+}
+
+// Single elements and, where the halves weigh each other, the energy; weights of a pilot say
+// nothing of the replicates.
+TEST(ImageFamily, TheEnergyLeavesWithTheSmallestCellsOfWhatWeighsItself) {
+  tests::Philox random(844);
+  const auto normal = [&](std::size_t) { return random.normal(); };
+  const tests::OwnedStack a = draw_stack(small, 16, normal);
+  const tests::OwnedStack b = draw_stack(small, 16, normal);
+  const std::vector<double> weights(small.elements(), 1);
+  const auto has_energy = [&](std::uint32_t smallest, std::span<const double> known) {
+    const ImageFamily family =
+        image_pyramid(a.view(), b.view(), {.smallest = smallest, .weights = known});
+    return std::ranges::any_of(family.groups, [](const ImageFinding& group) {
+      return group.statistic == ImageStatistic::energy;
+    });
+  };
+  EXPECT_TRUE(has_energy(1, {}));
+  EXPECT_FALSE(has_energy(2, {}));
+  EXPECT_TRUE(has_energy(2, weights));
+}
+
+// Of an element that is 1 below its reference in every replicate, sums have all of it; alone it is
+// no certain difference where it is left to them.
+TEST(ImageFamily, ElementsThatAreLeftToSumsTakePartInThemAlone) {
+  tests::Philox random(845);
+  constexpr std::size_t dark = 17;
+  const tests::OwnedStack a =
+      draw_stack(small, 16, [&](std::size_t i) { return i == dark ? -1.0 : random.normal(); });
+  const std::vector<double> zero(small.elements());
+  const std::vector<double> weights(small.elements(), 1);
+  const std::vector<std::size_t> left{dark};
+  std::vector<double> z(small.elements());
+  const auto whole_image_z = [&](const std::vector<double>& reference,
+                                 std::span<const std::size_t> only_in_sums) {
+    const ImageFamily family =
+        image_pyramid(a.view(), ImageReference{small, reference, {}},
+                      {.weights = weights, .only_in_sums = only_in_sums, .z = z});
+    EXPECT_EQ(family.different_constants, 0u);
+    EXPECT_EQ(family.equal_constants, 1u);
+    EXPECT_EQ(family.tested, small.elements() - 1);
+    const auto whole = std::ranges::find_if(family.groups, [](const ImageFinding& group) {
+      return group.statistic == ImageStatistic::window && group.window.width == small.width;
+    });
+    return whole->z;
+  };
+  std::vector<double> equal_there = zero;
+  equal_there[dark] = -1;
+  const double with = whole_image_z(zero, left);
+  EXPECT_EQ(z[dark], 0);
+  const double without = whole_image_z(equal_there, {});
+  // The sum of 119 normal means of 16 has the standard deviation 2.7.
+  EXPECT_NEAR(without - with, 1 / std::sqrt(119 / 16.0), 0.15);
 }
 
 TEST(ImageFamily, APositiveLogarithmIsRefused) {
