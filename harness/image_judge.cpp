@@ -28,7 +28,7 @@ double mean_over(const TestWork& work, std::size_t subject,
   const Summary& summary = work.pools[subject]->prefix(work.outcome.secondaries());
   const std::vector<std::size_t>& channels = work.outcome.question.subjects[subject].channels;
   double sum = 0;
-  for (const std::size_t i : elements) sum += summary.channels[channels[i]].moments.mean;
+  for (const std::size_t i : elements) sum += summary.moments(channels[i]).mean;
   return sum / static_cast<double>(elements.size());
 }
 
