@@ -13,6 +13,9 @@ class FlushDenormals {
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;
 
+  /// Whether the calling thread flushes them.
+  static bool is_on() { return (_mm_getcsr() & flush_bits) == flush_bits; }
+
  private:
   // _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON
   static constexpr unsigned flush_bits = 0x8040;

@@ -186,7 +186,9 @@ typedef struct AssayDraw {
   uint32_t no_point; /* not 0: no point came out, a direction below the horizon */
 } AssayDraw;
 
-/* A source of points with the density it declares, tested by itself. */
+/* A source of points with the density it declares, tested by itself. A draw is a function of the
+ * numbers of `random` alone, density() and evaluate() are of the point: they are asked again. In the
+ * process of its own that a library has by default many are asked for at a time. NaN is an error. */
 typedef struct AssaySampler {
   size_t size;
   const char* name;

@@ -25,7 +25,29 @@ std::vector<Marginal> directions(double highest_theta) {
   return {{"theta", 0, highest_theta, theta}, {"phi", 0, 2 * std::numbers::pi, phi}};
 }
 
+std::size_t each(auto in, auto out, auto number) {
+  std::ranges::transform(in, out.begin(), number);
+  return in.size();
+}
+
 }  // namespace
+
+std::size_t Sampler::samples(std::span<Stream> random, std::span<SamplerDraw> draws) const {
+  return each(random, draws, [this](Stream& stream) { return sample(stream); });
+}
+
+std::size_t Sampler::densities(std::span<const Point> points, std::span<double> out) const {
+  return each(points, out, [this](const Point& point) { return density(point); });
+}
+
+std::size_t Sampler::lobe_densities(int lobe, std::span<const Point> points,
+                                    std::span<double> out) const {
+  return each(points, out, [&](const Point& point) { return lobe_density(lobe, point); });
+}
+
+std::size_t Sampler::evaluations(std::span<const Point> points, std::span<double> out) const {
+  return each(points, out, [this](const Point& point) { return evaluate(point); });
+}
 
 std::vector<Marginal> marginals(Domain domain) {
   switch (domain) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,20 @@ class Sampler {
   /// Probability of a lobe that has no density but sits on points, as a mirror's does: no part of
   /// density(), and all its draws are one cell.
   virtual double point_mass(int /*lobe*/) const { return 0; }
+
+  /// The same of many streams or points at a time, for a sampler that another process must be asked
+  /// for: each question then takes some microseconds, however many it is about. They write the
+  /// numbers of the first few, at least one, and return of how many; who wants the others asks
+  /// again. What one cannot be had of is thrown where it is the first.
+  virtual std::size_t samples(std::span<Stream> random, std::span<SamplerDraw> draws) const;
+  virtual std::size_t densities(std::span<const Point> points, std::span<double> out) const;
+  virtual std::size_t lobe_densities(int lobe, std::span<const Point> points,
+                                     std::span<double> out) const;
+  virtual std::size_t evaluations(std::span<const Point> points, std::span<double> out) const;
+  /// Whether it is such a sampler.
+  virtual bool is_elsewhere() const { return false; }
+  /// CPU seconds that other processes have spent so far on what the calling thread asked.
+  virtual double seconds_elsewhere() const { return 0; }
 };
 
 }  // namespace assay

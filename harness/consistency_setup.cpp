@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <stdexcept>
+#include <vector>
 
 #include "estimators/flush_denormals.h"
+#include "harness/fetched_ahead.h"
 
 namespace assay::harness {
 namespace {
@@ -17,14 +21,96 @@ double relative_difference(double a, double b) {
 /// The larger, and NaN where one is.
 double farther(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
+/// Whether a draw's own numbers say how far it is from what its sampler declares.
+bool needs_no_density(const Sampler& sampler, const SamplerDraw& draw) {
+  return !draw.valid || sampler.point_mass(draw.lobe) > 0;
+}
+
+double without_density(const SamplerDraw& draw) {
+  return draw.valid || draw.weight == 0 ? 0 : std::numeric_limits<double>::infinity();
+}
+
+double with_density(const SamplerDraw& draw, double density, double evaluation) {
+  return farther(relative_difference(draw.density, density),
+                 relative_difference(draw.weight * density, evaluation));
+}
+
+struct JudgedDraw {
+  SamplerDraw draw;
+  double difference = 0;
+};
+
+/// Draws that must be held against density() and evaluate(), by their places among others.
+struct Compared {
+  std::vector<std::size_t> places = {};
+  std::vector<Point> points = {};
+  std::vector<double> densities = {};
+  std::vector<double> evaluations = {};
+};
+
+Compared compared(const Sampler& sampler, std::span<const SamplerDraw> draws) {
+  Compared some;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    if (needs_no_density(sampler, draws[i])) continue;
+    some.places.push_back(i);
+    some.points.push_back(draws[i].point);
+  }
+  some.densities.resize(some.points.size());
+  some.evaluations.resize(some.points.size());
+  return some;
+}
+
+/// Numbers at the points up to the first of which there is none; how many. Throws where there is
+/// not even one.
+std::size_t write_some(std::span<const Point> points, std::span<double> out, auto numbers) {
+  std::size_t done = 0;
+  try {
+    while (done < points.size()) done += numbers(points.subspan(done), out.subspan(done));
+  } catch (const std::runtime_error&) {
+    if (done == 0) throw;
+  }
+  return done;
+}
+
+/// Of how many of the draws the numbers can be had. Throws where of none.
+std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
+  if (some.points.empty()) return draws;
+  try {
+    std::size_t known = write_some(some.points, some.densities, [&](auto points, auto out) {
+      return sampler.densities(points, out);
+    });
+    known = write_some(std::span(some.points).first(known), some.evaluations,
+                       [&](auto points, auto out) { return sampler.evaluations(points, out); });
+    return known < some.points.size() ? some.places[known] : draws;
+  } catch (const std::runtime_error&) {
+    if (some.places[0] == 0) throw;
+    return some.places[0];
+  }
+}
+
+std::vector<JudgedDraw> judged(const Sampler& sampler, std::span<Stream> streams) {
+  std::vector<JudgedDraw> all;
+  const std::vector<SamplerDraw> draws = draws_of(sampler, streams);
+  for (const SamplerDraw& draw : draws) all.push_back({draw, without_density(draw)});
+  Compared some = compared(sampler, draws);
+  all.resize(ask(sampler, some, draws.size()));
+  for (std::size_t i = 0; i < some.places.size() && some.places[i] < all.size(); ++i) {
+    JudgedDraw& mine = all[some.places[i]];
+    mine.difference = with_density(mine.draw, some.densities[i], some.evaluations[i]);
+  }
+  return all;
+}
+
 class ConsistencyEstimator final : public Estimator {
  public:
   explicit ConsistencyEstimator(const ConsistencySetup& setup)
       : setup_(setup), rounding_(setup.sampler().rounding()) {}
 
+  void announce(const Announcement& next) override { ahead_.announce(next); }
+  double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
+
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const SamplerDraw draw = setup_.sampler().sample(random);
-    const double difference = inconsistency(setup_.sampler(), draw);
+    const auto [draw, difference] = next(random);
     // NaN is not consistent either.
     const bool consistent = difference <= rounding_;
     out[0] = consistent ? 0 : 1 + static_cast<double>(setup_.cell(draw));
@@ -33,18 +119,26 @@ class ConsistencyEstimator final : public Estimator {
   }
 
  private:
+  JudgedDraw next(Stream& random) {
+    const Sampler& sampler = setup_.sampler();
+    if (sampler.is_elsewhere()) {
+      return ahead_.of(random, [&](auto streams) { return judged(sampler, streams); });
+    }
+    const SamplerDraw draw = sampler.sample(random);
+    return {draw, inconsistency(sampler, draw)};
+  }
+
   const ConsistencySetup& setup_;
   double rounding_;
+  FetchedAhead<JudgedDraw> ahead_;
 };
 
 }  // namespace
 
 double inconsistency(const Sampler& sampler, const SamplerDraw& draw) {
-  if (!draw.valid) return draw.weight == 0 ? 0 : std::numeric_limits<double>::infinity();
-  if (sampler.point_mass(draw.lobe) > 0) return 0;
+  if (needs_no_density(sampler, draw)) return without_density(draw);
   const double density = sampler.density(draw.point);
-  return farther(relative_difference(draw.density, density),
-                 relative_difference(draw.weight * density, sampler.evaluate(draw.point)));
+  return with_density(draw, density, sampler.evaluate(draw.point));
 }
 
 std::vector<Channel> ConsistencySetup::channels() const {
@@ -57,8 +151,14 @@ std::unique_ptr<Estimator> ConsistencySetup::make() const {
 
 std::optional<std::uint64_t> first_inconsistent(const Pool& pool, std::uint64_t count) {
   const FlushDenormals flush;
+  const std::unique_ptr<Estimator> estimator = pool.setup()->make();
+  estimator->announce({.key = pool.key(), .first = 0, .last = count});
+  std::vector<double> out(pool.channels());
   for (std::uint64_t i = 0; i < count; ++i) {
-    if (draw_observation(*pool.setup(), pool.key(), pool.primaries(), i)[0] != 0) return i;
+    Stream random(pool.key(), i);
+    Cost unused;
+    estimator->secondary(random, pool.primaries(), out, unused);
+    if (out[0] != 0) return i;
   }
   return std::nullopt;
 }

@@ -30,8 +30,9 @@ const Summary& summary_of(const TestWork& work, std::size_t subject) {
   return work.pools[subject]->prefix(work.outcome.secondaries());
 }
 
-/// A density whose integral exceeds 1 is none, whatever its samples do.
-bool density_is_proper(TestOutcome& outcome) {
+/// A density whose integral exceeds 1 is none, whatever its samples do; nor is one that is negative
+/// somewhere.
+bool density_is_proper(TestOutcome& outcome) try {
   if (outcome.question.kind != QuestionKind::fit_to_density) return true;
   const auto& draws = dynamic_cast<const SamplerSetup&>(*outcome.question.subjects[0].setup);
   const stats::CellProbabilities& grid = draws.cells().grid;
@@ -41,6 +42,9 @@ bool density_is_proper(TestOutcome& outcome) {
          fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
                      "{:.1g}): more than 1, so no sampler can follow it",
                      grid.total, draws.cells().tolerance()));
+  return false;
+} catch (const std::domain_error& error) {
+  settle(outcome, Verdict::invalid, in_words(error));
   return false;
 }
 
@@ -348,13 +352,11 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
   return data;
 }
 
-void take_look(TestWork& work, bool may_go_on) {
+namespace {
+
+/// Of a test whose numbers are all there.
+void take_sound_look(TestWork& work, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
-  outcome.decided = true;
-  if (std::string why = undrawable(work); !why.empty()) {
-    settle(outcome, Verdict::error, std::move(why));
-    return;
-  }
   if (!density_is_proper(outcome)) return;
   judge(work);
   const bool last = outcome.look + 1 == outcome.plan.looks.sizes.size();
@@ -370,6 +372,23 @@ void take_look(TestWork& work, bool may_go_on) {
     }
   }
   require_activation(work);
+}
+
+}  // namespace
+
+void take_look(TestWork& work, bool may_go_on) {
+  TestOutcome& outcome = work.outcome;
+  outcome.decided = true;
+  if (std::string why = undrawable(work); !why.empty()) {
+    settle(outcome, Verdict::error, std::move(why));
+    return;
+  }
+  try {
+    take_sound_look(work, may_go_on);
+  } catch (const NoDensity& failure) {
+    outcome.channels.clear();
+    settle(outcome, Verdict::error, lack_of_density(outcome, failure.what()));
+  }
 }
 
 }  // namespace assay::harness

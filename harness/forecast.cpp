@@ -87,7 +87,7 @@ std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilot
 }  // namespace
 
 Forecast forecast(const TestOutcome& test, const Pilots& pilots) {
-  if (!test.plan.invalid.empty()) return {};
+  if (!test.plan.invalid.empty() || !test.plan.error.empty()) return {};
   return {.detectable = detectable_of(test, pilots), .share = share_of(test, pilots)};
 }
 

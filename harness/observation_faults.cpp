@@ -32,6 +32,7 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, std::siz
 
 std::string undrawable(const TestWork& work) {
   const TestOutcome& outcome = work.outcome;
+  if (!outcome.plan.error.empty()) return lack_of_density(outcome, outcome.plan.error);
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
     const Subject& side = outcome.question.subjects[subject];
     const Pool& pool = *work.pools[subject];
@@ -46,6 +47,11 @@ std::string undrawable(const TestWork& work) {
     }
   }
   return "";
+}
+
+std::string lack_of_density(const TestOutcome& outcome, const std::string& why) {
+  return fmt::format("the density that `{}` declares cannot be had: {}",
+                     outcome.question.subjects[0].estimator->name, why);
 }
 
 std::string first_contradiction(const TestWork& work) {

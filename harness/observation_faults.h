@@ -6,9 +6,12 @@
 
 namespace assay::harness {
 
-/// Why a test's observations cannot be judged: its source stopped, or some of them are not finite;
-/// empty where they can.
+/// Why a test's observations cannot be judged: its source stopped, some of them are not finite, or
+/// there was no plan; empty where they can.
 std::string undrawable(const TestWork& work);
+
+/// That the density a test needs cannot be had.
+std::string lack_of_density(const TestOutcome& outcome, const std::string& why);
 
 /// Which draw was the first to contradict its sampler, as the end of a sentence; empty where none
 /// did.

@@ -27,6 +27,7 @@ struct Plan {
   std::vector<reports::Gate> gates = {};      ///< of the pilot
   std::uint32_t smallest_cell = 1;            ///< of an image: smaller ones do not keep their level
   std::string invalid = "";                   ///< why no method is valid, if none is
+  std::string error = "";                     ///< why nothing can be planned, if nothing can
   /// Of pictures that were looked at when they were read.
   std::shared_ptr<const PictureLook> look = {};
 

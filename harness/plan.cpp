@@ -13,6 +13,7 @@
 #include "harness/method_choice.h"
 #include "harness/pool.h"
 #include "harness/sample_size.h"
+#include "harness/sampler_setup.h"
 
 namespace assay::harness {
 namespace {
@@ -138,6 +139,14 @@ std::vector<Regions> regions_of(const Question& question) {
   return all;
 }
 
+/// A density that a claim is about must be there: better known now than after the draws.
+void require_density(const Question& question) {
+  if (question.kind != QuestionKind::fit_to_density && question.kind != QuestionKind::integral) {
+    return;
+  }
+  dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).cells();
+}
+
 }  // namespace
 
 Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
@@ -151,6 +160,7 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
   }
   try {
+    require_density(question);
     const std::uint64_t most = most_available(question, plan);
     const std::uint64_t least = choose_method(question, place, pilots, most, plan);
     plan.looks = plan_looks(question, place, pilots, plan, least);
@@ -158,6 +168,9 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2);
     plan.invalid = in_words(error);
+  } catch (const NoDensity& failure) {
+    plan.looks = one_look(2);
+    plan.error = failure.what();
   }
   return plan;
 }

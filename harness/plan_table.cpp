@@ -8,6 +8,7 @@
 #include <set>
 
 #include "harness/forecast.h"
+#include "harness/observation_faults.h"
 #include "reports/columns.h"
 #include "reports/effect.h"
 #include "reports/number.h"
@@ -128,8 +129,10 @@ std::vector<std::string> gate_notes(const std::vector<reports::Gate>& gates) {
   return notes;
 }
 
-/// Why an estimator of the test could not be piloted; "" where all could.
-std::string pilot_trouble(const TestOutcome& test, const Pilots& pilots) {
+/// Why the test will be an error: its density could not be had, or an estimator not be piloted; ""
+/// where nothing is known.
+std::string trouble_of(const TestOutcome& test, const Pilots& pilots) {
+  if (!test.plan.error.empty()) return lack_of_density(test, test.plan.error);
   for (const Subject& side : test.question.subjects) {
     const auto found = pilots.find(side.estimator->name);
     if (found == pilots.end() || found->second.trouble.empty()) continue;
@@ -156,7 +159,7 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
                effect_text(test, expected),
                expected.share ? fmt::format("{:.0f} %", 100 * *expected.share) : unknown};
   if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid);
-  if (const std::string trouble = pilot_trouble(test, pilots); !trouble.empty()) {
+  if (const std::string trouble = trouble_of(test, pilots); !trouble.empty()) {
     row.notes.push_back("error: " + trouble);
   }
   return row;
@@ -306,7 +309,7 @@ int plan_exit_code(const PlannedRun& planned) {
     for (const TestWork& work : run->tests) {
       const TestOutcome& test = work.outcome;
       any = true;
-      bad = bad || !pilot_trouble(test, run->pilots).empty() ||
+      bad = bad || !trouble_of(test, run->pilots).empty() ||
             (!test.plan.invalid.empty() && test.question.test->expect != Expectation::invalid);
     }
   }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "harness/domain_chart.h"
+#include "harness/fetched_ahead.h"
 
 namespace assay::harness {
 namespace {
@@ -41,22 +42,53 @@ Panels affordable(Panels panels) {
   return panels;
 }
 
-using LobeDensity = std::function<double(const Point&)>;
+/// A density at many points, of a sampler that may write those of the first few only.
+using Densities = std::function<std::size_t(std::span<const Point>, std::span<double>)>;
+
+void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out) {
+  for (std::size_t done = 0; done < points.size();) {
+    done += densities(points.subspan(done), out.subspan(done));
+  }
+}
+
+/// A density on a plane as stats integrates it.
+class OnChart {
+ public:
+  OnChart(const DomainChart& chart, Densities densities)
+      : chart_(chart),
+        densities_(std::move(densities)),
+        firsts_(chart.coordinate),
+        seconds_(chart.coordinate) {}
+
+  void operator()(std::span<const double> x, std::span<const double> y, std::span<double> values) {
+    points_.clear();
+    jacobians_.clear();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Coordinate& first = firsts_(x[i]);
+      const Coordinate& second = seconds_(y[i]);
+      points_.push_back(chart_.point(first, second));
+      jacobians_.push_back(chart_.jacobian(first, second));
+    }
+    write_all(densities_, points_, values);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] *= jacobians_[i];
+  }
+
+ private:
+  DomainChart chart_;
+  Densities densities_;
+  RememberedCoordinates firsts_;
+  RememberedCoordinates seconds_;
+  std::vector<Point> points_;
+  std::vector<double> jacobians_;
+};
 
 stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
-                                  LobeDensity density) {
+                                  Densities densities) {
   const DomainChart chart = chart_by(sampler.domain(), marginal);
   const Panels panels = affordable(sampler.panels());
-  const auto value = [chart, density, firsts = RememberedCoordinates(chart.coordinate),
-                      seconds = RememberedCoordinates(chart.coordinate)](double x,
-                                                                         double y) mutable {
-    const Coordinate& first = firsts(x);
-    const Coordinate& second = seconds(y);
-    return density(chart.point(first, second)) * chart.jacobian(first, second);
-  };
   return {.x = chart.first,
           .y = chart.second,
-          .value = value,
+          .values = OnChart(chart, std::move(densities)),
           .x_panels = marginal == 0 ? panels.first : panels.second,
           .y_panels = marginal == 0 ? panels.second : panels.first};
 }
@@ -68,8 +100,10 @@ stats::CellProbabilities cells_of_lobe(const Sampler& sampler, const stats::Plan
       return sampler.lobe_density(lobe, {x, 0, 0});
     });
   }
-  const LobeDensity density = [&](const Point& p) { return sampler.lobe_density(lobe, p); };
-  return stats::cell_probabilities(grid, plane_density(sampler, 0, density), cell_limits);
+  const auto densities = [&](std::span<const Point> points, std::span<double> out) {
+    return sampler.lobe_densities(lobe, points, out);
+  };
+  return stats::cell_probabilities(grid, plane_density(sampler, 0, densities), cell_limits);
 }
 
 void append(stats::CellProbabilities& all, const stats::CellProbabilities& more) {
@@ -93,20 +127,28 @@ DensityCells cells_of(const Sampler& sampler, const stats::PlaneGrid& grid) {
   return cells;
 }
 
+/// That of all lobes together.
+Densities densities_of(const Sampler& sampler) {
+  return [&sampler](std::span<const Point> points, std::span<double> out) {
+    return sampler.densities(points, out);
+  };
+}
+
 stats::TabulatedLaw law_on_interval(const Sampler& sampler) {
   stats::AdaptiveQuadrature rule(table_limits);
   const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
   const auto parts = stats::cut(range, range, std::max(sampler.panels().first, least_parts));
-  return stats::tabulate(rule.of([&](double x) {
-    return sampler.density({x, 0, 0});
-  }),
-                         parts, rule);
+  const auto density = [&](std::span<const double> x, std::span<double> values) {
+    std::vector<Point> points;
+    for (const double each : x) points.push_back({each, 0, 0});
+    write_all(densities_of(sampler), points, values);
+  };
+  return stats::tabulate(rule.of(density), parts, rule);
 }
 
 stats::TabulatedLaw law_of(const Sampler& sampler, std::size_t marginal) {
   if (on_interval(sampler)) return law_on_interval(sampler);
-  const stats::PlaneDensity density =
-      plane_density(sampler, marginal, [&](const Point& p) { return sampler.density(p); });
+  const stats::PlaneDensity density = plane_density(sampler, marginal, densities_of(sampler));
   stats::AdaptiveQuadrature rule(table_limits);
   // A multiple of the panels, so that their borders stay borders.
   const std::size_t each = (least_parts + density.x_panels - 1) / density.x_panels;
@@ -124,8 +166,15 @@ class SamplerEstimator final : public Estimator {
   explicit SamplerEstimator(const SamplerSetup& setup)
       : setup_(setup), marginals_(setup.marginals()) {}
 
+  void announce(const Announcement& next) override { ahead_.announce(next); }
+  double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
+
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const SamplerDraw draw = setup_.sampler().sample(random);
+    const Sampler& sampler = setup_.sampler();
+    const SamplerDraw draw =
+        sampler.is_elsewhere()
+            ? ahead_.of(random, [&](auto streams) { return draws_of(sampler, streams); })
+            : sampler.sample(random);
     const bool point = has_density(setup_.sampler(), draw);
     for (std::size_t i = 0; i < marginals_.size(); ++i) {
       out[i] = point ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
@@ -137,6 +186,7 @@ class SamplerEstimator final : public Estimator {
  private:
   const SamplerSetup& setup_;
   std::vector<Marginal> marginals_;
+  FetchedAhead<SamplerDraw> ahead_;
 };
 
 std::string range_text(const std::string& name, double low, double high) {
@@ -144,6 +194,12 @@ std::string range_text(const std::string& name, double low, double high) {
 }
 
 }  // namespace
+
+std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<Stream> streams) {
+  std::vector<SamplerDraw> draws(streams.size());
+  draws.resize(sampler.samples(streams, draws));
+  return draws;
+}
 
 void require_sound(const NamedSampler& named, const Location& where) {
   const Sampler& sampler = *named.sampler;
@@ -197,9 +253,23 @@ std::unique_ptr<Estimator> SamplerSetup::make() const {
   return std::make_unique<SamplerEstimator>(*this);
 }
 
+/// A density that could not be had is not asked for again: that may have taken a time-out.
+auto SamplerSetup::integrated(auto table) const {
+  if (!no_density_.empty()) throw NoDensity(no_density_);
+  try {
+    return table();
+  } catch (const std::runtime_error& error) {
+    no_density_ = error.what();
+    throw NoDensity(no_density_);
+  }
+}
+
 const DensityCells& SamplerSetup::cells() const {
   const std::scoped_lock lock(once_);
-  if (!cells_) cells_ = std::make_shared<const DensityCells>(cells_of(sampler(), grid_));
+  if (!cells_) {
+    cells_ = integrated(
+        [&] { return std::make_shared<const DensityCells>(cells_of(sampler(), grid_)); });
+  }
   return *cells_;
 }
 
@@ -271,7 +341,9 @@ const stats::TabulatedLaw& SamplerSetup::marginal_law(const std::string& margina
   if (found != laws_.end()) return found->second;
   const std::vector<Marginal> all = marginals();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].name == marginal) return laws_.emplace(marginal, law_of(sampler(), i)).first->second;
+    if (all[i].name != marginal) continue;
+    auto law = integrated([&] { return law_of(sampler(), i); });
+    return laws_.emplace(marginal, std::move(law)).first->second;
   }
   throw std::logic_error("no marginal " + marginal);
 }

@@ -6,7 +6,10 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "estimators/estimator.h"
 #include "stats/cells.h"
@@ -37,6 +40,15 @@ struct DensityCells {
 /// the marginal's range.
 double no_point(const Marginal& marginal);
 
+/// That a sampler's density could not be asked for: the program that it is inside of has ended.
+class NoDensity : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Draws of the first few of the streams.
+std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<Stream> streams);
+
 class SamplerSetup : public Setup {
  public:
   explicit SamplerSetup(NamedSampler named);
@@ -46,10 +58,10 @@ class SamplerSetup : public Setup {
 
   /// How many cells there are, the last for draws without a point.
   std::size_t cell_count() const;
-  /// By quadrature of the declared density, on first use; then kept.
+  /// By quadrature of the declared density, on first use; then kept. Throws NoDensity.
   const DensityCells& cells() const;
   /// The law of a marginal under the declared density, given a point; 1 - total() is the mass
-  /// without one. On first use; then kept.
+  /// without one. On first use; then kept. Throws NoDensity.
   const stats::TabulatedLaw& marginal_law(const std::string& marginal) const;
   const Sampler& sampler() const { return *named_.sampler; }
   const std::string& name() const { return named_.name; }
@@ -64,11 +76,14 @@ class SamplerSetup : public Setup {
   std::string describe_cell(std::size_t cell) const;
 
  private:
+  auto integrated(auto table) const;
+
   NamedSampler named_;
   stats::PlaneGrid grid_;  // of a domain of two coordinates
   mutable std::mutex once_;
   mutable std::shared_ptr<const DensityCells> cells_;
   mutable std::map<std::string, stats::TabulatedLaw> laws_;
+  mutable std::string no_density_;  ///< why
 };
 
 /// InputError at `where` for a sampler without lobes and for an interval whose bounds are not

@@ -53,9 +53,60 @@ double hidden(Span span, double sum, const AdaptiveQuadrature::Values& at) {
   return blind_share * sum * ((low > 0 ? 0 : 1) + (high > 0 ? 0 : 1));
 }
 
+AdaptiveQuadrature::Sampled sampled_in(Span span, const AdaptiveQuadrature::Values& at) {
+  AdaptiveQuadrature::Sampled found{.ends = {at[low_end].value, at[high_end].value}};
+  for (std::size_t i = 0; i < AdaptiveQuadrature::nodes; ++i) {
+    const double weight = span.width() / 2 * node_weights()[i];
+    found.parts[i] = weight * at[i].value;
+    found.integral = found.integral + Integral{found.parts[i], weight * at[i].error};
+  }
+  found.integral.error += hidden(span, found.integral.value, at);
+  return found;
+}
+
+/// What two halves say of a part, and how far the part itself was from it.
+Integral from_halves(Integral whole, Integral one, Integral two) {
+  const Integral sum = one + two;
+  return {sum.value, std::max(std::abs(sum.value - whole.value), sum.error)};
+}
+
 }  // namespace
 
-AdaptiveQuadrature::Values AdaptiveQuadrature::counted(const Places& densities) {
+// A part of a line. Its integral is what its halves say, or the sum of theirs where it was halved.
+struct AdaptiveQuadrature::Part {
+  double x;
+  Span span;
+  Integral whole;  // by its own nodes
+  int depth;
+  Integral integral = {};
+  std::size_t halves = 0;  // where the first of them stands, behind their part; 0: it has none
+};
+
+// Parts whose densities are asked for together.
+class AdaptiveQuadrature::Level {
+ public:
+  void add(double x, Span span) {
+    const Places at = places_in(span);
+    x_.insert(x_.end(), at.size(), x);
+    y_.insert(y_.end(), at.begin(), at.end());
+  }
+  void ask(const PlaneValues& density) {
+    densities_.resize(y_.size());
+    density(x_, y_, densities_);
+  }
+  /// Of the part that was added as this one.
+  std::span<const double, nodes + 2> densities(std::size_t part) const {
+    return std::span(densities_).subspan(part * (nodes + 2)).first<nodes + 2>();
+  }
+
+ private:
+  std::vector<double> x_;
+  std::vector<double> y_;
+  std::vector<double> densities_;
+};
+
+AdaptiveQuadrature::Values AdaptiveQuadrature::counted(
+    std::span<const double, nodes + 2> densities) {
   Values values;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double density = densities[i];
@@ -70,15 +121,7 @@ AdaptiveQuadrature::Values AdaptiveQuadrature::counted(const Places& densities) 
 }
 
 AdaptiveQuadrature::Sampled AdaptiveQuadrature::sampled(const Function& function, Span span) {
-  const Values at = function(places_in(span));
-  Sampled found{.ends = {at[low_end].value, at[high_end].value}};
-  for (std::size_t i = 0; i < nodes; ++i) {
-    const double weight = span.width() / 2 * node_weights()[i];
-    found.parts[i] = weight * at[i].value;
-    found.integral = found.integral + Integral{found.parts[i], weight * at[i].error};
-  }
-  found.integral.error += hidden(span, found.integral.value, at);
-  return found;
+  return sampled_in(span, function(places_in(span)));
 }
 
 Integral AdaptiveQuadrature::once(const Function& function, Span span) {
@@ -104,14 +147,84 @@ Integral AdaptiveQuadrature::over(const Function& function, Span span) {
 
 Integral AdaptiveQuadrature::refined(const Function& function, Span span, Integral whole,
                                      int depth) {
-  const Span first{span.low, span.middle()};
-  const Span second{span.middle(), span.high};
+  const auto [first, second] = span.halves();
   const Integral one = once(function, first);
   const Integral two = once(function, second);
-  const Integral sum = one + two;
-  const double error = std::max(std::abs(sum.value - whole.value), sum.error);
-  if (error <= limits_.tolerance || depth <= 0 || exhausted()) return {sum.value, error};
+  const Integral sum = from_halves(whole, one, two);
+  if (sum.error <= limits_.tolerance || depth <= 0 || exhausted()) return sum;
   return refined(function, first, one, depth - 1) + refined(function, second, two, depth - 1);
+}
+
+// Looks at the halves of the parts from `first` on and puts those behind all parts whose own halves
+// must be looked at.
+void AdaptiveQuadrature::halve(const PlaneValues& density, std::vector<Part>& parts,
+                               std::size_t first, bool ended) {
+  const std::size_t last = parts.size();
+  Level level;
+  for (std::size_t i = first; i < last; ++i) {
+    for (const Span& half : parts[i].span.halves()) level.add(parts[i].x, half);
+  }
+  level.ask(density);
+  for (std::size_t i = first; i < last; ++i) {
+    const auto [low, high] = parts[i].span.halves();
+    const std::size_t place = 2 * (i - first);
+    const Integral one = sampled_in(low, counted(level.densities(place))).integral;
+    const Integral two = sampled_in(high, counted(level.densities(place + 1))).integral;
+    parts[i].integral = from_halves(parts[i].whole, one, two);
+    const int depth = parts[i].depth;
+    if (parts[i].integral.error <= limits_.tolerance || depth <= 0 || ended) continue;
+    parts[i].halves = parts.size();
+    parts.push_back({.x = parts[i].x, .span = low, .whole = one, .depth = depth - 1});
+    parts.push_back({.x = parts[i].x, .span = high, .whole = two, .depth = depth - 1});
+  }
+}
+
+std::vector<Integral> AdaptiveQuadrature::side_by_side(const PlaneValues& density,
+                                                       std::span<const Line> lines) {
+  const bool ended = exhausted();
+  Level wholes;
+  for (const Line& line : lines) wholes.add(line.x, line.y);
+  wholes.ask(density);
+  std::vector<Part> parts;
+  for (const Line& line : lines) {
+    const Values at = counted(wholes.densities(parts.size()));
+    parts.push_back({.x = line.x,
+                     .span = line.y,
+                     .whole = sampled_in(line.y, at).integral,
+                     .depth = limits_.deepest_bisection});
+  }
+  for (std::size_t first = 0, last = 0; first < parts.size(); first = last) {
+    last = parts.size();
+    halve(density, parts, first, ended);
+  }
+  // Halves stand behind what they are halves of.
+  std::vector<Integral> integrals(lines.size());
+  for (std::size_t i = parts.size(); i-- > 0;) {
+    const std::size_t halves = parts[i].halves;
+    if (halves > 0) parts[i].integral = parts[halves].integral + parts[halves + 1].integral;
+    if (i < lines.size()) integrals[i] = parts[i].integral;
+  }
+  return integrals;
+}
+
+std::vector<Integral> AdaptiveQuadrature::along(const PlaneValues& density,
+                                                std::span<const Line> lines) {
+  const bool ended = exhausted();
+  const std::uint64_t used = used_;
+  const double largest = largest_;
+  std::vector<Integral> integrals = side_by_side(density, lines);
+  if (ended || !exhausted()) return integrals;
+  // The evaluations were used up on the way, and who gets the last of them is a matter of order.
+  used_ = used;
+  largest_ = largest;
+  std::ranges::transform(lines, integrals.begin(), [&](const Line& line) {
+    const auto at_x = [&](std::span<const double> y, std::span<double> values) {
+      const std::vector<double> x(y.size(), line.x);
+      density(x, y, values);
+    };
+    return over(of(at_x), line.y);
+  });
+  return integrals;
 }
 
 std::vector<Span> cut(Span span, Span whole, std::size_t panels) {

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 namespace assay::stats {
@@ -14,6 +16,7 @@ struct Span {
 
   double middle() const { return (low + high) / 2; }
   double width() const { return high - low; }
+  std::array<Span, 2> halves() const { return {{{low, middle()}, {middle(), high}}}; }
 };
 
 struct Integral {
@@ -22,6 +25,10 @@ struct Integral {
 };
 
 inline Integral operator+(Integral a, Integral b) { return {a.value + b.value, a.error + b.error}; }
+
+// A function of two variables at many places at once: value i is that at x[i] and y[i].
+using PlaneValues = std::function<void(std::span<const double> x, std::span<const double> y,
+                                       std::span<double> values)>;
 
 // When an adaptive quadrature stops halving a part: its error is below the tolerance, it has been
 // halved this often, or the evaluations of the whole computation are used up. What is left is in
@@ -50,6 +57,15 @@ class AdaptiveQuadrature {
   explicit AdaptiveQuadrature(QuadratureLimits limits) : limits_(limits) {}
 
   Integral over(const Function& function, Span span);
+  // Part of a line of equal x.
+  struct Line {
+    double x;
+    Span y;
+  };
+  // over() of a density along each line, the same numbers. Lines are halved side by side, a level
+  // at a time, so that the density is asked for hundreds of places at once: of another process each
+  // question takes longer than most densities. It throws as above.
+  std::vector<Integral> along(const PlaneValues& density, std::span<const Line> lines);
   // Without halving: the integral and, as error, what the values' own errors and a hidden border
   // of the support may come to.
   Integral once(const Function& function, Span span);
@@ -65,12 +81,17 @@ class AdaptiveQuadrature {
   Sampled sampled(const Function& function, Span span);
   // The nodes in [-1, 1].
   static const std::array<double, nodes>& node_places();
-  // A density as such a function. Its values count against the limit; it throws as above.
+  // A density as such a function, of one place or of as many as it is given: density(places,
+  // values). Its values count against the limit; it throws as above.
   template <class Density>
   Function of(Density density) {
     return [this, density](const Places& at) {
       Places densities;
-      for (std::size_t i = 0; i < at.size(); ++i) densities[i] = density(at[i]);
+      if constexpr (std::is_invocable_v<Density, double>) {
+        for (std::size_t i = 0; i < at.size(); ++i) densities[i] = density(at[i]);
+      } else {
+        density(std::span<const double>(at), std::span<double>(densities));
+      }
       return counted(densities);
     };
   }
@@ -79,7 +100,12 @@ class AdaptiveQuadrature {
   double largest() const { return largest_; }  // of the densities counted
 
  private:
-  Values counted(const Places& densities);
+  struct Part;
+  class Level;
+
+  Values counted(std::span<const double, nodes + 2> densities);
+  void halve(const PlaneValues& density, std::vector<Part>& parts, std::size_t first, bool ended);
+  std::vector<Integral> side_by_side(const PlaneValues& density, std::span<const Line> lines);
   Integral refined(const Function& function, Span span, Integral whole, int depth);
 
   QuadratureLimits limits_;

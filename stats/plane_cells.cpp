@@ -9,8 +9,13 @@ namespace assay::stats {
 namespace {
 
 constexpr std::size_t probes_a_side = 256;
+// Points of each side that are looked at together.
+constexpr std::size_t probes_at_once = 32;
 // Panels of a cell that shows a corner of the support at its side only.
 constexpr std::size_t panels_of_a_corner = 32;
+
+// The densities of so many lines stay in the cache.
+constexpr std::size_t lines_at_once = 36;
 
 void check_borders(const std::vector<double>& borders) {
   check::at_least({"PlaneGrid", "number of borders"}, borders.size(), 2);
@@ -88,16 +93,26 @@ class Cells {
     return false;
   }
 
-  bool shown_at_a_side(const Cell& cell) {
-    for (std::size_t k = 0; k < probes_a_side; ++k) {
+  /// Whether the density shows at some of the points of each side from this one on.
+  bool shown_at(const Cell& cell, std::size_t first) {
+    constexpr double inside = 1e-9;
+    std::vector<double> x;
+    std::vector<double> y;
+    for (std::size_t k = first; k < first + probes_at_once; ++k) {
       const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(probes_a_side);
-      const double x = cell.x.low + share * cell.x.width();
-      const double y = cell.y.low + share * cell.y.width();
-      constexpr double inside = 1e-9;
       for (const double end : {inside, 1 - inside}) {
-        if (density_.value(x, cell.y.low + end * cell.y.width()) > 0) return true;
-        if (density_.value(cell.x.low + end * cell.x.width(), y) > 0) return true;
+        x.insert(x.end(), {cell.x.low + share * cell.x.width(), cell.x.low + end * cell.x.width()});
+        y.insert(y.end(), {cell.y.low + end * cell.y.width(), cell.y.low + share * cell.y.width()});
       }
+    }
+    std::vector<double> values(x.size());
+    density_.values(x, y, values);
+    return std::ranges::any_of(values, [](double value) { return value > 0; });
+  }
+
+  bool shown_at_a_side(const Cell& cell) {
+    for (std::size_t k = 0; k < probes_a_side; k += probes_at_once) {
+      if (shown_at(cell, k)) return true;
     }
     return false;
   }
@@ -108,7 +123,7 @@ class Cells {
     if (!shown_at_a_side(cell)) return {0, unseen};
     const PlaneDensity closer{.x = cell.x,
                               .y = cell.y,
-                              .value = density_.value,
+                              .values = density_.values,
                               .x_panels = panels_of_a_corner,
                               .y_panels = panels_of_a_corner};
     Integral sum{0, unseen};
@@ -133,15 +148,21 @@ std::size_t PlaneGrid::index(double x, double y) const {
 
 AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, AdaptiveQuadrature& rule) {
   const std::vector<Span> parts = cut(y, density.y, density.y_panels);
-  const auto at = [&density, &rule, parts](double x) {
-    const auto along = rule.of([&density, x](double v) { return density.value(x, v); });
-    Integral sum;
-    for (const Span& part : parts) sum = sum + rule.over(along, part);
-    return sum;
-  };
-  return [at](const AdaptiveQuadrature::Places& places) {
+  return [&density, &rule, parts](const AdaptiveQuadrature::Places& places) {
+    std::vector<AdaptiveQuadrature::Line> lines;
+    for (const double x : places) {
+      for (const Span& part : parts) lines.push_back({x, part});
+    }
     AdaptiveQuadrature::Values values;
-    std::transform(places.begin(), places.end(), values.begin(), at);
+    for (std::size_t first = 0; first < lines.size(); first += lines_at_once) {
+      const auto some = std::span(lines).subspan(first);
+      const auto integrals =
+          rule.along(density.values, some.first(std::min(some.size(), lines_at_once)));
+      for (std::size_t i = 0; i < integrals.size(); ++i) {
+        Integral& sum = values[(first + i) / parts.size()];
+        sum = sum + integrals[i];
+      }
+    }
     return values;
   };
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
+#include <span>
 #include <vector>
 
 #include "stats/adaptive_quadrature.h"
@@ -27,10 +27,18 @@ struct PlaneGrid {
 struct PlaneDensity {
   Span x;
   Span y;
-  std::function<double(double x, double y)> value;
+  PlaneValues values;
   std::size_t x_panels = 1;
   std::size_t y_panels = 1;
 };
+
+// A function of one place as one of many.
+template <class Density>
+PlaneValues one_by_one(Density density) {
+  return [density](std::span<const double> x, std::span<const double> y, std::span<double> values) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = density(x[i], y[i]);
+  };
+}
 
 // The density at x, integrated over part of the other coordinate. `density` must outlive it.
 AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, AdaptiveQuadrature& rule);

@@ -36,7 +36,7 @@ build/tests/bench/ks_bench
 build/tests/bench/image_bench
 build/tests/bench/pictures_bench build/harness/assay
 build/tests/bench/tails_bench
-build/tests/bench/foreign_bench estimators/foreign/examples estimators
+build/tests/bench/foreign_bench estimators/foreign/examples estimators build/harness/assay
 build/tests/bench/looks_bench suites/analytic.yaml suites/luminaire.yaml suites/brdf.yaml
 # The same with scipy, where that is installed.
 if /usr/bin/python3 -c 'import scipy' 2>/dev/null; then

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 namespace assay::foreign {
@@ -11,10 +10,6 @@ namespace {
 
 // What a program may take to end by itself once its standard input is closed.
 constexpr std::chrono::milliseconds farewell{500};
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
 
 // Pairs of observations, and how many different ones must be among them, before equality under two
 // keys is no coincidence: of a value with four outcomes it is at most some 3 in
@@ -158,7 +153,7 @@ void Children::note_failure(const Question& at, const std::string& why) {
 
 void Children::refuse_after_failure(const Question& question) const {
   const std::scoped_lock lock(mutex_);
-  if (!unfit_.empty()) throw NoAnswer(unfit_);
+  if (!unfit_.empty() && !question.is_to_sampler()) throw NoAnswer(unfit_);
   const auto found = failures_.find({question.key, question.primaries});
   if (found != failures_.end() && question.first > found->second.index) {
     throw NoAnswer(found->second.why);

@@ -41,7 +41,8 @@ class Children {
   /// That observation `index` of a stream could not be had. Those after it need not be tried.
   void note_failure(const Question& at, const std::string& why);
   /// Throws NoAnswer where an earlier observation of the same stream could not be had, or where
-  /// witness() found that the program ignores key or index.
+  /// witness() found that the program ignores key or index. A draw of a sampler is an observation
+  /// of no primaries.
   void refuse_after_failure(const Question& question) const;
 
  private:

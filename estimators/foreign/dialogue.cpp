@@ -41,6 +41,12 @@ std::string tail_of(const std::string& text) {
   return (begin > 0 && !out.empty() ? "… " : "") + out;
 }
 
+/// Questions that take alike long.
+std::pair<std::uint64_t, std::uint64_t> kind_of(const Question& question) {
+  if (!question.is_to_sampler()) return {0, 0};
+  return {question.key + 1, static_cast<std::uint64_t>(question.asked())};
+}
+
 }  // namespace
 
 Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
@@ -90,19 +96,23 @@ void Dialogue::give_up(const std::string& why) {
                  (tail.empty() ? "" : "; its standard error ends with: " + tail));
 }
 
-std::vector<double> Dialogue::ask(const Question& question) {
+std::vector<double> Dialogue::ask(const Question& question) { return ask(question, {}); }
+
+std::vector<double> Dialogue::ask(const Question& question, std::string_view items) {
   const auto start = steady_clock::now();
   try {
-    std::vector<double> numbers = hear(question);
-    learn_pace(question.count, duration<double>(steady_clock::now() - start).count());
+    std::vector<double> numbers = hear(question, items);
+    learn_pace(question, duration<double>(steady_clock::now() - start).count());
     return numbers;
   } catch (const ProtocolError& error) {
     give_up("cannot be understood: " + std::string(error.what()));
   }
 }
 
-std::vector<double> Dialogue::hear(const Question& question) {
-  Reply reply(question, hello_.width(), hello_.numbers);
+std::vector<double> Dialogue::hear(const Question& question, std::string_view items) {
+  const std::size_t width =
+      question.is_to_sampler() ? numbers_of(question.asked()) : hello_.width();
+  Reply reply(question, width, hello_.numbers);
   const Deadline end = deadline();
   if (child_.has_output()) {
     std::array<char, 64> early{};
@@ -113,7 +123,7 @@ std::vector<double> Dialogue::hear(const Question& question) {
     }
   }
   try {
-    child_.send(to_bytes(question, hello_.numbers), end);
+    child_.send(to_bytes(question, hello_.numbers) + std::string(items), end);
     while (true) {
       const std::size_t count = child_.receive(reply.space(), end);
       if (count == 0) {
@@ -132,13 +142,23 @@ std::vector<double> Dialogue::hear(const Question& question) {
   return reply.numbers();
 }
 
-std::uint64_t Dialogue::well_sized(std::uint64_t most) const { return std::min(size_, most); }
+bool Dialogue::is_new_to(const Question& question) const {
+  return !sizes_.contains(kind_of(question));
+}
 
-void Dialogue::learn_pace(std::uint64_t count, double seconds) {
+std::uint64_t Dialogue::well_sized(const Question& question) const {
+  const auto known = sizes_.find(kind_of(question));
+  return std::min(known == sizes_.end() ? 1 : known->second, question.count);
+}
+
+void Dialogue::learn_pace(const Question& question, double seconds) {
   constexpr std::uint64_t growth = 8;
-  const double wanted = static_cast<double>(count) * pleasant_seconds / std::max(seconds, 1e-9);
-  const auto most = static_cast<double>(growth * count);
-  size_ = static_cast<std::uint64_t>(std::clamp(wanted, 1.0, most));
+  std::uint64_t& size = sizes_[kind_of(question)];
+  const auto count = static_cast<double>(question.count);
+  const double wanted = count * pleasant_seconds / std::max(seconds, 1e-9);
+  // A small question tells little of large ones.
+  const auto most = static_cast<double>(std::max(growth * question.count, size));
+  size = static_cast<std::uint64_t>(std::clamp(wanted, 1.0, most));
 }
 
 }  // namespace assay::foreign

@@ -3,7 +3,10 @@
 // A running program and the conversation with it.
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "estimators/foreign/child.h"
@@ -35,8 +38,13 @@ class Dialogue {
   /// The numbers of the observations, one after the other. Throws NoAnswer, after which the program
   /// no longer runs.
   std::vector<double> ask(const Question& question);
-  /// How many of `most` observations to ask for at a time, by how long the last replies took.
-  std::uint64_t well_sized(std::uint64_t most) const;
+  /// The same of a question to a sampler, whose items follow it.
+  std::vector<double> ask(const Question& question, std::string_view items);
+  /// How many of the question's observations or items to ask for at a time, by how long the last
+  /// replies to such questions took.
+  std::uint64_t well_sized(const Question& question) const;
+  /// Whether nothing of this kind, of the same sampler, has been asked yet.
+  bool is_new_to(const Question& question) const;
   /// Whether it was shown that the program draws an observation the same when asked again.
   bool witnessed() const { return witnessed_; }
   void note_witnessed() { witnessed_ = true; }
@@ -46,14 +54,15 @@ class Dialogue {
  private:
   Deadline deadline() const;
   void hear_hello();
-  std::vector<double> hear(const Question& question);
-  void learn_pace(std::uint64_t count, double seconds);
+  std::vector<double> hear(const Question& question, std::string_view items);
+  void learn_pace(const Question& question, double seconds);
   [[noreturn]] void give_up(const std::string& why);
 
   const Terms& terms_;
   Child child_;
   Hello hello_;
-  std::uint64_t size_ = 1;
+  /// Of questions for observations, and to each sampler for each of what it is asked.
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::uint64_t> sizes_;
   bool witnessed_ = false;
 };
 

@@ -1,5 +1,6 @@
 #include "estimators/foreign/hello.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -24,6 +25,10 @@ constexpr std::array<BiasWord, 5> bias_words = {{{"unbiased", BiasClass::unbiase
                                                  {"bootstrap", BiasClass::inverse_bootstrap},
                                                  {"start-up", BiasClass::start_up},
                                                  {"reconstruction", BiasClass::reconstruction}}};
+
+// In the order of Domain.
+constexpr std::array<std::string_view, 5> domain_words = {"interval", "square", "triangle",
+                                                          "hemisphere", "sphere"};
 
 [[noreturn]] void wrong(std::string_view line, const std::string& why) {
   throw ProtocolError("its hello has the line `" + shown(line) + "`: " + why);
@@ -53,8 +58,8 @@ class Reader {
     const auto found = meanings_.find(words[0]);
     if (found == meanings_.end()) {
       wrong(text,
-            "a line begins with channel, image, range, independent, averages, bias, rays, ready or "
-            "error");
+            "a line begins with channel, image, range, independent, averages, bias, rays, sampler, "
+            "ready or error");
     }
     line_ = text;
     found->second(words);
@@ -71,6 +76,7 @@ class Reader {
     if (all.empty()) throw ProtocolError("its hello names neither a `channel` nor an `image`");
     hello_.channels = std::move(all);
     refuse_doubles();
+    require_sound_samplers();
     return hello_;
   }
 
@@ -182,6 +188,36 @@ class Reader {
     }
   }
 
+  Domain domain(std::string_view word) const {
+    const auto found = std::ranges::find(domain_words, word);
+    if (found == domain_words.end()) {
+      wrong_here("a domain is interval, square, triangle, hemisphere or sphere");
+    }
+    return static_cast<Domain>(found - domain_words.begin());
+  }
+
+  void sampler(const Words& words) {
+    if (words.size() < 3 || words.size() % 2 == 0 || !is_name(words[1])) {
+      wrong_here(
+          "a sampler has a name of letters, digits and `_`, a domain, and pairs of a word and a "
+          "number");
+    }
+    SamplerNote note{.name = std::string(words[1]), .domain = domain(words[2])};
+    for (std::size_t i = 3; i < words.size(); i += 2) {
+      const double value = number(words[i + 1]);
+      if (words[i] == "low")
+        note.bounds[0] = value;
+      else if (words[i] == "high")
+        note.bounds[1] = value;
+      else if (words[i] == "rounding" && value >= 0)
+        note.rounding = value;
+      else
+        wrong_here("of a sampler low, high and rounding are known, which is not negative");
+    }
+    if (!(note.bounds[0] < note.bounds[1])) wrong_here("the interval is empty");
+    hello_.samplers.push_back(std::move(note));
+  }
+
   [[noreturn]] void error() const {
     const std::size_t words = std::min(line_.find("error") + 6, line_.size());
     throw Refusal(std::string(line_.substr(words)));
@@ -224,11 +260,23 @@ class Reader {
     }
   }
 
+  void require_sound_samplers() const {
+    std::set<std::string_view> names;
+    for (const SamplerNote& sampler : hello_.samplers) {
+      if (names.insert(sampler.name).second) continue;
+      throw ProtocolError("its hello names the sampler `" + sampler.name + "` twice");
+    }
+    if (!hello_.samplers.empty() && hello_.numbers == Numbers::text) {
+      throw ProtocolError("its hello has a `sampler`, whose numbers are binary only");
+    }
+  }
+
   std::map<std::string_view, std::function<void(const Words&)>> meanings_{
       {"channel", [this](const Words& words) { channel(words); }},
       {"image", [this](const Words& words) { image(words); }},
       {"range", [this](const Words& words) { range(words); }},
       {"bias", [this](const Words& words) { bias(words); }},
+      {"sampler", [this](const Words& words) { sampler(words); }},
       {"error", [this](const Words&) { error(); }},
       {"averages",
        [this](const Words& words) {
@@ -288,6 +336,16 @@ std::string bias_line(std::optional<BiasClass> bias) {
   return "";
 }
 
+std::string sampler_line(const SamplerNote& sampler) {
+  const std::string_view domain = domain_words[static_cast<std::size_t>(sampler.domain)];
+  std::string line = "sampler " + sampler.name + " " + std::string(domain);
+  if (sampler.domain == Domain::interval) {
+    line += " low " + text_of(sampler.bounds[0]) + " high " + text_of(sampler.bounds[1]);
+  }
+  if (sampler.rounding != 0) line += " rounding " + text_of(sampler.rounding);
+  return line + "\n";
+}
+
 bool is_whole_hello(std::string_view text) {
   for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
     const auto words = words_of(text.substr(0, end));
@@ -321,6 +379,7 @@ std::string to_text(const Hello& hello) {
   if (hello.nature.averages) text += "averages\n";
   text += bias_line(hello.nature.bias);
   if (hello.rays) text += "rays\n";
+  for (const SamplerNote& sampler : hello.samplers) text += sampler_line(sampler);
   return text + "ready\n";
 }
 

@@ -17,7 +17,12 @@
 // that an observation is an image, `range LOW HIGH` what no element of it leaves, and `independent`
 // that its pixels do not depend on each other. With `rays` one number more follows each
 // observation's: the rays that it took. `error WORDS` instead of `ready` refuses.
+//
+// `sampler lens hemisphere` says that there is a source of points of this name on this domain,
+// interval (with `low X high Y`), square, triangle, hemisphere or sphere, which can be asked for
+// draws, densities and evaluations (reply.h), in binary only; `rounding X` may follow.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -47,12 +52,21 @@ class Refusal : public ProtocolError {
   using ProtocolError::ProtocolError;
 };
 
+/// A sampler inside the program.
+struct SamplerNote {
+  std::string name;
+  Domain domain = Domain::interval;
+  std::array<double, 2> bounds = {0, 1};  ///< of an interval
+  double rounding = 0;                    ///< 0: the usual one
+};
+
 struct Hello {
   Numbers numbers = Numbers::text;
   std::vector<Channel> channels = {};  ///< the elements of the image first
   std::optional<ImageShape> image = {};
   Nature nature = {.averages = false};
   bool rays = false;
+  std::vector<SamplerNote> samplers = {};
 
   /// Numbers of an observation as they are sent.
   std::size_t width() const { return channels.size() + (rays ? 1 : 0); }
@@ -72,9 +86,10 @@ Hello parse_hello(std::string_view text, std::uint64_t most = most_numbers);
 std::string to_text(const Hello& hello);
 
 /// Lines of it, each with its end: of a channel; of an image, each of whose elements has the range
-/// of this one; of a bias, none where it is unknown.
+/// of this one; of a bias, none where it is unknown; of a sampler.
 std::string channel_line(const Channel& channel);
 std::string image_lines(const ImageShape& image, const Channel& element);
 std::string bias_line(std::optional<BiasClass> bias);
+std::string sampler_line(const SamplerNote& sampler);
 
 }  // namespace assay::foreign

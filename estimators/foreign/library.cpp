@@ -101,8 +101,8 @@ std::vector<Entry> foreign_library() {
             "the index of the observation, and all other tests go on. With `isolated: false` it "
             "is called in the run's own process: faster for estimators that cost nothing, the "
             "same numbers to the last bit, but a crash ends the run, nothing times out, and "
-            "secondary() is called by several threads at a time. Its samplers can be tested only "
-            "so.",
+            "secondary() is called by several threads at a time. All this is "
+            "true of its samplers too; a message then names the draw, or the point of a density.",
         .parameters = parameters(),
         .averages = false,
         .says_nature = true},

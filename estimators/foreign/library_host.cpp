@@ -10,13 +10,15 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
 #include "estimators/flush_denormals.h"
 #include "estimators/foreign/child.h"
+#include "estimators/foreign/library_sampler.h"
 #include "estimators/foreign/library_setup.h"
 #include "estimators/foreign/reply.h"
 #include "estimators/foreign/streams_ahead.h"
@@ -26,7 +28,9 @@ namespace assay {
 
 namespace {
 
+using foreign::Asked;
 using foreign::Hello;
+using foreign::LibrarySampler;
 using foreign::PreparedLibrary;
 using foreign::Question;
 using foreign::StreamsAhead;
@@ -57,17 +61,18 @@ class Channels {
   int questions() const { return questions_; }
 
   bool read_question(Question& question) const {
-    std::array<char, 32> bytes{};
-    std::size_t have = 0;
-    while (have < bytes.size()) {
-      const ssize_t count = read(questions_, bytes.data() + have, bytes.size() - have);
-      if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) return false;
-      have += static_cast<std::size_t>(count);
+    static_assert(sizeof question == 32);
+    return fill({reinterpret_cast<char*>(&question), sizeof question});
+  }
+
+  /// What follows a question to a sampler.
+  template <class Item>
+  std::vector<Item> read_items(const Question& question) const {
+    std::vector<Item> items(question.count);
+    if (!fill({reinterpret_cast<char*>(items.data()), sizeof(Item) * items.size()})) {
+      throw std::runtime_error("the question ended early");
     }
-    static_assert(sizeof question == bytes.size());
-    std::memcpy(&question, bytes.data(), bytes.size());
-    return true;
+    return items;
   }
 
   void write(std::string_view bytes) const {
@@ -88,6 +93,16 @@ class Channels {
   }
 
  private:
+  bool fill(std::span<char> bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t count = read(questions_, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
+    return true;
+  }
+
   int questions_;
   int replies_;
   int printed_;
@@ -112,8 +127,15 @@ void watch(int questions) {
   }).detach();
 }
 
+void reply(const Channels& channels, const Question& question, std::span<const double> numbers) {
+  refuse_printing(channels);
+  channels.write({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
+  channels.write(to_bytes(question, foreign::Numbers::binary));
+}
+
 /// Rays stand behind an observation's numbers, as doubles.
 void answer(const PreparedLibrary& library, const Channels& channels, const Question& question) {
+  const FlushDenormals flush;
   const Hello& hello = library.hello();
   const std::size_t width = hello.width();
   std::vector<double> numbers(static_cast<std::size_t>(question.count) * width);
@@ -132,12 +154,54 @@ void answer(const PreparedLibrary& library, const Channels& channels, const Ques
                                   error.what());
     }
   }
-  refuse_printing(channels);
-  channels.write({reinterpret_cast<const char*>(numbers.data()), 8 * numbers.size()});
-  channels.write(to_bytes(question, hello.numbers));
+  reply(channels, question, numbers);
 }
 
-std::unique_ptr<PreparedLibrary> prepared(const std::vector<std::string>& arguments) {
+std::vector<double> draws_of(const LibrarySampler& sampler, const Channels& channels,
+                             const Question& question) {
+  std::vector<double> numbers;
+  for (const auto& [key, observation] :
+       channels.read_items<std::array<std::uint64_t, 2>>(question)) {
+    const SamplerDraw draw = sampler.draw(key, observation);
+    numbers.insert(numbers.end(), draw.point.begin(), draw.point.end());
+    numbers.insert(numbers.end(), {draw.density, draw.weight, draw.valid ? 1.0 : 0.0});
+  }
+  return numbers;
+}
+
+std::vector<double> at_points(const LibrarySampler& sampler, const Channels& channels,
+                              const Question& question) {
+  std::vector<double> numbers;
+  const bool densities = question.asked() == Asked::densities;
+  for (const Point& point : channels.read_items<Point>(question)) {
+    numbers.push_back(densities ? sampler.density(point) : sampler.evaluate(point));
+  }
+  return numbers;
+}
+
+void answer(const LibrarySampler& sampler, const Channels& channels, const Question& question) {
+  // Tables of densities are made without.
+  std::optional<FlushDenormals> flush;
+  if (question.first >= foreign::denormals_flushed) flush.emplace();
+  reply(channels, question,
+        question.asked() == Asked::draws ? draws_of(sampler, channels, question)
+                                         : at_points(sampler, channels, question));
+}
+
+void serve(const std::shared_ptr<const PreparedLibrary>& library, const Channels& channels) {
+  std::vector<LibrarySampler> samplers;
+  for (const AssaySampler& sampler : library->samplers()) samplers.emplace_back(library, sampler);
+  channels.write(to_text(library->hello()));
+  for (Question question; channels.read_question(question);) {
+    if (question.is_to_sampler()) {
+      answer(samplers.at(question.key), channels, question);
+    } else {
+      answer(*library, channels, question);
+    }
+  }
+}
+
+std::shared_ptr<const PreparedLibrary> prepared(const std::vector<std::string>& arguments) {
   if (arguments.size() < 3 || arguments.size() % 2 == 0) {
     throw std::runtime_error("a host is given file, estimator, folder, then names and values");
   }
@@ -146,7 +210,8 @@ std::unique_ptr<PreparedLibrary> prepared(const std::vector<std::string>& argume
   for (std::size_t i = 3; i < arguments.size(); i += 2) {
     choice.parameters.emplace_back(arguments[i], arguments[i + 1]);
   }
-  return std::make_unique<PreparedLibrary>(choice);
+  const FlushDenormals flush;
+  return std::make_shared<const PreparedLibrary>(choice);
 }
 
 std::string one_line(std::string text) {
@@ -172,8 +237,7 @@ void set_stop_question(bool (*stop)()) { foreign::set_stop_question(stop); }
 int host_library(const std::vector<std::string>& arguments) {
   const Channels channels;
   watch(channels.questions());
-  const FlushDenormals flush;
-  std::unique_ptr<PreparedLibrary> library;
+  std::shared_ptr<const PreparedLibrary> library;
   try {
     library = prepared(arguments);
     refuse_printing(channels);
@@ -182,10 +246,7 @@ int host_library(const std::vector<std::string>& arguments) {
     return failed;
   }
   try {
-    channels.write(to_text(library->hello()));
-    for (Question question; channels.read_question(question);) {
-      answer(*library, channels, question);
-    }
+    serve(library, channels);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return failed;

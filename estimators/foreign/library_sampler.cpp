@@ -1,59 +1,68 @@
 #include "estimators/foreign/library_sampler.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "estimators/foreign/library_setup.h"
+#include "estimators/foreign/words.h"
 
 namespace assay::foreign {
 
 namespace {
 
-class LibrarySampler final : public Sampler {
- public:
-  LibrarySampler(std::shared_ptr<const PreparedLibrary> library, const AssaySampler& sampler)
-      : library_(std::move(library)), sampler_(sampler) {}
-
-  Domain domain() const override {
-    constexpr std::array<Domain, 5> domains{Domain::interval, Domain::square, Domain::triangle,
-                                            Domain::hemisphere, Domain::sphere};
-    return domains[sampler_.domain];
-  }
-  std::array<double, 2> bounds() const override {
-    if (sampler_.domain != ASSAY_INTERVAL) return {0, 1};
-    return {sampler_.low, sampler_.high};
-  }
-  SamplerDraw sample(Stream& random) const override {
-    const std::uint64_t key = random();
-    AssayStream theirs = assay_stream(key, random());
-    AssayDraw draw{.size = sizeof draw};
-    const int status = sampler_.sample(library_->state(), &theirs, &draw);
-    if (status != 0) {
-      throw LibraryError(std::string("sampler `") + sampler_.name + "`: status " +
-                         std::to_string(status) + " of sample()");
-    }
-    return {.point = {draw.point[0], draw.point[1], draw.point[2]},
-            .density = draw.density,
-            .weight = draw.weight,
-            .valid = draw.no_point == 0};
-  }
-  double density(const Point& point) const override {
-    return sampler_.density(library_->state(), point.data());
-  }
-  double evaluate(const Point& point) const override {
-    return sampler_.evaluate(library_->state(), point.data());
-  }
-  double rounding() const override {
-    return sampler_.rounding > 0 ? sampler_.rounding : Sampler::rounding();
-  }
-
- private:
-  std::shared_ptr<const PreparedLibrary> library_;
-  AssaySampler sampler_;
-};
+bool is_whole(const SamplerDraw& draw) {
+  return !std::isnan(draw.density) && !std::isnan(draw.weight) &&
+         std::ranges::none_of(draw.point, [](double x) { return std::isnan(x); });
+}
 
 }  // namespace
+
+LibrarySampler::LibrarySampler(std::shared_ptr<const PreparedLibrary> library,
+                               const AssaySampler& sampler)
+    : library_(std::move(library)), sampler_(sampler), note_(note_of(sampler)) {}
+
+SamplerDraw LibrarySampler::sample(Stream& random) const {
+  const std::uint64_t key = random();
+  return draw(key, random());
+}
+
+SamplerDraw LibrarySampler::draw(std::uint64_t key, std::uint64_t observation) const {
+  AssayStream theirs = assay_stream(key, observation);
+  AssayDraw drawn{.size = sizeof drawn};
+  const int status = sampler_.sample(library_->state(), &theirs, &drawn);
+  if (status != 0) {
+    throw LibraryError("sampler `" + note_.name + "`: status " + std::to_string(status) +
+                       " of sample()");
+  }
+  const SamplerDraw draw{.point = {drawn.point[0], drawn.point[1], drawn.point[2]},
+                         .density = drawn.density,
+                         .weight = drawn.weight,
+                         .valid = drawn.no_point == 0};
+  if (!draw.valid || is_whole(draw)) return draw;
+  throw LibraryError("sampler `" + note_.name + "`: sample() gave the point " +
+                     text_of(draw.point, note_.domain) + ", density " + text_of(draw.density) +
+                     " and weight " + text_of(draw.weight));
+}
+
+double LibrarySampler::number(double value, const char* function, const Point& point) const {
+  if (!std::isnan(value)) return value;
+  throw LibraryError("sampler `" + note_.name + "`: " + function + " is " + text_of(value) +
+                     " at " + text_of(point, note_.domain));
+}
+
+double LibrarySampler::density(const Point& point) const {
+  return number(sampler_.density(library_->state(), point.data()), "density()", point);
+}
+
+double LibrarySampler::evaluate(const Point& point) const {
+  return number(sampler_.evaluate(library_->state(), point.data()), "evaluate()", point);
+}
+
+double LibrarySampler::rounding() const {
+  return note_.rounding > 0 ? note_.rounding : Sampler::rounding();
+}
 
 void require_whole(const AssaySampler& sampler) {
   const std::string name = sampler.name != nullptr ? sampler.name : "";
@@ -71,9 +80,13 @@ void require_whole(const AssaySampler& sampler) {
   }
 }
 
-std::shared_ptr<const Sampler> library_sampler(std::shared_ptr<const PreparedLibrary> library,
-                                               const AssaySampler& sampler) {
-  return std::make_shared<LibrarySampler>(std::move(library), sampler);
+SamplerNote note_of(const AssaySampler& sampler) {
+  constexpr std::array<Domain, 5> domains{Domain::interval, Domain::square, Domain::triangle,
+                                          Domain::hemisphere, Domain::sphere};
+  SamplerNote note{.name = sampler.name, .domain = domains[sampler.domain]};
+  if (note.domain == Domain::interval) note.bounds = {sampler.low, sampler.high};
+  if (sampler.rounding > 0) note.rounding = sampler.rounding;
+  return note;
 }
 
 }  // namespace assay::foreign

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "estimators/foreign/hello.h"
 #include "estimators/plugin_abi.h"
 #include "estimators/sampler.h"
 
@@ -11,12 +12,34 @@ namespace assay::foreign {
 
 class PreparedLibrary;
 
-/// Throws LibraryError where a function is missing, a domain is none or an interval is empty.
+/// Throws LibraryError where a function is missing or a domain is none.
 void require_whole(const AssaySampler& sampler);
 
-/// The sampler as Assay's. It throws LibraryError where the library reports an error. Its numbers
-/// are of a stream whose key and observation are the next two words of Assay's.
-std::shared_ptr<const Sampler> library_sampler(std::shared_ptr<const PreparedLibrary> library,
-                                               const AssaySampler& sampler);
+/// What the library says of it. As require_whole() has found it.
+SamplerNote note_of(const AssaySampler& sampler);
+
+/// The sampler as Assay's. It throws LibraryError where the library reports an error or gives a
+/// number that is none. Its draws are of streams whose key and observation are the next two words
+/// of Assay's.
+class LibrarySampler final : public Sampler {
+ public:
+  LibrarySampler(std::shared_ptr<const PreparedLibrary> library, const AssaySampler& sampler);
+
+  Domain domain() const override { return note_.domain; }
+  std::array<double, 2> bounds() const override { return note_.bounds; }
+  SamplerDraw sample(Stream& random) const override;
+  /// The draw of that stream of the library's.
+  SamplerDraw draw(std::uint64_t key, std::uint64_t observation) const;
+  double density(const Point& point) const override;
+  double evaluate(const Point& point) const override;
+  double rounding() const override;
+
+ private:
+  double number(double value, const char* function, const Point& point) const;
+
+  std::shared_ptr<const PreparedLibrary> library_;
+  AssaySampler sampler_;
+  SamplerNote note_;
+};
 
 }  // namespace assay::foreign

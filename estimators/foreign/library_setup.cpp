@@ -146,8 +146,16 @@ std::optional<BiasClass> bias_of(std::uint32_t theirs) {
   }
 }
 
+std::vector<AssaySampler> samplers_of(const AssayPreparation& prepared) {
+  if (prepared.sampler_count == 0) return {};
+  std::vector<AssaySampler> all = all_known(prepared.samplers, prepared.sampler_count);
+  for (const AssaySampler& sampler : all) require_whole(sampler);
+  return all;
+}
+
 /// What the library says, in the words of a program, so that both are read by the same rules.
-std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& prepared) {
+std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& prepared,
+                       const std::vector<AssaySampler>& samplers) {
   std::string text = "assay " + std::to_string(protocol_version) + " binary\n";
   if (prepared.image != nullptr) {
     const AssayImage image = as_known(prepared.image);
@@ -160,6 +168,7 @@ std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& 
   }
   if (has(estimator.flags, ASSAY_AVERAGES)) text += "averages\n";
   if (has(estimator.flags, ASSAY_RAYS)) text += "rays\n";
+  for (const AssaySampler& sampler : samplers) text += sampler_line(note_of(sampler));
   return text + bias_line(bias_of(estimator.bias)) + "ready\n";
 }
 
@@ -187,7 +196,11 @@ class LibraryEstimator final : public Estimator {
 class LibrarySetup final : public Setup {
  public:
   explicit LibrarySetup(std::shared_ptr<const PreparedLibrary> library)
-      : library_(std::move(library)) {}
+      : library_(std::move(library)) {
+    for (const AssaySampler& sampler : library_->samplers()) {
+      samplers_.push_back({sampler.name, std::make_shared<LibrarySampler>(library_, sampler)});
+    }
+  }
 
   std::vector<Channel> channels() const override { return library_->hello().channels; }
   std::unique_ptr<Estimator> make() const override {
@@ -195,16 +208,11 @@ class LibrarySetup final : public Setup {
   }
   std::optional<ImageShape> image() const override { return library_->hello().image; }
   std::optional<Nature> nature() const override { return library_->hello().nature; }
-  std::vector<NamedSampler> samplers() const override {
-    std::vector<NamedSampler> all;
-    for (const AssaySampler& sampler : library_->samplers()) {
-      all.push_back({sampler.name, library_sampler(library_, sampler)});
-    }
-    return all;
-  }
+  std::vector<NamedSampler> samplers() const override { return samplers_; }
 
  private:
   std::shared_ptr<const PreparedLibrary> library_;
+  std::vector<NamedSampler> samplers_;
 };
 
 }  // namespace
@@ -219,11 +227,8 @@ PreparedLibrary::PreparedLibrary(const LibraryChoice& choice)
                                .sampler_count = estimator_.sampler_count};
   prepare(choice, preparation);
   try {
-    hello_ = parse_hello(hello_text(estimator_, preparation));
-    if (preparation.sampler_count > 0) {
-      samplers_ = all_known(preparation.samplers, preparation.sampler_count);
-      for (const AssaySampler& sampler : samplers_) require_whole(sampler);
-    }
+    samplers_ = samplers_of(preparation);
+    hello_ = parse_hello(hello_text(estimator_, preparation, samplers_));
   } catch (...) {
     if (estimator_.release != nullptr) estimator_.release(state_);
     throw;

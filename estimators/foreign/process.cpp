@@ -57,8 +57,10 @@ std::vector<Entry> foreign_process() {
             "observation is the mean of its primaries; `bias` unbiased, primaries, bootstrap, "
             "start-up or reconstruction; `image WIDTH HEIGHT COMPONENT…` in the place of "
             "channels, with `range LOW HIGH` of its elements and `independent` where pixels are; "
-            "`rays` where one more number follows each observation, the rays it took; `error "
-            "WORDS` to refuse.",
+            "`rays` where one more number follows each observation, the rays it took; `sampler "
+            "NAME "
+            "DOMAIN` in binary, of a source of points that is asked for draws and densities "
+            "(estimators/foreign/README.md); `error WORDS` to refuse.",
         .parameters = parameters(),
         .averages = false,
         .says_nature = true},

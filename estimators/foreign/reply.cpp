@@ -1,6 +1,7 @@
 #include "estimators/foreign/reply.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -35,8 +36,17 @@ std::string to_bytes(const Question& q, Numbers numbers) {
 }
 
 std::string to_text(const Question& q) {
+  constexpr std::array<const char*, 3> items = {"draw", "density", "evaluation"};
+  if (q.is_to_sampler()) {
+    if (q.asked() == Asked::densities && q.count > 1) return of(q.count, "densitie");
+    return of(q.count, items.at(static_cast<std::size_t>(q.asked())));
+  }
   if (q.count == 1) return "observation " + std::to_string(q.first);
   return "observations " + std::to_string(q.first) + " to " + std::to_string(q.first + q.count - 1);
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 Reply::Reply(const Question& question, std::size_t width, Numbers numbers)

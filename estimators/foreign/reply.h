@@ -9,6 +9,14 @@
 // Binary: a question is four 64-bit little-endian words: key, first, count, primaries. Text: a line
 // of five decimal numbers: the key's high and low 32 bits (many languages have no unsigned 64-bit
 // integers), first, count, primaries; of the reply, each observation is a line.
+//
+// A question of no primaries is to a sampler, in binary only: its number in the hello in the place
+// of the key, what is asked in the place of the first observation, and so many items follow it.
+// They are asked as
+//   draws        key and observation of a stream   point (three numbers), density, weight, and
+//                                                  whether a point came out, 0 or 1
+//   densities    a point, three numbers            a number
+//   evaluations  a point                           a number
 
 #include <cstddef>
 #include <cstdint>
@@ -21,18 +29,33 @@
 
 namespace assay::foreign {
 
+/// What is asked of a sampler: 0, 1 or 2, plus 4 where denormals are to be flushed to zero.
+enum class Asked : std::uint64_t { draws, densities, evaluations };
+inline constexpr std::uint64_t denormals_flushed = 4;
+
+/// Words of an item, and numbers of the reply to it.
+constexpr std::size_t item_words(Asked what) { return what == Asked::draws ? 2 : 3; }
+constexpr std::size_t numbers_of(Asked what) { return what == Asked::draws ? 6 : 1; }
+
 struct Question {
   std::uint64_t key = 0;
   std::uint64_t first = 0;
   std::uint64_t count = 1;
   std::uint64_t primaries = 1;
+
+  bool is_to_sampler() const { return primaries == 0; }
+  /// Of a question to a sampler.
+  Asked asked() const { return Asked{first % denormals_flushed}; }
 };
 
 /// As it is sent.
 std::string to_bytes(const Question& question, Numbers numbers);
 
-/// "observation 7", "observations 0 to 255".
+/// "observation 7", "observations 0 to 255", "32 densities".
 std::string to_text(const Question& question);
+
+/// Whether two replies are the same, numbers that are not finite too.
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
 
 /// A reply as it comes in, in pieces of any size.
 class Reply {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "estimators/foreign/isolated_sampler.h"
 #include "estimators/foreign/words.h"
 
 namespace assay::foreign {
@@ -82,7 +83,8 @@ class ForeignEstimator final : public Estimator {
     numbers_.clear();
     take();
     Question question = wanted;
-    question.count = dialogue_->well_sized(ahead(wanted));
+    question.count = ahead(wanted);
+    question.count = dialogue_->well_sized(question);
     try {
       numbers_ = ask(question);
     } catch (const NoAnswer& failure) {
@@ -147,6 +149,13 @@ class ForeignEstimator final : public Estimator {
 };
 
 }  // namespace
+
+ForeignSetup::ForeignSetup(std::shared_ptr<Children> children) : children_(std::move(children)) {
+  const std::vector<SamplerNote>& notes = children_->hello().samplers;
+  for (std::size_t i = 0; i < notes.size(); ++i) {
+    samplers_.push_back({notes[i].name, std::make_shared<IsolatedSampler>(children_, i)});
+  }
+}
 
 std::unique_ptr<Estimator> ForeignSetup::make() const {
   return std::make_unique<ForeignEstimator>(children_);

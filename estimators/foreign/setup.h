@@ -13,15 +13,17 @@ namespace assay::foreign {
 /// them. Nothing is drawn from the stream itself.
 class ForeignSetup final : public Setup {
  public:
-  explicit ForeignSetup(std::shared_ptr<Children> children) : children_(std::move(children)) {}
+  explicit ForeignSetup(std::shared_ptr<Children> children);
 
   std::vector<Channel> channels() const override { return children_->hello().channels; }
   std::unique_ptr<Estimator> make() const override;
   std::optional<ImageShape> image() const override { return children_->hello().image; }
   std::optional<Nature> nature() const override { return children_->hello().nature; }
+  std::vector<NamedSampler> samplers() const override { return samplers_; }
 
  private:
   std::shared_ptr<Children> children_;
+  std::vector<NamedSampler> samplers_;
 };
 
 /// Starts the program. InputError at the parameter `name`, whose value says which program it is,

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "estimators/sampler.h"
+
 namespace assay::foreign {
 
 /// The words of a line, which blanks and tabs separate.
@@ -46,6 +48,15 @@ inline std::optional<std::uint64_t> whole_of(std::string_view word) {
 inline std::string text_of(double value) {
   std::array<char, 32> buffer{};
   return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+/// The coordinates that the domain uses: "(0.25, 1)".
+inline std::string text_of(const Point& point, Domain domain) {
+  const bool direction = domain == Domain::hemisphere || domain == Domain::sphere;
+  const std::size_t used = domain == Domain::interval ? 1 : direction ? 3 : 2;
+  std::string text;
+  for (std::size_t i = 0; i < used; ++i) text += (i == 0 ? "(" : ", ") + text_of(point[i]);
+  return text + ")";
 }
 
 /// With blanks between, as a command is shown.

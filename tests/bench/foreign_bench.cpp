@@ -1,7 +1,9 @@
 // What it costs to have an estimator elsewhere: numbers a second across the interface of a library,
-// through the pipes of a program, and of a program in Python against its own loop.
+// through the pipes of a program, draws and densities of a library's sampler either way, and of a
+// program in Python against its own loop.
 //
-//   foreign_bench EXAMPLES HEADERS     the folders of the example programs and of plugin_abi.h
+//   foreign_bench EXAMPLES HEADERS ASSAY     the folders of the example programs and of
+//                                            plugin_abi.h, and the program that hosts libraries
 //
 // The programs that are measured do next to nothing, so that all that is left is the way. The best
 // of nine, wall clock. Of Python the medians of ratios taken in pairs: the loop and the program get
@@ -23,6 +25,7 @@
 #include <vector>
 
 #include "estimators/catalogue.h"
+#include "estimators/library_host.h"
 
 namespace {
 
@@ -42,8 +45,17 @@ static int secondary(AssayCall *call) {
 static const AssayChannel x[] = {
     NAMED("a"), NAMED("b"), NAMED("c"), NAMED("d"), NAMED("e"), NAMED("f"), NAMED("g"), NAMED("h"),
     NAMED("i"), NAMED("j"), NAMED("k"), NAMED("l"), NAMED("m"), NAMED("n"), NAMED("o"), NAMED("p")};
+static int sample(const void *setup, AssayStream *random, AssayDraw *draw) {
+  (void)setup;
+  draw->point[0] = assay_uniform(random);
+  draw->density = draw->weight = 1;
+  return 0;
+}
+static double one(const void *setup, const double *point) { (void)setup; (void)point; return 1; }
+static const AssaySampler flat = {.size = sizeof flat, .name = "flat", .domain = ASSAY_INTERVAL,
+    .low = 0, .high = 1, .sample = sample, .density = one, .evaluate = one};
 static const AssayEstimator mine = {.size = sizeof mine, .name = "mine", .channels = x,
-                                    .channel_count = CHANNELS, .secondary = secondary};
+    .channel_count = CHANNELS, .secondary = secondary, .samplers = &flat, .sampler_count = 1};
 static const AssayLibrary table = {sizeof table, ASSAY_ABI_VERSION, &mine, 1};
 const AssayLibrary *assay_library(void) { return &table; }
 )";
@@ -155,14 +167,57 @@ void report(const char* what, const Setup& setup, const Drawn& drawn) {
               1e-6 * numbers / seconds_to_draw(setup, drawn));
 }
 
+std::shared_ptr<const Setup> library(const Workshop& workshop, const std::string& channels,
+                                     const char* isolated) {
+  const std::string file = workshop.compile("mine" + channels + ".so", library_source,
+                                            "-fPIC -shared -DCHANNELS=" + channels);
+  return set_up("library",
+                Value::map({{"file", Value::scalar(file)}, {"isolated", Value::scalar(isolated)}}));
+}
+
+/// As tables ask for densities: those of a level of halvings at once, or one.
+void ask_densities(const Sampler& sampler, std::size_t count, std::size_t at_once) {
+  const std::vector<Point> points(at_once, Point{.5, 0, 0});
+  std::vector<double> densities(at_once);
+  for (std::size_t asked = 0; asked < count; asked += at_once) {
+    for (std::size_t done = 0; done < at_once;) {
+      done += sampler.densities(std::span(points).subspan(done), densities);
+    }
+  }
+}
+
+void ask_draws(const Sampler& sampler, std::uint64_t count) {
+  constexpr std::uint64_t block = 4096;
+  std::vector<SamplerDraw> draws(block);
+  for (std::uint64_t done = 0; done < count;) {
+    std::vector<Stream> streams;
+    for (std::uint64_t i = 0; i < block; ++i) streams.emplace_back(key, done + i);
+    done += sampler.samples(streams, draws);
+  }
+}
+
+void samplers(const Workshop& workshop) {
+  const auto report = [](const std::string& what, std::size_t count, const auto& ask) {
+    ask();  // to find how much to ask for
+    std::printf("%-52s %7.2f million a second\n", what.c_str(),
+                1e-6 * static_cast<double>(count) / best_of(ask));
+  };
+  for (const bool isolated : {true, false}) {
+    const auto setup = library(workshop, "1", isolated ? "true" : "false");
+    const Sampler& sampler = *setup->samplers()[0].sampler;
+    const std::string where = isolated ? "isolated library, " : "library in process, ";
+    report(where + "draws, 4096 at a time", 1 << 20, [&] { ask_draws(sampler, 1 << 20); });
+    for (const std::size_t at_once : {648u, 36u, 1u}) {
+      const std::size_t count = 10000 * std::min<std::size_t>(at_once, 100);
+      report(where + "densities, " + std::to_string(at_once) + " at a time", count,
+             [&] { ask_densities(sampler, count, at_once); });
+    }
+  }
+}
+
 void libraries(const Workshop& workshop) {
   for (const char* channels : {"1", "4", "16"}) {
-    const std::string file =
-        workshop.compile(std::string("mine") + channels + ".so", library_source,
-                         std::string("-fPIC -shared -DCHANNELS=") + channels);
-    const auto setup =
-        set_up("library",
-               Value::map({{"file", Value::scalar(file)}, {"isolated", Value::scalar("false")}}));
+    const auto setup = library(workshop, channels, "false");
     const std::string what = std::string("library in process, channels: ") + channels;
     report(what.c_str(), *setup, {.observations = 2'000'000, .block = 4096});
   }
@@ -242,12 +297,14 @@ void python(const Workshop& workshop, const std::string& examples) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: foreign_bench EXAMPLES HEADERS\n");
+  if (argc != 4) {
+    std::fprintf(stderr, "usage: foreign_bench EXAMPLES HEADERS ASSAY\n");
     return 2;
   }
+  set_library_host(argv[3]);
   const Workshop workshop(argv[2]);
   libraries(workshop);
+  samplers(workshop);
   programs(workshop);
   python(workshop, argv[1]);
 }

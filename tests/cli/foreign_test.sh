@@ -5,16 +5,8 @@
 set -uo pipefail
 
 source "$(dirname "$0")/program.sh"
+source "$(dirname "$0")/foreign.sh"
 examples=$source_folder/estimators/foreign/examples
-
-# tells FILE TEXT: that the text is in it, whatever the width at which the program broke its lines.
-tells() { tr -s ' \n' ' ' <"$1" | grep -qF -- "$2" || fail "no \`$2\` in $1"; }
-
-# compile FILE.c: as the manual says, every warning an error, against nothing at all.
-compile() {
-  cc -std=c11 -O2 -Wall -Wextra -Wpedantic -Werror -fPIC -shared ${2:--nostdlib} \
-    -I "$source_folder/estimators" "$1" -o "${1%.c}.so" || fail "$1 does not compile"
-}
 
 # library NAME BODY_OF_SECONDARY
 library() {
@@ -43,32 +35,6 @@ suite() {
   } >"$file"
 }
 
-# verdicts RUN.json: a line of name and verdict for each test.
-verdicts() {
-  python3 -c '
-import json, sys
-for test in json.load(open(sys.argv[1]))["suites"][0]["tests"]:
-    print(test["name"], test["verdict"])' "$1"
-}
-message() {
-  python3 -c '
-import json, sys
-for test in json.load(open(sys.argv[1]))["suites"][0]["tests"]:
-    if test["name"] == sys.argv[2]: print(test["message"])' "$1" "$2" >err
-}
-
-none_left() {
-  # By their folder: everything that was started runs here.
-  local process
-  for process in /proc/[0-9]*; do
-    [ "$(readlink "$process/cwd" 2>/dev/null)" = "$work" ] || continue
-    [ "${process#/proc/}" -eq $$ ] || [ "${process#/proc/}" -eq "$BASHPID" ] && continue
-    [ "$(tr '\0' ' ' <"$process/cmdline" 2>/dev/null)" = "" ] && continue
-    grep -q "^PPid:[[:space:]]*$$\$" "$process/status" 2>/dev/null && continue
-    fail "left running: $(tr '\0' ' ' <"$process/cmdline")"
-  done
-}
-
 test_examples_pass_their_claims() {
   cp "$examples"/* .
   compile darts_library.c
@@ -79,8 +45,7 @@ test_examples_pass_their_claims() {
     'inside: {plugin: library, file: darts_library.so, isolated: false}'
   expect 0 run darts.yaml --report json=one.json --threads 1
   expect 0 run darts.yaml --report json=two.json --threads 2
-  local times='s/"(started|seconds|threads)": *("[^"]*"|[-+0-9.e]+)/"\1": 0/g'
-  cmp -s <(sed -E "$times" one.json) <(sed -E "$times" two.json) || fail 'threads change the record'
+  same_records one.json two.json || fail 'threads change the record'
   for name in shell python c isolated inside; do
     expect 0 replay one.json "darts/$name"
     tells out 'the same numbers as recorded'

@@ -2,7 +2,8 @@
 // are, they are understood or refused; in pieces as in one; and what was understood is written and
 // read again as the same.
 //
-// sources: estimators/foreign/hello.cpp estimators/foreign/reply.cpp estimators/image.cpp
+// sources: estimators/estimator.cpp estimators/foreign/hello.cpp estimators/foreign/reply.cpp
+// sources: estimators/image.cpp
 
 #include <algorithm>
 #include <cstdint>

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -34,10 +35,25 @@ TEST(PlaneCells, IndicesRunFastestInY) {
 TEST(PlaneCells, ProbabilitiesOfASmoothDensityAreExact) {
   const PlaneGrid grid = unit_grid(4);
   const CellProbabilities cells = cell_probabilities(
-      grid, {.x = {0, 1}, .y = {0, 1}, .value = [](double x, double y) { return 4 * x * y; }});
+      grid, {.x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double x, double y) {
+                                         return 4 * x * y;
+                                       })});
   EXPECT_NEAR(cells.probability[grid.index(.3, .8)], (4 - 1) / 16.0 * (16 - 9) / 16.0, 1e-14);
   EXPECT_NEAR(cells.total, 1, 1e-13);
   EXPECT_LT(cells.total_error, 1e-9);
+}
+
+TEST(PlaneCells, ASmoothDensityIsAskedForInFewQuestions) {
+  std::size_t questions = 0;
+  std::size_t places = 0;
+  const PlaneDensity flat{.x = {0, 1}, .y = {0, 1}, .values = [&](auto x, auto, auto values) {
+                            ++questions;
+                            places += x.size();
+                            std::ranges::fill(values, 1.0);
+                          }};
+  cell_probabilities(unit_grid(4), flat);
+  EXPECT_EQ(places, 16u * 27 * 27);
+  EXPECT_EQ(questions, 16u * 3 * 2) << "a part and its halves: along nine lines, and their halves";
 }
 
 // A disc of radius r about the middle, density 1 / (pi r^2): it jumps along a curve. The four
@@ -46,10 +62,11 @@ TEST(PlaneCells, AJumpAlongACurveIsFoundWithinItsErrorAndTheLimit) {
   constexpr double r = .22;
   const PlaneGrid grid = unit_grid(4);
   std::uint64_t evaluations = 0;
-  const PlaneDensity disc{.x = {0, 1}, .y = {0, 1}, .value = [&](double x, double y) {
-                            ++evaluations;
-                            return std::hypot(x - .5, y - .5) < r ? 1 / (pi * r * r) : 0;
-                          }};
+  const PlaneDensity disc{
+      .x = {0, 1}, .y = {0, 1}, .values = one_by_one([&](double x, double y) {
+                                  ++evaluations;
+                                  return std::hypot(x - .5, y - .5) < r ? 1 / (pi * r * r) : 0;
+                                })};
   const CellProbabilities cells =
       cell_probabilities(grid, disc, {.tolerance = 1e-9, .evaluations = 5'000'000});
   EXPECT_NEAR(cells.probability[grid.index(.4, .4)], .25, 1e-7);
@@ -62,9 +79,10 @@ TEST(PlaneCells, AJumpAlongACurveIsFoundWithinItsErrorAndTheLimit) {
 TEST(PlaneCells, ACornerOfTheSupportIsFoundInTheNextCell) {
   constexpr double tip = .2525;
   const PlaneGrid grid = unit_grid(4);
-  const PlaneDensity wedge{.x = {0, 1}, .y = {0, 1}, .value = [](double x, double y) {
-                             return x + std::abs(y - .135) < tip ? 1.0 : 0;
-                           }};
+  const PlaneDensity wedge{.x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double x, double y) {
+                                                       return x + std::abs(y - .135) < tip ? 1.0
+                                                                                           : 0;
+                                                     })};
   const CellProbabilities cells = cell_probabilities(grid, wedge);
   const std::size_t next = grid.index(.26, .135);
   const double hidden = (tip - .25) * (tip - .25);
@@ -74,10 +92,10 @@ TEST(PlaneCells, ACornerOfTheSupportIsFoundInTheNextCell) {
 
 TEST(PlaneCells, ACellThatMayHideACornerSaysSo) {
   const PlaneGrid grid = unit_grid(4);
-  const CellProbabilities cells =
-      cell_probabilities(grid, {.x = {0, 1}, .y = {0, 1}, .value = [](double x, double y) {
-                                  return x < .25 && y < .25 ? 16.0 : 0;
-                                }});
+  const CellProbabilities cells = cell_probabilities(
+      grid, {.x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double x, double y) {
+                                         return x < .25 && y < .25 ? 16.0 : 0;
+                                       })});
   EXPECT_EQ(cells.probability[grid.index(.3, .1)], 0);
   EXPECT_GT(cells.error[grid.index(.3, .1)], 0);
   EXPECT_EQ(cells.error[grid.index(.6, .6)], 0) << "far from the support";
@@ -87,11 +105,10 @@ TEST(PlaneCells, JumpsOnPanelBordersCostNothing) {
   std::uint64_t evaluations = 0;
   const PlaneDensity board{.x = {0, 1},
                            .y = {0, 1},
-                           .value =
-                               [&](double x, double y) {
-                                 ++evaluations;
-                                 return int(x * 10) % 2 == int(y * 6) % 2 ? 2.0 : 0;
-                               },
+                           .values = one_by_one([&](double x, double y) {
+                             ++evaluations;
+                             return int(x * 10) % 2 == int(y * 6) % 2 ? 2.0 : 0;
+                           }),
                            .x_panels = 10,
                            .y_panels = 6};
   const CellProbabilities cells = cell_probabilities(unit_grid(4), board);
@@ -100,10 +117,11 @@ TEST(PlaneCells, JumpsOnPanelBordersCostNothing) {
 }
 
 TEST(PlaneCells, BadDensitiesAndGridsThrow) {
-  const PlaneDensity negative{.x = {0, 1}, .y = {0, 1}, .value = [](double, double) { return -1; }};
+  const PlaneDensity negative{
+      .x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double, double) { return -1; })};
   EXPECT_THROW(cell_probabilities(unit_grid(2), negative), std::domain_error);
   const PlaneDensity nan{
-      .x = {0, 1}, .y = {0, 1}, .value = [](double, double) { return std::nan(""); }};
+      .x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double, double) { return std::nan(""); })};
   EXPECT_THROW(cell_probabilities(unit_grid(2), nan), std::domain_error);
   EXPECT_THROW(cell_probabilities({{0, 1}, {1, 0}}, negative), std::domain_error);
 }

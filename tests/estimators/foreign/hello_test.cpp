@@ -69,11 +69,42 @@ TEST(Hello, DescribesAnImage) {
   EXPECT_FALSE(hello("image 3 2\n").image->independent);
 }
 
+TEST(Hello, AnnouncesSamplers) {
+  const Hello said = parse_hello(
+      "assay 1 binary\nchannel x\nsampler lens square\n"
+      "sampler ramp interval low -1 high 0.5 rounding 1e-6\nready\n");
+  ASSERT_EQ(said.samplers.size(), 2u);
+  EXPECT_EQ(said.samplers[0].name, "lens");
+  EXPECT_EQ(said.samplers[0].domain, Domain::square);
+  EXPECT_EQ(said.samplers[0].rounding, 0);
+  EXPECT_EQ(said.samplers[1].domain, Domain::interval);
+  EXPECT_EQ(said.samplers[1].bounds, (std::array<double, 2>{-1, .5}));
+  EXPECT_EQ(said.samplers[1].rounding, 1e-6);
+  EXPECT_EQ(said.width(), 1u);
+}
+
+TEST(Hello, RefusesSamplersThatCannotBe) {
+  const auto wrong_sampler = [](const std::string& line) {
+    return refusal("assay 1 binary\nchannel x\n" + line + "\nready\n");
+  };
+  EXPECT_THAT(wrong_sampler("sampler lens"), HasSubstr("a sampler has a name"));
+  EXPECT_THAT(wrong_sampler("sampler two.words square"), HasSubstr("a sampler has a name"));
+  EXPECT_THAT(wrong_sampler("sampler lens circle"), HasSubstr("a domain is interval, square"));
+  EXPECT_THAT(wrong_sampler("sampler lens interval low"), HasSubstr("pairs of a word"));
+  EXPECT_THAT(wrong_sampler("sampler lens interval low 1 high 1"), HasSubstr("is empty"));
+  EXPECT_THAT(wrong_sampler("sampler lens interval low nan"), HasSubstr("not a number"));
+  EXPECT_THAT(wrong_sampler("sampler lens square rounding -1"), HasSubstr("not negative"));
+  EXPECT_THAT(wrong_sampler("sampler lens square middle 1"), HasSubstr("are known"));
+  EXPECT_THAT(wrong_sampler("sampler lens square\nsampler lens sphere"), HasSubstr("twice"));
+  EXPECT_THAT(wrong("channel x\nsampler lens square\n"), HasSubstr("binary only"));
+}
+
 TEST(Hello, SurvivesBeingWrittenAndReadAgain) {
   const std::string lines =
       "assay 1 binary\nimage 2 2 red green\nindependent\nrange -inf 10\n"
       "channel nodes mean 0.1 error 1e-09 variance 3 low 0 rounding 1e-12 diagnostic\n"
-      "averages\nbias start-up\nrays\nready\n";
+      "averages\nbias start-up\nrays\nsampler ramp interval low -1 high 0.5 rounding 1e-06\n"
+      "sampler lens hemisphere\nready\n";
   EXPECT_EQ(to_text(parse_hello(lines)), lines);
 }
 

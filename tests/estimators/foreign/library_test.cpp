@@ -280,6 +280,24 @@ TEST_F(Library, OffersItsSamplers) {
     sum += draw.point[0];
   }
   EXPECT_NEAR(sum / 10000, 2. / 3, 4.892 * std::sqrt(1. / 18 / 10000));
+  // The same each time, so that their tables are made once.
+  EXPECT_EQ(setup->samplers()[0].sampler, samplers[0].sampler);
+}
+
+TEST_F(Library, ReportsNumbersOfItsSamplersThatAreNone) {
+  std::string source = ramp_sampler;
+  const std::string sound = "return 2 * p[0];";
+  source.replace(source.find(sound), sound.size(), "return p[0] > 0.5 ? 0.0 / (p[1] - p[1]) : 1;");
+  const auto setup = load(compile_text(source));
+  const Sampler& ramp = *setup->samplers()[0].sampler;
+  EXPECT_EQ(ramp.density({0.25, 0, 0}), 1);
+  try {
+    ramp.density({0.75, 0, 0});
+    FAIL() << "NaN was not noticed";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("sampler `ramp`: density() is "), HasSubstr("nan at (0.75)")));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "estimators/estimator.h"
+
+namespace assay::harness {
+
+/// What is made of the streams of announced observations, many at a time: for samplers elsewhere,
+/// which take longer to be asked than to answer.
+template <class Row>
+class FetchedAhead {
+ public:
+  void announce(const Announcement& next) { announced_ = next; }
+
+  /// The row of an observation. `fetch` makes the rows of the first few of the streams that it is
+  /// given, at least one; it throws where the first cannot be had.
+  template <class Fetch>
+  const Row& of(const Stream& random, Fetch fetch) {
+    if (!holds(random)) {
+      rows_.clear();
+      std::vector<Stream> streams = streams_from(random);
+      rows_ = fetch(std::span(streams));
+      key_ = random.key();
+      first_ = random.observation();
+    }
+    return rows_[random.observation() - first_];
+  }
+
+ private:
+  static constexpr std::uint64_t most = 4096;
+
+  bool holds(const Stream& random) const {
+    return random.key() == key_ && random.observation() >= first_ &&
+           random.observation() - first_ < rows_.size();
+  }
+
+  std::vector<Stream> streams_from(const Stream& random) const {
+    const std::uint64_t first = random.observation();
+    const bool announced = random.key() == announced_.key && first >= announced_.first;
+    const std::uint64_t end = announced ? std::min(announced_.last, first + most) : 0;
+    std::vector<Stream> streams;
+    for (std::uint64_t i = first; i < std::max(end, first + 1); ++i) {
+      streams.emplace_back(random.key(), i);
+    }
+    return streams;
+  }
+
+  Announcement announced_{};
+  StreamKey key_{};
+  std::uint64_t first_ = 0;
+  std::vector<Row> rows_;
+};
+
+}  // namespace assay::harness

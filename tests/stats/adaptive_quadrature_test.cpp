@@ -1,0 +1,84 @@
+#include "stats/adaptive_quadrature.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "stats/plane_cells.h"
+
+namespace assay::stats {
+namespace {
+
+using Line = AdaptiveQuadrature::Line;
+
+// Jumps along a circle and has a ridge.
+double density(double x, double y) {
+  return (std::hypot(x - .5, y - .5) < .4 ? 1 : 0) + std::exp(-50 * std::abs(y - x));
+}
+
+std::vector<Line> lines() {
+  std::vector<Line> all;
+  for (int i = 0; i < 20; ++i) all.push_back({.05 * i, {i % 2 == 0 ? 0 : .3, .7 + .015 * i}});
+  return all;
+}
+
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+/// That along() is over() line by line, and leaves the rule in the same state.
+void expect_the_same(QuadratureLimits limits) {
+  AdaptiveQuadrature together(limits);
+  AdaptiveQuadrature apart(limits);
+  for (int round = 0; round < 3; ++round) {
+    const std::vector<Integral> all = together.along(one_by_one(density), lines());
+    ASSERT_EQ(all.size(), lines().size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Line line = lines()[i];
+      const auto at_x = [&](double y) { return density(line.x, y); };
+      const Integral one = apart.over(apart.of(at_x), line.y);
+      EXPECT_EQ(bits(all[i].value), bits(one.value)) << i << " of " << limits.evaluations;
+      EXPECT_EQ(bits(all[i].error), bits(one.error)) << i << " of " << limits.evaluations;
+    }
+    EXPECT_EQ(together.exhausted(), apart.exhausted());
+    EXPECT_EQ(together.largest(), apart.largest());
+  }
+}
+
+TEST(AdaptiveQuadrature, LinesSideBySideAreThoseOneByOneBitByBit) {
+  for (const double tolerance : {1e-3, 1e-7, 1e-12}) expect_the_same({.tolerance = tolerance});
+}
+
+TEST(AdaptiveQuadrature, SoTheyAreWhereverTheEvaluationsRunOut) {
+  for (const std::uint64_t most : {0u, 1u, 700u, 5000u, 9000u, 14000u, 18000u, 30000u}) {
+    expect_the_same({.tolerance = 1e-9, .evaluations = most});
+  }
+}
+
+TEST(AdaptiveQuadrature, AsksForALevelOfAllLinesAtOnce) {
+  AdaptiveQuadrature rule({.tolerance = 1e-9});
+  std::size_t questions = 0;
+  std::size_t places = 0;
+  rule.along(
+      [&](auto x, auto y, auto values) {
+        ++questions;
+        places += values.size();
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = density(x[i], y[i]);
+      },
+      lines());
+  EXPECT_LE(questions, 26u) << "the whole, and 25 halvings at most";
+  EXPECT_GT(places, 100 * questions);
+}
+
+TEST(AdaptiveQuadrature, ADensityIsAskedForOnePlaceOrMany) {
+  AdaptiveQuadrature rule({.tolerance = 1e-9});
+  const auto one = rule.over(rule.of([](double x) { return x; }), {0, 1});
+  const auto many = rule.over(
+      rule.of([](auto at, auto values) { std::ranges::copy(at, values.begin()); }), {0, 1});
+  EXPECT_EQ(one.value, many.value);
+  EXPECT_THROW(rule.along(one_by_one([](double, double) { return -1; }), lines()),
+               std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats
