@@ -32,9 +32,8 @@ class PictureRows {
   virtual ~PictureRows() = default;
   /// Reads the whole rows of picture `index` that follow on those read of it so far, as many as
   /// there is room for. InputError as read_picture; once the last are read, also for a picture that
-  /// is another one bit for bit. False where a texel is not finite. Thread-safe for different
-  /// pictures.
-  virtual bool read(std::uint64_t index, std::span<float> texels) = 0;
+  /// is another one bit for bit. Thread-safe for different pictures.
+  virtual void read(std::uint64_t index, std::span<float> texels) = 0;
 };
 
 /// Those of a set-up of pictures, all from their first row on; null for other set-ups.

@@ -94,7 +94,7 @@ void write_reports(const Output& output, const ReportWriter& written) {
   fmt::print("{}", to_stdout);
 }
 
-void write_reports(reports::Record record, const Output& output) {
+void write_reports(reports::Record& record, const Output& output) {
   write_reports(output, [&](const ReportRequest& request, bool colour) {
     if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
     return written(record, request.kind, colour);
@@ -140,7 +140,7 @@ std::string unmatched_filter(const std::vector<Suite>& suites, const std::string
   return text;
 }
 
-void report_run(const reports::Record& record, const Output& output) {
+void report_run(reports::Record& record, const Output& output) {
   write_reports(record, output);
   // The runner reads commands from both streams, other programs the reports from standard output.
   if (output.github) fmt::print(stderr, "{}", tell_github(record, system_environment));
@@ -150,7 +150,7 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   require_writable(output);
   if (selects_nothing(suites, options)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
-  const reports::Record record = run(suites, options, *progress);
+  reports::Record record = run(suites, options, *progress);
   report_run(record, output);
   const int code = exit_code(record, output.inconclusive);
   return code == nothing_ran && options.shard_of_runner ? 0 : code;
@@ -165,7 +165,8 @@ int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, boo
 }
 
 int report_saved_run(const std::string& file, const Output& output) {
-  write_reports(read_record(file), output);
+  reports::Record record = read_record(file);
+  write_reports(record, output);
   return 0;
 }
 

@@ -35,11 +35,12 @@ void require_writable(const Output& output);
 /// Every report asked for, the console's in any case. Files first: what standard output shows has
 /// then been written.
 void write_reports(const Output& output, const ReportWriter& written);
-/// The same of a record. Maps are written beside the JSON report, which names them.
-void write_reports(reports::Record record, const Output& output);
+/// The same of a record. Maps are written beside the JSON report, which names them: the record then
+/// has these names.
+void write_reports(reports::Record& record, const Output& output);
 
 /// Of a run: the reports, and what a job of GitHub Actions is told (github.h).
-void report_run(const reports::Record& record, const Output& output);
+void report_run(reports::Record& record, const Output& output);
 
 /// What is said of a filter that no test's id matches: what an id looks like and the nearest ones;
 /// "" when one does.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "harness/assumptions.h"
 #include "harness/difference_skewness.h"
@@ -13,16 +14,16 @@ namespace {
 
 constexpr std::size_t elements_at_a_time = 4096;
 
-/// What some elements of one side have together.
+/// What some elements have together.
 struct Extremes {
-  double minimum;
-  double maximum;
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
   std::uint64_t nonzero = 0;
   bool sound = true;
 };
 
 Extremes extremes_of(std::span<const stats::Moments> elements) {
-  Extremes extremes{elements[0].minimum, elements[0].maximum};
+  Extremes extremes;
   for (const stats::Moments& each : elements) {
     extremes.minimum = std::min(extremes.minimum, each.minimum);
     extremes.maximum = std::max(extremes.maximum, each.maximum);
@@ -33,11 +34,42 @@ Extremes extremes_of(std::span<const stats::Moments> elements) {
   return extremes;
 }
 
-/// Of some elements.
+/// Of some elements of both sides.
 struct Part {
   std::array<Extremes, 2> sides = {};
   std::vector<double> skewness = {};
 };
+
+using Elements = std::vector<stats::Moments>;
+
+/// The moments of these elements, of which `sums` keeps its part.
+Elements take_side(const stats::ImageStack<float>& stack, stats::ElementRange range,
+                   ElementSums& sums) {
+  Elements moments(range.size());
+  stats::element_moments(stack, range.first, moments);
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    sums.mean[range.first + i] = moments[i].mean;
+    sums.m2[range.first + i] = moments[i].m2;
+  }
+  if (range.first == 0) sums.first = moments[0];
+  return moments;
+}
+
+Part part_of(const Elements& first, const Elements& second) {
+  Part part{{extremes_of(first), extremes_of(second)}};
+  part.skewness.reserve(first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const SkewedSide sides[] = {{first[i], 1, 1}, {second[i], 1, -1}};
+    if (const auto skewness = difference_skewness(sides)) part.skewness.push_back(*skewness);
+  }
+  return part;
+}
+
+void join(ElementSums& sums, const Extremes& found) {
+  sums.minimum = std::min(sums.minimum, found.minimum);
+  sums.maximum = std::max(sums.maximum, found.maximum);
+  sums.nonzero += found.nonzero;
+}
 
 }  // namespace
 
@@ -54,37 +86,17 @@ SumsOfTwo::SumsOfTwo(const stats::ImageExtent& extent, std::uint64_t pictures)
                  .m2 = std::vector<double>(extent.elements())}) {}
 
 void SumsOfTwo::take(const stats::ImagePair<float>& pair, stats::RowRange rows) {
-  const stats::ImageStack<float>* const stacks[] = {&pair.a, pair.b};
   const stats::ElementRange range = rows.elements(extent_);
   std::vector<Part> parts((range.size() + elements_at_a_time - 1) / elements_at_a_time);
   on_all_threads(parts.size(), [&](std::size_t i) {
     const std::size_t first = range.first + i * elements_at_a_time;
-    const std::size_t size = std::min(elements_at_a_time, range.last - first);
-    std::array<std::vector<stats::Moments>, 2> moments;
-    for (std::size_t s = 0; s < 2; ++s) {
-      moments[s].resize(size);
-      stats::element_moments(*stacks[s], first, moments[s]);
-      for (std::size_t k = 0; k < size; ++k) {
-        sides_[s].mean[first + k] = moments[s][k].mean;
-        sides_[s].m2[first + k] = moments[s][k].m2;
-      }
-      parts[i].sides[s] = extremes_of(moments[s]);
-      if (first == 0) sides_[s].first = moments[s][0];
-    }
-    for (std::size_t k = 0; k < size; ++k) {
-      const SkewedSide sides[] = {{moments[0][k], 1, 1}, {moments[1][k], 1, -1}};
-      if (const auto skewness = difference_skewness(sides)) parts[i].skewness.push_back(*skewness);
-    }
+    const stats::ElementRange some{first, std::min(first + elements_at_a_time, range.last)};
+    parts[i] = part_of(take_side(pair.a, some, sides_[0]), take_side(*pair.b, some, sides_[1]));
   });
   for (const Part& part : parts) {
-    for (std::size_t s = 0; s < 2; ++s) {
-      const bool none = &part == &parts[0] && rows.first == 0;
-      const Extremes& found = part.sides[s];
-      ElementSums& side = sides_[s];
-      side.minimum = none ? found.minimum : std::min(side.minimum, found.minimum);
-      side.maximum = none ? found.maximum : std::max(side.maximum, found.maximum);
-      side.nonzero += found.nonzero;
-      sound_ = sound_ && found.sound;
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      join(sides_[s], part.sides[s]);
+      sound_ = sound_ && part.sides[s].sound;
     }
     for (const double skewness : part.skewness) skewness_ += skewness;
     varying_ += static_cast<double>(part.skewness.size());

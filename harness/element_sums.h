@@ -3,6 +3,7 @@
 // What is kept of pictures of millions of elements, from reading their rows once.
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,8 +19,8 @@ struct ElementSums {
   std::vector<double> m2 = {};
   stats::Moments first = {};    ///< of the first element everything, for who asks of one
   stats::Moments average = {};  ///< of the pictures' averages
-  double minimum = 0;           ///< over all elements
-  double maximum = 0;
+  double minimum = std::numeric_limits<double>::infinity();  ///< over all elements
+  double maximum = -std::numeric_limits<double>::infinity();
   std::uint64_t nonzero = 0;  ///< values of all elements
 
   /// Of an element, or of the average, which comes after them.

@@ -12,22 +12,22 @@ namespace assay::harness {
 namespace {
 
 // Of each number of a picture: as it is kept, and of each element besides: moments of pilot, test
-// and of what is under way, weights and maps. Measured (README.md).
+// and of what is under way, weights and maps; fewer where no picture is kept. Measured (README.md).
 constexpr double bytes_of_number = 4;
-constexpr double bytes_of_element = 225;
+constexpr double bytes_of_element = 175;
+constexpr double bytes_of_streamed_element = 75;
 constexpr double gigabyte = 1e9;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// Of an estimator's pictures themselves.
-double bytes_of_pictures(const PreparedEstimator& estimator, double numbers,
-                         const StreamedClaims& streamed) {
+/// The side of a claim that is answered from rows of this estimator's pictures, or null.
+const Subject* streamed_side(const PreparedEstimator& estimator, const StreamedClaims& streamed) {
   for (const Question* const question : streamed) {
     for (const Subject& side : question->subjects) {
-      if (side.estimator->name == estimator.name) return streamed_bytes(side);
+      if (side.estimator->name == estimator.name) return &side;
     }
   }
-  return bytes_of_number * numbers;
+  return nullptr;
 }
 
 double bytes_of(const PreparedEstimator& estimator, const StreamedClaims& streamed) {
@@ -35,8 +35,10 @@ double bytes_of(const PreparedEstimator& estimator, const StreamedClaims& stream
   const auto pictures = estimator.setup->observations();
   if (!image || !pictures || *pictures == 0) return 0;
   const auto elements = static_cast<double>(image->elements());
-  return bytes_of_pictures(estimator, elements * static_cast<double>(*pictures), streamed) +
-         elements * bytes_of_element;
+  if (const Subject* const side = streamed_side(estimator, streamed)) {
+    return streamed_bytes(*side) + elements * bytes_of_streamed_element;
+  }
+  return elements * (bytes_of_number * static_cast<double>(*pictures) + bytes_of_element);
 }
 
 /// The number in a file of one.

@@ -9,6 +9,7 @@
 
 #include "estimators/map_file.h"
 #include "estimators/ready_made.h"
+#include "harness/parallel.h"
 #include "harness/picture.h"
 #include "harness/question_image.h"
 #include "harness/text_hash.h"
@@ -77,7 +78,10 @@ float narrow(double value) {
                               : static_cast<float>(value);
 }
 
-reports::Map map_of(const char* name, const ImageShape& shape, const std::vector<double>& values) {
+/// Of value(element) for every element.
+template <class Value>
+reports::Map map_of(const char* name, const ImageShape& shape, const Value& value) {
+  constexpr std::size_t at_a_time = std::size_t{1} << 16;
   reports::Map map{.name = name,
                    .source = "",
                    .file = "",
@@ -85,8 +89,13 @@ reports::Map map_of(const char* name, const ImageShape& shape, const std::vector
                    .height = shape.height,
                    .components = shape.components,
                    .texels = {}};
-  map.texels.values.reserve(values.size());
-  for (const double value : values) map.texels.values.push_back(narrow(value));
+  std::vector<float>& texels = map.texels.values;
+  texels.resize(shape.elements());
+  on_all_threads((texels.size() + at_a_time - 1) / at_a_time, [&](std::size_t part) {
+    const std::size_t first = part * at_a_time;
+    const std::size_t last = std::min(first + at_a_time, texels.size());
+    for (std::size_t i = first; i < last; ++i) texels[i] = narrow(value(i));
+  });
   return map;
 }
 
@@ -98,42 +107,31 @@ double surely_one(double tested) {
 }
 
 /// Sidak over the elements that vary.
-std::vector<double> adjusted_map(const std::vector<double>& z, double tested) {
+double adjusted_p(double z, double tested) {
+  const double log_p = std::isfinite(z)
+                           ? std::min(0.0, std::log(2.0) + stats::normal_tails(std::abs(z)).upper)
+                           : std::numeric_limits<double>::lowest();
+  return std::exp(stats::adjusted(log_p, {.count = tested, .share = 1}));
+}
+
+reports::Map adjusted_map(const ImageShape& shape, const std::vector<double>& z, double tested) {
   const double one = surely_one(tested);
-  std::vector<double> p;
-  p.reserve(z.size());
-  for (const double value : z) {
-    if (std::abs(value) < one) {
-      p.push_back(1);
-      continue;
-    }
-    const double log_p =
-        std::isfinite(value)
-            ? std::min(0.0, std::log(2.0) + stats::normal_tails(std::abs(value)).upper)
-            : std::numeric_limits<double>::lowest();
-    p.push_back(std::exp(stats::adjusted(log_p, {.count = tested, .share = 1})));
-  }
-  return p;
+  return map_of("p_adjusted", shape,
+                [&](std::size_t i) { return std::abs(z[i]) < one ? 1 : adjusted_p(z[i], tested); });
 }
 
 /// Mean and variance of one source's elements.
 void add_moments(const TestWork& work, std::size_t subject, reports::Test& test) {
   const Subject& side = work.outcome.question.subjects[subject];
   const Summary& summary = work.pools[subject]->prefix(work.outcome.secondaries());
-  std::vector<double> mean;
-  std::vector<double> variance;
-  mean.reserve(side.channels.size());
-  variance.reserve(side.channels.size());
-  for (const std::size_t channel : side.channels) {
-    const stats::Moments moments = summary.moments(channel);
-    mean.push_back(moments.mean);
-    variance.push_back(moments.variance());
-  }
+  const auto moments = [&](std::size_t i) { return summary.moments(side.channels[i]); };
   const char* const mean_names[] = {"mean", "other_mean"};
   const char* const variance_names[] = {"variance", "other_variance"};
-  test.maps.push_back(map_of(mean_names[subject], *side.image, mean));
+  test.maps.push_back(
+      map_of(mean_names[subject], *side.image, [&](std::size_t i) { return moments(i).mean; }));
   test.maps.back().source = side.estimator->listed;
-  test.maps.push_back(map_of(variance_names[subject], *side.image, variance));
+  test.maps.push_back(map_of(variance_names[subject], *side.image,
+                             [&](std::size_t i) { return moments(i).variance(); }));
   test.maps.back().source = side.estimator->listed;
 }
 
@@ -141,17 +139,15 @@ void add_maps(const TestWork& work, const ImageOutcome& outcome, reports::Test& 
   const Question& question = work.outcome.question;
   const ImageShape& shape = *question.subjects[0].image;
   const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
-  test.maps.push_back(map_of("z", shape, outcome.z));
-  test.maps.push_back(map_of("p_adjusted", shape, adjusted_map(outcome.z, tested)));
+  test.maps.push_back(map_of("z", shape, [&](std::size_t i) { return outcome.z[i]; }));
+  test.maps.push_back(adjusted_map(shape, outcome.z, tested));
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     add_moments(work, subject, test);
   }
   if (question.of_two()) return;
-  std::vector<double> reference;
-  for (const Constant& each : question.references) {
-    reference.push_back(each.value + question.offset);
-  }
-  test.maps.push_back(map_of("reference", shape, reference));
+  test.maps.push_back(map_of("reference", shape, [&](std::size_t i) {
+    return question.references[i].value + question.offset;
+  }));
 }
 
 /// A file name of letters, digits, `-` and `_`, different for different tests.

@@ -198,7 +198,7 @@ int merge_shards(const MergeArguments& arguments, const Output& output) {
   require_writable(output);
   std::vector<ShardFile> shards;
   for (const std::string& file : arguments.records) shards.push_back({file, read_record(file)});
-  const reports::Record record = merge(std::move(shards));
+  reports::Record record = merge(std::move(shards));
   report_run(record, output);
   return exit_code(record, output.inconclusive);
 }

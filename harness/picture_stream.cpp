@@ -1,7 +1,6 @@
 #include "harness/picture_stream.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 #include <ctime>
 #include <stdexcept>
@@ -68,17 +67,14 @@ class Side {
         texels_(std::make_unique_for_overwrite<float[]>(pictures_ * size_)),
         seconds_(pictures_) {}
 
-  /// Lets go of rows before those of the range and reads on to its last. False where a texel is not
-  /// finite.
-  bool move_to(stats::RowRange rows) {
-    std::atomic<bool> finite = true;
+  /// Lets go of rows before those of the range and reads on to its last.
+  void move_to(stats::RowRange rows) {
     on_all_threads(pictures_, [&](std::size_t i) {
       const double start = thread_seconds();
-      if (!move_to(rows, i)) finite = false;
+      move_to(rows, i);
       seconds_[i] += thread_seconds() - start;
     });
     there_ = rows;
-    return finite;
   }
 
   Stack stack(std::size_t pictures) const {
@@ -97,12 +93,12 @@ class Side {
   }
 
  private:
-  bool move_to(stats::RowRange rows, std::size_t picture) {
+  void move_to(stats::RowRange rows, std::size_t picture) {
     float* const begin = texels_.get() + picture * size_;
     const std::size_t kept = (there_.last - rows.first) * extent_.row();
     std::memmove(begin, begin + (rows.first - there_.first) * extent_.row(), kept * sizeof(float));
-    if (rows.last == there_.last) return true;
-    return reader_->read(picture, {begin + kept, (rows.last - there_.last) * extent_.row()});
+    if (rows.last == there_.last) return;
+    reader_->read(picture, {begin + kept, (rows.last - there_.last) * extent_.row()});
   }
 
   stats::ImageExtent extent_;
@@ -138,7 +134,8 @@ class Looking {
     const std::size_t step = rows_at_a_time(extent_, 2 * pictures_);
     for (std::size_t row = 0; row < extent_.height; row += step) {
       const stats::RowRange rows{row, std::min(row + step, extent_.height)};
-      if (interrupted() || !move_to(rows)) return false;
+      if (interrupted()) return false;
+      move_to(rows);
       take(rows);
       progress.advance(2 * pictures_ * rows.last / extent_.height);
     }
@@ -167,11 +164,11 @@ class Looking {
   }
 
  private:
-  bool move_to(stats::RowRange rows) {
+  void move_to(stats::RowRange rows) {
     const std::size_t ahead = rounded_up(rows.last + Pyramid::rows_ahead, read_unit);
     const stats::RowRange there{rows.first - std::min(rows.first, Pyramid::rows_before),
                                 std::min(ahead, extent_.height)};
-    return std::ranges::all_of(sides_, [&](Side& side) { return side.move_to(there); });
+    for (Side& side : sides_) side.move_to(there);
   }
 
   void take(stats::RowRange rows) {
@@ -287,7 +284,7 @@ Pilots stream_pictures(const Question& question, const FamilyPlace& place, Progr
     const bool whole = looking.take_all(progress);
     progress.end();
     return whole ? looking.pilots() : Pilots();
-  } catch (const std::domain_error&) {
+  } catch (const std::domain_error&) {  // texels that are not finite, and sums that are not
     progress.end();
     return {};
   }

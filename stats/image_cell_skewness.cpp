@@ -110,6 +110,18 @@ Groups aligned_groups(const ImageExtent& extent) {
   return groups;
 }
 
+// Of each group, at the critical value where one cell must be.
+std::vector<LevelFactors> no_factors(const Groups& groups, const ImageExtent& extent,
+                                     double level) {
+  std::vector<LevelFactors> factors;
+  for (const WindowGroup& group : groups) {
+    const double cells = static_cast<double>(aligned_cells(extent, group.size) * extent.channels);
+    const double tail = level * group.share / cells / 2;
+    factors.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
+  }
+  return factors;
+}
+
 void check_sides(const char* function, std::span<const CellPilot> sides) {
   for (const CellPilot& side : sides) {
     std::visit([&](const auto& stack) { check::image_stack(function, stack); }, side.stack);
@@ -130,17 +142,12 @@ RowCellTails::RowCellTails(std::span<const CellPilot> sides, double level,
   if (!weights.empty() && weights.size() != extent_.elements()) {
     check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
   }
-  std::vector<LevelFactors> factors;
-  for (const WindowGroup& group : groups_) {
-    const double cells = static_cast<double>(aligned_cells(extent_, group.size) * extent_.channels);
-    const double tail = level * group.share / cells / 2;
-    factors.emplace_back(normal_quantile({Tail::upper, std::log(tail)}));
-  }
   std::size_t choices = weights.empty() ? most_choices : 1;
   for (const CellPilot& side : sides) {
     sides_.push_back({side.factor, side.replicates});
     if (weights.empty()) choices = std::min(choices, step_of(side));
   }
+  const std::vector<LevelFactors> factors = no_factors(groups_, extent_, level);
   const RowCellMoments cells(extent_, groups_);
   const std::vector<double> none(cells.tiles().elements());
   for (std::size_t i = 0; i < choices; ++i) {
@@ -166,11 +173,13 @@ void RowCellTails::add_side(const Side& side, double count, const ChannelMoments
 
 void RowCellTails::take(std::span<const CellPilot> sides, RowRange rows, Choice& choice) {
   std::vector<double> own;
-  if (choice.images)
+  std::span<const double> weights = weights_;
+  std::size_t first_weight = 0;
+  if (choice.images) {
     own = weights_of(sides, images_of_choice(sides, *choice.images), rows, for_each_);
-  const std::span<const double> weights = choice.images ? std::span<const double>(own) : weights_;
-  const std::size_t first_weight =
-      choice.images ? with_neighbours(rows, extent_).elements(extent_).first : 0;
+    weights = own;
+    first_weight = with_neighbours(rows, extent_).elements(extent_).first;
+  }
   count_weighted(weights.subspan(rows.elements(extent_).first - first_weight), rows, choice);
   ChannelCumulants cells;
   for (std::size_t s = 0; s < sides.size(); ++s) {
@@ -182,6 +191,10 @@ void RowCellTails::take(std::span<const CellPilot> sides, RowRange rows, Choice&
     const ChannelMoments moments = std::visit(of_stack, sides[s].stack);
     add_side(sides_[s], static_cast<double>(choice.cells[s].images()), moments, cells);
   }
+  add_cells(cells, rows, choice);
+}
+
+void RowCellTails::add_cells(const ChannelCumulants& cells, RowRange rows, Choice& choice) const {
   for_each_(extent_.channels, [&](std::size_t c) {
     std::size_t done = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {

@@ -91,6 +91,7 @@ class RowCellTails {
   void count_weighted(std::span<const double> weights, RowRange rows, Choice& choice) const;
   void add_side(const Side& side, double count, const ChannelMoments& moments,
                 ChannelCumulants& cells) const;
+  void add_cells(const ChannelCumulants& cells, RowRange rows, Choice& choice) const;
   void add_larger(Choice& choice) const;
   LevelFactors factors_of(std::size_t group) const;
 

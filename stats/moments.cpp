@@ -30,10 +30,7 @@ void Moments::merge(const Moments& other) {
   nonzero += other.nonzero;
 }
 
-double Moments::variance() const {
-  check::at_least({"Moments::variance", "count"}, count, 2);
-  return m2 / (static_cast<double>(count) - 1);
-}
+void Moments::refuse_variance() const { check::at_least({"Moments::variance", "count"}, count, 2); }
 
 double Moments::standard_deviation() const { return std::sqrt(variance()); }
 

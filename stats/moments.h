@@ -25,8 +25,12 @@ struct Moments {
   // As if the other sample's values had been added here. Merging in a fixed order gives fixed bits.
   void merge(const Moments& other);
 
-  // m2 / (count - 1). Throws std::domain_error when count < 2, as do the next two.
-  double variance() const;
+  // m2 / (count - 1). Throws std::domain_error when count < 2, as do the next two. Here, since maps
+  // of images ask for millions.
+  double variance() const {
+    if (count < 2) refuse_variance();
+    return m2 / (static_cast<double>(count) - 1);
+  }
   double standard_deviation() const;
   // Of the mean: sqrt(variance / count).
   double standard_error() const;
@@ -37,6 +41,8 @@ struct Moments {
   double kurtosis() const;
 
   friend bool operator==(const Moments&, const Moments&) = default;
+
+  void refuse_variance() const;  // of fewer than two values
 };
 
 inline void Moments::add(double value) {

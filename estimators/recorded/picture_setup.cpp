@@ -75,7 +75,7 @@ class StackRows final : public PictureRows {
         seen_(std::move(seen)),
         pictures_(stack_->files.size(), {nullptr, PictureDigest(row_of(*stack_)), 0}) {}
 
-  bool read(std::uint64_t index, std::span<float> texels) override {
+  void read(std::uint64_t index, std::span<float> texels) override {
     Reading& picture = pictures_.at(index);
     if (!picture.file) picture.file = stack_->open(index);
     picture.file->read(stack_->channels.names, texels, picture.rows);
@@ -84,7 +84,6 @@ class StackRows final : public PictureRows {
     const bool last = picture.rows == stack_->window.height;
     if (last) seen_->refuse_a_copy(index, picture.digest);
     if (last || pictures_.size() > most_open) picture.file.reset();
-    return picture.digest.finite();
   }
 
  private:

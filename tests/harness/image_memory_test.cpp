@@ -45,6 +45,19 @@ TEST_F(ImageMemory, IsThatOfEveryNumberAndMore) {
   EXPECT_LT(picture_bytes(estimators_, {}), 100 * pictures * elements);
 }
 
+// A window of rows of such small pictures is all of them; of each element less is kept.
+TEST_F(ImageMemory, OfPicturesThatAreTakenRowsAfterRowsIsLess) {
+  const Suite suite =
+      load_suite(place_.write("rows.yaml",
+                              "suite: s\nestimators:\n  a: {plugin: recorded, file: 'a0*.exr'}\n"
+                              "  b: {plugin: recorded, file: 'a1*.exr'}\n"
+                              "tests:\n  - claim: mean(a) == mean(b)\n"));
+  const auto estimators = prepare_all(suite);
+  const Question question = ask(suite.tests[0], estimators, 1);
+  EXPECT_LT(picture_bytes(estimators, {&question}), picture_bytes(estimators, {}) - 100 * elements);
+  EXPECT_GT(picture_bytes(estimators, {&question}), 4 * pictures * elements);
+}
+
 TEST_F(ImageMemory, ThatIsNotThereIsAnErrorThatSaysHowMuch) {
   const double needed = picture_bytes(estimators_, {});
   EXPECT_NO_THROW(require_memory(estimators_, {}, needed));

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <vector>
 
 #include "harness/commands.h"
@@ -113,6 +114,7 @@ TEST(PictureClaims, CopiesThatNoTestTakesAreNoMatter) {
 void expect_same_findings(const reports::Test& one, const reports::Test& other) {
   EXPECT_EQ(one.channels[0].log10_p, other.channels[0].log10_p);
   EXPECT_EQ(one.channels[0].effect.low, other.channels[0].effect.low);
+  EXPECT_EQ(one.detectable, other.detectable);
   ASSERT_EQ(one.image->groups.size(), other.image->groups.size());
   for (std::size_t i = 0; i < one.image->groups.size(); ++i) {
     EXPECT_EQ(one.image->groups[i].place, other.image->groups[i].place);
@@ -158,6 +160,22 @@ TEST(PictureClaims, RowsAfterRowsGiveTheNumbersOfTheWhole) {
   EXPECT_TRUE(rows.suites[0].tests[0].image->sign_flips);
   EXPECT_EQ(rows.suites[0].tests[0].verdict, Verdict::pass) << rows.suites[0].tests[0].message;
   expect_same_findings(rows.suites[0].tests[0], whole.suites[0].tests[0]);
+}
+
+TEST(PictureClaims, WithATexelThatIsNoNumberSayWhichAndWhere) {
+  const Workplace place;
+  write_stack(place, {"a", 1});
+  write_stack(place, {"b", 2});
+  draws::Picture picture{width, height, {"R", "G", "B"}, {}};
+  picture.values.assign(3 * width * height, 1.5F);
+  picture.values[3 * width + 4] = std::numeric_limits<float>::quiet_NaN();  // x 1, y 1 of G
+  draws::write_exr(place.file("b07.exr"), picture);
+  const auto record = run_files({place.write("s.yaml", suite_text(stack_b, "mean(a) == mean(b)"))});
+  const reports::Test& test = record.suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::error);
+  EXPECT_THAT(test.message, HasSubstr("of `b` at pixel "));
+  EXPECT_THAT(test.message, HasSubstr("are not finite, the first is observation 7, `"));
+  EXPECT_THAT(test.message, HasSubstr("b07.exr`"));
 }
 
 // Of what is kept beside them: values for the second claim, costs for the third.

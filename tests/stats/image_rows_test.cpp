@@ -22,10 +22,14 @@ using tests::OwnedStack;
 constexpr ImageExtent extent{50, 150, 3};
 constexpr std::size_t count = 33;
 
-OwnedStack skewed_stack(std::uint32_t key) {
+// A light of 8 x 8 lies across the rows 64, so that the largest cells of every size do.
+OwnedStack skewed_stack(std::uint32_t key, double light) {
   tests::Philox random(key);
   return tests::draw_stack(extent, count, [&](std::size_t e) {
-    return 1 + static_cast<double>(e % 7) - std::log1p(-random.uniform());
+    const std::size_t x = e / extent.channels % extent.width;
+    const std::size_t y = e / extent.row();
+    const bool lit = x >= 10 && x < 18 && y >= 60 && y < 68;
+    return 1 + static_cast<double>(e % 7) + (lit ? light : 0) - std::log1p(-random.uniform());
   });
 }
 
@@ -73,8 +77,8 @@ void for_each_window(const OwnedStack& a, const OwnedStack& b, Beside beside, co
 
 class ImageRows : public ::testing::Test {
  protected:
-  const OwnedStack a_ = skewed_stack(880);
-  const OwnedStack b_ = skewed_stack(881);
+  const OwnedStack a_ = skewed_stack(880, 1.5);
+  const OwnedStack b_ = skewed_stack(881, 0);
 };
 
 void expect_same(const ImageFamily& rows, const ImageFamily& whole) {
