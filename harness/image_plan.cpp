@@ -22,7 +22,7 @@ namespace {
 
 constexpr double level_factor = 1.25;
 // Of one replicate's pixels, where they have no pilot (README.md has the false alarms).
-constexpr double most_skewed = 1.5;
+constexpr double most_skewed = 2;
 // Of images at the first look: more are taken only by looks that follow.
 constexpr std::uint64_t most_first_look = 1024;
 
