@@ -64,15 +64,16 @@ template <class Real>
 void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test,
                     ImageOutcome& outcome) {
   outcome.z.resize(varying.first().extent.elements());
-  const stats::PyramidOptions options{.energy = test.independent,
-                                      .smallest = test.smallest_cell,
-                                      .weights = test.weights,
-                                      .only_in_sums = varying.left_to_sums(),
-                                      .z = outcome.z,
-                                      .for_each = on_all_threads};
+  const stats::PyramidOptions options{
+      .energy = test.independent && (test.symmetric || !test.weights.empty()),
+      .smallest = test.smallest_cell,
+      .weights = test.weights,
+      .only_in_sums = varying.left_to_sums(),
+      .z = outcome.z,
+      .for_each = on_all_threads};
   outcome.family = varying.in_sums(
       [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
-  if (!test.independent) add_flipped_energy(varying, test, outcome);
+  if (!test.independent && test.symmetric) add_flipped_energy(varying, test, outcome);
 }
 
 stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageExtent& extent) {
@@ -210,6 +211,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   outcome.unseen = varying.unseen();
   outcome.replicates = pair.replicates();
   outcome.smallest_cell = test.smallest_cell;
+  outcome.symmetric = test.symmetric;
   look_at_family(varying, test, outcome);
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(pair.extent(), outcome);
@@ -227,10 +229,11 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   require_spread(question, look.family.tested > 0, distance);
   outcome.replicates = look.pictures;
   outcome.smallest_cell = test.smallest_cell;
+  outcome.symmetric = test.symmetric;
   outcome.family = look.family;
   outcome.z = look.z;
-  stats::leave_out_cells(outcome.family, {test.smallest_cell, true});
-  if (look.flips) {
+  stats::leave_out(outcome.family, {test.smallest_cell, !test.symmetric});
+  if (look.flips && test.symmetric) {
     outcome.by_sign_flips =
         add_flipped_energy(outcome.family, extent, flip_size(test.share, look.pictures).value(),
                            signs_of(test, look.pictures), [&] { return *look.flips; });

@@ -21,6 +21,7 @@ struct ImageTest {
   ErrorShare share = {};                 ///< of this look
   std::uint32_t smallest_cell = 1;       ///< that the pilot lets keep its level
   std::span<const double> weights = {};  ///< of the elements, from the pilot
+  bool symmetric = true;              ///< no skewness that the elements' differences have in common
   bool independent = true;            ///< whether an image's elements are; else signs are flipped
   StreamKey flips = {};               ///< of the signs, where there are too many to enumerate
   const PictureLook* look = nullptr;  ///< at pictures, taken when they were read
@@ -32,6 +33,7 @@ struct ImageOutcome {
   std::vector<double> z = {};  ///< of every element: Welch's, or of the bound on what was unseen
   std::size_t replicates = 0;
   std::uint32_t smallest_cell = 1;
+  bool symmetric = true;       ///< else the sum of squares took no part, without a pilot's weights
   bool by_sign_flips = false;  ///< whether the sum of squares was judged so
   double wanted = 0;           ///< replicates that would decide, as far as can be told; 0: none
   double uniform_error = 0;    ///< standard error of theta, were it the same everywhere

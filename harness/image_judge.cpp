@@ -46,6 +46,7 @@ ImageTest image_test(const TestWork& work) {
   return {.share = outcome.share(),
           .smallest_cell = outcome.plan.smallest_cell,
           .weights = outcome.plan.method.frozen.weights,
+          .symmetric = outcome.plan.symmetric,
           .independent = std::all_of(subjects.begin(), subjects.end(),
                                      [](const Subject& s) { return s.image->independent; }),
           .flips = work.pools[0]->key(),
@@ -62,7 +63,7 @@ std::string means_where_it_differs(const TestWork& work) {
   const Question& question = outcome.question;
   if (outcome.verdict != reports::Verdict::fail || !outcome.channels[0].image) return "";
   const stats::ImageFinding& winner = outcome.channels[0].image->family.winner;
-  if (winner.statistic != stats::ImageStatistic::window) return "";
+  if (winner.statistic != stats::ImageStatistic::window || winner.window.width == 0) return "";
   const std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
   const double mean = mean_over(work, 0, elements);
   const double other = question.of_two()

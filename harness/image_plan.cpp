@@ -168,6 +168,7 @@ std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, c
                            const Replicates& replicates, Plan& plan) {
   const auto note = [&](const std::vector<stats::CellTails>& tails) {
     plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
+    plan.symmetric = tails.front().common <= level_factor;
   };
   if (plan.look) {
     note(plan.look->tails);

@@ -59,6 +59,7 @@ reports::Image image_of(const ImageOutcome& outcome, const ImageShape& shape) {
                        .constant = family.equal_constants - outcome.unseen.size(),
                        .unseen = outcome.unseen.size(),
                        .smallest_cell = outcome.smallest_cell,
+                       .symmetric = outcome.symmetric,
                        .sign_flips = outcome.by_sign_flips,
                        .winner = {},
                        .groups = {}};

@@ -26,8 +26,11 @@ struct Plan {
   std::vector<Regions> regions = {};          ///< of each channel
   std::vector<reports::Gate> gates = {};      ///< of the pilot
   std::uint32_t smallest_cell = 1;            ///< of an image: smaller ones do not keep their level
-  std::string invalid = "";                   ///< why no method is valid, if none is
-  std::string error = "";                     ///< why nothing can be planned, if nothing can
+  /// Of an image: no skewness that its elements' differences have in common. The sum of squares
+  /// takes part then; skewed squares add their biases up.
+  bool symmetric = true;
+  std::string invalid = "";  ///< why no method is valid, if none is
+  std::string error = "";    ///< why nothing can be planned, if nothing can
   /// Of pictures that were looked at when they were read.
   std::shared_ptr<const PictureLook> look = {};
 

@@ -137,7 +137,8 @@ Plan recorded_plan(const Question& question, const reports::Test& test) {
   Plan plan{
       .method = find_method(question, test.method),
       .looks = recorded_looks(test),
-      .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U};
+      .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U,
+      .symmetric = !test.image || test.image->symmetric};
   // Of each channel the subjects in order.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const bool drawn = i < test.samples.size() &&

@@ -31,6 +31,7 @@ void fields(Archive& a, T& image) {
   a("constant", image.constant);
   a("unseen", image.unseen);
   a("smallest_cell", image.smallest_cell);
+  a("symmetric", image.symmetric);
   a("sign_flips", image.sign_flips);
   a("winner", image.winner);
   a("groups", image.groups);

@@ -23,6 +23,7 @@ std::string left_out(const Image& image) {
     text += fmt::format("; cells below {0} x {0} pixels are left out: their skewness is too large",
                         image.smallest_cell);
   }
+  if (!image.symmetric) text += "; its pixels are skewed to one side";
   if (image.sign_flips) text += "; its pixels depend on each other: signs of whole images flipped";
   if (image.constant > 0) text += fmt::format("; constant elements: {}", image.constant);
   if (image.unseen > 0) {

@@ -27,12 +27,13 @@ struct Image {
   std::uint64_t width = 0, height = 0;
   std::vector<std::string> components;
   std::uint64_t replicates = 0;
-  std::uint64_t tested = 0;          ///< elements that vary
-  std::uint64_t constant = 0;        ///< elements that do not, and are as they should be
-  std::uint64_t unseen = 0;          ///< elements that do not, and differ from an exact reference
-  std::uint64_t smallest_cell = 1;   ///< side of the smallest cells in the family; 1: single pixels
-  bool sign_flips = false;           ///< whether the sum of squares was judged by flips of signs
-  ImageFinding winner;               ///< the least adjusted p
+  std::uint64_t tested = 0;         ///< elements that vary
+  std::uint64_t constant = 0;       ///< elements that do not, and are as they should be
+  std::uint64_t unseen = 0;         ///< elements that do not, and differ from an exact reference
+  std::uint64_t smallest_cell = 1;  ///< side of the smallest cells in the family; 1: single pixels
+  bool symmetric = true;    ///< else skewed elements' sum of squares took no part without a pilot
+  bool sign_flips = false;  ///< whether the sum of squares was judged by flips of signs
+  ImageFinding winner;      ///< the least adjusted p
   std::vector<ImageFinding> groups;  ///< the best of each group of sums
   bool operator==(const Image&) const = default;
 };

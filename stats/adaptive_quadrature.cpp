@@ -179,8 +179,11 @@ void AdaptiveQuadrature::halve(const PlaneValues& density, std::vector<Part>& pa
   }
 }
 
-std::vector<Integral> AdaptiveQuadrature::side_by_side(const PlaneValues& density,
-                                                       std::span<const Line> lines) {
+// Nothing where a level would use up the evaluations, or is larger than is worth keeping: a density
+// that is rough everywhere is halved without end.
+std::optional<std::vector<Integral>> AdaptiveQuadrature::side_by_side(const PlaneValues& density,
+                                                                      std::span<const Line> lines) {
+  constexpr std::size_t most_of_a_level = std::size_t{1} << 20;
   const bool ended = exhausted();
   Level wholes;
   for (const Line& line : lines) wholes.add(line.x, line.y);
@@ -195,6 +198,8 @@ std::vector<Integral> AdaptiveQuadrature::side_by_side(const PlaneValues& densit
   }
   for (std::size_t first = 0, last = 0; first < parts.size(); first = last) {
     last = parts.size();
+    const std::size_t places = 2 * nodes * (last - first);
+    if (!ended && (places > most_of_a_level || used_ + places >= limits_.evaluations)) return {};
     halve(density, parts, first, ended);
   }
   // Halves stand behind what they are halves of.
@@ -212,11 +217,13 @@ std::vector<Integral> AdaptiveQuadrature::along(const PlaneValues& density,
   const bool ended = exhausted();
   const std::uint64_t used = used_;
   const double largest = largest_;
-  std::vector<Integral> integrals = side_by_side(density, lines);
-  if (ended || !exhausted()) return integrals;
-  // The evaluations were used up on the way, and who gets the last of them is a matter of order.
+  if (const auto together = side_by_side(density, lines); together && (ended || !exhausted())) {
+    return *together;
+  }
+  // Where the evaluations are used up on the way, who gets the last of them is a matter of order.
   used_ = used;
   largest_ = largest;
+  std::vector<Integral> integrals(lines.size());
   std::ranges::transform(lines, integrals.begin(), [&](const Line& line) {
     const auto at_x = [&](std::span<const double> y, std::span<double> values) {
       const std::vector<double> x(y.size(), line.x);

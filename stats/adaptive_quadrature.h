@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -105,7 +106,8 @@ class AdaptiveQuadrature {
 
   Values counted(std::span<const double, nodes + 2> densities);
   void halve(const PlaneValues& density, std::vector<Part>& parts, std::size_t first, bool ended);
-  std::vector<Integral> side_by_side(const PlaneValues& density, std::span<const Line> lines);
+  std::optional<std::vector<Integral>> side_by_side(const PlaneValues& density,
+                                                    std::span<const Line> lines);
   Integral refined(const Function& function, Span span, Integral whole, int depth);
 
   QuadratureLimits limits_;

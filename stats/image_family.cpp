@@ -26,13 +26,11 @@ void decide(ImageFamily& family) {
   family.log_p = family.winner.adjusted_log_p;
 }
 
-void leave_out_cells(ImageFamily& family, SmallestCell smallest) {
+void leave_out(ImageFamily& family, LeftOut which) {
   if (family.different_constants > 0) return;
   std::erase_if(family.groups, [&](const ImageFinding& finding) {
-    if (finding.statistic == ImageStatistic::energy) {
-      return smallest.size > 1 && smallest.own_weights;
-    }
-    return finding.statistic == ImageStatistic::window && finding.size < smallest.size;
+    if (finding.statistic == ImageStatistic::energy) return which.energy;
+    return finding.statistic == ImageStatistic::window && finding.size < which.smallest;
   });
   family.log_p = 0;
   family.winner = {};

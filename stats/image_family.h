@@ -50,14 +50,13 @@ double adjusted(double log_p, GroupSize group);
 // min over the groups.
 void decide(ImageFamily& family);
 
-// Cells smaller than this leave the family; certain differences do not. With single elements goes
-// the energy, where the replicates' halves weigh themselves: its term w0 w1 D0 D1 has the mean zero
-// only where an element's own variance in a half says nothing of its mean there.
-struct SmallestCell {
-  std::uint32_t size = 1;
-  bool own_weights = true;
+// Cells smaller than this leave the family, and the energy where it is to; certain differences do
+// not.
+struct LeftOut {
+  std::uint32_t smallest = 1;
+  bool energy = false;
 };
-void leave_out_cells(ImageFamily& family, SmallestCell smallest);
+void leave_out(ImageFamily& family, LeftOut which);
 
 // The energy by a p-value found elsewhere, of flips of signs for one, joins the family.
 // energy_notice: ln of the p-value below which it would be the family's smallest, the only one that

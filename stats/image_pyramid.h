@@ -46,6 +46,9 @@ ImageFamily image_pyramid(const ZMap& map);
 // Asymptotic: Welch's law.
 // Throws std::domain_error as welch_z does, and for weights of another number than the elements,
 // negative or not finite.
+// The energy's cross term has mean zero where the halves weigh each other only if an element's
+// variance in a half says nothing of its mean there: not of skewed differences. Leave it out then.
+//
 // Cells smaller than `smallest` are left out of the family (their share stays unspent; different
 // constants still are certain): large sums thin out their elements' skewness, small ones do not,
 // and with 16 skewed replicates of unlike variance the level's part of single elements is exceeded
@@ -58,8 +61,8 @@ ImageFamily image_pyramid(const ZMap& map);
 // Elements of `only_in_sums`, in rising order, are part of cells and energy and take no part alone:
 // their z is 0, and where they never varied they are no certain difference.
 //
-// `z` receives welch_z of every other element, where it has room for them. `for_each` may look at bands
-// of the images at the same time.
+// `z` receives welch_z of every other element, where it has room for them. `for_each` may look at
+// bands of the images at the same time.
 struct PyramidOptions {
   bool energy = true;
   std::uint32_t smallest = 1;  // 1: single elements too

@@ -238,7 +238,7 @@ ImageFamily RowPyramid<Real>::family() {
     add_best_energy(family);
   }
   decide(family);
-  leave_out_cells(family, {options_.smallest, options_.weights.empty()});
+  leave_out(family, {.smallest = options_.smallest});
   return family;
 }
 

@@ -203,16 +203,19 @@ class Reader {
           "number");
     }
     SamplerNote note{.name = std::string(words[1]), .domain = domain(words[2])};
+    const bool bounded = note.domain == Domain::interval;
     for (std::size_t i = 3; i < words.size(); i += 2) {
       const double value = number(words[i + 1]);
-      if (words[i] == "low")
+      if (bounded && words[i] == "low")
         note.bounds[0] = value;
-      else if (words[i] == "high")
+      else if (bounded && words[i] == "high")
         note.bounds[1] = value;
-      else if (words[i] == "rounding" && value >= 0)
+      else if (words[i] == "rounding" && value >= 0 && value < 1)
         note.rounding = value;
       else
-        wrong_here("of a sampler low, high and rounding are known, which is not negative");
+        wrong_here(
+            "of a sampler rounding is known, from 0 and below 1, and of an interval low and "
+            "high");
     }
     if (!(note.bounds[0] < note.bounds[1])) wrong_here("the interval is empty");
     hello_.samplers.push_back(std::move(note));

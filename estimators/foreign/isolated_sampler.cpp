@@ -1,6 +1,7 @@
 #include "estimators/foreign/isolated_sampler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "estimators/flush_denormals.h"
@@ -37,6 +38,15 @@ SamplerDraw draw_from(const double* numbers) {
           .density = numbers[3],
           .weight = numbers[4],
           .valid = numbers[5] != 0};
+}
+
+/// Whether a reply of so many numbers an item is one: numbers, of a draw 0 or 1 for its point.
+bool is_whole(std::span<const double> item) {
+  if (item.size() > 1) {
+    if (item.back() == 0) return true;  // there is no point
+    if (item.back() != 1) return false;
+  }
+  return std::ranges::none_of(item, [](double number) { return std::isnan(number); });
 }
 
 }  // namespace
@@ -148,9 +158,44 @@ std::vector<double> IsolatedSampler::ask_once(Items& items) const {
     const Counted counted(*dialogue);
     if (dialogue->is_new_to(question)) witness(*dialogue, question, items);
     numbers = dialogue->ask(question, items.bytes);
+    if (question.count > 1) require_alone(*dialogue, question, items, numbers);
   }
+  require_whole(items, numbers);
   children_->give_back(std::move(dialogue));
   return numbers;
+}
+
+/// The last of the first many of each kind is asked for alone: a program that goes on from where
+/// its random numbers are gives others.
+void IsolatedSampler::require_alone(Dialogue& dialogue, const Question& question,
+                                    const Items& items, std::span<const double> numbers) const {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!asked_alone_.insert(items.what).second) return;
+  }
+  Question last = question;
+  last.count = 1;
+  const Items item = items.range(items.size() - 1, 1);
+  const std::vector<double> alone = dialogue.ask(last, item.bytes);
+  const std::span<const double> among = numbers.last(alone.size());
+  if (same_bits(alone, {among.begin(), among.end()})) return;
+  throw NoAnswer("`" + children_->terms().name +
+                 "` gave other numbers when it was asked for one of " + to_text(question) +
+                 " alone: a draw must be a function of its stream alone, a density and an "
+                 "evaluation of their point");
+}
+
+void IsolatedSampler::require_whole(const Items& items, std::span<const double> numbers) const {
+  const std::size_t size = numbers_of(items.what);
+  for (std::size_t i = 0; i * size < numbers.size(); ++i) {
+    const std::span<const double> item = numbers.subspan(i * size, size);
+    if (is_whole(item)) continue;
+    std::string words;
+    for (const double number : item) words += (words.empty() ? "" : ", ") + text_of(number);
+    throw NoAnswer("`" + children_->terms().name + "` gave " + words +
+                   (size > 1 ? ", which is no draw: five numbers, and 1 for a point or 0 for none"
+                             : ", which is no number"));
+  }
 }
 
 /// Each program is asked for the very same as the first one, and that one twice.

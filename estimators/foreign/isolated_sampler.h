@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,9 @@ class IsolatedSampler final : public Sampler {
   std::vector<double> ask(const Items& items) const;
   std::vector<double> ask_once(Items& items) const;
   void witness(Dialogue& dialogue, const Question& question, const Items& items) const;
+  void require_alone(Dialogue& dialogue, const Question& question, const Items& items,
+                     std::span<const double> numbers) const;
+  void require_whole(const Items& items, std::span<const double> numbers) const;
   std::vector<double> narrowed(const Items& items, const NoAnswer& failure) const;
 
   std::shared_ptr<Children> children_;
@@ -57,6 +61,7 @@ class IsolatedSampler final : public Sampler {
   };
   mutable std::mutex mutex_;
   mutable std::map<Asked, Witness> witnesses_;
+  mutable std::set<Asked> asked_alone_;
 };
 
 }  // namespace assay::foreign

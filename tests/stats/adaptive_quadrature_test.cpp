@@ -70,6 +70,27 @@ TEST(AdaptiveQuadrature, AsksForALevelOfAllLinesAtOnce) {
   EXPECT_GT(places, 100 * questions);
 }
 
+// A density that is rough everywhere would be halved 2^24 times.
+TEST(AdaptiveQuadrature, NoMoreIsAskedForThanTheEvaluationsAndALevelOfThem) {
+  constexpr std::uint64_t most = 100'000;
+  AdaptiveQuadrature rule({.tolerance = 1e-12, .evaluations = most});
+  std::uint64_t places = 0;
+  std::size_t largest = 0;
+  rule.along(
+      [&](auto x, auto y, auto values) {
+        places += values.size();
+        largest = std::max(largest, values.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          const double rough = std::sin(1e8 * x[i]) * 1e6 + 1e9 * y[i];
+          values[i] = rough - std::floor(rough);
+        }
+      },
+      lines());
+  EXPECT_LE(largest, most);
+  // Once side by side up to the limit, then line by line: what is under way there is ended.
+  EXPECT_LE(places, 3 * most);
+}
+
 TEST(AdaptiveQuadrature, ADensityIsAskedForOnePlaceOrMany) {
   AdaptiveQuadrature rule({.tolerance = 1e-9});
   const auto one = rule.over(rule.of([](double x) { return x; }), {0, 1});

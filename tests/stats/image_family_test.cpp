@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -34,24 +35,25 @@ TEST(ImageFamily, AnEnergyFromElsewhereCountsBelowItsNoticeAlone) {
   EXPECT_EQ(noticed.winner.statistic, ImageStatistic::energy);
 }
 
-// Single elements and, where the halves weigh each other, the energy; weights of a pilot say
-// nothing of the replicates.
-TEST(ImageFamily, TheEnergyLeavesWithTheSmallestCellsOfWhatWeighsItself) {
+TEST(ImageFamily, SmallCellsAndTheEnergyLeaveEachByItself) {
   tests::Philox random(844);
   const auto normal = [&](std::size_t) { return random.normal(); };
   const tests::OwnedStack a = draw_stack(small, 16, normal);
   const tests::OwnedStack b = draw_stack(small, 16, normal);
-  const std::vector<double> weights(small.elements(), 1);
-  const auto has_energy = [&](std::uint32_t smallest, std::span<const double> known) {
-    const ImageFamily family =
-        image_pyramid(a.view(), b.view(), {.smallest = smallest, .weights = known});
-    return std::ranges::any_of(family.groups, [](const ImageFinding& group) {
-      return group.statistic == ImageStatistic::energy;
-    });
+  const ImageFamily all = image_pyramid(a.view(), b.view());
+  const auto left = [&](LeftOut which) {
+    ImageFamily family = all;
+    leave_out(family, which);
+    std::array<bool, 2> found{};
+    for (const ImageFinding& group : family.groups) {
+      if (group.statistic == ImageStatistic::energy) found[0] = true;
+      if (group.statistic == ImageStatistic::window && group.size == 1) found[1] = true;
+    }
+    return found;
   };
-  EXPECT_TRUE(has_energy(1, {}));
-  EXPECT_FALSE(has_energy(2, {}));
-  EXPECT_TRUE(has_energy(2, weights));
+  EXPECT_EQ(left({}), (std::array{true, true}));
+  EXPECT_EQ(left({.smallest = 2}), (std::array{true, false}));
+  EXPECT_EQ(left({.energy = true}), (std::array{false, true}));
 }
 
 // Of an element that is 1 below its reference in every replicate, sums have all of it; alone it is
