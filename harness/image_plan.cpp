@@ -104,6 +104,14 @@ bool keeps_level(const stats::CellTails& tails) {
   return tails.common <= level_factor && tails.factor <= level_factor + tails.scatter;
 }
 
+/// Skewness g of a mean adds some g^2 to the mean of its studentised square: to a sum of so many of
+/// them sqrt(2 elements) g^2 of its standard deviation. What is known of g is a lower limit, and
+/// low by half in a dozen replicates: a tenth is tolerated.
+bool keeps_squares(const stats::CellTails& elements, std::size_t count) {
+  const double skewness = elements.common_skewness;
+  return std::sqrt(2 * static_cast<double>(count)) * skewness * skewness <= 0.1;
+}
+
 /// The smallest cells that keep their level, and all larger ones do. Notes each size's gate up to
 /// theirs; smaller ones are answered by leaving them out.
 std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const ImageShape& shape,
@@ -168,7 +176,7 @@ std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, c
                            const Replicates& replicates, Plan& plan) {
   const auto note = [&](const std::vector<stats::CellTails>& tails) {
     plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
-    plan.symmetric = tails.front().common <= level_factor;
+    plan.symmetric = keeps_squares(tails.front(), question.subjects[0].channels.size());
   };
   if (plan.look) {
     note(plan.look->tails);

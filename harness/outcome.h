@@ -26,8 +26,8 @@ struct Plan {
   std::vector<Regions> regions = {};          ///< of each channel
   std::vector<reports::Gate> gates = {};      ///< of the pilot
   std::uint32_t smallest_cell = 1;            ///< of an image: smaller ones do not keep their level
-  /// Of an image: no skewness that its elements' differences have in common. The sum of squares
-  /// takes part then; skewed squares add their biases up.
+  /// Of an image: too little skewness that its elements' differences have in common for their
+  /// squares to add up to a finding. The sum of squares takes part then.
   bool symmetric = true;
   std::string invalid = "";  ///< why no method is valid, if none is
   std::string error = "";    ///< why nothing can be planned, if nothing can

@@ -260,7 +260,9 @@ std::vector<CellTails> RowCellTails::tails() {
     tail.size = groups_[g].size;
     if (factors.count() == 0) continue;
     tail.factor = factors.factor();
-    tail.common = factors.common(static_cast<double>(choices_.size() * extent_.channels));
+    tail.common_skewness =
+        factors.common_skewness(static_cast<double>(choices_.size() * extent_.channels));
+    tail.common = factors.factor_of(tail.common_skewness);
     // Channels may depend on each other, cells count.
     tail.scatter =
         factors.excess() / std::sqrt(static_cast<double>(aligned_cells(extent_, groups_[g].size)));

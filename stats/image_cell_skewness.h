@@ -25,7 +25,8 @@ struct CellPilot {
 struct CellTails {
   std::uint32_t size = 1;  // side of the cells; the longer side of the image at last
   double factor = 1;
-  double common = 1;   // at least, of the skewness that the cells have in common
+  double common_skewness = 0;  // at least, of the numerators, in common to the cells
+  double common = 1;           // at least, of the skewness that the cells have in common
   double scatter = 0;  // by so much the factor of a normal pilot exceeds 1 with probability 1e-4
 };
 

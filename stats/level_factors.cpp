@@ -100,9 +100,11 @@ void LevelFactors::merge(const LevelFactors& other) {
   scatters_ += other.scatters_;
 }
 
-double LevelFactors::common(double copies) const {
+double LevelFactors::common_skewness(double copies) const {
   const double scatter = scatter_quantile * std::sqrt(scatters_ * copies) / count_;
-  return std::cosh(std::max(0.0, std::abs(arguments_) / count_ - scatter));
+  return std::max(0.0, std::abs(arguments_) / count_ - scatter) / scale_;
 }
+
+double LevelFactors::factor_of(double skewness) const { return std::cosh(scale_ * skewness); }
 
 }  // namespace assay::stats

@@ -24,9 +24,10 @@ class LevelFactors {
   double count() const { return count_; }
   double factor() const { return sum_ / count_; }
   double excess() const { return excess_ / count_; }  // that scatter alone gives
-  // Of the mean of the cells' skewnesses, with its sign, less what scatter alone gives it with
+  // The mean of the cells' skewnesses, with its sign, less what scatter alone gives it with
   // probability 1e-4. Every cell is counted `copies` times, which may depend on each other.
-  double common(double copies) const;
+  double common_skewness(double copies) const;
+  double factor_of(double skewness) const;
 
  private:
   double scale_;
