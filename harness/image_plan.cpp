@@ -21,7 +21,8 @@ namespace assay::harness {
 namespace {
 
 constexpr double level_factor = 1.25;
-// Of one replicate's pixels, where they have no pilot (README.md has the false alarms).
+// Of one replicate's pixels. More is answered by a pilot's weights; where there are none, by
+// nothing (README.md has the false alarms).
 constexpr double most_skewed = 2;
 // Of images at the first look: more are taken only by looks that follow.
 constexpr std::uint64_t most_first_look = 1024;

@@ -17,7 +17,7 @@ namespace assay::harness {
 struct PictureLook {
   std::uint64_t pictures = 0;  ///< of each side
   std::uint64_t piloted = 0;   ///< the first so many of them chose what the test leaves out
-  std::vector<stats::CellTails> tails = {};     ///< of those; empty where they are too few
+  std::vector<stats::CellTails> tails = {};     ///< of those
   stats::ImageDistance distance = {};           ///< in the images' own units
   stats::ImageFamily family = {};               ///< with cells of every size
   std::vector<double> z = {};                   ///< Welch's, of every element

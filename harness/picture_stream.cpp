@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <ctime>
 #include <stdexcept>
 
 #include "estimators/ready_made.h"
@@ -49,12 +48,6 @@ std::size_t rows_there(const stats::ImageExtent& extent, std::size_t pictures) {
 }
 
 std::uint64_t pictures_of(const Subject& side) { return side.setup->observations().value_or(0); }
-
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// One side's pictures, as far as their rows are there.
 class Side {
@@ -181,7 +174,7 @@ class Looking {
     }
     distance_.take(pair, rows, on_all_threads);
     pyramid_->take(pair, rows);
-    if (tails_) tails_->take(pilot_sides(), rows);
+    tails_->take(pilot_sides(), rows);
     if (flips_) flips_->take(pair, rows);
   }
 
@@ -190,10 +183,8 @@ class Looking {
         question_.subjects, [](const Subject& side) { return side.image->independent; });
     pyramid_.emplace(pair, stats::PyramidOptions{
                                .energy = independent, .z = look_->z, .for_each = on_all_threads});
-    if (piloted_ >= stats::least_replicates) {
-      tails_.emplace(pilot_sides(), smallest_level(question_, place_), std::span<const double>(),
-                     on_all_threads);
-    }
+    tails_.emplace(pilot_sides(), smallest_level(question_, place_), std::span<const double>(),
+                   on_all_threads);
     if (!independent && flip_size(place_.share, pictures_)) flips_.emplace();
   }
 
@@ -206,7 +197,7 @@ class Looking {
   void finish() {
     look_->distance = distance_.distance();
     look_->family = pyramid_->family();
-    if (tails_) look_->tails = tails_->tails();
+    look_->tails = tails_->tails();
     if (flips_) look_->flips = flips_->matrix();
     look_->skewness = sums_.skewness();
     for (std::size_t s = 0; s < sides_.size(); ++s) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ctime>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include "estimators/ready_made.h"
 #include "harness/group_variance.h"
 #include "harness/kept_sums.h"
+#include "harness/parallel.h"
 #include "harness/recorded_run.h"
 
 namespace assay::harness {
@@ -25,12 +25,6 @@ constexpr std::uint64_t primaries_per_block = 16384;
 constexpr std::uint64_t least_block = 8;
 constexpr std::uint64_t most_block = 4096;
 constexpr std::uint64_t most_observations = std::numeric_limits<std::uint64_t>::max();
-
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 std::vector<stats::Moments> moments_of(std::span<const ChannelSummary> channels) {
   std::vector<stats::Moments> moments;

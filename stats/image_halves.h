@@ -15,9 +15,9 @@ inline constexpr std::size_t halves = 2;
 // Of one half: D = mean a - mean b, its squared error v, and the weight that the other half takes:
 // 1 / sqrt of the mean of v and of v smoothed over 3 x 3 elements of the channel, or zero where no
 // replicate of the half differs from another in this element. A single element's v is from few
-// values and can be tiny by chance; its weight alone would then carry the whole sum. A pixel that is
-// lit in one image of thousands, seen by neither half, would by its neighbours' v weigh like them
-// and bring in all of its mean.
+// values and can be tiny by chance; its weight alone would then carry the whole sum. A pixel that
+// is lit in one image of thousands, seen by neither half, would by its neighbours' v weigh like
+// them and bring in all of its mean.
 struct Half {
   std::size_t first = 0;  // element that they begin with
   std::vector<double> difference;

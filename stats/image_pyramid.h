@@ -30,9 +30,8 @@ ImageFamily image_pyramid(const ZMap& map);
 //
 // Cells: the replicates are dealt to two halves; each half's variances, steadied by those of 3 x 3
 // neighbours, give the other half its weights w ~ 1 / sqrt(va + vb), 0 where the element did not
-// vary. A
-// replicate's cell value is its weighted sum, T the Welch statistic of (mean of a - mean of b),
-// averaged over the halves, from the variances of the cell values over replicates. Weights and
+// vary. A replicate's cell value is its weighted sum, T the Welch statistic of (mean of a - mean of
+// b), averaged over the halves, from the variances of the cell values over replicates. Weights and
 // values are independent, so the numerator has mean zero for any law of the elements, and
 // correlation between elements is in the variance: adding up the elements' own z would be wrong for
 // both (README.md has the rates). Single elements: welch_z.

@@ -231,6 +231,14 @@ const std::vector<std::string>& law_signatures() {
   return all;
 }
 
+Law law_of(Parameters& parameters) {
+  try {
+    return Law::parse(parameters.string("law"));
+  } catch (const std::invalid_argument& error) {
+    parameters.refuse("law", std::string("is no law: ") + error.what());
+  }
+}
+
 Channel channel_of(const Variable& variable) {
   const auto& [law, shift, scale] = variable;
   // A scale of 0 makes a constant of any range.
@@ -300,16 +308,8 @@ class VariableSampler final : public Sampler {
   std::array<double, 2> bounds_;
 };
 
-Law law_of(Parameters& parameters) {
-  try {
-    return Law::parse(parameters.string("law"));
-  } catch (const std::invalid_argument& error) {
-    parameters.refuse("law", std::string("is no law: ") + error.what());
-  }
-}
-
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
-  const Law law = law_of(parameters);
+  const Law law = analytic::law_of(parameters);
   const Variable variable{law, parameters.number("shift"), parameters.number("scale")};
   std::vector<NamedSampler> samplers;
   if (law.has_density() && law.variance()) {

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "analytic/variable.h"
 #include "estimators/imaging.h"
@@ -16,17 +15,6 @@ namespace {
 
 using analytic::Law;
 using analytic::Variable;
-
-Law law_of(Parameters& parameters) {
-  const std::string text = parameters.string("law");
-  try {
-    const Law law = Law::parse(text);
-    if (law.variance()) return law;
-  } catch (const std::invalid_argument& error) {
-    parameters.refuse("law", std::string("is no law: ") + error.what());
-  }
-  parameters.refuse("law", "has no variance: nothing brings it to 1");
-}
 
 /// The variable of this law with another mean and deviation.
 Variable rescaled(const Law& law, double mean, double deviation) {
@@ -44,7 +32,8 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
       .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
   if (parameters.boolean("colour")) parts.shape.components = {"red", "green", "blue"};
   const double spread = parameters.number("spread");
-  const Law law = law_of(parameters);
+  const Law law = analytic::law_of(parameters);
+  if (!law.variance()) parameters.refuse("law", "has no variance: nothing brings it to 1");
   for (std::size_t i = 0; i < parts.shape.elements(); ++i) {
     const std::size_t component = i % parts.shape.components.size();
     const double column = static_cast<double>(i / parts.shape.components.size() % width);

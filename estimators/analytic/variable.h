@@ -19,6 +19,9 @@ struct Variable {
   double operator()(Stream& random) const { return shift + scale * law.draw(random); }
 };
 
+/// The parameter `law`; a usage error where it is none.
+Law law_of(Parameters& parameters);
+
 /// Its mean, variance and range, as far as they exist.
 Channel channel_of(const Variable& variable);
 

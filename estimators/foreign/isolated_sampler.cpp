@@ -171,14 +171,18 @@ void IsolatedSampler::require_alone(Dialogue& dialogue, const Question& question
                                     const Items& items, std::span<const double> numbers) const {
   {
     const std::scoped_lock lock(mutex_);
-    if (!asked_alone_.insert(items.what).second) return;
+    if (asked_alone_.contains(items.what)) return;
   }
   Question last = question;
   last.count = 1;
   const Items item = items.range(items.size() - 1, 1);
   const std::vector<double> alone = dialogue.ask(last, item.bytes);
   const std::span<const double> among = numbers.last(alone.size());
-  if (same_bits(alone, {among.begin(), among.end()})) return;
+  if (same_bits(alone, {among.begin(), among.end()})) {
+    const std::scoped_lock lock(mutex_);
+    asked_alone_.insert(items.what);
+    return;
+  }
   throw NoAnswer("`" + children_->terms().name +
                  "` gave other numbers when it was asked for one of " + to_text(question) +
                  " alone: a draw must be a function of its stream alone, a density and an "

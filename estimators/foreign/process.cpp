@@ -58,8 +58,7 @@ std::vector<Entry> foreign_process() {
             "start-up or reconstruction; `image WIDTH HEIGHT COMPONENT…` in the place of "
             "channels, with `range LOW HIGH` of its elements and `independent` where pixels are; "
             "`rays` where one more number follows each observation, the rays it took; `sampler "
-            "NAME "
-            "DOMAIN` in binary, of a source of points that is asked for draws and densities "
+            "NAME DOMAIN` in binary, of a source of points that is asked for draws and densities "
             "(estimators/foreign/README.md); `error WORDS` to refuse.",
         .parameters = parameters(),
         .averages = false,

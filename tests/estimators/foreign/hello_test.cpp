@@ -94,6 +94,8 @@ TEST(Hello, RefusesSamplersThatCannotBe) {
   EXPECT_THAT(wrong_sampler("sampler lens interval low 1 high 1"), HasSubstr("is empty"));
   EXPECT_THAT(wrong_sampler("sampler lens interval low nan"), HasSubstr("not a number"));
   EXPECT_THAT(wrong_sampler("sampler lens square rounding -1"), HasSubstr("from 0"));
+  EXPECT_THAT(wrong_sampler("sampler lens square rounding inf"), HasSubstr("below 1"));
+  EXPECT_THAT(wrong_sampler("sampler lens square low 0"), HasSubstr("of an interval low"));
   EXPECT_THAT(wrong_sampler("sampler lens square middle 1"), HasSubstr("rounding is known"));
   EXPECT_THAT(wrong_sampler("sampler lens square\nsampler lens sphere"), HasSubstr("twice"));
   EXPECT_THAT(wrong("channel x\nsampler lens square\n"), HasSubstr("binary only"));

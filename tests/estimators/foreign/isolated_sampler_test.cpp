@@ -210,5 +210,28 @@ TEST_F(IsolatedSampler, MustAnswerTheSameAgain) {
   EXPECT_THAT(why, ::testing::Contains(HasSubstr(words)));
 }
 
+// What goes on from where its random numbers are gives others to the last of many.
+TEST_F(IsolatedSampler, MustAnswerTheSameAloneAsAmongOthers) {
+  const auto sampler = ramp_that("place = iter(range(9999)); density = lambda point: next(place)");
+  const auto why = [&] { return failure_at(*sampler, points(10)); };
+  EXPECT_THAT(why(), HasSubstr("other numbers when it was asked for one of "));
+  EXPECT_THAT(why(), HasSubstr(" alone: ")) << "and it is found again";
+}
+
+TEST_F(IsolatedSampler, MustAnswerWithNumbers) {
+  const auto nan = ramp_that("density = lambda point: float('nan')");
+  EXPECT_THAT(failure_at(*nan, points(1)), AllOf(HasSubstr("at (0)"), HasSubstr("is no number")));
+  for (const char* const draw : {"(0, 0, 0, float('nan'), 1, 1)", "(0, 0, 0, 1, 1, .5)"}) {
+    const auto sampler = ramp_that(std::string("draw = lambda key, index: ") + draw);
+    Stream random(StreamKey{3}, 7);
+    try {
+      sampler->sample(random);
+      ADD_FAILURE() << draw;
+    } catch (const NoAnswer& failure) {
+      EXPECT_THAT(failure.what(), HasSubstr("is no draw"));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace assay::foreign
