@@ -11,11 +11,13 @@
 namespace assay::harness {
 namespace {
 
-// Of each number of a picture: as it is kept, and of each element besides: moments of pilot, test
-// and of what is under way, weights and maps; fewer where no picture is kept. Measured (README.md).
+// Of each number of a picture: as it is kept, and its share of a sum over a block of 4 x 4 of them.
 constexpr double bytes_of_number = 4;
-constexpr double bytes_of_element = 175;
-constexpr double bytes_of_streamed_element = 75;
+constexpr double bytes_of_block = .5;
+// Of each element besides: moments of pilot, test and of what is under way, weights and maps; fewer
+// where no picture is kept. Measured (README.md).
+constexpr double bytes_of_element = 143;
+constexpr double bytes_of_streamed_element = 43;
 constexpr double gigabyte = 1e9;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
@@ -35,10 +37,11 @@ double bytes_of(const PreparedEstimator& estimator, const StreamedClaims& stream
   const auto pictures = estimator.setup->observations();
   if (!image || !pictures || *pictures == 0) return 0;
   const auto elements = static_cast<double>(image->elements());
+  const auto numbers = elements * static_cast<double>(*pictures);
   if (const Subject* const side = streamed_side(estimator, streamed)) {
-    return streamed_bytes(*side) + elements * bytes_of_streamed_element;
+    return streamed_bytes(*side) + numbers * bytes_of_block + elements * bytes_of_streamed_element;
   }
-  return elements * (bytes_of_number * static_cast<double>(*pictures) + bytes_of_element);
+  return numbers * (bytes_of_number + bytes_of_block) + elements * bytes_of_element;
 }
 
 /// The number in a file of one.
@@ -75,7 +78,7 @@ double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators,
 double available_bytes() { return std::min(of_system(), of_control_group()); }
 
 void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
-                    const StreamedClaims& streamed, double available) {
+                    const StreamedClaims& streamed, double available, const std::string& fault) {
   const double needed = picture_bytes(estimators, streamed);
   if (needed <= available) return;
   const auto largest =
@@ -84,12 +87,13 @@ void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
       });
   const PreparedEstimator& estimator = largest->second;
   const ImageShape shape = *estimator.setup->image();
+  const std::string why = fault.empty() ? "" : fault + ", so that all are to be kept: ";
   throw InputError(
       estimator.where,
-      fmt::format("{} pictures of {} x {} pixels of {} components and those beside them take about "
+      fmt::format("{}{} pictures of {} x {} pixels of {} components and those beside them take about "
                   "{:.1f} GB to test, and {:.1f} GB are free; take fewer pictures (16 a side or "
                   "more), one of their channels at a time, or smaller pictures",
-                  *estimator.setup->observations(), shape.width, shape.height,
+                  why, *estimator.setup->observations(), shape.width, shape.height,
                   shape.components.size(), needed / gigabyte, available / gigabyte));
 }
 

@@ -23,8 +23,10 @@ double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators,
 /// has available. Infinity where neither tells.
 double available_bytes();
 
-/// Throws InputError at the estimator with most pictures where they need more than `available`.
+/// Throws InputError at the estimator with most pictures where they need more than `available`:
+/// after `fault`, if it is not "", for which they cannot be answered from rows.
 void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
-                    const StreamedClaims& streamed, double available);
+                    const StreamedClaims& streamed, double available,
+                    const std::string& fault = "");
 
 }  // namespace assay::harness

@@ -1,6 +1,9 @@
 #include "harness/picture_stream.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
@@ -53,7 +56,8 @@ std::uint64_t pictures_of(const Subject& side) { return side.setup->observations
 class Side {
  public:
   explicit Side(const Subject& side)
-      : extent_(extent_of(*side.image)),
+      : setup_(*side.setup),
+        extent_(extent_of(*side.image)),
         reader_(recorded::picture_rows(*side.setup)),
         pictures_(pictures_of(side)),
         size_(rows_there(extent_, 2 * pictures_) * extent_.row()),
@@ -85,6 +89,20 @@ class Side {
     return sum;
   }
 
+  /// Where among the rows that are there a number is not finite; "" where all are.
+  std::string not_finite() const {
+    const Stack rows = stack();
+    for (std::size_t i = 0; i < pictures_; ++i) {
+      const auto texels = rows.images[i];
+      const auto found = std::ranges::find_if_not(texels, [](float x) { return std::isfinite(x); });
+      if (found == texels.end()) continue;
+      const auto element = rows.there.first + static_cast<std::size_t>(found - texels.begin());
+      return fmt::format("`{}` is not finite at pixel {}", recorded::observation_file(setup_, i),
+                         element_name(*setup_.image(), element));
+    }
+    return "";
+  }
+
  private:
   void move_to(stats::RowRange rows, std::size_t picture) {
     float* const begin = texels_.get() + picture * size_;
@@ -94,6 +112,7 @@ class Side {
     reader_->read(picture, {begin + kept, (rows.last - there_.last) * extent_.row()});
   }
 
+  const Setup& setup_;
   stats::ImageExtent extent_;
   std::unique_ptr<recorded::PictureRows> reader_;
   std::size_t pictures_;
@@ -122,8 +141,17 @@ class Looking {
     }
   }
 
-  /// False where it cannot be taken to its end.
-  bool take_all(Progress& progress) {
+  StreamedPictures take_all(Progress& progress) {
+    try {
+      return {.pilots = take_rows(progress) ? pilots() : Pilots()};
+    } catch (const std::domain_error&) {  // of texels that are not finite, and of their sums
+      return {.fault = fault()};
+    }
+  }
+
+ private:
+  /// False where the user interrupts.
+  bool take_rows(Progress& progress) {
     const std::size_t step = rows_at_a_time(extent_, 2 * pictures_);
     for (std::size_t row = 0; row < extent_.height; row += step) {
       const stats::RowRange rows{row, std::min(row + step, extent_.height)};
@@ -132,11 +160,19 @@ class Looking {
       take(rows);
       progress.advance(2 * pictures_ * rows.last / extent_.height);
     }
-    return sums_.sound();
+    return true;
+  }
+
+  std::string fault() const {
+    for (const Side& side : sides_) {
+      if (std::string found = side.not_finite(); !found.empty()) return found;
+    }
+    return "the squares of their numbers are too large";
   }
 
   /// After the last rows.
   Pilots pilots() {
+    if (!sums_.sound()) throw std::domain_error("sums of pictures are not finite");
     finish();
     std::vector<ElementSums> sums = sums_.finish(of_pictures_);
     Pilots pilots;
@@ -156,7 +192,6 @@ class Looking {
     return pilots;
   }
 
- private:
   void move_to(stats::RowRange rows) {
     const std::size_t ahead = rounded_up(rows.last + Pyramid::rows_ahead, read_unit);
     const stats::RowRange there{rows.first - std::min(rows.first, Pyramid::rows_before),
@@ -268,17 +303,12 @@ double streamed_bytes(const Subject& side) {
                              sizeof(float));
 }
 
-Pilots stream_pictures(const Question& question, const FamilyPlace& place, Progress& progress) {
+StreamedPictures stream_pictures(const Question& question, const FamilyPlace& place,
+                                 Progress& progress) {
   progress.begin("pictures", 2 * pictures_of(question.subjects[0]));
-  try {
-    Looking looking(question, place);
-    const bool whole = looking.take_all(progress);
-    progress.end();
-    return whole ? looking.pilots() : Pilots();
-  } catch (const std::domain_error&) {  // texels that are not finite, and sums that are not
-    progress.end();
-    return {};
-  }
+  StreamedPictures found = Looking(question, place).take_all(progress);
+  progress.end();
+  return found;
 }
 
 }  // namespace assay::harness

@@ -24,9 +24,16 @@ std::vector<const Question*> streamed(const std::vector<Question>& questions,
 /// Bytes that the pictures of one of its sides take at a time.
 double streamed_bytes(const Subject& side);
 
-/// The pilots of a streamed claim's estimators, with the look at their pictures. Empty where its
-/// numbers are beyond what rows can be tested on, which the pictures as a whole will tell; and
-/// where the user interrupts. InputError as reading pictures does.
-Pilots stream_pictures(const Question& question, const FamilyPlace& place, Progress& progress);
+/// What reading two stacks rows after rows came to.
+struct StreamedPictures {
+  Pilots pilots = {};  ///< of the claim's estimators, with the look at their pictures, or none
+  /// Why there are none: numbers that only pictures kept as a whole can be tested on. "" where the
+  /// user interrupted.
+  std::string fault = {};
+};
+
+/// InputError as reading pictures does.
+StreamedPictures stream_pictures(const Question& question, const FamilyPlace& place,
+                                 Progress& progress);
 
 }  // namespace assay::harness

@@ -139,10 +139,12 @@ Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
   Pilots pilots;
   for (const Question* const question : streamed(questions, chosen)) {
     const auto index = static_cast<std::size_t>(question - questions.data());
-    Pilots of_pictures = stream_pictures(*question, place[index], progress);
+    StreamedPictures taken = stream_pictures(*question, place[index], progress);
     stop_if_interrupted();
-    if (of_pictures.empty()) require_memory(run.estimators, {}, available_bytes());
-    pilots.merge(of_pictures);
+    if (taken.pilots.empty()) {
+      require_memory(run.estimators, {}, available_bytes(), taken.fault);
+    }
+    pilots.merge(taken.pilots);
   }
   std::erase_if(used, [&](const PreparedEstimator* each) { return pilots.contains(each->name); });
   if (used.empty()) return pilots;

@@ -65,6 +65,8 @@ TEST_F(ImageMemory, ThatIsNotThereIsAnErrorThatSaysHowMuch) {
   EXPECT_THAT(message, HasSubstr("3:"));
   EXPECT_THAT(message, HasSubstr("20 pictures of 8 x 6 pixels of 3 components"));
   EXPECT_THAT(message, HasSubstr("GB are free; take fewer pictures"));
+  EXPECT_THAT(refusal([&] { require_memory(estimators_, {}, 0, "`a03.exr` is not finite"); }),
+              HasSubstr("`a03.exr` is not finite, so that all are to be kept: 20 pictures"));
 }
 
 TEST_F(ImageMemory, OfThisMachineIsKnown) {

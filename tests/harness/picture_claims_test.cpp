@@ -111,57 +111,6 @@ TEST(PictureClaims, CopiesThatNoTestTakesAreNoMatter) {
   EXPECT_EQ(run_files({place.write("s.yaml", text)}).suites[0].tests[0].verdict, Verdict::pass);
 }
 
-void expect_same_findings(const reports::Test& one, const reports::Test& other) {
-  EXPECT_EQ(one.channels[0].log10_p, other.channels[0].log10_p);
-  EXPECT_EQ(one.channels[0].effect.low, other.channels[0].effect.low);
-  EXPECT_EQ(one.detectable, other.detectable);
-  ASSERT_EQ(one.image->groups.size(), other.image->groups.size());
-  for (std::size_t i = 0; i < one.image->groups.size(); ++i) {
-    EXPECT_EQ(one.image->groups[i].place, other.image->groups[i].place);
-    EXPECT_EQ(one.image->groups[i].log10_p, other.image->groups[i].log10_p);
-  }
-  ASSERT_EQ(one.gates.size(), other.gates.size());
-  for (std::size_t i = 0; i < one.gates.size(); ++i) {
-    EXPECT_EQ(one.gates[i].value, other.gates[i].value) << one.gates[i].name;
-    EXPECT_EQ(one.gates[i].limit, other.gates[i].limit) << one.gates[i].name;
-  }
-  ASSERT_EQ(one.maps.size(), other.maps.size());
-  for (std::size_t i = 0; i < one.maps.size(); ++i) {
-    EXPECT_EQ(one.maps[i].texels.values, other.maps[i].texels.values) << one.maps[i].name;
-  }
-  for (std::size_t i = 0; i < one.samples.size(); ++i) {
-    EXPECT_EQ(one.samples[i].mean, other.samples[i].mean);
-    EXPECT_EQ(one.samples[i].variance, other.samples[i].variance);
-    EXPECT_EQ(one.samples[i].minimum, other.samples[i].minimum);
-    EXPECT_EQ(one.samples[i].maximum, other.samples[i].maximum);
-    EXPECT_EQ(one.samples[i].nonzero, other.samples[i].nonzero);
-    EXPECT_EQ(one.samples[i].cost.samples, other.samples[i].cost.samples);
-  }
-}
-
-// So wide that they are taken in three windows; `secondaries` keeps them whole.
-TEST(PictureClaims, RowsAfterRowsGiveTheNumbersOfTheWhole) {
-  const Workplace place;
-  tests::Philox random(3);
-  for (int i = 0; i < 64; ++i) {
-    draws::Picture picture{172, 150, {"R", "G", "B"}, {}};
-    for (int texel = 0; texel < 172 * 150 * 3; ++texel) {
-      const double value = random.uniform();
-      picture.values.push_back(texel % 5 == 0 && value < 0.9 ? 0 : static_cast<float>(value));
-    }
-    draws::write_exr(place.file(fmt::format("{}{:02}.exr", i < 32 ? 'a' : 'b', i)), picture);
-  }
-  const std::string text =
-      "suite: s\nestimators:\n  a: {plugin: recorded, file: 'a*.exr'}\n"
-      "  b: {plugin: recorded, file: 'b*.exr'}\ntests:\n  - claim: mean(a) == mean(b)\n";
-  const auto rows = run_files({place.write("rows.yaml", text)});
-  const auto whole = run_files({place.write("whole.yaml", text + "    secondaries: 32\n")});
-  ASSERT_TRUE(rows.suites[0].tests[0].image);
-  EXPECT_TRUE(rows.suites[0].tests[0].image->sign_flips);
-  EXPECT_EQ(rows.suites[0].tests[0].verdict, Verdict::pass) << rows.suites[0].tests[0].message;
-  expect_same_findings(rows.suites[0].tests[0], whole.suites[0].tests[0]);
-}
-
 TEST(PictureClaims, WithATexelThatIsNoNumberSayWhichAndWhere) {
   const Workplace place;
   write_stack(place, {"a", 1});
