@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/planned_rates.h"
 #include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
 #include "stats/quantile_test.h"
@@ -25,14 +26,6 @@ double deviation(const Question& question, std::size_t subject, std::size_t chan
                  const Pilots& pilots, const Plan& plan) {
   return std::sqrt(moments_of(question, subject, channel, pilots).variance() /
                    question.subjects[subject].averaged(plan.primaries[subject]));
-}
-
-stats::ErrorRates rates_of(const ErrorShare& share, const Regions& regions) {
-  if (regions.relation == Relation::within) {
-    return {.alpha = share.beta, .beta = share.beta / 2, .two_sided = false};
-  }
-  if (regions.proof()) return {.alpha = share.beta, .beta = share.beta, .two_sided = false};
-  return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
 }
 
 /// What is to be told from the claimed region's edge; 0 where nothing is.
@@ -110,7 +103,7 @@ std::optional<std::uint64_t> slope_channel(const Question& question, std::size_t
   const double distance = distance_of(regions);
   if (!(distance > 0)) return std::nullopt;
   const double null = question.references[channel].value;
-  const stats::ErrorRates rates = rates_of(share, regions);
+  const stats::ErrorRates rates = planned_rates(share, regions);
   const auto expected = expected_points(question, channel, pilots, plan, null);
   if (!expected) return std::nullopt;
   double most = 0;
@@ -157,7 +150,7 @@ std::optional<std::uint64_t> draws_secondaries(const Question& question, const E
   const CountedProbability counted = counted_probability(question);
   const double room = distance - 2 * counted.error;
   if (!(room > 0)) return impossible_secondaries;
-  const stats::ErrorRates rates = rates_of(share, regions);
+  const stats::ErrorRates rates = planned_rates(share, regions);
   const auto quantile = [](double level) {
     return stats::normal_quantile({stats::Tail::upper, std::log(level)});
   };
@@ -183,7 +176,7 @@ std::optional<std::uint64_t> quantile_secondaries(const Question& question, cons
     }
     if (!(distance > 0) || !(sd > 0)) return std::nullopt;
     const double count = std::ceil(stats::normal_sample_size(
-        sd, {.allow = 0, .detect = distance}, rates_of(share, plan.regions[channel])));
+        sd, {.allow = 0, .detect = distance}, planned_rates(share, plan.regions[channel])));
     return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
   });
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "harness/planned_rates.h"
 #include "stats/power_exact.h"
 
 namespace assay::harness {
@@ -81,7 +82,7 @@ std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& quest
                                                            const PlannedChannel& channel,
                                                            const ErrorShare& share) {
   // At each margin theta = 0 is the effect to be found, with half of the misses.
-  const stats::ErrorRates rates{.alpha = share.beta, .beta = share.beta / 2, .two_sided = false};
+  const stats::ErrorRates rates = planned_rates(share, channel.regions);
   PlannedChannel at_margin = channel;
   at_margin.regions.detect = channel.regions.within;
   at_margin.regions.allow = 0;

@@ -13,6 +13,7 @@
 #include "harness/law_size.h"
 #include "harness/mean_evidence.h"
 #include "harness/method.h"
+#include "harness/planned_rates.h"
 #include "stats/power.h"
 #include "stats/tails.h"
 
@@ -113,14 +114,6 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   return planned;
 }
 
-stats::ErrorRates rates_of(const ErrorShare& share, const Regions& regions) {
-  if (regions.relation == Relation::less || regions.relation == Relation::greater) {
-    // A proof: rejecting the forbidden region is what takes samples, and it is done at beta.
-    return {.alpha = share.beta, .beta = share.beta, .two_sided = false};
-  }
-  return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
-}
-
 /// Whether both samples of a comparison of means have a spread: else it is planned as one mean
 /// against a number.
 bool both_spread(const Question& question, const PlannedChannel& channel) {
@@ -172,19 +165,15 @@ stats::LogVariancePlan variance_plan(const stats::ErrorRates& rates, double allo
           .rates = rates};
 }
 
-/// Of a proof that a variance lies within a margin: as for means, at each of the two margins.
-stats::ErrorRates equivalence_rates(const ErrorShare& share) {
-  return {.alpha = share.beta, .beta = share.beta / 2, .two_sided = false};
-}
-
 std::optional<std::uint64_t> for_variances(const ErrorShare& share, const PlannedChannel& channel) {
   const Regions& regions = channel.regions;
   if (regions.relation == Relation::within) {
-    return stats::log_variance_sample_size(variance_plan(equivalence_rates(share), 0, channel),
+    return stats::log_variance_sample_size(variance_plan(planned_rates(share, regions), 0, channel),
                                            std::exp(regions.within));
   }
   return stats::log_variance_sample_size(
-      variance_plan(rates_of(share, regions), regions.allow, channel), std::exp(*regions.detect));
+      variance_plan(planned_rates(share, regions), regions.allow, channel),
+      std::exp(*regions.detect));
 }
 
 std::optional<std::uint64_t> one_channel(const Question& question, std::size_t index,
@@ -198,12 +187,13 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
   if (question.on_log_scale()) {
     count = for_variances(share, *channel);
   } else if (plan.method.name == "binomial" || plan.method.name == "bounded") {
-    count = equivalence ? exact_equivalence_secondaries(question, plan, *channel, share)
-                        : exact_secondaries(question, plan, *channel, rates_of(share, regions));
+    count = equivalence
+                ? exact_equivalence_secondaries(question, plan, *channel, share)
+                : exact_secondaries(question, plan, *channel, planned_rates(share, regions));
   } else if (equivalence) {
     count = for_equivalence(share, *channel);
   } else {
-    count = for_means(question, rates_of(share, regions), regions, *channel);
+    count = for_means(question, planned_rates(share, regions), regions, *channel);
   }
   return count.value_or(impossible_secondaries);
 }
@@ -213,9 +203,9 @@ double equivalence_power(const Question& question, const TestSize& size,
                          const PlannedChannel& channel) {
   const double n = static_cast<double>(size.secondaries);
   if (question.on_log_scale()) {
-    const double one_margin =
-        stats::log_variance_power(variance_plan(equivalence_rates(size.share), 0, channel), n,
-                                  std::exp(channel.regions.within));
+    const double one_margin = stats::log_variance_power(
+        variance_plan(planned_rates(size.share, channel.regions), 0, channel), n,
+        std::exp(channel.regions.within));
     return std::max(0.0, 2 * one_margin - 1);
   }
   // The reference's error does not shrink with n: as a deviation of the observations it grows.
@@ -284,7 +274,7 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
   if (regions.relation == Relation::within) return std::nullopt;  // it finds nothing, it shows
   if (has_no_power(plan.method)) return std::nullopt;
   if (!has_power(question, channel)) return std::nullopt;
-  const stats::ErrorRates rates = rates_of(share, regions);
+  const stats::ErrorRates rates = planned_rates(share, regions);
   if (is_exact(plan.method)) return exact_detectable_effect(question, size, plan, channel, rates);
   double found = 0;
   if (both_spread(question, channel) && question.of_means()) {
@@ -303,7 +293,8 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
 
 bool finds_nothing(const Question& question, const TestSize& size, const Plan& plan,
                    const PlannedChannel& channel) {
-  return exact_finds_nothing(question, size, plan, channel, rates_of(size.share, channel.regions));
+  return exact_finds_nothing(question, size, plan, channel,
+                             planned_rates(size.share, channel.regions));
 }
 
 std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,
@@ -311,7 +302,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
   const double n = static_cast<double>(size.secondaries);
   const ErrorShare& share = size.share;
   const Regions& regions = channel.regions;
-  const stats::ErrorRates rates = rates_of(share, regions);
+  const stats::ErrorRates rates = planned_rates(share, regions);
   if (!has_power(question, channel)) return std::nullopt;
   if (has_no_power(plan.method)) return std::nullopt;
   if (is_exact(plan.method)) return exact_power_at(question, size, plan, channel, rates, effect);
