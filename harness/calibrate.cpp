@@ -1,6 +1,7 @@
 #include "harness/calibrate.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -142,12 +143,13 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
       .runs = arguments.runs,
       .seed = arguments.seed,
       .threads = arguments.threads};
-  std::optional<std::string> method;
-  if (arguments.method) method = calibrated_method(*arguments.method);
+  for (const std::string& method : arguments.methods) require_calibrated(method);
+  refuse_twice("METHOD", arguments.methods);
   std::vector<Measured> all;
   progress.begin("calibration", laws.size() * arguments.runs);
   for (std::size_t i = 0; i < laws.size(); ++i) {
-    const CalibrationBench bench({.law = laws[i], .method = method, .samples = arguments.samples});
+    const CalibrationBench bench(
+        {.law = laws[i], .methods = arguments.methods, .samples = arguments.samples});
     if (bench.cases.empty()) continue;
     measure(
         bench, options, [&](std::uint64_t done) { progress.advance(i * arguments.runs + done); },
@@ -155,7 +157,8 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   }
   progress.end();
   if (all.empty()) {
-    throw InputError({}, fmt::format("no question suits `{}` on these laws", *arguments.method));
+    throw InputError({}, fmt::format("no question suits `{}` on these laws",
+                                     fmt::join(arguments.methods, "`, `")));
   }
   group(all, options.alphas);
   const double error = result.error / static_cast<double>(all.size());

@@ -13,9 +13,9 @@
 namespace assay::harness {
 
 struct CalibrateArguments {
-  std::optional<std::string> method = {};  ///< else all
-  std::vector<std::string> laws = {};      ///< none: the usual ones
-  std::vector<double> alphas = {};         ///< none: .05, .01, .001
+  std::vector<std::string> methods = {};  ///< none: all
+  std::vector<std::string> laws = {};     ///< none: the usual ones
+  std::vector<double> alphas = {};        ///< none: .05, .01, .001
   std::uint64_t runs = 1000;
   std::optional<std::uint64_t> samples = {};  ///< of every test, in one look
   std::uint64_t seed = 1;

@@ -263,14 +263,14 @@ std::string calibration_law(const std::string& named) {
                                    named, fmt::join(calibration_laws(), ", ")));
 }
 
-std::string calibrated_method(const std::string& named) {
+void require_calibrated(const std::string& method) {
   std::set<std::string> known;
   for (const std::string& law : calibration_laws()) {
     for (const Draft& draft : drafts_of(facts_of(law))) known.insert(draft.method);
   }
-  if (known.contains(named)) return named;
-  const std::string near = nearest(named, {known.begin(), known.end()});
-  throw InputError({}, fmt::format("no method `{}` can be calibrated{}; there is {}", named,
+  if (known.contains(method)) return;
+  const std::string near = nearest(method, {known.begin(), known.end()});
+  throw InputError({}, fmt::format("no method `{}` can be calibrated{}; there is {}", method,
                                    near.empty() ? "" : fmt::format(", did you mean `{}`?", near),
                                    fmt::join(known, ", ")));
 }
@@ -287,7 +287,8 @@ CalibrationBench::CalibrationBench(const CalibrationScope& scope) : law(scope.la
     estimators.emplace(entry.name, prepare(entry, "."));
   }
   for (const Draft& draft : drafts_of(facts)) {
-    if (!scope.method || *scope.method == draft.method) cases.push_back(case_of(draft, scope));
+    const bool wanted = scope.methods.empty() || std::ranges::count(scope.methods, draft.method);
+    if (wanted) cases.push_back(case_of(draft, scope));
   }
 }
 

@@ -21,8 +21,8 @@ const std::vector<std::string>& calibration_laws();
 /// the laws there are for one that `analytic/law` does not know.
 std::string calibration_law(const std::string& named);
 
-/// The method a user names. InputError with the methods there are for one that has no cases.
-std::string calibrated_method(const std::string& named);
+/// InputError with the methods there are for one that has no cases.
+void require_calibrated(const std::string& method);
 
 /// A method on a question about a law.
 struct CalibrationCase {
@@ -41,7 +41,7 @@ struct CalibrationCase {
 
 struct CalibrationScope {
   std::string law;
-  std::optional<std::string> method = {};  ///< this one only
+  std::vector<std::string> methods = {};  ///< these only; none: all
   /// Observations of every test, in one look. Else tests are planned by `detect`, in looks, and a
   /// method alone takes 1000, or 64 images.
   std::optional<std::uint64_t> samples = {};

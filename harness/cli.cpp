@@ -202,7 +202,7 @@ Command calibrate_command(const Given& given) {
   }
   CalibrateArguments& arguments = command.arguments;
   arguments.threads = options(given).threads;
-  arguments.method = if_given(given.method);
+  arguments.methods = given.methods;
   arguments.laws = given.laws;
   for (const std::string& alpha : given.alphas) {
     arguments.alphas.push_back(parse_rate(alpha, "--alpha"));

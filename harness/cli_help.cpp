@@ -88,7 +88,7 @@ where a cell errs too often.
 
 Examples:
   assay calibrate
-  assay calibrate F --law exponential --alpha 0.01 --runs 20000 --report html=F.html
+  assay calibrate F chi-square --law exponential --alpha 0.01 --runs 20000 --report html=F.html
   assay calibrate t --law 'lognormal(0, 2)' --samples 200
 )"},
       {"sample", R"(Prints observations of an estimator or a sampler as text that `recorded` reads.

@@ -171,7 +171,7 @@ void define_others(CLI::App& app, Given& given) {
   one(sample, "--seed", given.seed, "N|random", "seed of the stream, or a fresh one; default 1");
 
   CLI::App* calibrate = subcommand(app, "calibrate");
-  calibrate->add_option("METHOD", given.method, "a method; default all")->type_name("");
+  calibrate->add_option("METHOD", given.methods, "methods; default all")->type_name("");
   many(calibrate, "--law", given.laws, "LAW",
        "what is drawn, as exponential or 'student_t(3)'; repeatable; default eight laws");
   many(calibrate, "--alpha", given.alphas, "A",

@@ -343,6 +343,8 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
   contains err 'no junit report'
   expect 2 calibrate t --alpha 0.01 --alpha 1e-2
   contains err '--alpha 0.01 is given twice'
+  expect 2 calibrate t welch t
+  contains err 'METHOD t is given twice'
   expect 2 calibrate t --law normal --law 'normal(0,1)'
   contains err '--law normal(0,1) is given twice'
   expect 2 calibrate --runs 0

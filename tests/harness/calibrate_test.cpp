@@ -30,7 +30,7 @@ const reports::CalibrationCell& cell(const reports::Calibration& calibration,
 // 400 come with probability 1e-8.
 TEST(Calibrate, TheTTestKeepsItsLevelAndFindsItsEffectOnNormalData) {
   const auto result =
-      measured({.method = "t", .laws = {"normal"}, .alphas = {0.05}, .runs = 400, .threads = 1});
+      measured({.methods = {"t"}, .laws = {"normal"}, .alphas = {0.05}, .runs = 400, .threads = 1});
   const auto& t = cell(result, "mean == number", "normal(0, 1)");
   EXPECT_EQ(t.alone.runs, 400U);
   EXPECT_GE(t.alone.count, 4U);
@@ -47,7 +47,7 @@ TEST(Calibrate, TheTTestKeepsItsLevelAndFindsItsEffectOnNormalData) {
 // of .2 fewer than 20 of 300 would come with probability 1e-11.
 TEST(Calibrate, FAloneIsFarOffOnExponentialDataAndItsGateIsRed) {
   const auto result = measured(
-      {.method = "F", .laws = {"exponential"}, .alphas = {0.01}, .runs = 300, .threads = 1});
+      {.methods = {"F"}, .laws = {"exponential"}, .alphas = {0.01}, .runs = 300, .threads = 1});
   const auto& f = cell(result, "variance == variance", "exponential(1)");
   EXPECT_GT(f.alone.count, 20U);
   EXPECT_EQ(f.red.count, 300U);
@@ -61,7 +61,7 @@ TEST(Calibrate, FAloneIsFarOffOnExponentialDataAndItsGateIsRed) {
 // Theta of the false claim stands on the border of what `within` claims: a pass is the mistake.
 TEST(Calibrate, OfAProofAPassIsTheMistake) {
   const auto result = measured(
-      {.method = "tost", .laws = {"uniform"}, .alphas = {0.05}, .runs = 200, .threads = 1});
+      {.methods = {"tost"}, .laws = {"uniform"}, .alphas = {0.05}, .runs = 200, .threads = 1});
   const auto& tost = cell(result, "mean within x of number", "uniform(0, 1)");
   EXPECT_TRUE(tost.proof);
   // P(more than 27 of 200 at .05) = 2e-6.
@@ -70,7 +70,7 @@ TEST(Calibrate, OfAProofAPassIsTheMistake) {
 }
 
 TEST(Calibrate, FixedSamplesAreOneLookOfThatMany) {
-  const auto result = measured({.method = "welch",
+  const auto result = measured({.methods = {"welch"},
                                 .laws = {"normal(3, 2)"},
                                 .alphas = {0.05},
                                 .runs = 20,
@@ -83,7 +83,7 @@ TEST(Calibrate, FixedSamplesAreOneLookOfThatMany) {
 
 TEST(Calibrate, ThreadsChangeNoCount) {
   const CalibrateArguments one{
-      .method = "t", .laws = {"exponential"}, .alphas = {0.05, 0.01}, .runs = 30, .threads = 1};
+      .methods = {"t"}, .laws = {"exponential"}, .alphas = {0.05, 0.01}, .runs = 30, .threads = 1};
   CalibrateArguments three = one;
   three.threads = 3;
   const auto a = measured(one);
@@ -95,6 +95,24 @@ TEST(Calibrate, ThreadsChangeNoCount) {
     EXPECT_EQ(a.cells[i].observations, b.cells[i].observations);
     EXPECT_EQ(a.cells[i].chosen, b.cells[i].chosen);
   }
+}
+
+// They share what they draw.
+TEST(Calibrate, AMethodCountsTheSameBesideOthers) {
+  CalibrateArguments asked{.methods = {"chi-square", "F"},
+                           .laws = {"exponential"},
+                           .alphas = {0.05},
+                           .runs = 30,
+                           .threads = 1};
+  const auto both = measured(asked);
+  asked.methods = {"F"};
+  const auto alone = measured(asked);
+  ASSERT_EQ(alone.cells.size(), 1U);
+  ASSERT_EQ(both.cells.size(), 3U);
+  EXPECT_EQ(both.cells[2].method, "F");
+  EXPECT_EQ(both.cells[2].mistaken.count, alone.cells[0].mistaken.count);
+  EXPECT_EQ(both.cells[2].alone.count, alone.cells[0].alone.count);
+  EXPECT_EQ(both.cells[2].observations, alone.cells[0].observations);
 }
 
 // Every question is asked once of each kind of law without an internal error.
@@ -118,14 +136,14 @@ TEST(Calibrate, EveryMethodHasCellsOnEveryLawThatSuitsIt) {
 }
 
 TEST(Calibrate, UnknownMethodsAndLawsAreRefusedWithWhatThereIs) {
-  EXPECT_THAT(refusal([] { measured({.method = "welsh"}); }),
+  EXPECT_THAT(refusal([] { measured({.methods = {"welsh"}}); }),
               testing::AllOf(HasSubstr("did you mean `welch`"), HasSubstr("chi-square-fit")));
   EXPECT_THAT(refusal([] { measured({.laws = {"cauchy"}}); }),
               testing::AllOf(HasSubstr("cauchy"), HasSubstr("student_t(5)")));
   EXPECT_THAT(refusal([] { measured({.laws = {"cauchy(0, 1)"}}); }),
               HasSubstr("lognormal(location, scale)"));
   EXPECT_THAT(refusal([] { measured({.laws = {"student_t(2)"}}); }), HasSubstr("no variance"));
-  EXPECT_THAT(refusal([] { measured({.method = "binomial", .laws = {"normal"}}); }),
+  EXPECT_THAT(refusal([] { measured({.methods = {"binomial"}, .laws = {"normal"}}); }),
               HasSubstr("no question suits"));
 }
 
