@@ -216,9 +216,8 @@ void Renderings::run_program(const Task& task, const std::string& out) {
     if (!child.ends_by(deadline)) throw TimeOut("time-out");
   } catch (const TimeOut&) {
     child.kill();
-    throw std::runtime_error(with_errors(what + "took more than " + std::to_string(seconds) +
-                                             " s and was ended; give "
-                                             "it a larger `timeout`",
+    throw std::runtime_error(with_errors(what + "took more than " + text_of(seconds) +
+                                             " s and was ended; give it a larger `timeout`",
                                          child));
   }
   const std::string ending = child.ending();
