@@ -43,14 +43,17 @@ std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
   return pool;
 }
 
-/// Moments that means of so many primaries would have these of.
+/// Moments that means of so many primaries would have these of. A kurtosis that is below 3 by chance
+/// would become one that no law has (Pearson 1916: at least 1 and the square of the skewness).
 stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
+  if (!(means.m2 > 0)) return means;
   const double n = static_cast<double>(primaries);
-  const double excess = means.m2 > 0 ? n * (means.kurtosis() - 3) : 0;
   const double values = static_cast<double>(means.count);
+  const double least = 1 + n * means.skewness() * means.skewness();
+  const double kurtosis = std::max(least, 3 + n * (means.kurtosis() - 3));
   means.m3 *= n * n;
   means.m2 *= n;
-  means.m4 = (excess + 3) * means.m2 * means.m2 / values;
+  means.m4 = kurtosis * means.m2 * means.m2 / values;
   return means;
 }
 

@@ -48,20 +48,25 @@ bool is_of_moments(QuantityName name) {
   return false;
 }
 
-/// The canonical parameters that a sample's stream depends on, and whose plugin it is: a mutant's
-/// are its original's.
+/// Those of a list of canonical parameters.
+std::string only(const std::string& parameters, const std::vector<std::string>& names) {
+  std::string kept;
+  for (const std::string& piece : split_outside_brackets(parameters)) {
+    const std::string name = piece.substr(0, piece.find('='));
+    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
+    kept += (kept.empty() ? "" : ",") + piece;
+  }
+  return kept;
+}
+
+/// Whose stream a sample is from, and the canonical parameters that shape it: a mutant's are its
+/// original's.
 std::pair<std::string, std::string> stream_of(const reports::Sample& sample) {
   for (const Entry& entry : catalogue()) {
-    if (entry.information.name != sample.plugin || entry.information.original.empty()) continue;
+    if (entry.information.name != sample.plugin) continue;
     const std::string& original = entry.information.original;
-    const auto names = parameter_names(find_plugin(original, {}).information);
-    std::string kept;
-    for (const std::string& piece : split_outside_brackets(sample.parameters)) {
-      const std::string name = piece.substr(0, piece.find('='));
-      if (std::find(names.begin(), names.end(), name) == names.end()) continue;
-      kept += (kept.empty() ? "" : ",") + piece;
-    }
-    return {original, kept};
+    const Entry& source = original.empty() ? entry : find_plugin(original, {});
+    return {source.information.name, only(sample.parameters, parameter_names(source.information))};
   }
   return {sample.plugin, sample.parameters};
 }

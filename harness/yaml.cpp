@@ -320,9 +320,11 @@ std::vector<std::string> split_outside_brackets(std::string_view text) {
   std::vector<std::string> pieces(1);
   int depth = 0;
   char quote = 0;
+  bool escaped = false;
   for (const char c : text) {
     if (quote) {
-      if (c == quote) quote = 0;
+      if (c == quote && !escaped) quote = 0;
+      escaped = quote == '"' && c == '\\' && !escaped;
     } else if (c == '"' || c == '\'') {
       quote = c;
     } else if (c == '[' || c == '{') {

@@ -129,6 +129,19 @@ TEST_F(RecordedRunTest, KnowsTheRunsRaysAndHowTheyVary) {
   EXPECT_EQ(test.samples[1].cost.shadow_rays, then.cost.shadow_rays);
 }
 
+// Means of 64 of a kurtosis just below 3, as by chance: 64 times as far below it no law is.
+TEST_F(RecordedRunTest, OfMeansThatAreFlatterThanNormalAnswers) {
+  reports::Record flat =
+      run_files({suite("  mean: {plugin: analytic/law, law: 'uniform(0, 1)', primaries: 64}\n",
+                       "claim: mean(mean) == 0.5, secondaries: 1000")});
+  flat.suites[0].tests[0].samples[0].kurtosis = 2.9;
+  reports::write_whole(place_.file("run.json"), reports::json(flat));
+  const reports::Test test =
+      tested(old("mean") + "  new: {plugin: analytic/law, law: 'uniform(0, 1)', primaries: 64}\n",
+             "claim: mean(new) == mean(old)");
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+}
+
 // The record's seed is 5: under it the new side would draw the very numbers of the record.
 TEST_F(RecordedRunTest, SharesNoStreamWithTheNewRun) {
   const reports::Test test = tested(old("normal") + new_normal, "claim: mean(new) == mean(old)", 5);
@@ -138,6 +151,26 @@ TEST_F(RecordedRunTest, SharesNoStreamWithTheNewRun) {
              "claim: mean(new) == mean(twin), secondaries: 20000", 5);
   EXPECT_EQ(both.samples[0].mean, test.samples[1].mean);
   EXPECT_EQ(both.samples[1].mean, test.samples[0].mean);
+}
+
+// `timeout` and `memory` stand in the record and shape no draw.
+TEST_F(RecordedRunTest, OfAProgramSharesNoStreamWithTheNewRun) {
+  place_.write("mine.sh",
+               "printf 'assay 1 text\\nchannel x\\nready\\n'\n"
+               "while read -r high low first count primaries; do\n"
+               "  i=$first\n"
+               "  while [ $i -lt $((first + count)) ]; do\n"
+               "    echo $(((low / 97 + i * 7919) % 1009)); i=$((i + 1))\n"
+               "  done\n"
+               "  echo \"$high $low $first $count $primaries\"\n"
+               "done\n");
+  const std::string mine = "  mine: {plugin: process, command: [sh, mine.sh]}\n";
+  const std::string claim = "claim: mean(mine) > 1, secondaries: 200";
+  reports::write_whole(place_.file("run.json"), reports::json(run_files({suite(mine, claim)})));
+  const reports::Test test =
+      tested(old("mine") + mine, "claim: mean(mine) == mean(old), secondaries: 200");
+  ASSERT_EQ(test.samples.size(), 2) << test.message;
+  EXPECT_NE(test.samples[0].mean, test.samples[1].mean) << test.message;
 }
 
 TEST_F(RecordedRunTest, OfASecondSourceLeavesTheFirstStreamToTheNewRun) {
