@@ -7,13 +7,13 @@
 
 #include "estimators/stream.h"
 #include "harness/image_flips.h"
+#include "harness/image_uniform.h"
 #include "harness/inversion.h"
 #include "harness/parallel.h"
 #include "harness/picture_look.h"
 #include "stats/errors.h"
 #include "stats/image_equivalence.h"
 #include "stats/image_pyramid.h"
-#include "stats/image_sums.h"
 #include "stats/moments.h"
 #include "stats/tails.h"
 
@@ -120,34 +120,11 @@ stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative) {
   return in_units_of_margin(distance, pair.extent(), relative);
 }
 
-double mean_over(std::span<const double> image) {
-  double sum = 0;
-  for (const double value : image) sum += value;
-  return sum / static_cast<double>(image.size());
-}
-
-template <class Real>
-stats::Moments means_of(const stats::ImageStack<Real>& stack) {
-  const double elements = static_cast<double>(stack.extent.elements());
-  stats::Moments moments;
-  for (const double sum : stats::image_sums(stack, on_all_threads)) moments.add(sum / elements);
-  return moments;
-}
-
-/// Standard error of theta for a difference that is the same, or in proportion, everywhere: from
-/// the images' means, and that of the second or its number.
-double uniform_error(const stats::Moments& first, const Constant& second, bool relative) {
-  const double error = std::hypot(first.standard_error(), second.standard_error);
-  return relative ? error / std::abs(second.value) : error;
-}
-
-Constant constant_of(const stats::Moments& means) { return {means.mean, means.standard_error()}; }
-
 template <class Real>
 double uniform_error(const ImagePair<Real>& pair, bool relative) {
-  const Constant second = pair.of_two() ? constant_of(means_of(pair.second()))
-                                        : Constant{mean_over(pair.reference().value), 0};
-  return uniform_error(means_of(pair.first()), second, relative);
+  return uniform_error(
+      channel_means(pair.first()),
+      pair.of_two() ? channel_means(pair.second()) : channel_means(pair.reference()), relative);
 }
 
 /// Replicates at which theta would be excluded from `margin` on: the squared bias's standard error
@@ -239,7 +216,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                            signs_of(test, look.pictures), [&] { return *look.flips; });
   }
   add_unseen(extent, outcome);
-  outcome.uniform_error = uniform_error(look.means[0], constant_of(look.means[1]), relative);
+  outcome.uniform_error = uniform_error(look.means[0], look.means[1], relative);
   return distance;
 }
 

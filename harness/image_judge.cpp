@@ -77,7 +77,8 @@ std::string means_where_it_differs(const TestWork& work) {
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,
                                            const ChannelOutcome& channel) {
   if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return {};
-  const double part = stats::whole_image_share(extent_of(*outcome.question.subjects[0].image));
+  const stats::ImageExtent extent = extent_of(*outcome.question.subjects[0].image);
+  const double part = stats::whole_image_share(extent) / static_cast<double>(extent.channels);
   const double z =
       critical_value(size.share.alpha * part, true) + critical_value(size.share.beta, false);
   const double shrunk =

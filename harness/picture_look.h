@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "harness/image_uniform.h"
 #include "stats/image_cell_skewness.h"
 #include "stats/image_equivalence.h"
 #include "stats/image_family.h"
@@ -22,7 +23,7 @@ struct PictureLook {
   stats::ImageFamily family = {};               ///< with cells of every size
   std::vector<double> z = {};                   ///< Welch's, of every element
   std::optional<stats::FlipMatrix> flips = {};  ///< where signs of whole images are to be flipped
-  std::vector<stats::Moments> means = {};       ///< over each picture, of either side
+  std::vector<ChannelMeans> means = {};         ///< of either side
   double skewness = 0;  ///< mean over the elements of that of one picture's difference
 };
 

@@ -138,6 +138,7 @@ class Looking {
     for (const Subject& subject : question.subjects) {
       sides_.emplace_back(subject);
       of_pictures_.emplace_back(pictures_);
+      of_channels_.emplace_back(pictures_ * extent_.channels);
     }
   }
 
@@ -206,6 +207,8 @@ class Looking {
     sums_.take(pair, rows);
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
+      stats::add_to_channel_sums(of_channels_[s], stacks[s], rows.elements(extent_),
+                                 on_all_threads);
     }
     distance_.take(pair, rows, on_all_threads);
     pyramid_->take(pair, rows);
@@ -236,11 +239,8 @@ class Looking {
     if (flips_) look_->flips = flips_->matrix();
     look_->skewness = sums_.skewness();
     for (std::size_t s = 0; s < sides_.size(); ++s) {
-      stats::Moments& means = look_->means.emplace_back();
-      for (double& sum : of_pictures_[s]) {
-        sum /= static_cast<double>(extent_.elements());
-        means.add(sum);
-      }
+      look_->means.push_back(channel_means(of_channels_[s], extent_));
+      for (double& sum : of_pictures_[s]) sum /= static_cast<double>(extent_.elements());
     }
   }
 
@@ -253,6 +253,7 @@ class Looking {
   std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
   SumsOfTwo sums_;
   std::vector<std::vector<double>> of_pictures_;  // sums, at last averages
+  std::vector<std::vector<double>> of_channels_;  // sums of each picture's
   stats::RowDistance<float> distance_;
   std::optional<Pyramid> pyramid_;
   std::optional<stats::RowCellTails> tails_;

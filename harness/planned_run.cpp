@@ -157,15 +157,31 @@ Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
   return pilots;
 }
 
-void plan_picture(SuiteRun& run, const std::vector<const PreparedEstimator*>& used,
-                  const Primaries& primaries, const Pilots& pilots, Pools& pools) {
+/// Of the streams that the suite's tests draw of an estimator the first, selected or not.
+std::uint32_t first_copy(const std::vector<Question>& questions,
+                         const PreparedEstimator& estimator) {
+  std::optional<std::uint32_t> first;
+  for (const Question& question : questions) {
+    for (const Subject& subject : question.subjects) {
+      if (subject.estimator != &estimator || !subject.purpose.empty()) continue;
+      first = std::min(first.value_or(subject.copy), subject.copy);
+    }
+  }
+  return first.value_or(0);
+}
+
+void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
+                  const std::vector<const PreparedEstimator*>& used, const Primaries& primaries,
+                  const Pilots& pilots, Pools& pools) {
   for (const PreparedEstimator* estimator : used) {
     const auto found = primaries.find(estimator->name);
     const std::uint64_t automatic = !estimator->nature().averages ? 1
                                     : found != primaries.end()    ? found->second
                                                                   : picture_primaries;
-    const auto pool =
-        pools.for_picture(*estimator, estimator->primaries.value_or(automatic), run.seed, pilots);
+    const auto pool = pools.for_picture({.estimator = *estimator,
+                                         .copy = first_copy(questions, *estimator),
+                                         .primaries = estimator->primaries.value_or(automatic)},
+                                        run.seed, pilots);
     Picture picture{estimator, pool};
     if (shown_by(picture, run) == 0) {
       const bool image = estimator->setup->image().has_value();
@@ -206,7 +222,7 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
     work.pools = pools.for_question(work.outcome.question, work.outcome.plan, run.seed, pilots);
     run.tests.push_back(std::move(work));
   }
-  plan_picture(run, used, primaries, pilots, pools);
+  plan_picture(run, questions, used, primaries, pilots, pools);
 }
 
 /// Why the suite's tests cannot run on this machine; "" where they can.

@@ -151,14 +151,13 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
   return pool;
 }
 
-std::shared_ptr<Pool> Pools::for_picture(const PreparedEstimator& estimator,
-                                         std::uint64_t primaries, std::uint64_t seed,
+std::shared_ptr<Pool> Pools::for_picture(const Shown& picture, std::uint64_t seed,
                                          const Pilots& pilots) {
-  return find_or_make({.estimator = estimator,
-                       .setup = estimator.setup,
+  return find_or_make({.estimator = picture.estimator,
+                       .setup = picture.estimator.setup,
                        .purpose = "",
-                       .copy = 0,
-                       .primaries = primaries},
+                       .copy = picture.copy,
+                       .primaries = picture.primaries},
                       seed, pilots);
 }
 

@@ -22,8 +22,12 @@ class Pools {
   std::vector<std::shared_ptr<Pool>> for_question(const Question& question, const Plan& plan,
                                                   std::uint64_t seed, const Pilots& pilots);
   /// The pool of an estimator's secondary estimates for the suite's picture.
-  std::shared_ptr<Pool> for_picture(const PreparedEstimator& estimator, std::uint64_t primaries,
-                                    std::uint64_t seed, const Pilots& pilots);
+  struct Shown {
+    const PreparedEstimator& estimator;
+    std::uint32_t copy;
+    std::uint64_t primaries;
+  };
+  std::shared_ptr<Pool> for_picture(const Shown& picture, std::uint64_t seed, const Pilots& pilots);
 
   const std::vector<std::shared_ptr<Pool>>& all() const { return all_; }
 

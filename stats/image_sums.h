@@ -17,4 +17,14 @@ template <class Real>
 void add_to_sums(std::vector<double>& sums, const ImageStack<Real>& stack, ElementRange range,
                  const ForEach& for_each = one_by_one);
 
+// The sums of each image's channels, those of an image together, their elements in their order.
+template <class Real>
+std::vector<double> image_channel_sums(const ImageStack<Real>& stack,
+                                       const ForEach& for_each = one_by_one);
+
+// The same of whole pixels that follow those in `sums`.
+template <class Real>
+void add_to_channel_sums(std::vector<double>& sums, const ImageStack<Real>& stack,
+                         ElementRange range, const ForEach& for_each = one_by_one);
+
 }  // namespace assay::stats

@@ -173,6 +173,15 @@ TEST_F(RecordedRunTest, OfAProgramSharesNoStreamWithTheNewRun) {
   EXPECT_NE(test.samples[0].mean, test.samples[1].mean) << test.message;
 }
 
+TEST_F(RecordedRunTest, TheTableOfEstimatorsShowsWhatTheTestDrew) {
+  const reports::Suite next =
+      run_files({suite(old("normal") + new_normal, "claim: mean(new) == mean(old)")}, {.seed = 5})
+          .suites[0];
+  ASSERT_EQ(next.estimators.size(), 2);
+  EXPECT_EQ(next.estimators[1].name, "new");
+  EXPECT_EQ(next.estimators[1].channels[0].mean.value, next.tests[0].samples[0].mean);
+}
+
 TEST_F(RecordedRunTest, OfASecondSourceLeavesTheFirstStreamToTheNewRun) {
   const std::string twin = "  twin: {plugin: analytic/normal, mean: 2, primaries: 1}\n";
   const reports::Record pair =

@@ -164,6 +164,14 @@ TEST_F(ImageRows, AddUpToTheSumsOfTheWhole) {
   EXPECT_EQ(sums, image_sums(a_.view()));
 }
 
+TEST_F(ImageRows, AddUpToTheSumsOfTheWholesChannels) {
+  std::vector<double> sums(count * extent.channels);
+  for_each_window(a_, b_, {0, 0}, [&](const auto& pair, RowRange rows) {
+    add_to_channel_sums(sums, pair.a, rows.elements(extent), tests::last_first);
+  });
+  EXPECT_EQ(sums, image_channel_sums(a_.view()));
+}
+
 // The difference of one element, by a loop over the replicates.
 double product_of(const OwnedStack& a, const OwnedStack& b, std::size_t r, std::size_t s) {
   double sum = 0;

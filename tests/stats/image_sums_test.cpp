@@ -23,5 +23,24 @@ TEST(ImageSums, HaveTheBitsOfAddingUpEachImageAlone) {
   }
 }
 
+TEST(ImageSums, OfChannelsAreThoseOfTheirElements) {
+  tests::Philox random(876);
+  for (const std::size_t channels : {1U, 2U, 3U, 5U}) {
+    const ImageExtent extent{7, 4, channels};
+    std::vector<std::vector<double>> images;
+    for (int r = 0; r < 3; ++r) images.push_back(tests::normals(random, extent.elements()));
+    const std::vector<double> sums =
+        image_channel_sums(ImageStack<double>{extent, {images.begin(), images.end()}});
+    ASSERT_EQ(sums.size(), 3 * channels);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      double expected = 0;
+      for (std::size_t e = i % channels; e < extent.elements(); e += channels) {
+        expected += images[i / channels][e];
+      }
+      EXPECT_EQ(sums[i], expected);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace assay::stats

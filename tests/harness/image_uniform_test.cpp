@@ -1,0 +1,44 @@
+#include "harness/image_uniform.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace assay::harness {
+namespace {
+
+// Two images of two pixels and two channels.
+const std::vector<double> dark{1, 10, 3, 30};
+const std::vector<double> bright{2, 14, 4, 42};
+const stats::ImageExtent extent{2, 1, 2};
+
+TEST(ImageUniform, OfReplicatesEachChannelHasTheSpreadOfItsOwnMeans) {
+  const ChannelMeans means = channel_means(stats::ImageStack<double>{extent, {dark, bright}});
+  ASSERT_EQ(means.size(), 2U);
+  EXPECT_DOUBLE_EQ(means[0].value, 2.5);  // of 2 and 3
+  EXPECT_DOUBLE_EQ(means[0].standard_error, 0.5);
+  EXPECT_DOUBLE_EQ(means[1].value, 24);  // of 20 and 28
+  EXPECT_DOUBLE_EQ(means[1].standard_error, 4);
+}
+
+TEST(ImageUniform, OfAReferenceErrorsAreIndependentBetweenPixels) {
+  const std::vector<double> error{3, 0, 4, 0.5};
+  const ChannelMeans means =
+      channel_means({.extent = extent, .value = dark, .standard_error = error});
+  EXPECT_DOUBLE_EQ(means[0].value, 2);
+  EXPECT_DOUBLE_EQ(means[0].standard_error, 2.5);  // sqrt(3^2 + 4^2) / 2
+  EXPECT_DOUBLE_EQ(means[1].standard_error, 0.25);
+  EXPECT_EQ(channel_means({.extent = extent, .value = dark})[0].standard_error, 0);
+}
+
+TEST(ImageUniform, TheBestChannelTells) {
+  const ChannelMeans first{{1, 0.3}, {10, 0.4}};
+  const ChannelMeans second{{1, 0.4}, {10, 0.3}};
+  EXPECT_DOUBLE_EQ(uniform_error(first, second, false), 0.5);
+  EXPECT_DOUBLE_EQ(uniform_error(first, second, true), 0.05);
+  const ChannelMeans black{{0, 0}, {10, 0.3}};
+  EXPECT_DOUBLE_EQ(uniform_error(first, black, true), 0.05);
+}
+
+}  // namespace
+}  // namespace assay::harness
