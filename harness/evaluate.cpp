@@ -369,6 +369,7 @@ void take_sound_look(TestWork& work, bool may_go_on) {
     note_sizes(work);
     if (outcome.message.empty()) {
       outcome.message = narrate(outcome) + means_where_it_differs(work) + first_contradiction(work);
+      if (outcome.verdict == Verdict::fail) outcome.message += outcome.plan.hint;
     }
   }
   require_activation(work);

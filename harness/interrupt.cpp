@@ -13,16 +13,30 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may writ
 
 extern "C" void note_interrupt(int) { asked.store(true); }
 
-}  // namespace
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  sigaction(signal, nullptr, &action);
+  return action.sa_handler == SIG_IGN;
+}
 
-void watch_interrupts() {
-  asked.store(false);
+void watch(int signal) {
   struct sigaction action {};
   action.sa_handler = note_interrupt;
   sigemptyset(&action.sa_mask);
   // The handler is removed as it runs, so that a second Ctrl-C always works.
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-  sigaction(SIGINT, &action, nullptr);
+  sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+void watch_interrupts() {
+  asked.store(false);
+  watch(SIGINT);
+  // Whoever runs this for others, a CI job or a batch system, ends it so: programs that it started
+  // must not outlive it.
+  watch(SIGTERM);
+  if (!is_ignored(SIGHUP)) watch(SIGHUP);
 }
 
 bool interrupted() { return asked.load(); }

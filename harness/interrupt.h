@@ -2,8 +2,8 @@
 
 namespace assay::harness {
 
-/// From now on the first SIGINT sets a flag that interrupted() reads, and a second one ends the
-/// process at once.
+/// From now on the first SIGINT, SIGTERM or SIGHUP sets a flag that interrupted() reads, and a
+/// second one ends the process at once. A hang-up that nohup had ignored stays so.
 void watch_interrupts();
 
 /// Whether the user asked to stop. Anything that takes long polls it.

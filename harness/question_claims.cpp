@@ -76,10 +76,18 @@ bool is_biased(const Subject& subject) {
 void require_drawn(const Question& question) {
   if (question.test->cost != CostKind::seconds) return;
   for (const Subject& subject : question.subjects) {
-    if (!subject.setup->observations()) continue;
-    throw InputError(question.test->where,
-                     fmt::format("`{}` is not drawn but read: its seconds say nothing",
-                                 subject.estimator->name));
+    if (subject.setup->observations()) {
+      throw InputError(question.test->where,
+                       fmt::format("`{}` is not drawn but read: its seconds say nothing",
+                                   subject.estimator->name));
+    }
+    if (subject.setup->keeps_files()) {
+      throw InputError(question.test->where,
+                       fmt::format("`{}` keeps what it made: the seconds of a file that is there "
+                                   "say nothing; let `process` answer, or write the seconds as a "
+                                   "number of the observation",
+                                   subject.estimator->name));
+    }
   }
 }
 

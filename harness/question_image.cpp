@@ -25,8 +25,8 @@ void require_one_size(const Question& question) {
                       first.image->height == other.image->height &&
                       first.image->components.size() == other.image->components.size();
     if (same) continue;
-    refuse(question, fmt::format("{}, and {}: only images of one size can be compared, element by "
-                                 "element",
+    refuse(question, fmt::format("{}, and {}: only images of one size and as many channels can be "
+                                 "compared, element by element",
                                  size_text(first), size_text(other)));
   }
 }

@@ -41,6 +41,12 @@ void note_repeated_images(const Question& question, const Pilots& pilots, Plan& 
     if (!seen.insert(pilot_name(subject)).second) continue;
     const std::size_t all = pilot->image_count();
     const std::size_t different = different_images(pilot->images);
+    if (different == 1) {
+      plan.hint += fmt::format(
+          "; all {} images of `{}` in its pilot are alike: see that the seed "
+          "changes the image",
+          all, subject.estimator->name);
+    }
     plan.gates.push_back(
         {.name = fmt::format("different images of {}, pilot", subject.estimator->name),
          .value = static_cast<double>(different),

@@ -26,7 +26,9 @@ class Timings {
     for (std::size_t i = 0; i < pool.plan().size(); ++i) {
       all_.back().pool->plans()[i].cells = pool.plan()[i].cells;
     }
-    all_.back().pool->request(std::max<std::uint64_t>(1, timed_primaries / pool.primaries()));
+    const auto image = pool.setup()->image();
+    const std::uint64_t one = pool.primaries() * (image ? image->elements() : 1);
+    all_.back().pool->request(std::max<std::uint64_t>(1, timed_primaries / one));
   }
   const std::vector<Timed>& all() const { return all_; }
 
@@ -34,36 +36,52 @@ class Timings {
   std::vector<Timed> all_;
 };
 
-UnitCost unit_cost(const Pool& pool) {
-  const Summary& summary = pool.prefix(pool.requested());
+UnitCost unit_cost(const Summary& summary) {
   const double n = static_cast<double>(summary.count);
   return {.rays = static_cast<double>(summary.cost.rays()) / n,
           .samples = static_cast<double>(summary.cost.samples) / n,
           .seconds = summary.seconds / n};
 }
 
+/// The pilot's observations, where they are of as many primaries as the pool's: images and others
+/// that average nothing may take minutes each.
+const Summary* piloted(const Pool& pool, const PreparedEstimator& estimator,
+                       const std::string& purpose, const Pilots& pilots) {
+  const auto pilot = pilots.find(estimator.name);
+  if (!purpose.empty() || estimator.nature().averages || pilot == pilots.end()) return nullptr;
+  const bool same = pilot->second.sums && pilot->second.primaries == pool.primaries();
+  return same ? pilot->second.sums.get() : nullptr;
+}
+
 }  // namespace
 
 UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& progress) {
   Timings timings;
+  UnitCosts costs;
   for (const auto& run : planned.suites) {
+    const auto add = [&](const Pool& pool, const PreparedEstimator& estimator,
+                         const std::string& purpose) {
+      if (const Summary* known = piloted(pool, estimator, purpose, run->pilots)) {
+        costs.emplace(&pool, unit_cost(*known));
+      } else {
+        timings.add(pool, estimator, purpose, run->seed);
+      }
+    };
     for (const TestWork& work : run->tests) {
       for (std::size_t i = 0; i < work.pools.size(); ++i) {
         const Subject& side = work.outcome.question.subjects[i];
-        timings.add(*work.pools[i], *side.estimator, side.purpose, run->seed);
+        add(*work.pools[i], *side.estimator, side.purpose);
       }
     }
-    for (const Picture& picture : run->pictures) {
-      timings.add(*picture.pool, *picture.estimator, "", run->seed);
-    }
+    for (const Picture& picture : run->pictures) add(*picture.pool, *picture.estimator, "");
   }
   std::vector<std::shared_ptr<Pool>> pools;
   for (const Timed& timed : timings.all()) pools.push_back(timed.pool);
   draw_all(pools, {.threads = threads, .phase = "costs"}, progress);
   stop_if_interrupted();
-  UnitCosts costs;
   for (const Timed& timed : timings.all()) {
-    if (timed.pool->has(timed.pool->requested())) costs.emplace(timed.of, unit_cost(*timed.pool));
+    if (!timed.pool->has(timed.pool->requested())) continue;
+    costs.emplace(timed.of, unit_cost(timed.pool->prefix(timed.pool->requested())));
   }
   return costs;
 }

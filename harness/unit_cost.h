@@ -1,6 +1,6 @@
 #pragma once
 
-// What one secondary estimate costs, measured on a few of them from streams of their own.
+// What one secondary estimate costs, measured on the pilot's or a few from streams of their own.
 
 #include <map>
 
@@ -18,9 +18,9 @@ struct UnitCost {
 /// only read, and estimators that threw.
 using UnitCosts = std::map<const Pool*, UnitCost>;
 
-/// Draws about 16 thousand primaries of each pool's estimator or sampler, at the pool's own
-/// primaries a secondary: one primary alone costs more than its share of many. The pools themselves
-/// stay as they are.
+/// Draws about 16 thousand primaries, each element of an image counted, of each pool's estimator or
+/// sampler, at the pool's own primaries a secondary: one primary alone costs more than its share of
+/// many. Of one that does not average the pilot tells. The pools themselves stay as they are.
 UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& progress);
 
 }  // namespace assay::harness

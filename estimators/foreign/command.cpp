@@ -56,17 +56,23 @@ class Command final : public Estimator {
       : renderings_(std::move(renderings)), contents_(std::move(contents)) {}
 
   void announce(const Announcement& what) override { announced_ = what; }
+  double seconds_elsewhere() const override { return seconds_; }
 
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
                  Cost& cost) override {
+    if (primaries != 1 && !renderings_->takes_samples()) {
+      throw std::runtime_error(
+          "its command has no place `{samples}`: `primaries: " + std::to_string(primaries) +
+          "` would change nothing; give it the place, or leave it out");
+    }
     const std::uint64_t index = random.observation();
     const bool ahead =
         announced_.key == random.key() && index >= announced_.first && index < announced_.last;
-    if (ahead) {
-      renderings_->make(
-          {.key = random.key(), .first = index, .last = announced_.last, .samples = primaries});
-      announced_.last = index;  // once a block
-    }
+    seconds_ += renderings_->make({.key = random.key(),
+                                   .first = index,
+                                   .last = ahead ? announced_.last : index + 1,
+                                   .samples = primaries});
+    if (ahead) announced_.last = index;  // once a block
     read_file(*contents_, renderings_->file(random.key(), index, primaries), texels_, out);
     cost.samples += primaries * (contents_->shape ? contents_->shape->pixels() : 1);
   }
@@ -75,6 +81,7 @@ class Command final : public Estimator {
   std::shared_ptr<foreign::Renderings> renderings_;
   std::shared_ptr<const Contents> contents_;
   Announcement announced_;
+  double seconds_ = 0;         // of programs
   std::vector<float> texels_;  // scratch
 };
 
@@ -94,6 +101,7 @@ class CommandSetup final : public Setup {
     return channels;
   }
   std::optional<ImageShape> image() const override { return contents_->shape; }
+  bool keeps_files() const override { return true; }
   std::unique_ptr<Estimator> make() const override {
     return std::make_unique<Command>(renderings_, contents_);
   }
@@ -110,7 +118,9 @@ struct Look {
 
 /// Renders one picture of one sample a pixel, with a seed of its own, to see its size.
 Contents look_at_one(foreign::Renderings& renderings, const Look& look) {
-  const std::string file = renderings.file(stream_key(0, "command", "size", 0), 0, 1);
+  const StreamKey key = stream_key(0, "command", "size", 0);
+  renderings.make({.key = key, .first = 0, .last = 1, .samples = 1});
+  const std::string file = renderings.file(key, 0, 1);
   Contents contents;
   if (is_exr(file)) {
     contents.pictures = recorded::open_stack({file}, look.channels);
@@ -120,6 +130,18 @@ Contents look_at_one(foreign::Renderings& renderings, const Look& look) {
     contents.columns = recorded::read_table(file).columns;
   }
   return contents;
+}
+
+/// A place that is nearly one of ours is a slip of the pen; other braces are the program's.
+void check_places(const Parameters& parameters, const std::string& word) {
+  static const std::vector<std::string> places{"{seed}", "{seeds}", "{samples}", "{out}"};
+  for (std::size_t at = word.find('{'); at != word.npos; at = word.find('{', at + 1)) {
+    const std::string place = word.substr(at, word.find('}', at) - at + 1);
+    if (std::ranges::find(places, place) != places.end()) continue;
+    const std::string near = nearest(place, places);
+    if (near.empty()) continue;
+    parameters.refuse("command", "has the place `" + place + "`; did you mean `" + near + "`?");
+  }
 }
 
 void check_command(const Parameters& parameters, const std::vector<std::string>& command) {
@@ -136,6 +158,7 @@ void check_command(const Parameters& parameters, const std::vector<std::string>&
   if (!foreign::has_place(command, "{out}")) {
     parameters.refuse("command", "has no place `{out}` for the file to write");
   }
+  for (const std::string& word : command) check_places(parameters, word);
 }
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <ranges>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/render_seed.h"
@@ -68,18 +71,48 @@ std::string stamp_of(const fs::path& file, bool program) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// What may name a file in an argument: itself, what follows a `=`, and the words of a shell's
+/// line.
+std::vector<std::string> names_in(const std::string& argument) {
+  std::vector<std::string> names{argument};
+  std::string name;
+  for (const char c : argument + ' ') {
+    const bool ends = std::isspace(static_cast<unsigned char>(c)) != 0 ||
+                      std::string_view("=;&|<>()\"'`").find(c) != std::string_view::npos;
+    if (!ends) {
+      name += c;
+    } else if (!name.empty()) {
+      names.push_back(std::exchange(name, ""));
+    }
+  }
+  return names;
+}
+
+void add_files(const std::string& argument, const std::string& folder, Hash& hash) {
+  const bool line = argument.find(' ') != argument.npos;  // as after `sh -c`
+  std::error_code ignored;
+  for (const std::string& name : names_in(argument)) {
+    const fs::path file = fs::path(folder) / name;
+    if (fs::is_regular_file(file, ignored)) {
+      hash.add(stamp_of(file, false));
+    } else if (const std::string program = line ? program_path(name, folder) : "";
+               !program.empty()) {
+      hash.add(stamp_of(program, true));
+    }
+  }
+}
+
 std::string stamp_of(const Rendering& rendering) {
   Hash hash;
-  hash.add("command 1");
+  hash.add("command 2");
   std::error_code ignored;
   hash.add(fs::weakly_canonical(rendering.folder, ignored).string());
   hash.add(rendering.ending);
-  for (std::size_t i = 0; i < rendering.command.size(); ++i) {
-    const std::string& word = rendering.command[i];
-    hash.add(word);
-    const fs::path file =
-        i == 0 ? program_path(word, rendering.folder) : fs::path(rendering.folder) / word;
-    if (!word.empty() && fs::is_regular_file(file, ignored)) hash.add(stamp_of(file, i == 0));
+  for (const std::string& argument : rendering.command) hash.add(argument);
+  const std::string program = program_path(rendering.command.front(), rendering.folder);
+  if (fs::is_regular_file(program, ignored)) hash.add(stamp_of(program, true));
+  for (const std::string& argument : rendering.command | std::views::drop(1)) {
+    add_files(argument, rendering.folder, hash);
   }
   for (const std::string& file : rendering.depends) {
     const fs::path path = fs::path(rendering.folder) / file;
@@ -178,7 +211,8 @@ std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
   for (std::uint64_t i = wanted.first; i < wanted.last; ++i) {
     seed_ledger.note(wanted.key, i);
     const std::uint32_t seed = render_seed(wanted.key, i);
-    if (!fs::exists(path_of(wanted.samples, seed))) seeds.push_back(seed);
+    const bool failed = !failure_of(wanted.samples, seed).empty();
+    if (!failed && !fs::exists(path_of(wanted.samples, seed))) seeds.push_back(seed);
   }
   if (rendering_.takes_several()) {
     if (seeds.empty()) return {};
@@ -191,7 +225,7 @@ std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
   return tasks;
 }
 
-void Renderings::run_program(const Task& task, const std::string& out) {
+double Renderings::run_program(const Task& task, const std::string& out) {
   std::string seeds;
   for (const std::uint32_t seed : task.seeds) {
     seeds += (seeds.empty() ? "" : ",") + std::to_string(seed);
@@ -224,16 +258,18 @@ void Renderings::run_program(const Task& task, const std::string& out) {
   if (ending != "ended with exit status 0") {
     throw std::runtime_error(with_errors(what + ending, child));
   }
+  return child.cpu_seconds();
 }
 
-void Renderings::run(const Task& task) {
+double Renderings::run(const Task& task) {
   const std::string folder = folder_of(task.samples);
   const bool several = rendering_.takes_several();
   std::string failure;
+  double seconds = 0;
   const Unfinished part(folder, several ? "" : "." + rendering_.ending);
   try {
     if (several) fs::create_directories(part.path());
-    run_program(task, part.path());
+    seconds = run_program(task, part.path());
   } catch (const std::exception& error) {
     failure = error.what();
   }
@@ -255,15 +291,17 @@ void Renderings::run(const Task& task) {
                   (several ? ": it must write SEED." + rendering_.ending + " in the folder `{out}`"
                            : ": it must write the file `{out}`");
   }
+  return seconds;
 }
 
-void Renderings::make(const Wanted& wanted) {
+double Renderings::make(const Wanted& wanted) {
   const std::vector<Task> tasks = tasks_of(wanted);
   std::atomic<std::size_t> next{0};
+  std::atomic<double> seconds{0};
   const auto work = [&] {
     for (std::size_t i = next++; i < tasks.size(); i = next++) {
       free_jobs_.acquire();
-      run(tasks[i]);
+      seconds += run(tasks[i]);
       free_jobs_.release();
     }
   };
@@ -272,6 +310,7 @@ void Renderings::make(const Wanted& wanted) {
   for (std::size_t i = 1; i < helpers; ++i) threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
+  return seconds;
 }
 
 std::string Renderings::failure_of(std::uint64_t samples, std::uint32_t seed) {
@@ -282,13 +321,9 @@ std::string Renderings::failure_of(std::uint64_t samples, std::uint32_t seed) {
 
 std::string Renderings::file(StreamKey key, std::uint64_t observation, std::uint64_t samples) {
   const std::uint32_t seed = render_seed(key, observation);
-  const std::string path = path_of(samples, seed);
-  if (!fs::exists(path) && failure_of(samples, seed).empty()) {
-    make({.key = key, .first = observation, .last = observation + 1, .samples = samples});
-  }
   const std::string failure = failure_of(samples, seed);
   if (!failure.empty()) throw std::runtime_error(failure);
-  return path;
+  return path_of(samples, seed);
 }
 
 }  // namespace assay::foreign

@@ -46,7 +46,8 @@ struct Wanted {
 ///
 /// They stand in `cache`/HASH/SEED.exr. HASH is of the command before it is filled in, the samples,
 /// the folder, and the contents of every file that the command or `depends` names (of a program,
-/// and beyond 16 MiB, size and time of change): change a scene and all is made anew. The file
+/// and beyond 16 MiB, size and time of change): change a scene and all is made anew. An argument
+/// names files by itself, as `--scene=FILE`, and as a line of a shell does. The file
 /// command.txt beside them says what they are. A file is written under another name and renamed
 /// when the program has ended with status 0: one that is there is whole, and a run that was
 /// interrupted goes on where it stopped.
@@ -55,10 +56,12 @@ class Renderings {
   /// Throws std::runtime_error where the cache cannot be made or a file of `depends` is not there.
   explicit Renderings(Rendering rendering);
 
-  /// Makes what is missing, `jobs` at a time. Failures are kept for file() to tell.
-  void make(const Wanted& wanted);
-  /// The file of one observation, made if need be. Throws std::runtime_error with the command, how
-  /// it ended and the end of its standard error.
+  /// Makes what is missing, `jobs` at a time. Failures are kept for file() to tell. CPU seconds of
+  /// the programs, without those of programs that they start and do not wait for.
+  double make(const Wanted& wanted);
+  bool takes_samples() const { return has_place(rendering_.command, "{samples}"); }
+  /// The file of one observation, which has been made. Throws std::runtime_error with the command,
+  /// how it ended and the end of its standard error.
   std::string file(StreamKey key, std::uint64_t observation, std::uint64_t samples);
 
  private:
@@ -70,8 +73,8 @@ class Renderings {
   std::string folder_of(std::uint64_t samples);
   std::string path_of(std::uint64_t samples, std::uint32_t seed);
   std::vector<Task> tasks_of(const Wanted& wanted);
-  void run(const Task& task);
-  void run_program(const Task& task, const std::string& out);
+  double run(const Task& task);
+  double run_program(const Task& task, const std::string& out);
   std::string failure_of(std::uint64_t samples, std::uint32_t seed);
 
   Rendering rendering_;

@@ -160,18 +160,34 @@ LINES
   none_left
 }
 
+# Also where a batch system or a closed terminal ends the run.
 test_interruption_ends_a_wait_for_a_program() {
+  for signal in INT TERM HUP; do
+    interrupt_by "$signal"
+  done
+}
+
+interrupt_by() {
   printf '%s\n' "printf 'assay 1 text\\nchannel x\\nready\\n'" 'read -r q; sleep 765433' >hangs.sh
   suite hangs.yaml 'hangs: {plugin: process, command: [sh, hangs.sh]}'
   set -m
   "$assay" run hangs.yaml >out 2>err &
   local process=$!
   sleep 1
-  kill -INT "$process"
+  kill -"$1" "$process"
   local code=0
   wait "$process" || code=$?
-  [ "$code" -eq 130 ] || fail "ended with $code, not 130"
+  [ "$code" -eq 130 ] || fail "ended with $code, not 130, by SIG$1"
   none_left
+}
+
+test_seconds_of_kept_files_are_refused() {
+  echo 'echo 1 >$2' >render.sh
+  printf '%s\n' 'suite: kept' 'estimators:' \
+    '  kept: {plugin: command, command: [sh, render.sh, "{seed}", "{out}"], output: text}' \
+    'tests:' '  - {claim: efficiency(kept) > 1, cost: seconds}' >kept.yaml
+  expect 2 run kept.yaml
+  tells err 'keeps what it made'
 }
 
 test_a_library_does_not_outlive_the_run() {

@@ -244,6 +244,19 @@ TEST(PictureClaims, PicturesThatAProgramRepeatsAreCounted) {
   EXPECT_THAT(found, testing::ElementsAre("different images of a, pilot: 8, amber"));
 }
 
+TEST(PictureClaims, AgainstARendererThatIgnoresItsSeedFailWithAHint) {
+  const Workplace place;
+  write_stack(place, {"a", 1, false, 1});
+  write_stack(place, {"b", 2, false, 64});
+  const std::string text =
+      "suite: s\nestimators:\n  b: {plugin: recorded, file: 'b*.exr', pixels: independent}\n"
+      "  a: {plugin: command, cache: kept, command: [sh, -c, 'cp a00.exr {out}; : {seed}']}\n"
+      "tests:\n  - {claim: mean(a) == mean(b), secondaries: 32}\n";
+  const reports::Test test = run_files({place.write("s.yaml", text)}).suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::fail);
+  EXPECT_THAT(test.message, HasSubstr("images of `a` in its pilot are alike: see that the seed"));
+}
+
 TEST(PictureClaims, ADefectIsFoundWhereItIs) {
   const Workplace place;
   write_stack(place, {"a", 1, true});

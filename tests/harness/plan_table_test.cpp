@@ -88,6 +88,20 @@ TEST(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
   EXPECT_GT(cost.seconds, 0);
 }
 
+// One may take minutes: no more are drawn.
+TEST(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
+  const Workplace place;
+  const std::string text =
+      "suite: ratio\nestimators:\n  ratio: {plugin: analytic/ratio, primaries: 8}\n"
+      "tests:\n  - {claim: mean(ratio) == analytic, secondaries: 2000}\n";
+  const PlannedRun planned = planned_of({load_suite(place.write("ratio.yaml", text))});
+  const SuiteRun& run = *planned.suites[0];
+  ASSERT_FALSE(run.estimators.at("ratio").nature().averages);
+  const Summary& pilot = *run.pilots.at("ratio").sums;
+  const UnitCost cost = costs_of(planned).at(run.tests[0].pools[0].get());
+  EXPECT_EQ(cost.seconds, pilot.seconds / static_cast<double>(pilot.count));
+}
+
 TEST(PlanTable, ShowsEveryTestInAHundredColumns) {
   const Workplace place;
   const std::vector<Suite> suites = suites_of(place);

@@ -118,6 +118,46 @@ TEST_F(Commands, RunAgainWhenAFileThatTheyReadHasChanged) {
   EXPECT_EQ(starts(), 6U);
 }
 
+// What follows a `=`, and what a line of a shell names.
+TEST_F(Commands, RunAgainWhenAFileInsideAnArgumentHasChanged) {
+  const auto value_of = [&](const std::vector<std::string>& words) {
+    std::vector<Value> items;
+    for (const std::string& word : words) items.push_back(Value::scalar(word));
+    const Entry& entry = find_plugin("command", {});
+    Parameters given(
+        "command", entry.information.parameters,
+        Value::map({{"command", Value::list(items)}, {"output", Value::scalar("text")}}),
+        folder_.string());
+    return draws::observe({entry.prepare(given), stream_key(1, "c", "", 0), entry.information},
+                          1)[0]
+        .values[0];
+  };
+  std::ofstream(file("render.sh")) << "cp ${1#--scene=} $2\n";
+  for (const double value : {1.0, 2.0}) {
+    std::ofstream(file("scene.txt")) << value << "\n";
+    EXPECT_EQ(value_of({"sh", "render.sh", "--scene=scene.txt", "{out}", "{seed}"}), value);
+    EXPECT_EQ(value_of({"sh", "-c", "cat scene.txt>{out}; : {seed}"}), value);
+  }
+}
+
+TEST_F(Commands, CountTheSecondsOfTheirPrograms) {
+  write_program("i=0; while [ $i -lt 20000 ]; do i=$((i + 1)); done; echo 1 >$3");
+  const draws::Prepared plugin = prepare();
+  const auto worker = plugin.setup->make();
+  const auto draw = [&](std::uint64_t observation) {
+    Stream random(plugin.key, observation);
+    Cost cost;
+    double out = 0;
+    worker->secondary(random, 1, {&out, 1}, cost);
+    return worker->seconds_elsewhere();
+  };
+  const double one = draw(0);
+  EXPECT_GT(one, 0.001);
+  EXPECT_EQ(draw(0), one) << "of a file that is there";
+  EXPECT_GT(draw(1), one);
+  EXPECT_TRUE(plugin.setup->keeps_files());
+}
+
 TEST_F(Commands, AreToldTheirFolderByTheirEnvironmentToo) {
   write_program("grep -z ^PWD= /proc/$$/environ | tr -d '\\0' >where; echo 1 >$3");
   prepare();
@@ -174,6 +214,21 @@ TEST_F(Commands, ThatFailOnceLeaveNothingBehind) {
   EXPECT_THAT(failure([&] { draws::observe(prepare(), 1, 2); }), HasSubstr("exit status 1"));
 }
 
+TEST_F(Commands, NeedAPlaceForSamplesToTakeOtherThanOne) {
+  std::ofstream(file("render.sh")) << "echo 1 >$2\n";
+  const Entry& entry = find_plugin("command", {});
+  std::vector<Value> words;
+  for (const char* word : {"sh", "render.sh", "{seed}", "{out}"}) {
+    words.push_back(Value::scalar(word));
+  }
+  Parameters given("command", entry.information.parameters,
+                   Value::map({{"command", Value::list(words)}, {"output", Value::scalar("text")}}),
+                   folder_.string());
+  const draws::Prepared plugin{entry.prepare(given), stream_key(1, "c", "", 0), entry.information};
+  EXPECT_EQ(draws::observe(plugin, 1)[0].values[0], 1);
+  EXPECT_THAT(failure([&] { draws::observe(plugin, 1, 4); }), HasSubstr("no place `{samples}`"));
+}
+
 TEST_F(Commands, NeedPlacesForSeedAndFile) {
   const auto refused = [&](const std::vector<std::string>& words) {
     std::vector<Value> items;
@@ -187,6 +242,8 @@ TEST_F(Commands, NeedPlacesForSeedAndFile) {
   EXPECT_THAT(refused({"render", "{seed}"}), HasSubstr("has no place `{out}`"));
   EXPECT_THAT(refused({"render", "{seed}", "{seeds}", "{out}"}),
               HasSubstr("one picture a program"));
+  EXPECT_THAT(refused({"render", "{seed}", "{sample}", "{out}"}),
+              HasSubstr("did you mean `{samples}`?"));
   EXPECT_THAT(refused({"no_such_program_anywhere", "{seed}", "{out}"}), HasSubstr("is of no use"));
 }
 
