@@ -288,36 +288,68 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
 
 // ---- Costs, efficiencies, total variances, slopes: one method each
 
+/// From how many secondaries on the logarithm of every mean cost is near normal: costs may be as
+/// skewed as values, and what a pilot has seen of them says so.
+std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, const Plan& plan,
+                               double critical) {
+  std::uint64_t needed = 2;
+  const CountedCost kind = question.test->cost == CostKind::samples ? samples_cost : rays_cost;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const Subject& side = question.subjects[i];
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (pilot == nullptr || question.test->cost == CostKind::seconds) continue;
+    const auto& with_cost = pilot->sums->details(side.channels[0]).with_cost;
+    if (with_cost.empty() || !(with_cost[kind].cost.m2 > 0)) continue;
+    const stats::Moments& cost = with_cost[kind].cost;
+    const double primaries = side.averaged(plan.primaries[i]);
+    const double variation = std::sqrt(cost.variance()) / cost.mean / std::sqrt(primaries);
+    const double skewness = cost.skewness() / std::sqrt(primaries);
+    needed = std::max(needed, stats::values_for_log_mean(
+                                  {.variation = variation, .skewness = skewness}, critical));
+  }
+  return needed;
+}
+
+std::string too_skewed_costs(std::uint64_t needed) {
+  return fmt::format(
+      "costs of this shape need about {} observations before any test of their mean keeps its "
+      "level; a larger `primaries` brings them nearer to normal",
+      reports::human(static_cast<double>(needed), 2));
+}
+
 /// From how many secondaries on the logarithm of every variance that is part of the claim is near
 /// normal.
 std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& place,
                                 const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  std::vector<Known> channels = known_channels(question, pilots, plan);
+  const bool of_cost = question.kind == QuestionKind::cost;
+  std::vector<Known> channels;
+  if (!of_cost) channels = known_channels(question, pilots, plan);
   // A reference comes last, and only its mean is used.
   while (!channels.empty() && channels.back().subject >= question.compared()) channels.pop_back();
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
-  if (question.test->method) return least_secondaries;
+  if (question.test->method) return of_cost ? log_variance_secondaries : least_secondaries;
   plan.invalid = heavy;
-  std::uint64_t needed = log_variance_secondaries;
+  std::uint64_t needed = of_cost ? 2 : log_variance_secondaries;
   for (const Known& known : channels) {
     const auto shape = secondary_shape(known);
     if (shape) needed = std::max(needed, stats::values_for_log_variance(*shape, x));
   }
+  const std::uint64_t for_costs = enough_for_costs(question, pilots, plan, x);
+  needed = std::max(needed, for_costs);
   const std::uint64_t size = intended(question, place, pilots, most, plan);
   const std::uint64_t affordable =
       question.test->secondaries || size == most ? size : most_for_a_variance;
   if (plan.invalid.empty() && needed > affordable) {
     note_too_few(plan, affordable, needed);
-    plan.invalid = too_few(question, needed);
+    plan.invalid = needed == for_costs ? too_skewed_costs(needed) : too_few(question, needed);
   }
-  return std::min(needed, affordable);
+  return std::max(of_cost ? log_variance_secondaries : 2, std::min(needed, affordable));
 }
 
-/// Of means and costs at the points of a slope, or of a cost alone.
+/// Of means and costs at the points of a slope.
 std::uint64_t choose_for_points(const Question& question, const FamilyPlace& place,
                                 const Pilots& pilots, Plan& plan) {
-  if (question.kind == QuestionKind::cost) return log_variance_secondaries;
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   return std::clamp(enough_for_t(known_channels(question, pilots, plan), x), least_secondaries,
                     most_for_a_mean);
@@ -334,7 +366,8 @@ std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place
     choose_for_laws(question, pilots, plan);
     return least_secondaries;
   }
-  if (question.of_spread()) return choose_for_spread(question, place, pilots, most, plan);
+  if (question.of_spread() || question.kind == QuestionKind::cost)
+    return choose_for_spread(question, place, pilots, most, plan);
   return choose_for_points(question, place, pilots, plan);
 }
 

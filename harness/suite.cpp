@@ -34,7 +34,14 @@ void read_head(const Document& document, const Keys& keys, Suite& suite) {
   suite.name = one_line(keys.require("suite"), "`suite`");
   if (const Value* v = keys.find("about")) suite.about = v->string("`about`");
   if (const Value* v = keys.find("alpha")) suite.alpha = error_rate(*v, "`alpha`");
-  if (const Value* v = keys.find("beta")) suite.beta = error_rate(*v, "`beta`");
+  if (const Value* v = keys.find("beta")) {
+    suite.beta = error_rate(*v, "`beta`");
+    if (suite.beta == 0.5) {
+      throw InputError(v->where(),
+                       "`beta` must be below 0.5: what a pass excludes is the interval "
+                       "of confidence 1 - 2 beta");
+    }
+  }
   if (const Value* v = keys.find("seed")) suite.seed = v->count("`seed`");
   if (const Value* v = keys.find("needs")) suite.needs = read_needs(*v);
   if (const Value* v = keys.find("budget")) suite.budget = read_budget(document, *v);

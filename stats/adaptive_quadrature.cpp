@@ -14,7 +14,13 @@ using Rule = boost::math::quadrature::gauss<double, AdaptiveQuadrature::nodes>;
 
 // So near to the end of a part that a border of panels lies outside, rounding included.
 constexpr double nudge = 1e-9;
-constexpr double blind_share = AdaptiveQuadrature::blind_share;
+// A jump of J in a part makes its halves err by up to .105 J times the width, and by as little as a
+// ninth of that the polynomials through their nodes depart from the density at their ends times
+// blind_share.
+constexpr double jump_share = 9 * AdaptiveQuadrature::blind_share;
+// Next to a pole x^-a, of which halving leaves a part at 0 however deep, the rule misses less than
+// so many times what it finds there up to a = .94; the density at its end tells nothing of it.
+constexpr double most_of_a_pole = 16;
 constexpr std::size_t low_end = AdaptiveQuadrature::nodes;
 constexpr std::size_t high_end = low_end + 1;
 
@@ -40,17 +46,35 @@ const std::array<double, AdaptiveQuadrature::nodes>& node_weights() {
   return weights;
 }
 
-// Mass that a border of the support may hide beyond the outermost nodes, from the densities at the
-// part's ends.
-double hidden(Span span, double sum, const AdaptiveQuadrature::Values& at) {
-  const auto positive = std::count_if(at.begin(), at.begin() + AdaptiveQuadrature::nodes,
-                                      [](const Integral& each) { return each.value > 0; });
-  const double low = at[low_end].value;
-  const double high = at[high_end].value;
-  if (positive == 0) return blind_share * span.width() * (low + high);
-  if (positive < static_cast<std::ptrdiff_t>(AdaptiveQuadrature::nodes))
-    return 0;  // the border is seen
-  return blind_share * sum * ((low > 0 ? 0 : 1) + (high > 0 ? 0 : 1));
+// What the polynomial through the values at the nodes is at the part's lower end, as their weights;
+// the nodes lie symmetrically, so that those at t stand for -t at the upper one.
+const std::array<double, AdaptiveQuadrature::nodes>& weights_at_end() {
+  static const std::array<double, AdaptiveQuadrature::nodes> weights = [] {
+    const auto& t = AdaptiveQuadrature::node_places();
+    std::array<double, AdaptiveQuadrature::nodes> all{};
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      all[i] = 1;
+      for (std::size_t j = 0; j < t.size(); ++j) {
+        if (j != i) all[i] *= (-1 - t[j]) / (t[i] - t[j]);
+      }
+    }
+    return all;
+  }();
+  return weights;
+}
+
+// Mass that a jump may add or take, also beyond the outermost nodes, where neither a part nor its
+// halves look: the density at the ends is then not what the nodes go on to.
+double unseen(Span span, const AdaptiveQuadrature::Values& at) {
+  double low = at[low_end].value - weights_at_end()[0] * at[0].value;
+  double high = at[high_end].value - weights_at_end()[0] * at[0].value;
+  for (std::size_t i = 1; i < AdaptiveQuadrature::nodes; i += 2) {
+    const double near = weights_at_end()[i];
+    const double far = weights_at_end()[i + 1];
+    low -= near * at[i].value + far * at[i + 1].value;
+    high -= far * at[i].value + near * at[i + 1].value;
+  }
+  return jump_share * span.width() * (std::abs(low) + std::abs(high));
 }
 
 AdaptiveQuadrature::Sampled sampled_in(Span span, const AdaptiveQuadrature::Values& at) {
@@ -58,16 +82,25 @@ AdaptiveQuadrature::Sampled sampled_in(Span span, const AdaptiveQuadrature::Valu
   for (std::size_t i = 0; i < AdaptiveQuadrature::nodes; ++i) {
     const double weight = span.width() / 2 * node_weights()[i];
     found.parts[i] = weight * at[i].value;
-    found.integral = found.integral + Integral{found.parts[i], weight * at[i].error};
+    found.integral =
+        found.integral + Integral{found.parts[i], weight * at[i].error, weight * at[i].error};
   }
-  found.integral.error += hidden(span, found.integral.value, at);
+  found.integral.error += unseen(span, at);
   return found;
 }
 
 /// What two halves say of a part, and how far the part itself was from it.
 Integral from_halves(Integral whole, Integral one, Integral two) {
   const Integral sum = one + two;
-  return {sum.value, std::max(std::abs(sum.value - whole.value), sum.error)};
+  return {sum.value, std::max(std::abs(sum.value - whole.value), sum.error), sum.given};
+}
+
+bool is_good(const Integral& sum, double tolerance) { return sum.error - sum.given <= tolerance; }
+
+/// Of a part that is halved no further, though its error is above the tolerance.
+Integral given_up(Integral sum) {
+  if (sum.value > 0) sum.error = std::min(sum.error, sum.given + most_of_a_pole * sum.value);
+  return sum;
 }
 
 }  // namespace
@@ -151,7 +184,8 @@ Integral AdaptiveQuadrature::refined(const Function& function, Span span, Integr
   const Integral one = once(function, first);
   const Integral two = once(function, second);
   const Integral sum = from_halves(whole, one, two);
-  if (sum.error <= limits_.tolerance || depth <= 0 || exhausted()) return sum;
+  if (is_good(sum, limits_.tolerance)) return sum;
+  if (depth <= 0 || exhausted()) return given_up(sum);
   return refined(function, first, one, depth - 1) + refined(function, second, two, depth - 1);
 }
 
@@ -170,9 +204,13 @@ void AdaptiveQuadrature::halve(const PlaneValues& density, std::vector<Part>& pa
     const std::size_t place = 2 * (i - first);
     const Integral one = sampled_in(low, counted(level.densities(place))).integral;
     const Integral two = sampled_in(high, counted(level.densities(place + 1))).integral;
-    parts[i].integral = from_halves(parts[i].whole, one, two);
     const int depth = parts[i].depth;
-    if (parts[i].integral.error <= limits_.tolerance || depth <= 0 || ended) continue;
+    parts[i].integral = from_halves(parts[i].whole, one, two);
+    if (is_good(parts[i].integral, limits_.tolerance)) continue;
+    if (depth <= 0 || ended) {
+      parts[i].integral = given_up(parts[i].integral);
+      continue;
+    }
     parts[i].halves = parts.size();
     parts.push_back({.x = parts[i].x, .span = low, .whole = one, .depth = depth - 1});
     parts.push_back({.x = parts[i].x, .span = high, .whole = two, .depth = depth - 1});

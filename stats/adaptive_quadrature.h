@@ -23,9 +23,12 @@ struct Span {
 struct Integral {
   double value = 0;
   double error = 0;  // estimated, absolute
+  double given = 0;  // the part of it that the function's values came with: no halving lessens it
 };
 
-inline Integral operator+(Integral a, Integral b) { return {a.value + b.value, a.error + b.error}; }
+inline Integral operator+(Integral a, Integral b) {
+  return {a.value + b.value, a.error + b.error, a.given + b.given};
+}
 
 // A function of two variables at many places at once: value i is that at x[i] and y[i].
 using PlaneValues = std::function<void(std::span<const double> x, std::span<const double> y,
@@ -41,11 +44,11 @@ struct QuadratureLimits {
 };
 
 // Integrates functions of one variable, each value with an error of its own, part by part: 7-point
-// Gauss-Legendre on a part against its two halves. A function that is zero at all nodes and not at
-// an end of the part (or the reverse) hides a border of its support in the 2.5 % of the part beyond
-// the outermost node: what may be hidden counts as error. Next to a jump the two rules may agree by
-// luck, so that the error is right within some ten tolerances only. Densities are integrated so: a
-// negative or non-finite value throws std::domain_error.
+// Gauss-Legendre on a part against its two halves. Next to a jump the two may agree by luck, and
+// one in the 2.5 % of a part beyond the outermost node is seen by neither. So what a jump may come
+// to counts as error: how far the function at the ends of a part is from the polynomial through its
+// nodes, which of a smooth one is next to nothing. Two jumps or a peak between nodes stay unseen.
+// Densities are integrated so: a negative or non-finite value throws std::domain_error.
 class AdaptiveQuadrature {
  public:
   static constexpr std::size_t nodes = 7;
@@ -67,8 +70,8 @@ class AdaptiveQuadrature {
   // at a time, so that the density is asked for hundreds of places at once: of another process each
   // question takes longer than most densities. It throws as above.
   std::vector<Integral> along(const PlaneValues& density, std::span<const Line> lines);
-  // Without halving: the integral and, as error, what the values' own errors and a hidden border
-  // of the support may come to.
+  // Without halving: the integral and, as error, what the values' own errors and a jump may come
+  // to.
   Integral once(const Function& function, Span span);
   // The same, and what it was made of: w_i f(x_i) times half the width at the nodes, in the order
   // of node_places(), and f at the ends, just inside.

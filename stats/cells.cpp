@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stats/adaptive_quadrature.h"
 #include "stats/check.h"
 
 namespace assay::stats {
@@ -13,36 +14,17 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-struct Span {
-  double low;
-  double high;
-
-  double middle() const { return (low + high) / 2; }
-};
-
 struct Rectangle {
   Span cos_theta;
   Span phi;
 };
-
-struct Estimate {
-  double value = 0;
-  double error = 0;
-};
-
-Estimate operator+(Estimate a, Estimate b) { return {a.value + b.value, a.error + b.error}; }
 
 double checked(double density) {
   check::non_negative({"cell_probabilities", "density"}, density);
   return density;
 }
 
-using Rule = boost::math::quadrature::gauss<double, 10>;
 using PlaneRule = boost::math::quadrature::gauss<double, 7>;
-
-double integrate(const std::function<double(double)>& density, Span span) {
-  return Rule::integrate([&](double x) { return checked(density(x)); }, span.low, span.high);
-}
 
 double integrate(const std::function<double(Direction)>& density, Rectangle cell) {
   const auto over_phi = [&](double cos_theta) {
@@ -55,21 +37,17 @@ double integrate(const std::function<double(Direction)>& density, Rectangle cell
   return PlaneRule::integrate(over_phi, cell.cos_theta.low, cell.cos_theta.high);
 }
 
-std::array<Span, 2> parts(Span span) {
-  return {{{span.low, span.middle()}, {span.middle(), span.high}}};
-}
-
 std::array<Rectangle, 4> parts(Rectangle cell) {
-  const auto mu = parts(cell.cos_theta);
-  const auto phi = parts(cell.phi);
+  const auto mu = cell.cos_theta.halves();
+  const auto phi = cell.phi.halves();
   return {{{mu[0], phi[0]}, {mu[0], phi[1]}, {mu[1], phi[0]}, {mu[1], phi[1]}}};
 }
 
 // The tolerance is shared among the parts, so that a cell as a whole keeps it.
-template <class Density, class Cell>
-Estimate adaptive(const Density& density, Cell cell, double whole, QuadratureOptions options) {
+Integral adaptive(const std::function<double(Direction)>& density, Rectangle cell, double whole,
+                  QuadratureOptions options) {
   const auto pieces = parts(cell);
-  std::array<double, std::tuple_size_v<decltype(parts(cell))>> values{};
+  std::array<double, 4> values{};
   double sum = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     values[i] = integrate(density, pieces[i]);
@@ -79,14 +57,14 @@ Estimate adaptive(const Density& density, Cell cell, double whole, QuadratureOpt
   if (error <= options.tolerance || options.deepest_bisection <= 0) return {sum, error};
   const QuadratureOptions finer{options.tolerance / static_cast<double>(pieces.size()),
                                 options.deepest_bisection - 1};
-  Estimate total;
+  Integral total;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     total = total + adaptive(density, pieces[i], values[i], finer);
   }
   return total;
 }
 
-void append(CellProbabilities& result, Estimate estimate) {
+void append(CellProbabilities& result, Integral estimate) {
   result.probability.push_back(estimate.value);
   result.error.push_back(estimate.error);
   result.total += estimate.value;
@@ -140,11 +118,18 @@ CellProbabilities cell_probabilities(const IntervalGrid& grid,
                                      QuadratureOptions options) {
   check_grid(grid);
   check::positive({"cell_probabilities", "tolerance"}, options.tolerance);
-  CellProbabilities result;
+  AdaptiveQuadrature rule(
+      {.tolerance = options.tolerance, .deepest_bisection = options.deepest_bisection});
+  std::vector<AdaptiveQuadrature::Line> lines;
   for (std::size_t i = 0; i < grid.cells; ++i) {
-    const Span cell = slice({grid.low, grid.high}, i, grid.cells);
-    append(result, adaptive(density, cell, integrate(density, cell), options));
+    lines.push_back({.x = 0, .y = slice({grid.low, grid.high}, i, grid.cells)});
   }
+  const auto values = [&](std::span<const double>, std::span<const double> x,
+                          std::span<double> out) {
+    std::ranges::transform(x, out.begin(), density);
+  };
+  CellProbabilities result;
+  for (const Integral& each : rule.along(values, lines)) append(result, each);
   return result;
 }
 

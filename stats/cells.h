@@ -45,12 +45,12 @@ struct QuadratureOptions {
 // A jump along a curve costs 2^depth parts a cell.
 inline constexpr QuadratureOptions hemisphere_quadrature{1e-10, 8};
 
-// Integral of a density over every cell, by adaptive Gauss-Legendre quadrature: a cell is halved
-// (quartered on the hemisphere) until the parts agree with the whole to the tolerance or the depth
-// is reached; the disagreement left is the error estimate. On the hemisphere the density is per
-// unit solid angle, without a cosine. Throws std::domain_error when a density is negative or not
-// finite. The estimate is blind to a jump nearer to the edge of a part than the outermost node
-// (1 % of its width): let known jumps lie on cell edges.
+// Integral of a density over every cell: a cell is halved (quartered on the hemisphere) until the
+// parts agree with the whole to the tolerance or the depth is reached; the disagreement left is the
+// error estimate. On the hemisphere the density is per unit solid angle, without a cosine. Throws
+// std::domain_error when a density is negative or not finite. On an interval jumps may lie anywhere
+// (AdaptiveQuadrature). On the hemisphere the estimate is blind to one nearer to the edge of a part
+// than the outermost node (2.5 % of its width): let known jumps lie on cell edges.
 CellProbabilities cell_probabilities(const IntervalGrid& grid,
                                      const std::function<double(double)>& density,
                                      QuadratureOptions options = {});

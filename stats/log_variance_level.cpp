@@ -12,13 +12,16 @@ namespace {
 // exp(700) is near the largest double.
 constexpr double largest_exponent = 700;
 
+// B sqrt n.
+double slope(PositiveShape psi) { return std::abs(psi.skewness / 3 - psi.variation / 2); }
+
 // B sqrt n of one sample; `share` of the variance of the difference.
 double slope(const SixthOrderShape& x, double share) {
   const double square = x.kurtosis - 1;
   if (!(square > 0)) return 0;
   const double c = std::sqrt(square);
   const double g = (x.sixth - 3 * x.kurtosis + 2) / (square * c);
-  return std::abs(g / 3 - c / 2) * std::pow(share, 1.5);
+  return slope({.variation = c, .skewness = g}) * std::pow(share, 1.5);
 }
 
 double slope_of_both(const SixthOrderShape& x, const SixthOrderShape& y) {
@@ -103,6 +106,12 @@ std::uint64_t values_for_log_variance(const SixthOrderShape& x, double critical_
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrderShape& y,
                                       double critical_value, double level_factor) {
   return needed(slope_of_both(x, y), critical_value, level_factor);
+}
+
+std::uint64_t values_for_log_mean(PositiveShape x, double critical_value, double level_factor) {
+  check::non_negative({"values_for_log_mean", "variation"}, x.variation);
+  check::finite({"values_for_log_mean", "skewness"}, x.skewness);
+  return needed(slope(x), critical_value, level_factor);
 }
 
 }  // namespace assay::stats

@@ -45,4 +45,13 @@ std::uint64_t values_for_log_variance(const SixthOrderShape& x, double critical_
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrderShape& y,
                                       double critical_value, double level_factor = 1.25);
 
+// The same of ln of a mean of positive values with standard deviation over mean c and skewness g, a
+// cost: psi is then value / mean - 1.
+struct PositiveShape {
+  double variation = 0;
+  double skewness = 0;
+};
+std::uint64_t values_for_log_mean(PositiveShape x, double critical_value,
+                                  double level_factor = 1.25);
+
 }  // namespace assay::stats

@@ -32,6 +32,9 @@ estimators:
   heavier-single: {plugin: analytic/heavy_tail, index: 2.2, primaries: 1}
   hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
   dart: {plugin: analytic/dart_throwing, primaries: 1}
+  corners: {plugin: virtual_lights/weighted, primaries: 2}
+  same-samples: {plugin: correlated/area_same_samples, scene: rectangle, primaries: 16}
+  multi: {plugin: direct_light/multi_sample, primaries: 1}
   spike: {plugin: analytic/rare_spike, probability: 0.0001, height: 10, noise: 0.1, primaries: 1}
 tests:
 )" + tests)};
@@ -39,7 +42,8 @@ tests:
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : planned.asked->estimators) all.push_back(&estimator);
   Silence silence;
-  planned.pilots = run_pilots(all, {.seed = seed, .threads = 1}, silence);
+  planned.pilots =
+      run_pilots(all, {.seed = seed, .threads = 1, .with_cost = {"multi", "hemisphere"}}, silence);
   const Primaries primaries =
       choose_primaries(planned.asked->questions, planned.place, planned.pilots);
   for (std::size_t i = 0; i < planned.place.size(); ++i) {
@@ -169,6 +173,26 @@ TEST(Plan, MovesToLogVarianceWhereSecondariesAreNotNormal) {
   EXPECT_FALSE(skewed.plans[0].invalid.empty())
       << "a Pareto law of index 2.2 has no kurtosis at all";
   EXPECT_NE(skewed.plans[0].invalid.find("tail is too heavy"), std::string::npos);
+}
+
+// Both show a heavy tail in the 512 values of their pilots, with kurtoses of some 500 and of 23; in
+// 400,000 values the second has one of 24.
+TEST(Plan, OfFewValuesATailIsHeavyWhereTheKurtosisIsToo) {
+  const Planned heavy = plan_text("  - {claim: variance(corners) <= 100}\n");
+  EXPECT_NE(heavy.plans[0].invalid.find("tail is too heavy"), std::string::npos);
+  const Planned light = plan_text("  - {claim: variance(same-samples) <= 100}\n");
+  EXPECT_EQ(light.plans[0].invalid, "");
+}
+
+// Two rays, and one where the first finds nothing: a skewness of -6.5.
+TEST(Plan, SkewedCostsTakeMoreObservations) {
+  const Planned open = plan_text("  - {claim: cost(multi) <= 2}\n");
+  EXPECT_GT(open.plans[0].most_secondaries(), 5000);
+  EXPECT_EQ(open.plans[0].invalid, "");
+  const Planned fixed = plan_text("  - {claim: cost(multi) <= 2, secondaries: 1000}\n");
+  EXPECT_NE(fixed.plans[0].invalid.find("costs of this shape"), std::string::npos);
+  const Planned constant = plan_text("  - {claim: cost(hemisphere) <= 2, secondaries: 100}\n");
+  EXPECT_EQ(constant.plans[0].invalid, "");
 }
 
 // A Pareto law of index 3 shows a skewness of some 5 in its pilot: the t test is right within a

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
@@ -89,6 +90,45 @@ TEST(AdaptiveQuadrature, NoMoreIsAskedForThanTheEvaluationsAndALevelOfThem) {
   EXPECT_LE(largest, most);
   // Once side by side up to the limit, then line by line: what is under way there is ended.
   EXPECT_LE(places, 3 * most);
+}
+
+// Half of 2000 places come to lie beyond the outermost nodes of some part on the way down.
+TEST(AdaptiveQuadrature, AJumpAnywhereIsFoundWithinItsError) {
+  for (int k = 1; k < 2000; ++k) {
+    const double place = std::fmod(.6180339887498949 * k, 1);
+    for (const double above : {0.0, 1.01, 50.0}) {
+      AdaptiveQuadrature rule({.tolerance = 1e-8});
+      const auto density = [&](double x) { return x < place ? 1 : above; };
+      const Integral found = rule.over(rule.of(density), {0, 1});
+      EXPECT_NEAR(found.value, place + above * (1 - place), found.error + 1e-14) << place;
+      EXPECT_LT(found.error, 1e-7 + 1e-8 * above);
+    }
+  }
+}
+
+TEST(AdaptiveQuadrature, APoleIsFoundWithinAnErrorThatIsNoMultipleOfItsHeight) {
+  for (const double a : {.1, .5, .9}) {
+    AdaptiveQuadrature rule({.tolerance = 1e-8});
+    const Integral found = rule.over(rule.of([&](double x) { return std::pow(x, -a); }), {0, 1});
+    const double integral = 1 / (1 - a);
+    EXPECT_NEAR(found.value, integral, found.error) << a;
+    EXPECT_LT(found.error, 16 * integral * std::pow(0x1p-23, 1 - a) + 1e-6) << a;
+  }
+}
+
+// Of values that are known to 1e-3 an integral is known no better, however often it is halved.
+TEST(AdaptiveQuadrature, ErrorsOfTheValuesThemselvesAreNotHalved) {
+  AdaptiveQuadrature rule({.tolerance = 1e-8});
+  int calls = 0;
+  const auto smooth = [&](const AdaptiveQuadrature::Places& at) {
+    ++calls;
+    AdaptiveQuadrature::Values values;
+    std::ranges::transform(at, values.begin(), [](double x) { return Integral{x, 1e-3}; });
+    return values;
+  };
+  const Integral found = rule.over(smooth, {0, 1});
+  EXPECT_NEAR(found.error, 1e-3, 1e-9);
+  EXPECT_EQ(calls, 3);
 }
 
 TEST(AdaptiveQuadrature, ADensityIsAskedForOnePlaceOrMany) {

@@ -42,12 +42,14 @@ TEST(Cells, ProbabilitiesOfASmoothDensityAreExact) {
   EXPECT_LT(cells.total_error, 1e-9);
 }
 
-TEST(Cells, AJumpIsFoundByBisection) {
-  const IntervalGrid grid{0, 1, 3};
-  const auto cells = cell_probabilities(grid, [](double x) { return x < .456 ? 2.0 : .5; });
-  // A jump that comes to lie beyond the outermost node of a part is missed by it: here at a width
-  // of 1e-6.
-  EXPECT_NEAR(cells.probability[1], 2 * (.456 - 1 / 3.0) + .5 * (2 / 3.0 - .456), 1e-7);
+TEST(Cells, AJumpAnywhereIsFoundWithinItsError) {
+  for (int k = 1; k < 500; ++k) {
+    const double place = std::fmod(.6180339887498949 * k, 1);
+    const auto density = [&](double x) { return x < place ? 2.0 : .5; };
+    const auto cells = cell_probabilities(IntervalGrid{0, 1, 64}, density);
+    EXPECT_NEAR(cells.total, 2 * place + .5 * (1 - place), cells.total_error + 1e-14) << place;
+    EXPECT_LT(cells.total_error, 1e-9);
+  }
 }
 
 TEST(Cells, CosineHemisphereHasItsClosedForm) {

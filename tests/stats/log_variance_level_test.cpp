@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "stats/cost_ratio.h"
 #include "stats/errors.h"
 #include "stats/log_variance.h"
 #include "stats/tails.h"
@@ -84,6 +85,31 @@ TEST(LogVarianceLevel, KeepsTheLevelWhereItSays) {
       Moments x;
       for (std::uint64_t i = 0; i < count; ++i) x.add(random.exponential());
       if (log_variance(x, 1).statistic < -z) ++rejected;
+    }
+    return rejected / 8000.0 / 0.01;
+  };
+  EXPECT_LE(rate(enough), 1.8);
+  EXPECT_GE(rate(enough / 20), 1.5);
+}
+
+// A cost of 1, with probability .1 exponential ones more, 10 on average: at the count found ln of
+// its mean keeps its lower tail within some 1.25 times .01, at a twentieth not within 1.5 times.
+TEST(LogVarianceLevel, OfAMeanKeepsTheLevelWhereItSays) {
+  const double z = normal_quantile({Tail::upper, std::log(0.01)});
+  const double deviation = std::sqrt(19);                // 10^2 (2 p - p^2)
+  const double skewness = 542 / std::pow(deviation, 3);  // 10^3 (6 p - 6 p^2 + 2 p^3)
+  const std::uint64_t enough =
+      values_for_log_mean({.variation = deviation / 2, .skewness = skewness}, z);
+  tests::Philox random(7002);
+  const auto rate = [&](std::uint64_t count) {
+    int rejected = 0;
+    for (int run = 0; run < 8000; ++run) {
+      Moments cost;
+      for (std::uint64_t i = 0; i < count; ++i) {
+        const bool more = random.uniform() < .1;
+        cost.add(more ? 1 + 10 * random.exponential() : 1);
+      }
+      if (cost.m2 == 0 || log_cost(cost, 2).statistic < -z) ++rejected;
     }
     return rejected / 8000.0 / 0.01;
   };

@@ -101,6 +101,20 @@ TEST(PlaneCells, ACellThatMayHideACornerSaysSo) {
   EXPECT_EQ(cells.error[grid.index(.6, .6)], 0) << "far from the support";
 }
 
+TEST(PlaneCells, AJumpAlongALineAnywhereIsFoundWithinItsError) {
+  const PlaneGrid grid = unit_grid(8);
+  for (int k = 1; k < 40; ++k) {
+    const double place = std::fmod(.6180339887498949 * k, 1);
+    for (const bool along_x : {true, false}) {
+      const auto jump = [&](double x, double y) { return (along_x ? y : x) < place ? 2.0 : .5; };
+      const CellProbabilities cells = cell_probabilities(
+          grid, {.x = {0, 1}, .y = {0, 1}, .values = one_by_one(jump)}, {.tolerance = 1e-8});
+      EXPECT_NEAR(cells.total, 2 * place + .5 * (1 - place), cells.total_error) << place;
+      EXPECT_LT(cells.total_error, 1e-6);
+    }
+  }
+}
+
 TEST(PlaneCells, JumpsOnPanelBordersCostNothing) {
   std::uint64_t evaluations = 0;
   const PlaneDensity board{.x = {0, 1},
