@@ -369,7 +369,9 @@ void take_sound_look(TestWork& work, bool may_go_on) {
     note_sizes(work);
     if (outcome.message.empty()) {
       outcome.message = narrate(outcome) + means_where_it_differs(work) + first_contradiction(work);
-      if (outcome.verdict == Verdict::fail) outcome.message += outcome.plan.hint;
+      if (outcome.verdict == Verdict::fail) {
+        outcome.message += outcome.plan.hint + taken_as_exact(outcome.question);
+      }
     }
   }
   require_activation(work);

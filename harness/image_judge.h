@@ -21,6 +21,10 @@ ImageViews images_of(const TestWork& work, std::size_t subject);
 /// sum is one over a window, what it shows. Else "".
 std::string means_where_it_differs(const TestWork& work);
 
+/// Of images against a picture that says nothing of its error: a fail has to be read with that. ""
+/// of others.
+std::string taken_as_exact(const Question& question);
+
 /// The difference that a test of this size would find by the sum over the whole image, were it the
 /// same everywhere; nullopt where the claim allows a difference.
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,

@@ -24,6 +24,7 @@ namespace {
 
 using reports::Verdict;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr int width = 16;
 constexpr int height = 12;
@@ -291,16 +292,19 @@ TEST(PictureClaims, AReferenceIsHeldAgainstWithItsError) {
     for (int c = 0; c < 3; ++c) reference.values.push_back(mean * mean);
   }
   draws::write_exr(place.file("ref.exr"), reference);
+  std::string message;
   const auto verdict = [&](const std::string& how) {
-    return run_files(
-               {place.write("s.yaml", suite_text("file: ref.exr" + how, "mean(a) == mean(b)"))})
-        .suites[0]
-        .tests[0]
-        .verdict;
+    const auto run =
+        run_files({place.write("s.yaml", suite_text("file: ref.exr" + how, "mean(a) == mean(b)"))});
+    message = run.suites[0].tests[0].message;
+    return run.suites[0].tests[0].verdict;
   };
   EXPECT_EQ(verdict(", exact: true"), Verdict::fail);
+  EXPECT_THAT(message, HasSubstr("`b` is one picture, taken as exact"));
   // Of an error a hundred times as large nothing can be said: it is within.
   EXPECT_EQ(verdict(", variance: Variance.*, samples: 1"), Verdict::pass);
+  EXPECT_EQ(verdict(", variance: Variance.*, samples: 1000"), Verdict::fail);
+  EXPECT_THAT(message, Not(HasSubstr("taken as exact")));
 }
 
 TEST(PictureClaims, ATexelThatIsNotFiniteIsAnErrorWithItsFileAndPixel) {
