@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "estimators/ready_made.h"
 #include "harness/consistency_setup.h"
 #include "harness/pool.h"
@@ -28,6 +30,29 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, std::siz
          (file.empty() ? "; " + replay_line(outcome, summary.first_nonfinite) : ", `" + file + "`");
 }
 
+/// A declared range chooses methods, and one of them rests on it. A sum may be rounded beyond it.
+std::string outside_of_range(const Subject& side, const Summary& drawn) {
+  // A mutant declares what its original does.
+  const bool mutant = !side.estimator->entry->information.original.empty();
+  if (mutant || side.image || side.setup->observations()) return "";
+  const std::vector<Channel> channels = side.setup->channels();
+  const auto finite = [](double end) { return std::isfinite(end) ? std::abs(end) : 0; };
+  for (const std::size_t i : side.channels) {
+    const Channel& channel = channels[i];
+    const double slack = 1e-9 * (finite(channel.low) + finite(channel.high));
+    const stats::Moments& seen = drawn.channels[i].moments;
+    if (seen.count == 0) continue;
+    const bool above = seen.maximum > channel.high + slack;
+    if (!above && !(seen.minimum < channel.low - slack)) continue;
+    return fmt::format(
+        "`{}` gave {:.17g} in its channel `{}`, {} {:.17g}, which it declares to be "
+        "its `{}`",
+        side.estimator->name, above ? seen.maximum : seen.minimum, channel.name,
+        above ? "above" : "below", above ? channel.high : channel.low, above ? "high" : "low");
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string undrawable(const TestWork& work) {
@@ -45,6 +70,7 @@ std::string undrawable(const TestWork& work) {
       const ChannelSummary& summary = drawn.channels[channel];
       if (summary.nonfinite > 0) return not_finite(outcome, side, channel, summary);
     }
+    if (std::string fault = outside_of_range(side, drawn); !fault.empty()) return fault;
   }
   return "";
 }
