@@ -181,6 +181,23 @@ interrupt_by() {
   none_left
 }
 
+test_a_value_outside_of_its_declared_range_is_an_error() {
+  # Of every hundredth observation.
+  cat >beyond.sh <<'END'
+printf 'assay 1 text\nchannel x low 0 high 3\nready\n'
+while read -r high low first count primaries; do
+  i=$first
+  while [ "$i" -lt $((first + count)) ]; do
+    echo "$((i % 100 == 99 ? 3 : (low + i) % 3)).5"; i=$((i + 1))
+  done
+  echo "$high $low $first $count $primaries"
+done
+END
+  suite beyond.yaml 'beyond: {plugin: process, command: [sh, beyond.sh]}'
+  expect 1 run beyond.yaml
+  tells out 'gave 3.5 in its channel `x`, above 3, which it declares to be its `high`'
+}
+
 test_seconds_of_kept_files_are_refused() {
   echo 'echo 1 >$2' >render.sh
   printf '%s\n' 'suite: kept' 'estimators:' \
