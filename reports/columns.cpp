@@ -157,7 +157,7 @@ std::vector<std::string> wrap_command(std::string_view command, int width) {
       lines.emplace_back();
     }
     if (!lines.back().empty()) lines.back() += ' ';
-    lines.back() += shorten(word, width - 2);
+    lines.back() += word;
   }
   return lines;
 }

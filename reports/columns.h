@@ -26,8 +26,8 @@ std::string pad_right(std::string text, int width);
 std::vector<std::string> wrap(std::string_view text, int width);
 
 /// A shell command in lines of at most `width` columns, each but the last ending in a backslash so
-/// that the whole can be pasted. Broken only at spaces outside quotes; a word that does not fit a
-/// line is shortened.
+/// that the whole can be pasted. Broken only at spaces outside quotes; a word that does not fit has
+/// a longer line of its own.
 std::vector<std::string> wrap_command(std::string_view command, int width);
 
 }  // namespace assay::reports

@@ -57,8 +57,24 @@ RC_GTEST_PROP(Columns, WrappedLinesFit, ()) {
   const std::string text = clean(*any_text());
   for (const std::string& line : wrap(text, width)) RC_ASSERT(columns(line) <= width);
   RC_ASSERT(columns(shorten(one_line(text), width)) <= width);
-  for (const std::string& line : wrap_command(one_line(text), width + 2))
-    RC_ASSERT(columns(line) <= width + 2);
+}
+
+RC_GTEST_PROP(Columns, WrappedCommandsAreWholeAndTheirLinesFit, ()) {
+  const int width = *rc::gen::inRange(4, 40);
+  const auto words = *rc::gen::container<std::vector<std::string>>(
+      rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::inRange('a', '~'))));
+  std::string command;
+  for (const std::string& word : words) {
+    if (word.find_first_of("'\"\\") == word.npos) command += (command.empty() ? "" : " ") + word;
+  }
+  std::string joined;
+  for (std::string line : wrap_command(command, width)) {
+    const bool goes_on = line.ends_with(" \\");
+    const std::string words_of = goes_on ? line.substr(0, line.size() - 2) : line;
+    RC_ASSERT(columns(line) <= width || words_of.find(' ') == words_of.npos);
+    joined += (joined.empty() ? "" : " ") + words_of;
+  }
+  RC_ASSERT(joined == command);
 }
 
 TEST(Columns, ALongWordIsPartedWhereAClaimMayBe) {
