@@ -90,7 +90,10 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
       idle = false;
       wanted = wanted || chosen[i];
     }
-    if (wanted || (idle && with_idle)) used.push_back(&run.estimators.at(entry.name));
+    const PreparedEstimator& estimator = run.estimators.at(entry.name);
+    // Of a renderer that is started for each observation a picture is too dear a decoration.
+    const bool dear = estimator.setup->keeps_files();
+    if (wanted || (idle && with_idle && !dear)) used.push_back(&estimator);
   }
   return used;
 }

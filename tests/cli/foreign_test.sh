@@ -198,6 +198,15 @@ END
   tells out 'gave 3.5 in its channel `x`, above 3, which it declares to be its `high`'
 }
 
+test_a_renderer_that_no_test_names_is_asked_for_its_size_alone() {
+  echo 'echo start >>starts; echo 1 >$2' >render.sh
+  printf '%s\n' 'suite: idle' 'estimators:' '  sound: {plugin: analytic/normal}' \
+    '  idle: {plugin: command, command: [sh, render.sh, "{seed}", "{out}"], output: text}' \
+    'tests:' '  - claim: mean(sound) == 0' >idle.yaml
+  expect 0 run idle.yaml
+  [ "$(wc -l <starts)" -eq 1 ] || fail "$(wc -l <starts) starts"
+}
+
 test_seconds_of_kept_files_are_refused() {
   echo 'echo 1 >$2' >render.sh
   printf '%s\n' 'suite: kept' 'estimators:' \
