@@ -57,6 +57,8 @@ class Renderings {
 
   /// Makes what is missing, `jobs` at a time. Failures are kept for file() to tell.
   void make(const Wanted& wanted);
+  /// The file of one observation, made or not.
+  std::string path_of(StreamKey key, std::uint64_t observation, std::uint64_t samples);
   /// The file of one observation, made if need be. Throws std::runtime_error with the command, how
   /// it ended and the end of its standard error.
   std::string file(StreamKey key, std::uint64_t observation, std::uint64_t samples);
