@@ -188,7 +188,10 @@ typedef struct AssayDraw {
 
 /* A source of points with the density it declares, tested by itself. A draw is a function of the
  * numbers of `random` alone, density() and evaluate() are of the point: they are asked again. In the
- * process of its own that a library has by default many are asked for at a time. NaN is an error. */
+ * process of its own that a library has by default many are asked for at a time. NaN is an error,
+ * and so is a density below 0, a direction whose length is off 1 by more than 1e-4, and a point
+ * outside its domain by more than 1e-6 of the domain's size; `rounding` where it is more. Nearer
+ * ones are counted at the border, so that single precision passes. */
 typedef struct AssaySampler {
   size_t size;
   const char* name;

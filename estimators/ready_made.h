@@ -42,8 +42,23 @@ std::unique_ptr<PictureRows> picture_rows(const Setup& setup);
 /// The average of texels that follows them in an observation.
 double average_of(std::span<const float> texels);
 
-/// The file that holds observation `index` of a set-up alone, or "".
-std::string observation_file(const Setup& setup, std::uint64_t index);
+/// Which observation, of a set-up that may be drawn by streams.
+struct WhichObservation {
+  std::uint64_t index = 0;
+  StreamKey key = {};
+  std::uint64_t primaries = 1;
+};
+
+/// A set-up whose observations stand in files.
+class InFiles {
+ public:
+  virtual ~InFiles() = default;
+  virtual std::string place_of(const WhichObservation& which) const = 0;
+};
+
+/// Where an observation of a set-up stands: "b.exr" that holds it alone, "rows.txt:17"; "" where it
+/// is in no file.
+std::string observation_place(const Setup& setup, const WhichObservation& which);
 
 /// The files of a picture of one set-up and of one of another that are the same, bit for bit, among
 /// the first `count` of each as far as they have been read; nullopt where there are none. Pictures

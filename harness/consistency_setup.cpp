@@ -9,6 +9,7 @@
 
 #include "estimators/flush_denormals.h"
 #include "harness/fetched_ahead.h"
+#include "harness/sound_draw.h"
 
 namespace assay::harness {
 namespace {
@@ -38,7 +39,14 @@ double with_density(const SamplerDraw& draw, double density, double evaluation) 
 struct JudgedDraw {
   SamplerDraw draw;
   double difference = 0;
+  double density = 0;  ///< as declared at its point, where that was asked for
 };
+
+JudgedDraw judged_alone(const Sampler& sampler, const SamplerDraw& draw) {
+  if (needs_no_density(sampler, draw)) return {draw, without_density(draw)};
+  const double density = sampler.density(draw.point);
+  return {draw, with_density(draw, density, sampler.evaluate(draw.point)), density};
+}
 
 /// Draws that must be held against density() and evaluate(), by their places among others.
 struct Compared {
@@ -88,15 +96,32 @@ std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
   }
 }
 
-std::vector<JudgedDraw> judged(const Sampler& sampler, std::span<Stream> streams) {
+/// Up to the first of which no claim can be: what its sampler declares there is not asked for.
+/// Throws where that is the first of all.
+std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream> streams) {
+  std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    try {
+      sound(named, draws[i]);
+    } catch (const std::runtime_error&) {
+      if (i == 0) throw;
+      draws.resize(i);
+    }
+  }
+  return draws;
+}
+
+std::vector<JudgedDraw> judged(const NamedSampler& named, std::span<Stream> streams) {
+  const Sampler& sampler = *named.sampler;
   std::vector<JudgedDraw> all;
-  const std::vector<SamplerDraw> draws = draws_of(sampler, streams);
+  const std::vector<SamplerDraw> draws = sound_draws(named, streams);
   for (const SamplerDraw& draw : draws) all.push_back({draw, without_density(draw)});
   Compared some = compared(sampler, draws);
   all.resize(ask(sampler, some, draws.size()));
   for (std::size_t i = 0; i < some.places.size() && some.places[i] < all.size(); ++i) {
     JudgedDraw& mine = all[some.places[i]];
     mine.difference = with_density(mine.draw, some.densities[i], some.evaluations[i]);
+    mine.density = some.densities[i];
   }
   return all;
 }
@@ -110,10 +135,11 @@ class ConsistencyEstimator final : public Estimator {
   double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
 
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const auto [draw, difference] = next(random);
+    const auto [draw, difference, density] = next(random);
+    if (density < 0) sound_density(setup_.named(), draw.point, density);
     // NaN is not consistent either.
     const bool consistent = difference <= rounding_;
-    out[0] = consistent ? 0 : 1 + static_cast<double>(setup_.cell(draw));
+    out[0] = consistent ? 0 : 1 + static_cast<double>(setup_.cell(sound(setup_.named(), draw)));
     out[1] = difference;
     cost.samples += 1;
   }
@@ -122,10 +148,11 @@ class ConsistencyEstimator final : public Estimator {
   JudgedDraw next(Stream& random) {
     const Sampler& sampler = setup_.sampler();
     if (sampler.is_elsewhere()) {
-      return ahead_.of(random, [&](auto streams) { return judged(sampler, streams); });
+      return ahead_.of(random, [&](auto streams) { return judged(setup_.named(), streams); });
     }
     const SamplerDraw draw = sampler.sample(random);
-    return {draw, inconsistency(sampler, draw)};
+    sound(setup_.named(), draw);
+    return judged_alone(sampler, draw);
   }
 
   const ConsistencySetup& setup_;
@@ -136,9 +163,7 @@ class ConsistencyEstimator final : public Estimator {
 }  // namespace
 
 double inconsistency(const Sampler& sampler, const SamplerDraw& draw) {
-  if (needs_no_density(sampler, draw)) return without_density(draw);
-  const double density = sampler.density(draw.point);
-  return with_density(draw, density, sampler.evaluate(draw.point));
+  return judged_alone(sampler, draw).difference;
 }
 
 std::vector<Channel> ConsistencySetup::channels() const {

@@ -50,11 +50,11 @@ DomainChart of_square() {
               }};
 }
 
-// v as a share of what u leaves. Rounding of u + v <= 1 must not lead outside.
+// v as a share of what u leaves. Where rounding led to u + v > 1 that is all.
 double share_of_rest(double v, double u) {
   const double rest = 1 - u;
-  if (v <= rest) return rest > 0 ? v / rest : 0;
-  return v <= rest * (1 + 1e-12) + 1e-16 ? 1 : v / rest;
+  if (v > rest) return 1;
+  return rest > 0 ? v / rest : 0;
 }
 
 DomainChart of_triangle() {

@@ -19,15 +19,17 @@ std::string replay_line(const TestOutcome& outcome, std::uint64_t observation) {
       shell_quoted(outcome.question.test->id), observation);
 }
 
-std::string not_finite(const TestOutcome& outcome, const Subject& side, std::size_t channel,
-                       const ChannelSummary& summary) {
+std::string not_finite(const TestOutcome& outcome, const Subject& side, const Pool& pool,
+                       std::size_t channel, const ChannelSummary& summary) {
   const auto at = side.image ? " at pixel " + element_name(*side.setup->image(), channel) : "";
   const std::string text = fmt::format(
       "{} of {} observations of `{}`{} are not finite, the first is observation {}",
       summary.nonfinite, outcome.secondaries(), side.estimator->name, at, summary.first_nonfinite);
-  const auto file = recorded::observation_file(*side.setup, summary.first_nonfinite);
-  return text +
-         (file.empty() ? "; " + replay_line(outcome, summary.first_nonfinite) : ", `" + file + "`");
+  const auto place = recorded::observation_place(
+      *side.setup,
+      {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
+  if (!place.empty()) return text + ", `" + place + "`";
+  return text + "; " + replay_line(outcome, summary.first_nonfinite);
 }
 
 /// A declared range chooses methods, and one of them rests on it. A sum may be rounded beyond it.
@@ -68,7 +70,7 @@ std::string undrawable(const TestWork& work) {
     if (drawn.elements) continue;  // all of them are finite
     for (const std::size_t channel : side.channels) {
       const ChannelSummary& summary = drawn.channels[channel];
-      if (summary.nonfinite > 0) return not_finite(outcome, side, channel, summary);
+      if (summary.nonfinite > 0) return not_finite(outcome, side, pool, channel, summary);
     }
     if (std::string fault = outside_of_range(side, drawn); !fault.empty()) return fault;
   }

@@ -97,7 +97,8 @@ class Side {
       const auto found = std::ranges::find_if_not(texels, [](float x) { return std::isfinite(x); });
       if (found == texels.end()) continue;
       const auto element = rows.there.first + static_cast<std::size_t>(found - texels.begin());
-      return fmt::format("`{}` is not finite at pixel {}", recorded::observation_file(setup_, i),
+      return fmt::format("`{}` is not finite at pixel {}",
+                         recorded::observation_place(setup_, {.index = i}),
                          element_name(*setup_.image(), element));
     }
     return "";

@@ -9,6 +9,7 @@
 
 #include "harness/domain_chart.h"
 #include "harness/fetched_ahead.h"
+#include "harness/sound_draw.h"
 
 namespace assay::harness {
 namespace {
@@ -44,6 +45,15 @@ Panels affordable(Panels panels) {
 
 /// A density at many points, of a sampler that may write those of the first few only.
 using Densities = std::function<std::size_t(std::span<const Point>, std::span<double>)>;
+
+/// Throws as sound_density().
+Densities sound_densities(const NamedSampler& named, Densities densities) {
+  return [&named, densities](std::span<const Point> points, std::span<double> out) {
+    const std::size_t written = densities(points, out);
+    for (std::size_t i = 0; i < written; ++i) sound_density(named, points[i], out[i]);
+    return written;
+  };
+}
 
 void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out) {
   for (std::size_t done = 0; done < points.size();) {
@@ -93,16 +103,19 @@ stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
           .y_panels = marginal == 0 ? panels.second : panels.first};
 }
 
-stats::CellProbabilities cells_of_lobe(const Sampler& sampler, const stats::PlaneGrid& grid,
+stats::CellProbabilities cells_of_lobe(const NamedSampler& named, const stats::PlaneGrid& grid,
                                        int lobe) {
+  const Sampler& sampler = *named.sampler;
   if (on_interval(sampler)) {
     return stats::cell_probabilities(interval_grid(sampler), [&](double x) {
-      return sampler.lobe_density(lobe, {x, 0, 0});
+      const Point point{x, 0, 0};
+      return sound_density(named, point, sampler.lobe_density(lobe, point));
     });
   }
-  const auto densities = [&](std::span<const Point> points, std::span<double> out) {
-    return sampler.lobe_densities(lobe, points, out);
-  };
+  const Densities densities =
+      sound_densities(named, [&](std::span<const Point> points, std::span<double> out) {
+        return sampler.lobe_densities(lobe, points, out);
+      });
   return stats::cell_probabilities(grid, plane_density(sampler, 0, densities), cell_limits);
 }
 
@@ -113,10 +126,11 @@ void append(stats::CellProbabilities& all, const stats::CellProbabilities& more)
   all.total_error += more.total_error;
 }
 
-DensityCells cells_of(const Sampler& sampler, const stats::PlaneGrid& grid) {
+DensityCells cells_of(const NamedSampler& named, const stats::PlaneGrid& grid) {
+  const Sampler& sampler = *named.sampler;
   DensityCells cells;
   for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
-    append(cells.grid, cells_of_lobe(sampler, grid, lobe));
+    append(cells.grid, cells_of_lobe(named, grid, lobe));
   }
   for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
     const double mass = sampler.point_mass(lobe);
@@ -128,27 +142,28 @@ DensityCells cells_of(const Sampler& sampler, const stats::PlaneGrid& grid) {
 }
 
 /// That of all lobes together.
-Densities densities_of(const Sampler& sampler) {
-  return [&sampler](std::span<const Point> points, std::span<double> out) {
-    return sampler.densities(points, out);
-  };
+Densities densities_of(const NamedSampler& named) {
+  return sound_densities(named, [&named](std::span<const Point> points, std::span<double> out) {
+    return named.sampler->densities(points, out);
+  });
 }
 
-stats::TabulatedLaw law_on_interval(const Sampler& sampler) {
+stats::TabulatedLaw law_on_interval(const NamedSampler& named) {
+  const Sampler& sampler = *named.sampler;
   stats::AdaptiveQuadrature rule(table_limits);
   const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
   const auto parts = stats::cut(range, range, std::max(sampler.panels().first, least_parts));
   const auto density = [&](std::span<const double> x, std::span<double> values) {
     std::vector<Point> points;
     for (const double each : x) points.push_back({each, 0, 0});
-    write_all(densities_of(sampler), points, values);
+    write_all(densities_of(named), points, values);
   };
   return stats::tabulate(rule.of(density), parts, rule);
 }
 
-stats::TabulatedLaw law_of(const Sampler& sampler, std::size_t marginal) {
-  if (on_interval(sampler)) return law_on_interval(sampler);
-  const stats::PlaneDensity density = plane_density(sampler, marginal, densities_of(sampler));
+stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal) {
+  if (on_interval(*named.sampler)) return law_on_interval(named);
+  const stats::PlaneDensity density = plane_density(*named.sampler, marginal, densities_of(named));
   stats::AdaptiveQuadrature rule(table_limits);
   // A multiple of the panels, so that their borders stay borders.
   const std::size_t each = (least_parts + density.x_panels - 1) / density.x_panels;
@@ -172,9 +187,10 @@ class SamplerEstimator final : public Estimator {
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
     const Sampler& sampler = setup_.sampler();
     const SamplerDraw draw =
-        sampler.is_elsewhere()
-            ? ahead_.of(random, [&](auto streams) { return draws_of(sampler, streams); })
-            : sampler.sample(random);
+        sound(setup_.named(),
+              sampler.is_elsewhere()
+                  ? ahead_.of(random, [&](auto streams) { return draws_of(sampler, streams); })
+                  : sampler.sample(random));
     const bool point = has_density(setup_.sampler(), draw);
     for (std::size_t i = 0; i < marginals_.size(); ++i) {
       out[i] = point ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
@@ -267,8 +283,8 @@ auto SamplerSetup::integrated(auto table) const {
 const DensityCells& SamplerSetup::cells() const {
   const std::scoped_lock lock(once_);
   if (!cells_) {
-    cells_ = integrated(
-        [&] { return std::make_shared<const DensityCells>(cells_of(sampler(), grid_)); });
+    cells_ =
+        integrated([&] { return std::make_shared<const DensityCells>(cells_of(named_, grid_)); });
   }
   return *cells_;
 }
@@ -285,10 +301,6 @@ std::size_t SamplerSetup::cell_count() const {
 std::size_t SamplerSetup::cell(const SamplerDraw& draw) const {
   const std::size_t each = on_interval(sampler()) ? interval_cells : grid_.size();
   const int lobes = sampler().lobes();
-  if (draw.lobe < 0 || draw.lobe >= lobes) {
-    throw std::domain_error(fmt::format("sampler `{}` drew from lobe {}, and declares {}",
-                                        named_.name, draw.lobe, lobes));
-  }
   const auto lobe = static_cast<std::size_t>(draw.lobe);
   std::size_t next = static_cast<std::size_t>(lobes) * each;
   for (int other = 0; other < lobes; ++other) {
@@ -342,7 +354,7 @@ const stats::TabulatedLaw& SamplerSetup::marginal_law(const std::string& margina
   const std::vector<Marginal> all = marginals();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].name != marginal) continue;
-    auto law = integrated([&] { return law_of(sampler(), i); });
+    auto law = integrated([&] { return law_of(named_, i); });
     return laws_.emplace(marginal, std::move(law)).first->second;
   }
   throw std::logic_error("no marginal " + marginal);

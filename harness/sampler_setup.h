@@ -64,13 +64,13 @@ class SamplerSetup : public Setup {
   /// without one. On first use; then kept. Throws NoDensity.
   const stats::TabulatedLaw& marginal_law(const std::string& marginal) const;
   const Sampler& sampler() const { return *named_.sampler; }
+  const NamedSampler& named() const { return named_; }
   const std::string& name() const { return named_.name; }
   /// Of a domain of two coordinates the cells of one lobe.
   const stats::PlaneGrid& grid() const { return grid_; }
   std::vector<Marginal> marginals() const;
 
-  /// Number of the cell of a draw. Throws std::domain_error for a point outside the domain and a
-  /// lobe that the sampler does not have.
+  /// Number of the cell of a draw that is sound().
   std::size_t cell(const SamplerDraw& draw) const;
   /// "theta 0.1 to 0.2, phi 0 to 0.196" of lobe 1, where there are several.
   std::string describe_cell(std::size_t cell) const;

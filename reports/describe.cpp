@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -121,6 +122,16 @@ std::vector<const Sample*> worst_samples(const Test& test) {
     }
   }
   return samples;
+}
+
+std::uint64_t observations(const Test& test) {
+  std::uint64_t sum = 0;
+  std::map<std::string, std::string> counted;  // the channel of an estimator
+  for (const Sample* sample : worst_samples(test)) {
+    const auto& [estimator, channel] = *counted.emplace(sample->estimator, sample->channel).first;
+    if (channel == sample->channel) sum += sample->secondaries;
+  }
+  return sum;
 }
 
 bool is_evidence(const Test& test) {

@@ -2,6 +2,7 @@
 
 // What a test's numbers say, in the same words in every format.
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,10 @@ Channel worst_channel(const Test&);
 
 /// The samples of the worst channel, and those of estimators that have none of its name.
 std::vector<const Sample*> worst_samples(const Test&);
+
+/// Observations of all sources together, those of one that has a sample for each of several
+/// channels counted once.
+std::uint64_t observations(const Test&);
 
 /// Whether the test's numbers mean what they say: not where an assumption of theirs does not hold.
 bool is_evidence(const Test&);

@@ -16,12 +16,6 @@
 namespace assay::reports {
 namespace {
 
-std::uint64_t observations(const Test& test) {
-  std::uint64_t sum = 0;
-  for (const Sample* sample : worst_samples(test)) sum += sample->secondaries;
-  return sum;
-}
-
 // A table of all tests is for finding one; its own section has the whole name.
 std::string short_text(const std::string& text) { return escape_xml(shorten(one_line(text), 120)); }
 

@@ -45,8 +45,8 @@ void read_file(const Contents& contents, const std::string& file, std::vector<fl
     }
     std::ranges::copy(table.values, out.begin());
   } catch (const InputError& error) {
-    throw std::runtime_error("what the program wrote is of no use: " + error.where().file + ": " +
-                             error.message() + "; mend the program and delete the file");
+    throw std::runtime_error("what the program wrote is of no use: " + to_string(error.where()) +
+                             ": " + error.message() + "; mend the program and delete the file");
   }
 }
 
@@ -85,7 +85,7 @@ class Command final : public Estimator {
   std::vector<float> texels_;  // scratch
 };
 
-class CommandSetup final : public Setup {
+class CommandSetup final : public Setup, public recorded::InFiles {
  public:
   CommandSetup(std::shared_ptr<foreign::Renderings> renderings, Contents contents)
       : renderings_(std::move(renderings)),
@@ -104,6 +104,9 @@ class CommandSetup final : public Setup {
   bool keeps_files() const override { return true; }
   std::unique_ptr<Estimator> make() const override {
     return std::make_unique<Command>(renderings_, contents_);
+  }
+  std::string place_of(const recorded::WhichObservation& which) const override {
+    return renderings_->path_of(which.key, which.index, which.primaries);
   }
 
  private:

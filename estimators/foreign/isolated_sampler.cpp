@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "estimators/flush_denormals.h"
+#include "estimators/foreign/examination.h"
 #include "estimators/foreign/words.h"
 
 namespace assay::foreign {
@@ -214,10 +215,7 @@ void IsolatedSampler::witness(Dialogue& dialogue, const Question& question,
     first = witnesses_.try_emplace(items.what, first).first->second;
   }
   if (same_bits(dialogue.ask(first.question, first.item), first.numbers)) return;
-  throw NoAnswer("`" + children_->terms().name + "` gave other numbers when it was asked for " +
-                 to_text(one) +
-                 " again: a draw must be a function of its stream alone, a density and an "
-                 "evaluation of their point");
+  throw NoAnswer(other_numbers(children_->terms().name, one));
 }
 
 std::vector<double> IsolatedSampler::ask(const Items& items) const {

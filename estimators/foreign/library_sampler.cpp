@@ -17,6 +17,11 @@ bool is_whole(const SamplerDraw& draw) {
          std::ranges::none_of(draw.point, [](double x) { return std::isnan(x); });
 }
 
+std::vector<double> numbers_of(const SamplerDraw& draw) {
+  const auto& [x, y, z] = draw.point;
+  return {x, y, z, draw.density, draw.weight, draw.valid ? 1.0 : 0.0};
+}
+
 }  // namespace
 
 LibrarySampler::LibrarySampler(std::shared_ptr<const PreparedLibrary> library,
@@ -62,6 +67,37 @@ double LibrarySampler::evaluate(const Point& point) const {
 
 double LibrarySampler::rounding() const {
   return note_.rounding > 0 ? note_.rounding : Sampler::rounding();
+}
+
+InProcessSampler::InProcessSampler(std::shared_ptr<const PreparedLibrary> library,
+                                   const AssaySampler& sampler)
+    : LibrarySampler(library, sampler), name_(sampler.name), file_(library->file()) {}
+
+template <class Ask>
+void InProcessSampler::look_at_first(Asked what, const Ask& ask) const {
+  first_looks_[static_cast<std::size_t>(what)].at([&] {
+    const std::vector<double> numbers = ask();
+    const Question question{.first = static_cast<std::uint64_t>(what), .primaries = 0};
+    return same_bits(ask(), numbers) ? ""
+                                     : "sampler `" + name_ + "`: " + other_numbers(file_, question);
+  });
+}
+
+SamplerDraw InProcessSampler::sample(Stream& random) const {
+  const std::uint64_t key = random();
+  const std::uint64_t observation = random();
+  look_at_first(Asked::draws, [&] { return numbers_of(draw(key, observation)); });
+  return draw(key, observation);
+}
+
+double InProcessSampler::density(const Point& point) const {
+  look_at_first(Asked::densities, [&] { return std::vector{LibrarySampler::density(point)}; });
+  return LibrarySampler::density(point);
+}
+
+double InProcessSampler::evaluate(const Point& point) const {
+  look_at_first(Asked::evaluations, [&] { return std::vector{LibrarySampler::evaluate(point)}; });
+  return LibrarySampler::evaluate(point);
 }
 
 void require_whole(const AssaySampler& sampler) {

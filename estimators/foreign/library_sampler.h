@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "estimators/foreign/examination.h"
 #include "estimators/foreign/hello.h"
 #include "estimators/plugin_abi.h"
 #include "estimators/sampler.h"
@@ -18,10 +19,10 @@ void require_whole(const AssaySampler& sampler);
 /// What the library says of it. As require_whole() has found it.
 SamplerNote note_of(const AssaySampler& sampler);
 
-/// The sampler as Assay's. It throws LibraryError where the library reports an error or gives a
+/// A sampler as Assay's. It throws LibraryError where the library reports an error or gives a
 /// number that is none. Its draws are of streams whose key and observation are the next two words
 /// of Assay's.
-class LibrarySampler final : public Sampler {
+class LibrarySampler : public Sampler {
  public:
   LibrarySampler(std::shared_ptr<const PreparedLibrary> library, const AssaySampler& sampler);
 
@@ -40,6 +41,25 @@ class LibrarySampler final : public Sampler {
   std::shared_ptr<const PreparedLibrary> library_;
   AssaySampler sampler_;
   SamplerNote note_;
+};
+
+/// One that nobody else asks twice: the first draw, density and evaluation are asked for again, and
+/// other bits are a LibraryError, of all that come after too.
+class InProcessSampler final : public LibrarySampler {
+ public:
+  InProcessSampler(std::shared_ptr<const PreparedLibrary> library, const AssaySampler& sampler);
+
+  SamplerDraw sample(Stream& random) const override;
+  double density(const Point& point) const override;
+  double evaluate(const Point& point) const override;
+
+ private:
+  template <class Ask>
+  void look_at_first(Asked what, const Ask& ask) const;
+
+  std::string name_;
+  std::string file_;
+  mutable std::array<FirstLook, 3> first_looks_;
 };
 
 }  // namespace assay::foreign

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 
+#include "estimators/foreign/examination.h"
 #include "estimators/foreign/library_sampler.h"
 #include "estimators/foreign/streams_ahead.h"
 #include "estimators/foreign/words.h"
@@ -172,16 +173,43 @@ std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& 
   return text + bias_line(bias_of(estimator.bias)) + "ready\n";
 }
 
+/// The observation's numbers as a program of the library would reply them.
+std::vector<double> numbers_of(const PreparedLibrary& library, const Question& question) {
+  AssayStream random = assay_stream(question.key, question.first);
+  std::vector<double> numbers(library.hello().channels.size());
+  const std::uint64_t rays = library.observe(random, question.primaries, numbers);
+  if (library.hello().rays) numbers.push_back(static_cast<double>(rays));
+  return numbers;
+}
+
+/// Observation 0 comes first and, after others, again. What the library reports as an error is told
+/// by the observation that has it.
+std::string why_unfit(const PreparedLibrary& library, std::uint64_t key, std::uint64_t primaries) {
+  const Question first{.key = key, .first = 0, .count = 1, .primaries = primaries};
+  const auto ask = [&](const Question& one) { return numbers_of(library, one); };
+  try {
+    const std::vector<double> numbers = ask(first);
+    const std::string why = why_unfit(ask, first, library.file(), library.hello().nature.averages);
+    if (!why.empty()) return why;
+    return same_bits(ask(first), numbers) ? "" : other_numbers(library.file(), first);
+  } catch (const LibraryError&) {
+    return "";
+  }
+}
+
 class LibraryEstimator final : public Estimator {
  public:
-  explicit LibraryEstimator(std::shared_ptr<const PreparedLibrary> library)
+  LibraryEstimator(std::shared_ptr<const PreparedLibrary> library,
+                   std::shared_ptr<FirstLook> first_look)
       : library_(std::move(library)),
+        first_look_(std::move(first_look)),
         elements_(library_->hello().image ? library_->hello().image->elements() : 1) {}
 
   void announce(const Announcement& next) override { streams_.announce(next); }
 
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
                  Cost& cost) override {
+    first_look_->at([&] { return why_unfit(*library_, random.key().bits, primaries); });
     AssayStream theirs = streams_.of(random.key(), random.observation());
     cost.closest_hit_rays += library_->observe(theirs, primaries, out);
     cost.samples += primaries * elements_;
@@ -189,6 +217,7 @@ class LibraryEstimator final : public Estimator {
 
  private:
   std::shared_ptr<const PreparedLibrary> library_;
+  std::shared_ptr<FirstLook> first_look_;
   std::uint64_t elements_;
   StreamsAhead streams_;
 };
@@ -198,13 +227,13 @@ class LibrarySetup final : public Setup {
   explicit LibrarySetup(std::shared_ptr<const PreparedLibrary> library)
       : library_(std::move(library)) {
     for (const AssaySampler& sampler : library_->samplers()) {
-      samplers_.push_back({sampler.name, std::make_shared<LibrarySampler>(library_, sampler)});
+      samplers_.push_back({sampler.name, std::make_shared<InProcessSampler>(library_, sampler)});
     }
   }
 
   std::vector<Channel> channels() const override { return library_->hello().channels; }
   std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<LibraryEstimator>(library_);
+    return std::make_unique<LibraryEstimator>(library_, first_look_);
   }
   std::optional<ImageShape> image() const override { return library_->hello().image; }
   std::optional<Nature> nature() const override { return library_->hello().nature; }
@@ -212,6 +241,7 @@ class LibrarySetup final : public Setup {
 
  private:
   std::shared_ptr<const PreparedLibrary> library_;
+  std::shared_ptr<FirstLook> first_look_ = std::make_shared<FirstLook>();
   std::vector<NamedSampler> samplers_;
 };
 

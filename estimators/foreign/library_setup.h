@@ -35,6 +35,7 @@ class PreparedLibrary {
   const Hello& hello() const { return hello_; }
   const std::vector<AssaySampler>& samplers() const { return samplers_; }
   const void* state() const { return state_; }
+  const std::string& file() const { return object_.file(); }
   /// Writes an observation; returns its rays. Throws LibraryError where the library reports an
   /// error.
   std::uint64_t observe(AssayStream& random, std::uint64_t primaries, std::span<double> out) const;

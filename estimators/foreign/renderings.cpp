@@ -319,6 +319,10 @@ std::string Renderings::failure_of(std::uint64_t samples, std::uint32_t seed) {
   return found == failures_.end() ? "" : found->second;
 }
 
+std::string Renderings::path_of(StreamKey key, std::uint64_t observation, std::uint64_t samples) {
+  return path_of(samples, render_seed(key, observation));
+}
+
 std::string Renderings::file(StreamKey key, std::uint64_t observation, std::uint64_t samples) {
   const std::uint32_t seed = render_seed(key, observation);
   const std::string failure = failure_of(samples, seed);

@@ -60,6 +60,8 @@ class Renderings {
   /// the programs, without those of programs that they start and do not wait for.
   double make(const Wanted& wanted);
   bool takes_samples() const { return has_place(rendering_.command, "{samples}"); }
+  /// The file of one observation, made or not.
+  std::string path_of(StreamKey key, std::uint64_t observation, std::uint64_t samples);
   /// The file of one observation, which has been made. Throws std::runtime_error with the command,
   /// how it ended and the end of its standard error.
   std::string file(StreamKey key, std::uint64_t observation, std::uint64_t samples);

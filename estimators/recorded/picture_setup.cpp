@@ -101,7 +101,7 @@ class StackRows final : public PictureRows {
   std::vector<Reading> pictures_;
 };
 
-class PictureSetup final : public Setup {
+class PictureSetup final : public Setup, public InFiles {
  public:
   PictureSetup(PictureStack stack, bool independent, std::string data_file)
       : stack_(std::make_shared<const PictureStack>(std::move(stack))),
@@ -122,6 +122,7 @@ class PictureSetup final : public Setup {
   std::string data_file() const override { return data_file_; }
   std::unique_ptr<PictureRows> rows() const { return std::make_unique<StackRows>(stack_, seen_); }
   std::size_t channel_count() const { return shape_.elements() + 1; }
+  std::string place_of(const WhichObservation& which) const override { return file(which.index); }
   std::string file(std::uint64_t index) const {
     return index < stack_->files.size() ? stack_->files[index] : "";
   }
@@ -191,9 +192,9 @@ double average_of(std::span<const float> texels) {
   return sum / static_cast<double>(texels.size());
 }
 
-std::string observation_file(const Setup& setup, std::uint64_t index) {
-  const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
-  return pictures == nullptr ? "" : pictures->file(index);
+std::string observation_place(const Setup& setup, const WhichObservation& which) {
+  const auto* const files = dynamic_cast<const InFiles*>(&setup);
+  return files == nullptr ? "" : files->place_of(which);
 }
 
 std::optional<std::pair<std::string, std::string>> shared_picture(const Setup& first,

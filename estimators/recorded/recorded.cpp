@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "estimators/estimator.h"
+#include "estimators/ready_made.h"
 #include "recorded/picture_setup.h"
 #include "recorded/table.h"
 
@@ -49,7 +50,7 @@ class Recorded final : public Estimator {
   Selection selection_;
 };
 
-class RecordedSetup final : public Setup {
+class RecordedSetup final : public Setup, public recorded::InFiles {
  public:
   RecordedSetup(SharedTable table, Selection selection, std::string file)
       : table_(std::move(table)), selection_(selection), file_(std::move(file)) {}
@@ -66,6 +67,10 @@ class RecordedSetup final : public Setup {
   }
   std::optional<std::uint64_t> observations() const override { return table_->rows(); }
   std::string data_file() const override { return file_; }
+  std::string place_of(const recorded::WhichObservation& which) const override {
+    if (which.index >= table_->rows()) return "";
+    return file_ + ":" + std::to_string(table_->lines[which.index]);
+  }
   std::optional<StreamKey> data_stream() const override {
     if (!table_->stream) return {};
     return StreamKey{*table_->stream};

@@ -73,6 +73,7 @@ class Reader {
     name_columns(fields.size());
     check_length(fields);
     for (const Field& field : fields) table_.values.push_back(number(field));
+    table_.lines.push_back(line_);
   }
 
   Table finish() && {

@@ -13,6 +13,7 @@ namespace assay::recorded {
 struct Table {
   std::vector<std::string> columns;
   std::vector<double> values;                ///< row after row
+  std::vector<int> lines = {};               ///< of the file, where the rows stand
   std::optional<std::uint64_t> stream = {};  ///< what `# stream: HEX` says the rows were drawn from
 
   std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }

@@ -140,6 +140,44 @@ test_a_density_below_zero_is_invalid() {
   verdict_is run.json 'distribution(mine.disc) == density' pass
 }
 
+# Points, lengths and densities that no claim can be about, where all else agrees with them.
+test_draws_that_are_unsound_are_errors_in_every_claim() {
+  library long 'draw->point[0] = draw->point[1] = draw->point[2] = 1;
+    return draw->density = 1 / PI, draw->weight = PI, 0;'
+  library below 'if (index % 256 == 5) return draw->point[2] = -1, draw->weight = PI, 0;'
+  library negative 'draw->point[2] = 1; return draw->density = -.25, 0;'
+  local isolated name
+  for isolated in true false; do
+    for name in long below negative; do
+      cat >unsound.yaml <<SUITE
+suite: unsound
+estimators:
+  mine: {plugin: library, file: $name.so, isolated: $isolated}
+tests:
+  - {name: law, claim: distribution(mine.cosine) == density}
+  - {name: theta, claim: distribution(mine.cosine.theta) == density}
+  - {name: integral, claim: integral(mine.cosine) == 1}
+  - {name: drawn, claim: inconsistency(mine.cosine) == 0}
+  - {name: other, claim: distribution(mine.ramp) == density}
+SUITE
+      expect 1 run unsound.yaml --report json="$name.json"
+      verdict_is "$name.json" other pass
+      local claim
+      for claim in law theta integral drawn; do
+        verdict_is "$name.json" "$claim" error
+        message "$name.json" "$claim"
+        tells err '`mine` stopped at observation '
+        case $name in
+          long) tells err ': sampler `cosine` drew (1, 1, 1), whose length is 1.73' ;;
+          below) tells err ': sampler `cosine` drew (0, 0, -1), outside its hemisphere (z >= 0)' ;;
+          negative) tells err ': sampler `cosine` drew (0, 0, 1) with density -0.25: ' ;;
+        esac
+      done
+    done
+  done
+  none_left
+}
+
 # broken NAME…: a suite of a library each, whose `cosine` breaks, and of a sound sampler.
 broken() {
   local name

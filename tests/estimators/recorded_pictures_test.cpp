@@ -114,7 +114,7 @@ TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
   EXPECT_EQ(pictures.setup->observations(), 3u);
   EXPECT_FALSE(pictures.setup->image()->independent);
   EXPECT_EQ(pictures.setup->channels()[0].name, "x0y0");
-  EXPECT_EQ(recorded::observation_file(*pictures.setup, 1), file("b.exr"));
+  EXPECT_EQ(recorded::observation_place(*pictures.setup, {.index = 1}), file("b.exr"));
   const auto observed = draws::observe(pictures, 3);
   EXPECT_EQ(observed[0].values[0], 1);
   EXPECT_EQ(observed[0].values[1], 2);

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 
+#include "estimators/ready_made.h"
 #include "recorded/table.h"
 #include "tests/estimators/draws.h"
 
@@ -65,6 +66,15 @@ TEST_F(Recorded, ReadsColumnsByWhiteSpaceOrCommas) {
   EXPECT_THAT(table.columns, ElementsAre("a", "b"));
   EXPECT_THAT(table.values, ElementsAre(1, 2.5, -0.03, 4, 5, 6));
   EXPECT_EQ(table.rows(), 3u);
+}
+
+TEST_F(Recorded, KnowsWhereEachRowStands) {
+  const draws::Prepared rows = prepare("# columns: a\n1\n\n2 # note\n# more\nnan\n");
+  const std::string file = std::filesystem::weakly_canonical(folder_ / "data.txt").string();
+  EXPECT_EQ(recorded::observation_place(*rows.setup, {.index = 0}), file + ":2");
+  EXPECT_EQ(recorded::observation_place(*rows.setup, {.index = 1}), file + ":4");
+  EXPECT_EQ(recorded::observation_place(*rows.setup, {.index = 2}), file + ":6");
+  EXPECT_EQ(recorded::observation_place(*rows.setup, {.index = 3}), "");
 }
 
 TEST_F(Recorded, NamesColumnsThatHaveNone) {

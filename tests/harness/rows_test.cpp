@@ -64,7 +64,8 @@ TEST(Rows, ThatAreNotFiniteAreAnErrorWithTheFirstOfThem) {
   rows[17] = std::nan("");
   const reports::Test test = judged(rows, "claim: variance(rows) == 1");
   EXPECT_EQ(test.verdict, Verdict::error) << test.message;
-  EXPECT_THAT(test.message, HasSubstr("the first is observation 17;"));
+  EXPECT_THAT(test.message, testing::AllOf(HasSubstr("the first is observation 17, `"),
+                                           HasSubstr("rows.txt:18`")));
 }
 
 TEST(Rows, AreOfUnknownBias) {

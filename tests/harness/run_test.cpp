@@ -37,6 +37,25 @@ constexpr const char* tests = R"(  - {claim: mean(uniform) == analytic, detect: 
   - {name: no cosine, claim: mean(no_cosine) == analytic, detect: 5%, expect: fail}
 )";
 
+// A row of a file by its line, a file of a command by its name.
+TEST(Run, ANumberThatIsNotFiniteIsNamedWithItsFile) {
+  const Workplace place;
+  place.write("rows.txt", "# columns: a\n1\n\nnan\n2\n");
+  place.write("render.sh", "echo nan >$3\n");
+  const std::string suite =
+      "suite: s\nestimators:\n  rows: {plugin: recorded, file: rows.txt}\n"
+      "  made: {plugin: command, command: [sh, render.sh, '{seed}', '{samples}', '{out}'],\n"
+      "         output: text, primaries: 1}\n"
+      "tests:\n  - {claim: mean(rows) == 1}\n"
+      "  - {claim: mean(made) == 1, secondaries: 8}\n";
+  const reports::Record record = run_files({place.write("s.yaml", suite)});
+  const auto& done = record.suites[0].tests;
+  EXPECT_NE(done[0].message.find("the first is observation 1, `"), std::string::npos);
+  EXPECT_NE(done[0].message.find("rows.txt:4`"), std::string::npos) << done[0].message;
+  EXPECT_NE(done[1].message.find("the first is observation 0, `"), std::string::npos);
+  EXPECT_NE(done[1].message.find(".txt`"), std::string::npos) << done[1].message;
+}
+
 std::string good() { return std::string(estimators) + tests; }
 
 /// A test alone, without what belongs to the run (Holm, times, the file it stood in).

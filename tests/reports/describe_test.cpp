@@ -45,6 +45,31 @@ TEST(Describe, ObservationsOfSeveralChannelsAreCountedOnce) {
       << plain_text(test);
 }
 
+TEST(Describe, ObservationsOfAllSourcesTogetherCountEachSourceOnce) {
+  reports::Test test = example_record().suites[0].tests[0];
+  const reports::Sample sample = test.samples[0];
+  const auto of = [&](const char* estimator, const char* channel) {
+    reports::Sample other = sample;
+    other.estimator = estimator;
+    other.channel = channel;
+    other.secondaries = 100;
+    return other;
+  };
+  const auto counted = [&](const char* channel, const std::vector<reports::Sample>& samples) {
+    test.channels[0].name = channel;
+    test.samples = samples;
+    return observations(test);
+  };
+  // Cells of two coordinates, of one source, of two, and of one against itself.
+  EXPECT_EQ(counted("cell", {of("a", "theta"), of("a", "phi")}), 100u);
+  EXPECT_EQ(counted("cell", {of("a", "theta"), of("b", "theta"), of("a", "phi"), of("b", "phi")}),
+            200u);
+  EXPECT_EQ(counted("cell", {of("a", "theta"), of("a", "theta"), of("a", "phi"), of("a", "phi")}),
+            200u);
+  EXPECT_EQ(counted("u", {of("a", "u"), of("b", "v")}), 200u);
+  EXPECT_EQ(counted("u", {of("a", "u"), of("b", "u"), of("a", "v"), of("b", "v")}), 200u);
+}
+
 TEST(Describe, ASideWhoseChannelHasAnotherNameIsCountedToo) {
   reports::Test test = example_record().suites[0].tests[0];
   test.samples.push_back(test.samples[0]);

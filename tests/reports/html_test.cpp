@@ -224,6 +224,17 @@ Record record_of(reports::Test test) {
   return record;
 }
 
+TEST(Html, ObservationsOfTwoCoordinatesAreCountedOnce) {
+  Record record = example_record();
+  reports::Test& test = record.suites[0].tests[0];
+  test.samples[0].channel = "theta";
+  test.samples[0].secondaries = 321;
+  test.samples.push_back(test.samples[0]);
+  test.samples.back().channel = "phi";
+  test.channels[0].name = "cell";
+  EXPECT_NE(overview_of(html(record)).find("observations\" title=\"321\""), std::string::npos);
+}
+
 // Numbers that rest on an assumption that does not hold are no effect.
 TEST(Html, AnInvalidTestShowsItsReasonAsRedAndNoNumbers) {
   reports::Test test = example_record().suites[0].tests[0];

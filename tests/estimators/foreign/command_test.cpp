@@ -8,6 +8,7 @@
 #include <set>
 
 #include "estimators/foreign/render_seed.h"
+#include "estimators/ready_made.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr_kinds.h"
 
@@ -177,6 +178,18 @@ TEST_F(Commands, MayMakeSeveralFilesAtATime) {
   EXPECT_EQ(out, foreign::render_seed(plugin.key, 0));
   EXPECT_EQ(draws::observe(plugin, 8)[0].values[7], foreign::render_seed(plugin.key, 7));
   EXPECT_EQ(starts(), 2U);
+}
+
+TEST_F(Commands, NameTheFileOfAnObservation) {
+  write_program("test $2 -lt 8 && echo $1 >$3 || printf '# note\\n1x\\n' >$3");
+  const draws::Prepared plugin = prepare();
+  draws::observe(plugin, 3, 4);
+  const std::string place =
+      recorded::observation_place(*plugin.setup, {.index = 2, .key = plugin.key, .primaries = 4});
+  EXPECT_EQ(draws::bytes_of(place), std::to_string(foreign::render_seed(plugin.key, 2)) + "\n");
+  EXPECT_THAT(failure([&] { draws::observe(plugin, 1, 8); }),
+              HasSubstr(std::to_string(foreign::render_seed(plugin.key, 0)) +
+                        ".txt:2:1: `1x` is not a number"));
 }
 
 TEST_F(Commands, WritePictures) {
