@@ -213,7 +213,7 @@ TEST(ImageClaims, WhatHasNoMethodIsRefusedBeforeSampling) {
   };
   EXPECT_EQ(of("mean(a) == mean(small)"),
             "`a` has 16 x 16 pixels of value, and `small` has 8 x 16 pixels of value: only images "
-            "of one size can be compared, element by element");
+            "of one size and as many channels can be compared, element by element");
   EXPECT_NE(of("mean(a) == mean(n)").find("`n` is no image"), std::string::npos);
   EXPECT_NE(of("mean(a) <= analytic").find("images are claimed to be equal"), std::string::npos);
   EXPECT_NE(of("mean(a) == 2 +- 0.1").find("common to all pixels"), std::string::npos);
