@@ -157,22 +157,30 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
   return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
 }
 
-stats::LogVariancePlan variance_plan(const stats::ErrorRates& rates, double allow,
-                                     const PlannedChannel& channel) {
-  return {.kurtosis_x = channel.kurtosis,
-          .kurtosis_y = channel.other_kurtosis,
+/// Chi-square and F take data that are flatter than normal for normal ones: they find as little as
+/// of those. 1 stays what it is, no second subject.
+double kurtosis_for(const Method& method, double kurtosis) {
+  const bool of_normal = method.name == "chi-square" || method.name == "F";
+  return of_normal && kurtosis > 1 ? std::max(3.0, kurtosis) : kurtosis;
+}
+
+stats::LogVariancePlan variance_plan(const Method& method, const stats::ErrorRates& rates,
+                                     double allow, const PlannedChannel& channel) {
+  return {.kurtosis_x = kurtosis_for(method, channel.kurtosis),
+          .kurtosis_y = kurtosis_for(method, channel.other_kurtosis),
           .allow = std::exp(allow),
           .rates = rates};
 }
 
-std::optional<std::uint64_t> for_variances(const ErrorShare& share, const PlannedChannel& channel) {
+std::optional<std::uint64_t> for_variances(const Method& method, const ErrorShare& share,
+                                           const PlannedChannel& channel) {
   const Regions& regions = channel.regions;
   if (regions.relation == Relation::within) {
-    return stats::log_variance_sample_size(variance_plan(planned_rates(share, regions), 0, channel),
-                                           std::exp(regions.within));
+    return stats::log_variance_sample_size(
+        variance_plan(method, planned_rates(share, regions), 0, channel), std::exp(regions.within));
   }
   return stats::log_variance_sample_size(
-      variance_plan(planned_rates(share, regions), regions.allow, channel),
+      variance_plan(method, planned_rates(share, regions), regions.allow, channel),
       std::exp(*regions.detect));
 }
 
@@ -185,7 +193,7 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
   if (!channel || (!equivalence && !regions.detect)) return std::nullopt;
   std::optional<std::uint64_t> count;
   if (question.on_log_scale()) {
-    count = for_variances(share, *channel);
+    count = for_variances(plan.method, share, *channel);
   } else if (plan.method.name == "binomial" || plan.method.name == "bounded") {
     count = equivalence
                 ? exact_equivalence_secondaries(question, plan, *channel, share)
@@ -199,12 +207,12 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
 }
 
 /// The probability of showing `within` where theta is 0.
-double equivalence_power(const Question& question, const TestSize& size,
+double equivalence_power(const Question& question, const TestSize& size, const Plan& plan,
                          const PlannedChannel& channel) {
   const double n = static_cast<double>(size.secondaries);
   if (question.on_log_scale()) {
     const double one_margin = stats::log_variance_power(
-        variance_plan(planned_rates(size.share, channel.regions), 0, channel), n,
+        variance_plan(plan.method, planned_rates(size.share, channel.regions), 0, channel), n,
         std::exp(channel.regions.within));
     return std::max(0.0, 2 * one_margin - 1);
   }
@@ -282,8 +290,8 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
   } else if (question.of_means()) {
     found = stats::student_t_detectable(mean_plan(rates, regions.allow, channel), n) / channel.unit;
   } else if (question.on_log_scale()) {
-    found =
-        std::log(stats::log_variance_detectable(variance_plan(rates, regions.allow, channel), n));
+    found = std::log(stats::log_variance_detectable(
+        variance_plan(plan.method, rates, regions.allow, channel), n));
   } else {
     found = detectable_between_laws(question, size, plan);
   }
@@ -306,7 +314,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
   if (!has_power(question, channel)) return std::nullopt;
   if (has_no_power(plan.method)) return std::nullopt;
   if (is_exact(plan.method)) return exact_power_at(question, size, plan, channel, rates, effect);
-  if (regions.relation == Relation::within) return equivalence_power(question, size, channel);
+  if (regions.relation == Relation::within) return equivalence_power(question, size, plan, channel);
   switch (question.kind) {
     case QuestionKind::mean_of_one:
     case QuestionKind::mean_of_two:
@@ -321,7 +329,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
     case QuestionKind::cost:
     case QuestionKind::efficiency:
     case QuestionKind::total_variance:
-      return stats::log_variance_power(variance_plan(rates, regions.allow, channel), n,
+      return stats::log_variance_power(variance_plan(plan.method, rates, regions.allow, channel), n,
                                        std::exp(effect));
     case QuestionKind::fit_to_density:
     case QuestionKind::fit_to_law:
