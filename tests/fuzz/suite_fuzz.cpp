@@ -7,6 +7,7 @@
 // sources: harness/laws.cpp harness/yaml.cpp harness/text_file.cpp
 // sources: estimators/value.cpp estimators/value_checks.cpp estimators/flow.cpp
 // sources: estimators/text_pattern.cpp estimators/catalogue.cpp estimators/parameters.cpp
+// sources: estimators/estimator.cpp
 // libraries: -lfmt -lyaml-cpp
 
 #include <algorithm>
