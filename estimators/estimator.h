@@ -101,9 +101,6 @@ class Setup {
   /// What stands in the place of the catalogue's `averages` and `bias`, which cannot be known
   /// before another program has been asked.
   virtual std::optional<Nature> nature() const { return {}; }
-  /// Whether observations are kept on disk from one run to the next, so that drawing one may cost
-  /// nothing.
-  virtual bool keeps_files() const { return false; }
   /// What making the set-up cost.
   virtual Cost cost() const { return {}; }
 };

@@ -60,6 +60,10 @@ class InFiles {
 /// is in no file.
 std::string observation_place(const Setup& setup, const WhichObservation& which);
 
+/// Whether observations are drawn into files that stay from one run to the next, so that drawing
+/// one may cost nothing.
+bool keeps_files(const Setup& setup);
+
 /// The files of a picture of one set-up and of one of another that are the same, bit for bit, among
 /// the first `count` of each as far as they have been read; nullopt where there are none. Pictures
 /// of one value throughout count for nothing: without noise all are alike, and that is an outcome.

@@ -4,19 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <optional>
 
 #include "harness/critical.h"
 #include "harness/frozen.h"
 #include "harness/image_plan.h"
+#include "harness/intended_size.h"
 #include "harness/mean_evidence.h"
 #include "harness/pilot_shape.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
+#include "harness/spread_choice.h"
 #include "reports/number.h"
 #include "stats/assumption_gates.h"
-#include "stats/log_variance_level.h"
 #include "stats/skewness_corrected_t.h"
 
 namespace assay::harness {
@@ -24,27 +23,10 @@ namespace {
 
 using stats::GateState;
 
-// log-variance is asymptotic: on normal data its level at .001 is 1.3 times nominal here.
-constexpr std::uint64_t log_variance_secondaries = 1000;
 // The most that a method may ask for to be valid; as primaries beyond this cost more than they
 // give.
 constexpr std::uint64_t most_for_a_mean = 64 * usual_secondaries;
-constexpr std::uint64_t most_for_a_variance = 1024 * usual_secondaries;
 constexpr double level_factor = 1.25;
-
-std::uint64_t whole(double count) {
-  return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
-}
-
-/// The reason why a test is invalid, among its gates.
-void note_too_few(Plan& plan, std::uint64_t size, std::uint64_t needed) {
-  plan.gates.push_back({.name = "number of observations (limit: the fewest that keep the level)",
-                        .value = static_cast<double>(size),
-                        .limit = static_cast<double>(needed),
-                        .state = "red"});
-}
-
-// ---- Means
 
 /// Secondaries at which the worse tail of Student's t is right within a quarter.
 std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) {
@@ -55,7 +37,7 @@ std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) 
     const double wanted = root * root / known.averaged;
     needed = wanted <= needed ? needed : wanted;  // also where it is no number
   }
-  return whole(needed);
+  return whole_secondaries(needed);
 }
 
 /// The same of the skewness-corrected t.
@@ -89,7 +71,7 @@ std::uint64_t enough_to_see(const Question& question, const std::vector<Known>& 
         std::log(1 / alpha) * beyond / (share_of_error * std::sqrt(seen.variance()));
     needed = std::max(needed, root * root / known.averaged);
   }
-  return whole(needed);
+  return whole_secondaries(needed);
 }
 
 /// Whether every value known of every subject is one of the two ends of its range.
@@ -130,15 +112,6 @@ bool can_be_bet_on(const Question& question, const std::vector<Known>& channels)
          });
 }
 
-/// How many secondaries the test has or is worth, before any look at shapes.
-std::uint64_t intended(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, const Plan& plan) {
-  if (question.test->secondaries) return std::min(*question.test->secondaries, most);
-  if (has_rows(question)) return most;
-  const auto planned = planned_secondaries(question, place.share, pilots, plan);
-  return std::min(most, planned.value_or(usual_secondaries));
-}
-
 std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
                               const Pilots& pilots, std::uint64_t most, Plan& plan) {
   const std::vector<Known> channels = known_channels(question, pilots, plan);
@@ -149,7 +122,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
       bounded ? enough_to_see(question, channels, smallest_level(question, place)) : 2;
   const std::uint64_t for_t = std::max(to_see, enough_for_t(channels, x));
   const std::uint64_t for_corrected = std::max(to_see, enough_for_corrected(channels, x));
-  const std::uint64_t size = intended(question, place, pilots, most, plan);
+  const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
   // Where the size is open, validity may ask for more; the t test only if looks stay early.
   const std::uint64_t affordable = fixed ? size : std::min(most, std::max(size, most_for_a_mean));
@@ -179,7 +152,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   }
   for (const Known& known : channels) {
     stats::Gate gate = stats::predicted_skewness_gate(
-        stats::primary_shape(known.pilot.moments), whole(known.averaged),
+        stats::primary_shape(known.pilot.moments), whole_secondaries(known.averaged),
         {.secondaries = std::clamp(std::max(least, size), std::uint64_t{2}, affordable),
          .critical_value = x});
     // Answered by the method chosen.
@@ -204,149 +177,6 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   return std::min(least, affordable);
 }
 
-// ---- Variances
-
-/// The shape of a secondary by the pilot's finite values: of the others the test's own observations
-/// tell, whose verdict is `error`. Nothing of fewer than two.
-std::optional<stats::SixthOrderShape> secondary_shape(const Known& known) {
-  std::vector<double> finite;
-  std::copy_if(known.pilot.values.begin(), known.pilot.values.end(), std::back_inserter(finite),
-               [](double value) { return std::isfinite(value); });
-  if (finite.size() < 2) return {};
-  return stats::averaged(stats::sixth_order_shape(finite), whole(known.averaged));
-}
-
-std::uint64_t enough_for_log_variance(const Question& question, const std::vector<Known>& channels,
-                                      double critical) {
-  std::uint64_t needed = log_variance_secondaries;
-  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
-    std::vector<stats::SixthOrderShape> shapes;
-    for (const Known& known : channels) {
-      if (known.channel != channel) continue;
-      if (const auto shape = secondary_shape(known)) shapes.push_back(*shape);
-    }
-    if (shapes.empty()) continue;
-    needed = std::max(needed, shapes.size() == 1
-                                  ? stats::values_for_log_variance(shapes[0], critical)
-                                  : stats::values_for_log_variance(shapes[0], shapes[1], critical));
-  }
-  return needed;
-}
-
-std::string too_few(const Question& question, std::uint64_t needed) {
-  const std::string need = reports::human(static_cast<double>(needed), 2);
-  if (has_rows(question)) {
-    const bool two = question.kind == QuestionKind::variance_of_two;
-    const bool alone = question.kind == QuestionKind::variance_of_one;
-    const std::string exact =
-        two || alone ? fmt::format("; where the rows are known to be normal, `test: {}` is exact",
-                                   two ? "F" : "chi-square")
-                     : "";
-    return fmt::format(
-        "a test of the variance of rows of this shape keeps its level from about {} rows on; rows "
-        "that each average several need fewer{}",
-        need, exact);
-  }
-  return fmt::format(
-      "secondary estimates of this shape need about {} observations before any test of their "
-      "variance keeps its level; a larger `primaries` brings them nearer to normal unless the tail "
-      "is heavy; of a heavy tail claim something of the distribution",
-      need);
-}
-
-/// F and chi-square where the pilot predicts near-normal secondaries; else the logarithm of the
-/// variance with its own kurtosis, from as many secondaries on as that needs; else nothing.
-std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
-                                  const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  const std::vector<Known> channels = known_channels(question, pilots, plan);
-  const double x = critical_value(smallest_level(question, place), two_sided(question));
-  const stats::ShapeLimits limits = shape_limits(x);
-  const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
-  bool normal = channels.size() == question.subjects.size() * question.channel_count();
-  for (const Known& known : channels) {
-    stats::Gate gate = stats::predicted_kurtosis_gate(stats::primary_shape(known.pilot.moments),
-                                                      whole(known.averaged), limits);
-    normal = normal && !known.rows && gate.state == GateState::green;
-    // Answered by the method chosen below.
-    if (!question.test->method && gate.state == GateState::red) gate.state = GateState::amber;
-    note(plan, known, gate);
-  }
-  if (question.test->method) return least_secondaries;
-  plan.invalid = heavy;
-  if (normal) return least_secondaries;
-  plan.method = find_method(question, "log-variance");
-  const std::uint64_t needed = enough_for_log_variance(question, channels, x);
-  const std::uint64_t size = intended(question, place, pilots, most, plan);
-  const bool fixed = question.test->secondaries || size == most;
-  const std::uint64_t affordable = fixed ? size : std::max(size, most_for_a_variance);
-  if (plan.invalid.empty() && needed > affordable) {
-    note_too_few(plan, affordable, needed);
-    plan.invalid = too_few(question, needed);
-  }
-  return std::min(needed, fixed ? size : most_for_a_variance);
-}
-
-// ---- Costs, efficiencies, total variances, slopes: one method each
-
-/// From how many secondaries on the logarithm of every mean cost is near normal: costs may be as
-/// skewed as values, and what a pilot has seen of them says so.
-std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, const Plan& plan,
-                               double critical) {
-  std::uint64_t needed = 2;
-  const CountedCost kind = question.test->cost == CostKind::samples ? samples_cost : rays_cost;
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    const Subject& side = question.subjects[i];
-    const Pilot* pilot = pilot_of(side, pilots);
-    if (pilot == nullptr || question.test->cost == CostKind::seconds) continue;
-    const auto& with_cost = pilot->sums->details(side.channels[0]).with_cost;
-    if (with_cost.empty() || !(with_cost[kind].cost.m2 > 0)) continue;
-    const stats::Moments& cost = with_cost[kind].cost;
-    const double primaries = side.averaged(plan.primaries[i]);
-    const double variation = std::sqrt(cost.variance()) / cost.mean / std::sqrt(primaries);
-    const double skewness = cost.skewness() / std::sqrt(primaries);
-    needed = std::max(needed, stats::values_for_log_mean(
-                                  {.variation = variation, .skewness = skewness}, critical));
-  }
-  return needed;
-}
-
-std::string too_skewed_costs(std::uint64_t needed) {
-  return fmt::format(
-      "costs of this shape need about {} observations before any test of their mean keeps its "
-      "level; a larger `primaries` brings them nearer to normal",
-      reports::human(static_cast<double>(needed), 2));
-}
-
-/// From how many secondaries on the logarithm of every variance that is part of the claim is near
-/// normal.
-std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& place,
-                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  const bool of_cost = question.kind == QuestionKind::cost;
-  std::vector<Known> channels;
-  if (!of_cost) channels = known_channels(question, pilots, plan);
-  // A reference comes last, and only its mean is used.
-  while (!channels.empty() && channels.back().subject >= question.compared()) channels.pop_back();
-  const double x = critical_value(smallest_level(question, place), two_sided(question));
-  const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
-  if (question.test->method) return of_cost ? log_variance_secondaries : least_secondaries;
-  plan.invalid = heavy;
-  std::uint64_t needed = of_cost ? 2 : log_variance_secondaries;
-  for (const Known& known : channels) {
-    const auto shape = secondary_shape(known);
-    if (shape) needed = std::max(needed, stats::values_for_log_variance(*shape, x));
-  }
-  const std::uint64_t for_costs = enough_for_costs(question, pilots, plan, x);
-  needed = std::max(needed, for_costs);
-  const std::uint64_t size = intended(question, place, pilots, most, plan);
-  const std::uint64_t affordable =
-      question.test->secondaries || size == most ? size : most_for_a_variance;
-  if (plan.invalid.empty() && needed > affordable) {
-    note_too_few(plan, affordable, needed);
-    plan.invalid = needed == for_costs ? too_skewed_costs(needed) : too_few(question, needed);
-  }
-  return std::max(of_cost ? log_variance_secondaries : 2, std::min(needed, affordable));
-}
-
 /// Of means and costs at the points of a slope.
 std::uint64_t choose_for_points(const Question& question, const FamilyPlace& place,
                                 const Pilots& pilots, Plan& plan) {
@@ -366,8 +196,10 @@ std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place
     choose_for_laws(question, pilots, plan);
     return least_secondaries;
   }
-  if (question.of_spread() || question.kind == QuestionKind::cost)
-    return choose_for_spread(question, place, pilots, most, plan);
+  if (question.kind == QuestionKind::cost) {
+    return choose_for_costs(question, place, pilots, most, plan);
+  }
+  if (question.of_spread()) return choose_for_spread(question, place, pilots, most, plan);
   return choose_for_points(question, place, pilots, plan);
 }
 

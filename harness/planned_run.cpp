@@ -92,7 +92,7 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
     }
     const PreparedEstimator& estimator = run.estimators.at(entry.name);
     // Of a renderer that is started for each observation a picture is too dear a decoration.
-    const bool dear = estimator.setup->keeps_files();
+    const bool dear = recorded::keeps_files(*estimator.setup);
     if (wanted || (idle && with_idle && !dear)) used.push_back(&estimator);
   }
   return used;

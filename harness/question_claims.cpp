@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "estimators/ready_made.h"
 #include "harness/sampler_setup.h"
 
 namespace assay::harness {
@@ -81,7 +82,7 @@ void require_drawn(const Question& question) {
                        fmt::format("`{}` is not drawn but read: its seconds say nothing",
                                    subject.estimator->name));
     }
-    if (subject.setup->keeps_files()) {
+    if (recorded::keeps_files(*subject.setup)) {
       throw InputError(question.test->where,
                        fmt::format("`{}` keeps what it made: the seconds of a file that is there "
                                    "say nothing; let `process` answer, or write the seconds as a "

@@ -101,7 +101,6 @@ class CommandSetup final : public Setup, public recorded::InFiles {
     return channels;
   }
   std::optional<ImageShape> image() const override { return contents_->shape; }
-  bool keeps_files() const override { return true; }
   std::unique_ptr<Estimator> make() const override {
     return std::make_unique<Command>(renderings_, contents_);
   }

@@ -75,6 +75,16 @@ bool ignores_index(const Asking& ask, const Question& question) {
   return twice && !same_but_for_rounding(*once, *twice, twice_as_many.primaries);
 }
 
+constexpr const char* rule =
+    "an observation must be a function of key and index alone, so seed its random numbers with "
+    "both for each";
+constexpr const char* rule_of_samplers =
+    "a draw must be a function of its stream alone, a density and an evaluation of their point";
+
+std::string gave_other_numbers(const std::string& name, const std::string& asked_for) {
+  return "`" + name + "` gave other numbers when it was asked for " + asked_for;
+}
+
 }  // namespace
 
 std::string why_unfit(const Asking& ask, const Question& question, const std::string& name,
@@ -95,16 +105,14 @@ std::string why_unfit(const Asking& ask, const Question& question, const std::st
 }
 
 std::string other_numbers(const std::string& name, const Question& question) {
-  const std::string words =
-      "`" + name + "` gave other numbers when it was asked for " + to_text(question);
-  if (question.is_to_sampler()) {
-    return words +
-           " again: a draw must be a function of its stream alone, a density and an evaluation of "
-           "their point";
-  }
-  return words +
-         " of the same key again: an observation must be a function of key and index alone, so "
-         "seed its random numbers with both for each";
+  return gave_other_numbers(
+      name, to_text(question) + (question.is_to_sampler()
+                                     ? std::string(" again: ") + rule_of_samplers
+                                     : std::string(" of the same key again: ") + rule));
+}
+
+std::string other_numbers_alone(const std::string& name, const Question& question) {
+  return gave_other_numbers(name, "one of " + to_text(question) + " alone: " + rule_of_samplers);
 }
 
 void FirstLook::look(const std::function<std::string()>& why_not) {

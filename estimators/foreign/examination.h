@@ -25,6 +25,9 @@ std::string why_unfit(const Asking& ask, const Question& question, const std::st
 /// That a question for one observation or item had other numbers when it was asked again.
 std::string other_numbers(const std::string& name, const Question& question);
 
+/// That one item of a question to a sampler had other numbers when it was asked for alone.
+std::string other_numbers_alone(const std::string& name, const Question& question);
+
 /// A look at the first of many questions, whichever thread asks it.
 class FirstLook {
  public:

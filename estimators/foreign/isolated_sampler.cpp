@@ -184,10 +184,7 @@ void IsolatedSampler::require_alone(Dialogue& dialogue, const Question& question
     asked_alone_.insert(items.what);
     return;
   }
-  throw NoAnswer("`" + children_->terms().name +
-                 "` gave other numbers when it was asked for one of " + to_text(question) +
-                 " alone: a draw must be a function of its stream alone, a density and an "
-                 "evaluation of their point");
+  throw NoAnswer(other_numbers_alone(children_->terms().name, question));
 }
 
 void IsolatedSampler::require_whole(const Items& items, std::span<const double> numbers) const {

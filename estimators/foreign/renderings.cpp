@@ -82,7 +82,8 @@ std::vector<std::string> names_in(const std::string& argument) {
     if (!ends) {
       name += c;
     } else if (!name.empty()) {
-      names.push_back(std::exchange(name, ""));
+      if (name != argument) names.push_back(name);
+      name.clear();
     }
   }
   return names;

@@ -197,6 +197,10 @@ std::string observation_place(const Setup& setup, const WhichObservation& which)
   return files == nullptr ? "" : files->place_of(which);
 }
 
+bool keeps_files(const Setup& setup) {
+  return dynamic_cast<const InFiles*>(&setup) != nullptr && !setup.observations();
+}
+
 std::optional<std::pair<std::string, std::string>> shared_picture(const Setup& first,
                                                                   const Setup& second,
                                                                   std::uint64_t count) {

@@ -156,7 +156,7 @@ TEST_F(Commands, CountTheSecondsOfTheirPrograms) {
   EXPECT_GT(one, 0.001);
   EXPECT_EQ(draw(0), one) << "of a file that is there";
   EXPECT_GT(draw(1), one);
-  EXPECT_TRUE(plugin.setup->keeps_files());
+  EXPECT_TRUE(recorded::keeps_files(*plugin.setup));
 }
 
 TEST_F(Commands, AreToldTheirFolderByTheirEnvironmentToo) {

@@ -1,69 +1,20 @@
 // Libraries called in the process of the tests; those in a process of their own are driven through
 // the program, by tests/cli/foreign_test.sh.
 
+#include "tests/estimators/foreign/library.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "estimators/plugin_abi.h"
-#include "tests/estimators/foreign/foreign.h"
 
 namespace assay::foreign {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-class Library : public Programs {
- protected:
-  /// Compiles as the manual says, with every warning an error, against nothing at all.
-  std::string compile(const std::string& source, const std::string& flags = "-nostdlib") const {
-    const std::string file = (folder_ / "mine.so").string();
-    const std::string command = "cc -std=c11 -O2 -Wall -Wextra -Wpedantic -Werror -fPIC -shared " +
-                                flags + " -I " + ASSAY_SOURCE_DIR + "/estimators " + source +
-                                " -o " + file;
-    EXPECT_EQ(std::system(command.c_str()), 0) << command;
-    return file;
-  }
-  std::string compile_text(const std::string& text) const {
-    return compile(write("mine.c", "#include \"plugin_abi.h\"\n" + text));
-  }
-
-  /// One of several libraries of a test: a file that is loaded is not written again.
-  SharedSetup load_as(const std::string& name, const std::string& text) {
-    const std::string file = (folder_ / (name + ".so")).string();
-    std::filesystem::rename(compile_text(text), file);
-    return load(file);
-  }
-
-  SharedSetup load(const std::string& file, std::vector<Value::Member> more = {}) {
-    more.emplace_back("file", Value::scalar(file));
-    more.emplace_back("isolated", Value::scalar("false"));
-    return prepare("library", Value::map(std::move(more)));
-  }
-
-  std::string refusal(const std::string& file, std::vector<Value::Member> more = {}) {
-    try {
-      load(file, std::move(more));
-    } catch (const InputError& error) {
-      return error.message();
-    }
-    return "nothing was refused";
-  }
-};
-
-// A library around the body of secondary().
-std::string with_body(const std::string& body) {
-  return "static int secondary(AssayCall *call) { " + body + R"(}
-static const AssayChannel x = {.size = sizeof x, .name = "x"};
-static const AssayEstimator mine = {.size = sizeof mine, .name = "mine", .channels = &x,
-                                    .channel_count = 1, .secondary = secondary};
-static const AssayLibrary library = {sizeof library, ASSAY_ABI_VERSION, &mine, 1};
-const AssayLibrary *assay_library(void) { return &library; }
-)";
-}
 
 TEST(PluginAbi, DrawsTheVeryNumbersOfAStream) {
   for (const std::uint64_t key : {0ull, 1ull, 0xfedcba9876543210ull}) {
@@ -249,87 +200,6 @@ const AssayLibrary *assay_library(void) { return &library; }
               HasSubstr("without secondary()"));
 }
 
-/// Why observation 3 of a set-up cannot be had.
-std::string trouble(const Setup& setup, std::uint64_t primaries = 1) {
-  double out = 0;
-  Cost cost;
-  Stream random({1}, 3);
-  try {
-    setup.make()->secondary(random, primaries, {&out, 1}, cost);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
-
-std::string averaging(std::string source) {
-  const std::string name = ".name = \"mine\",";
-  return source.insert(source.find(name), ".flags = ASSAY_AVERAGES, ");
-}
-
-// In the words of a library in a process of its own, each estimator and all workers alike.
-TEST_F(Library, WhoseObservationsAreNoFunctionOfKeyAndIndexIsRefused) {
-  const std::string counts = "static int calls; call->out[0] = ++calls; return 0; ";
-  const auto counting = load_as("counting", with_body(counts));
-  for (int worker = 0; worker < 2; ++worker) {
-    EXPECT_THAT(
-        trouble(*counting),
-        HasSubstr("counting.so` gave other numbers when it was asked for observation 0 of the "
-                  "same key again: an observation must be a function of key and index "
-                  "alone"));
-  }
-  const std::string by_index =
-      "AssayStream mine = assay_stream(5, call->random->counter[2]); "
-      "call->out[0] = assay_uniform(&mine); return 0; ";
-  EXPECT_THAT(trouble(*load_as("by_index", with_body(by_index))),
-              HasSubstr("by_index.so` gave the same numbers for two keys: runs of other seeds"));
-  const std::string by_key =
-      "AssayStream mine = assay_stream(call->random->key[0], 7); double sum = 0; "
-      "for (uint64_t i = 0; i < call->primaries; ++i) sum += assay_uniform(&mine); "
-      "call->out[0] = sum / (double)call->primaries; return 0; ";
-  EXPECT_THAT(
-      trouble(*load_as("by_key", averaging(with_body(by_key))), 8),
-      HasSubstr("by_key.so` gave the same numbers for observations 0 to 19 of 8 primaries"));
-}
-
-TEST_F(Library, IsAskedAgainOnceForAllWorkersAndNothingMore) {
-  // It counts in what nobody compares: its rays are not declared.
-  const auto setup = load(compile_text(
-      "static uint64_t calls;\n" +
-      with_body("call->rays = ++calls; call->out[0] = assay_uniform(call->random); return 0; ")));
-  Cost cost;
-  for (int worker = 0; worker < 2; ++worker) {
-    const auto estimator = setup->make();
-    for (std::uint64_t i = 0; i < 100; ++i) {
-      double out = 0;
-      Stream random({1}, i);
-      cost = {};
-      estimator->secondary(random, 1, {&out, 1}, cost);
-    }
-  }
-  // Observation 0 first, beside that of another key, and last.
-  EXPECT_EQ(cost.closest_hit_rays, 200u + 4);
-}
-
-constexpr const char* ramp_sampler = R"(
-static int sample(const void *setup, AssayStream *random, AssayDraw *draw) {
-  double a = assay_uniform(random), b = assay_uniform(random), x = a > b ? a : b;
-  (void)setup;
-  draw->point[0] = x; draw->density = 2 * x; draw->weight = x > 0 ? 1 / (2 * x) : 0;
-  return 0;
-}
-static double density(const void *setup, const double *p) { (void)setup; return 2 * p[0]; }
-static double evaluate(const void *setup, const double *p) { (void)setup; (void)p; return 1; }
-static const AssaySampler ramp = {.size = sizeof ramp, .name = "ramp", .domain = ASSAY_INTERVAL,
-    .low = 0, .high = 1, .sample = sample, .density = density, .evaluate = evaluate};
-static int secondary(AssayCall *call) { call->out[0] = 1; return 0; }
-static const AssayChannel x = {.size = sizeof x, .name = "x"};
-static const AssayEstimator mine = {.size = sizeof mine, .name = "mine", .channels = &x,
-    .channel_count = 1, .secondary = secondary, .samplers = &ramp, .sampler_count = 1};
-static const AssayLibrary library = {sizeof library, ASSAY_ABI_VERSION, &mine, 1};
-const AssayLibrary *assay_library(void) { return &library; }
-)";
-
 TEST_F(Library, OffersItsSamplers) {
   const auto setup = load(compile_text(ramp_sampler));
   const auto samplers = setup->samplers();
@@ -351,40 +221,6 @@ TEST_F(Library, OffersItsSamplers) {
   EXPECT_NEAR(sum / 10000, 2. / 3, 4.892 * std::sqrt(1. / 18 / 10000));
   // The same each time, so that their tables are made once.
   EXPECT_EQ(setup->samplers()[0].sampler, samplers[0].sampler);
-}
-
-TEST_F(Library, WhoseSamplersDriftIsRefused) {
-  const auto drifting = [&](const std::string& name, const std::string& sound,
-                            const std::string& drift) {
-    std::string source = std::string("static double turn;\n") + ramp_sampler;
-    source.replace(source.find(sound), sound.size(), drift);
-    return load_as(name, source)->samplers()[0].sampler;
-  };
-  const auto refused = [](auto ask) -> std::string {
-    try {
-      ask();
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  const auto expect_refusal = [&](const std::string& what, auto ask) {
-    for (int again = 0; again < 2; ++again) {
-      EXPECT_THAT(refused(ask),
-                  AllOf(HasSubstr("sampler `ramp`: `"),
-                        HasSubstr(what + ".so` gave other numbers when it was asked for 1 " + what +
-                                  " again: a draw must be a function of its stream alone, a "
-                                  "density and an evaluation of their point")));
-    }
-  };
-  const Point point{.25, 0, 0};
-  Stream random({1}, 0);
-  const auto draws = drifting("draw", "draw->point[0] = x;", "draw->point[0] = x / ++turn;");
-  expect_refusal("draw", [&] { draws->sample(random); });
-  const auto densities = drifting("density", "return 2 * p[0];", "return ++turn + p[0];");
-  expect_refusal("density", [&] { densities->density(point); });
-  const auto evaluations = drifting("evaluation", "(void)p; return 1;", "(void)p; return ++turn;");
-  expect_refusal("evaluation", [&] { evaluations->evaluate(point); });
 }
 
 TEST_F(Library, ReportsNumbersOfItsSamplersThatAreNone) {

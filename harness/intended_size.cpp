@@ -1,0 +1,31 @@
+#include "harness/intended_size.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/critical.h"
+#include "harness/rows.h"
+#include "harness/sample_size.h"
+
+namespace assay::harness {
+
+std::uint64_t intended_secondaries(const Question& question, const FamilyPlace& place,
+                                   const Pilots& pilots, std::uint64_t most, const Plan& plan) {
+  if (question.test->secondaries) return std::min(*question.test->secondaries, most);
+  if (has_rows(question)) return most;
+  const auto planned = planned_secondaries(question, place.share, pilots, plan);
+  return std::min(most, planned.value_or(usual_secondaries));
+}
+
+std::uint64_t whole_secondaries(double count) {
+  return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
+}
+
+void note_too_few(Plan& plan, std::uint64_t size, std::uint64_t needed) {
+  plan.gates.push_back({.name = "number of observations (limit: the fewest that keep the level)",
+                        .value = static_cast<double>(size),
+                        .limit = static_cast<double>(needed),
+                        .state = "red"});
+}
+
+}  // namespace assay::harness

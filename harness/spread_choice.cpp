@@ -1,0 +1,182 @@
+#include "harness/spread_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "harness/critical.h"
+#include "harness/intended_size.h"
+#include "harness/pilot_shape.h"
+#include "harness/rows.h"
+#include "harness/sample_size.h"
+#include "reports/number.h"
+#include "stats/assumption_gates.h"
+#include "stats/log_variance_level.h"
+
+namespace assay::harness {
+namespace {
+
+// log-variance is asymptotic: on normal data its level at .001 is 1.3 times nominal here.
+constexpr std::uint64_t log_variance_secondaries = 1000;
+// The most that a method may ask for to be valid.
+constexpr std::uint64_t most_for_a_variance = 1024 * usual_secondaries;
+
+/// The shape of a secondary by the pilot's finite values: of the others the test's own observations
+/// tell, whose verdict is `error`. Nothing of fewer than two.
+std::optional<stats::SixthOrderShape> secondary_shape(const Known& known) {
+  std::vector<double> finite;
+  std::copy_if(known.pilot.values.begin(), known.pilot.values.end(), std::back_inserter(finite),
+               [](double value) { return std::isfinite(value); });
+  if (finite.size() < 2) return {};
+  return stats::averaged(stats::sixth_order_shape(finite), whole_secondaries(known.averaged));
+}
+
+std::uint64_t enough_for_log_variance(const Question& question, const std::vector<Known>& channels,
+                                      double critical) {
+  std::uint64_t needed = log_variance_secondaries;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    std::vector<stats::SixthOrderShape> shapes;
+    for (const Known& known : channels) {
+      if (known.channel != channel) continue;
+      if (const auto shape = secondary_shape(known)) shapes.push_back(*shape);
+    }
+    if (shapes.empty()) continue;
+    needed = std::max(needed, shapes.size() == 1
+                                  ? stats::values_for_log_variance(shapes[0], critical)
+                                  : stats::values_for_log_variance(shapes[0], shapes[1], critical));
+  }
+  return needed;
+}
+
+std::string too_few(const Question& question, std::uint64_t needed) {
+  const std::string need = reports::human(static_cast<double>(needed), 2);
+  if (has_rows(question)) {
+    const bool two = question.kind == QuestionKind::variance_of_two;
+    const bool alone = question.kind == QuestionKind::variance_of_one;
+    const std::string exact =
+        two || alone ? fmt::format("; where the rows are known to be normal, `test: {}` is exact",
+                                   two ? "F" : "chi-square")
+                     : "";
+    return fmt::format(
+        "a test of the variance of rows of this shape keeps its level from about {} rows on; rows "
+        "that each average several need fewer{}",
+        need, exact);
+  }
+  return fmt::format(
+      "secondary estimates of this shape need about {} observations before any test of their "
+      "variance keeps its level; a larger `primaries` brings them nearer to normal unless the tail "
+      "is heavy; of a heavy tail claim something of the distribution",
+      need);
+}
+
+/// From how many secondaries on the logarithm of every mean cost is near normal: costs may be as
+/// skewed as values, and what a pilot has seen of them says so.
+std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, const Plan& plan,
+                               double critical) {
+  std::uint64_t needed = 2;
+  const CountedCost kind = question.test->cost == CostKind::samples ? samples_cost : rays_cost;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const Subject& side = question.subjects[i];
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (pilot == nullptr || question.test->cost == CostKind::seconds) continue;
+    const auto& with_cost = pilot->sums->details(side.channels[0]).with_cost;
+    if (with_cost.empty() || !(with_cost[kind].cost.m2 > 0)) continue;
+    const stats::Moments& cost = with_cost[kind].cost;
+    const double primaries = side.averaged(plan.primaries[i]);
+    const double variation = std::sqrt(cost.variance()) / cost.mean / std::sqrt(primaries);
+    const double skewness = cost.skewness() / std::sqrt(primaries);
+    needed = std::max(needed, stats::values_for_log_mean(
+                                  {.variation = variation, .skewness = skewness}, critical));
+  }
+  return needed;
+}
+
+std::string too_skewed_costs(std::uint64_t needed) {
+  return fmt::format(
+      "costs of this shape need about {} observations before any test of their mean keeps its "
+      "level; a larger `primaries` brings them nearer to normal",
+      reports::human(static_cast<double>(needed), 2));
+}
+
+/// The most secondaries that a claim on efficiencies, total variances or costs may come to: those
+/// that it asks for or all that there are, else what such a method may ask for.
+std::uint64_t affordable_secondaries(const Question& question, const FamilyPlace& place,
+                                     const Pilots& pilots, std::uint64_t most, const Plan& plan) {
+  const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
+  return question.test->secondaries || size == most ? size : most_for_a_variance;
+}
+
+}  // namespace
+
+std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
+                                  const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  const std::vector<Known> channels = known_channels(question, pilots, plan);
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  const stats::ShapeLimits limits = shape_limits(x);
+  const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
+  bool normal = channels.size() == question.subjects.size() * question.channel_count();
+  for (const Known& known : channels) {
+    stats::Gate gate = stats::predicted_kurtosis_gate(stats::primary_shape(known.pilot.moments),
+                                                      whole_secondaries(known.averaged), limits);
+    normal = normal && !known.rows && gate.state == stats::GateState::green;
+    // Answered by the method chosen below.
+    if (!question.test->method && gate.state == stats::GateState::red)
+      gate.state = stats::GateState::amber;
+    note(plan, known, gate);
+  }
+  if (question.test->method) return least_secondaries;
+  plan.invalid = heavy;
+  if (normal) return least_secondaries;
+  plan.method = find_method(question, "log-variance");
+  const std::uint64_t needed = enough_for_log_variance(question, channels, x);
+  const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
+  const bool fixed = question.test->secondaries || size == most;
+  const std::uint64_t affordable = fixed ? size : std::max(size, most_for_a_variance);
+  if (plan.invalid.empty() && needed > affordable) {
+    note_too_few(plan, affordable, needed);
+    plan.invalid = too_few(question, needed);
+  }
+  return std::min(needed, fixed ? size : most_for_a_variance);
+}
+
+std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& place,
+                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  std::vector<Known> channels = known_channels(question, pilots, plan);
+  // A reference comes last, and only its mean is used.
+  while (!channels.empty() && channels.back().subject >= question.compared()) channels.pop_back();
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
+  if (question.test->method) return least_secondaries;
+  plan.invalid = heavy;
+  std::uint64_t needed = log_variance_secondaries;
+  for (const Known& known : channels) {
+    const auto shape = secondary_shape(known);
+    if (shape) needed = std::max(needed, stats::values_for_log_variance(*shape, x));
+  }
+  const std::uint64_t for_costs = enough_for_costs(question, pilots, plan, x);
+  needed = std::max(needed, for_costs);
+  const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
+  if (plan.invalid.empty() && needed > affordable) {
+    note_too_few(plan, affordable, needed);
+    plan.invalid = needed == for_costs ? too_skewed_costs(needed) : too_few(question, needed);
+  }
+  return std::min(needed, affordable);
+}
+
+std::uint64_t choose_for_costs(const Question& question, const FamilyPlace& place,
+                               const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  if (question.test->method) return log_variance_secondaries;
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  const std::uint64_t needed = enough_for_costs(question, pilots, plan, x);
+  const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
+  if (needed > affordable) {
+    note_too_few(plan, affordable, needed);
+    plan.invalid = too_skewed_costs(needed);
+  }
+  return std::max(log_variance_secondaries, std::min(needed, affordable));
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,113 @@
+// What libraries in the process of the tests are told whose numbers are no function of what was
+// asked; programs that answer so are in process_test.cpp and isolated_sampler_test.cpp.
+
+#include <gmock/gmock.h>
+
+#include "tests/estimators/foreign/library.h"
+
+namespace assay::foreign {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+using Examination = Library;
+
+/// Why observation 3 of a set-up cannot be had.
+std::string trouble(const Setup& setup, std::uint64_t primaries = 1) {
+  double out = 0;
+  Cost cost;
+  Stream random({1}, 3);
+  try {
+    setup.make()->secondary(random, primaries, {&out, 1}, cost);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string averaging(std::string source) {
+  const std::string name = ".name = \"mine\",";
+  return source.insert(source.find(name), ".flags = ASSAY_AVERAGES, ");
+}
+
+// In the words of a library in a process of its own, each estimator and all workers alike.
+TEST_F(Examination, WhoseObservationsAreNoFunctionOfKeyAndIndexIsRefused) {
+  const std::string counts = "static int calls; call->out[0] = ++calls; return 0; ";
+  const auto counting = load_as("counting", with_body(counts));
+  for (int worker = 0; worker < 2; ++worker) {
+    EXPECT_THAT(
+        trouble(*counting),
+        HasSubstr("counting.so` gave other numbers when it was asked for observation 0 of the "
+                  "same key again: an observation must be a function of key and index "
+                  "alone"));
+  }
+  const std::string by_index =
+      "AssayStream mine = assay_stream(5, call->random->counter[2]); "
+      "call->out[0] = assay_uniform(&mine); return 0; ";
+  EXPECT_THAT(trouble(*load_as("by_index", with_body(by_index))),
+              HasSubstr("by_index.so` gave the same numbers for two keys: runs of other seeds"));
+  const std::string by_key =
+      "AssayStream mine = assay_stream(call->random->key[0], 7); double sum = 0; "
+      "for (uint64_t i = 0; i < call->primaries; ++i) sum += assay_uniform(&mine); "
+      "call->out[0] = sum / (double)call->primaries; return 0; ";
+  EXPECT_THAT(
+      trouble(*load_as("by_key", averaging(with_body(by_key))), 8),
+      HasSubstr("by_key.so` gave the same numbers for observations 0 to 19 of 8 primaries"));
+}
+
+TEST_F(Examination, IsAskedAgainOnceForAllWorkersAndNothingMore) {
+  // It counts in what nobody compares: its rays are not declared.
+  const auto setup = load(compile_text(
+      "static uint64_t calls;\n" +
+      with_body("call->rays = ++calls; call->out[0] = assay_uniform(call->random); return 0; ")));
+  Cost cost;
+  for (int worker = 0; worker < 2; ++worker) {
+    const auto estimator = setup->make();
+    for (std::uint64_t i = 0; i < 100; ++i) {
+      double out = 0;
+      Stream random({1}, i);
+      cost = {};
+      estimator->secondary(random, 1, {&out, 1}, cost);
+    }
+  }
+  // Observation 0 first, beside that of another key, and last.
+  EXPECT_EQ(cost.closest_hit_rays, 200u + 4);
+}
+
+TEST_F(Examination, WhoseSamplersDriftIsRefused) {
+  const auto drifting = [&](const std::string& name, const std::string& sound,
+                            const std::string& drift) {
+    std::string source = std::string("static double turn;\n") + ramp_sampler;
+    source.replace(source.find(sound), sound.size(), drift);
+    return load_as(name, source)->samplers()[0].sampler;
+  };
+  const auto refused = [](auto ask) -> std::string {
+    try {
+      ask();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto expect_refusal = [&](const std::string& what, auto ask) {
+    for (int again = 0; again < 2; ++again) {
+      EXPECT_THAT(refused(ask),
+                  AllOf(HasSubstr("sampler `ramp`: `"),
+                        HasSubstr(what + ".so` gave other numbers when it was asked for 1 " + what +
+                                  " again: a draw must be a function of its stream alone, a "
+                                  "density and an evaluation of their point")));
+    }
+  };
+  const Point point{.25, 0, 0};
+  Stream random({1}, 0);
+  const auto draws = drifting("draw", "draw->point[0] = x;", "draw->point[0] = x / ++turn;");
+  expect_refusal("draw", [&] { draws->sample(random); });
+  const auto densities = drifting("density", "return 2 * p[0];", "return ++turn + p[0];");
+  expect_refusal("density", [&] { densities->density(point); });
+  const auto evaluations = drifting("evaluation", "(void)p; return 1;", "(void)p; return ++turn;");
+  expect_refusal("evaluation", [&] { evaluations->evaluate(point); });
+}
+
+}  // namespace
+}  // namespace assay::foreign
