@@ -7,6 +7,7 @@
 
 #include "harness/constant.h"
 #include "harness/critical.h"
+#include "harness/evidence_ratio.h"
 #include "harness/evidence_slope.h"
 #include "harness/exact_size.h"
 #include "harness/rows.h"
@@ -68,6 +69,20 @@ stats::Gate residual_gate(const Question& question, std::size_t channel,
   const Constant& reference = question.references[channel];
   return stats::residual_skewness_gate(
       data[0].moments, {reference.value + question.offset, reference.standard_error}, x);
+}
+
+/// Of counted costs, by whose logarithm the claim is tested.
+std::vector<reports::Gate> cost_gates(const Question& question, std::span<const ChannelData> data,
+                                      double x) {
+  std::vector<reports::Gate> gates;
+  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
+    if (data[subject].with_cost.empty()) continue;
+    const stats::Moments& cost = by_its_cost(question, data[subject].with_cost).cost;
+    if (!(cost.m2 > 0 && cost.mean > 0)) continue;
+    gates.push_back(gate_of(stats::log_mean_gate(cost, x),
+                            ", costs of " + question.subjects[subject].estimator->name));
+  }
+  return gates;
 }
 
 }  // namespace
@@ -140,6 +155,7 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
       gates.push_back(gate_of(stats::kurtosis_gate(data[subject].moments), whose));
     }
   }
+  for (const reports::Gate& gate : cost_gates(question, data, x)) gates.push_back(gate);
   if (question.kind == QuestionKind::slope) {
     gates.push_back(power_law_gate(question, channel, data));
   }

@@ -18,10 +18,6 @@ using stats::LogEfficiency;
 using stats::Moments;
 using stats::TestResult;
 
-const JointMoments& counted(const Question& question, std::span<const JointMoments> with_cost) {
-  return with_cost[question.test->cost == CostKind::samples ? samples_cost : rays_cost];
-}
-
 Interval moved(const Interval& interval, double by) {
   return {interval.low - by, interval.high - by, interval.confidence};
 }
@@ -156,8 +152,12 @@ double squared_variation(const Moments& x) { return x.variance() / x.mean / x.me
 
 }  // namespace
 
+const JointMoments& by_its_cost(const Question& question, std::span<const JointMoments> with_cost) {
+  return with_cost[question.test->cost == CostKind::samples ? samples_cost : rays_cost];
+}
+
 const JointMoments& counted_cost(const Question& question, const ChannelData& data) {
-  const JointMoments& sample = counted(question, data.with_cost);
+  const JointMoments& sample = by_its_cost(question, data.with_cost);
   if (sample.cost.mean > 0) return sample;
   throw std::domain_error(
       "no cost was counted: an estimator that traces no rays counts its `samples`; say "
@@ -213,7 +213,7 @@ std::optional<double> log_spread(const Question& question, std::size_t subject, 
     return per_count * logarithms(question, subject, mine).variance();
   }
   if (question.kind == QuestionKind::cost) {
-    return squared_variation(counted(question, mine.with_cost).cost);
+    return squared_variation(by_its_cost(question, mine.with_cost).cost);
   }
   if (question.kind == QuestionKind::efficiency) {
     return efficiency_of(question, subject, channel, data).spread;
@@ -230,7 +230,7 @@ std::optional<double> planned_log_spread(const Question& question, const PilotMo
     return of_variance(pilot.values.kurtosis() - 1);
   }
   if (pilot.with_cost.empty()) return std::nullopt;
-  const JointMoments& sample = counted(question, pilot.with_cost);
+  const JointMoments& sample = by_its_cost(question, pilot.with_cost);
   if (!(sample.cost.mean > 0)) return std::nullopt;
   if (question.kind == QuestionKind::cost) return squared_variation(sample.cost) / averaged;
   if (!(sample.x.m2 > 0)) return std::nullopt;

@@ -19,6 +19,10 @@ Evidence evidence_of_ratio(const Question& question, std::size_t channel,
 Evidence evidence_of_replicates(const Question& question, std::size_t channel,
                                 std::span<const ChannelData> data);
 
+/// Of values with each counted cost those with the test's, rays or samples.
+const stats::JointMoments& by_its_cost(const Question& question,
+                                       std::span<const stats::JointMoments> with_cost);
+
 /// Values with what they cost, in rays or samples as the test says. std::domain_error where nothing
 /// was counted.
 const stats::JointMoments& counted_cost(const Question& question, const ChannelData& data);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "estimators/ready_made.h"
 #include "harness/recorded_run.h"
 #include "harness/scheduler.h"
 #include "stats/image.h"
@@ -10,26 +11,56 @@ namespace assay::harness {
 namespace {
 
 // Enough to know a skewness and a kurtosis of light-tailed primaries to some per cent, and cheap
-// against any test. One that does not average may be a chain or an image: fewer.
-constexpr std::uint64_t averaging_observations = 8192;
-constexpr std::uint64_t other_observations = 512;
+// against any test. One that does not average may be a chain or an image: fewer, unless they are so
+// far from normal that the test of a variance takes thousands anyway.
+constexpr std::uint64_t many_observations = 8192;
+constexpr std::uint64_t few_observations = 512;
+// Of few normal values three standard errors of a kurtosis, sqrt(24 / 512).
+constexpr double near_normal_kurtosis = 3.65;
 // Of images as many as this many elements pay for, at least the fewest that tell their variance.
 constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
 constexpr std::uint64_t least_images = 2 * stats::least_replicates;
 
-std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
+/// Whether many observations may be drawn of one that does not average: no images, and no files,
+/// of which each may be a rendering.
+bool may_be_larger(const PreparedEstimator& estimator, const PilotRun& run) {
+  return run.with_spread.contains(estimator.name) && !estimator.nature().averages &&
+         !estimator.setup->observations() && !estimator.setup->image() &&
+         !recorded::keeps_files(*estimator.setup) &&
+         estimator.setup->channels().size() <= most_kept_channels;
+}
+
+bool is_far_from_normal(const stats::Moments& moments) {
+  return !(moments.m2 > 0) || moments.kurtosis() > near_normal_kurtosis;
+}
+
+/// A value that does not vary may be a rare one that was not seen. A cost that does not vary is the
+/// rule.
+bool is_far_from_normal(const Pool& pool, const Summary& sums) {
+  const std::vector<Channel> channels = pool.setup()->channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!channels[i].diagnostic && is_far_from_normal(sums.moments(i))) return true;
+    for (const stats::JointMoments& joint : sums.details(i).with_cost) {
+      if (joint.cost.m2 > 0 && is_far_from_normal(joint.cost)) return true;
+    }
+  }
+  return false;
+}
+
+std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, const PilotRun& run) {
   const bool averages = estimator.nature().averages;
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
   auto pool =
-      std::make_shared<Pool>(estimator.setup, key_of(estimator, seed, 0, "pilot"), primaries);
-  std::uint64_t usual = averages ? averaging_observations : other_observations;
+      std::make_shared<Pool>(estimator.setup, key_of(estimator, run.seed, 0, "pilot"), primaries);
+  std::uint64_t usual = averages ? many_observations : few_observations;
   if (const auto images = usual_images(*estimator.setup, primaries)) {
     usual = *images;
     pool->keep_observations(usual);  // those of files are kept anyway
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
   if (pool->channels() <= most_kept_channels) {
-    for (ChannelPlan& channel : pool->plans()) channel.keep = count;
+    const std::uint64_t kept = may_be_larger(estimator, run) ? many_observations : count;
+    for (ChannelPlan& channel : pool->plans()) channel.keep = kept;
   }
   pool->request(count);
   return pool;
@@ -38,13 +69,14 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64
 std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
   auto pool = std::make_shared<Pool>(
       subject.setup, key_of(*subject.estimator, seed, 0, subject.purpose + " pilot"), 1);
-  for (ChannelPlan& channel : pool->plans()) channel.keep = averaging_observations;
-  pool->request(averaging_observations);
+  for (ChannelPlan& channel : pool->plans()) channel.keep = many_observations;
+  pool->request(many_observations);
   return pool;
 }
 
-/// Moments that means of so many primaries would have these of. A kurtosis that is below 3 by chance
-/// would become one that no law has (Pearson 1916: at least 1 and the square of the skewness).
+/// Moments that means of so many primaries would have these of. A kurtosis that is below 3 by
+/// chance would become one that no law has (Pearson 1916: at least 1 and the square of the
+/// skewness).
 stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
   if (!(means.m2 > 0)) return means;
   const double n = static_cast<double>(primaries);
@@ -87,7 +119,7 @@ std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t prim
   const auto image = setup.image();
   if (!image) return std::nullopt;
   return std::clamp(image_elements / (image->elements() * primaries), least_images,
-                    other_observations);
+                    few_observations);
 }
 
 std::string pilot_name(const Subject& subject) {
@@ -106,11 +138,41 @@ PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size
                                                 : std::span<const double>()};
 }
 
+const Pilot* pilot_of(const Question& question, std::size_t subject, const Pilots& pilots) {
+  const Pilot* const pilot = pilot_of(question.subjects[subject], pilots);
+  const bool larger = pilot != nullptr && pilot->larger && question.on_log_scale();
+  return larger ? pilot->larger.get() : pilot;
+}
+
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots) {
-  const Subject& side = question.subjects[subject];
-  return pilot_channel(side, pilots.at(pilot_name(side)), channel);
+  return pilot_channel(question.subjects[subject], *pilot_of(question, subject, pilots), channel);
 }
+
+namespace {
+
+/// Draws on where a claim needs more than the first observations tell.
+void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estimators,
+             const std::vector<std::shared_ptr<Pool>>& pools, const PilotRun& run,
+             Progress& progress) {
+  std::vector<std::pair<std::string, std::shared_ptr<Pool>>> enlarged;
+  for (std::size_t i = 0; i < estimators.size(); ++i) {
+    const Pilot& few = pilots.at(estimators[i]->name);
+    if (!few.trouble.empty() || !may_be_larger(*estimators[i], run)) continue;
+    if (is_far_from_normal(*pools[i], *few.sums)) {
+      enlarged.emplace_back(estimators[i]->name, pools[i]);
+      pools[i]->request(many_observations);
+    }
+  }
+  draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
+  for (const auto& [name, pool] : enlarged) {
+    // An estimator that fails later on fails in its tests: those on means do without this.
+    auto more = std::make_shared<const Pilot>(read(*pool));
+    if (more->trouble.empty()) pilots.at(name).larger = std::move(more);
+  }
+}
+
+}  // namespace
 
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
                   Progress& progress) {
@@ -118,7 +180,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   std::vector<std::shared_ptr<Pool>> pools;
   for (const PreparedEstimator* estimator : estimators) {
     names.push_back(estimator->name);
-    pools.push_back(pilot_pool(*estimator, run.seed));
+    pools.push_back(pilot_pool(*estimator, run));
     if (!run.with_cost.contains(estimator->name)) continue;
     for (ChannelPlan& channel : pools.back()->plans()) channel.with_cost = true;
   }
@@ -129,6 +191,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
   Pilots pilots;
   for (std::size_t i = 0; i < pools.size(); ++i) pilots.emplace(names[i], read(*pools[i]));
+  enlarge(pilots, estimators, pools, run, progress);
   return pilots;
 }
 

@@ -29,6 +29,8 @@ struct Pilot {
   std::string trouble = "";  ///< why there are no numbers: the estimator threw
   /// At pictures, in place of `images`: they were looked at when they were read.
   std::shared_ptr<const PictureLook> look = {};
+  /// More observations, these among them, where claims on variances and costs need them.
+  std::shared_ptr<const Pilot> larger = {};
 
   std::size_t image_count() const {
     if (look) return look->piloted;
@@ -50,6 +52,7 @@ struct PilotRun {
   std::uint64_t seed;
   unsigned threads;
   std::set<std::string> with_cost = {};    ///< names of those whose costs are wanted
+  std::set<std::string> with_spread = {};  ///< names of those whose variances or costs are tested
   std::vector<const Subject*> draws = {};  ///< samplers whose draws are wanted besides
 };
 
@@ -58,6 +61,8 @@ std::string pilot_name(const Subject& subject);
 
 /// The pilot of a subject, if it has one that went well.
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);
+/// The same for one of a question's subjects: the larger one where there is one that it needs.
+const Pilot* pilot_of(const Question& question, std::size_t subject, const Pilots& pilots);
 
 struct PilotChannel {
   stats::Moments moments;

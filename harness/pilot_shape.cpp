@@ -59,11 +59,10 @@ bool ends_in_sight(double farthest, double mean, double declared) {
   return std::isfinite(declared) && std::abs(farthest - mean) >= std::abs(declared - mean) / 2;
 }
 
-// The pilot of an estimator that does not average has 512 values, which tell a tail's index to some
-// .16: only with a large kurtosis it says that a variance is out of reach. At .05 the variance of a
-// lognormal(0, 1) law is claimed too large or too small in .11 of the runs then, .15 without, that
-// of one that is 0 with probability .95, else lognormal, in .05 and .24; of exponential values a
-// hundredth is invalid.
+// A pilot of 512 values, as of rendered files, tells a tail's index to some .16: only with a large
+// kurtosis it says that a variance is out of reach. At .05 the variance of a lognormal(0, 1) law is
+// claimed too large or too small in .11 of the runs then, .15 without, that of one that is 0 with
+// probability .95, else lognormal, in .05 and .24; of exponential values a hundredth is invalid.
 constexpr std::size_t least_of_a_tail = 500;
 bool is_small(std::uint64_t count) { return count < usual_secondaries; }
 
@@ -114,7 +113,7 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
   if (question.of_laws()) return "";
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
-    const Pilot* pilot = pilot_of(side, pilots);
+    const Pilot* pilot = pilot_of(question, subject, pilots);
     if (pilot == nullptr || pilot->look || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const stats::Moments moments = pilot->moments(side.channels[channel]);
@@ -130,7 +129,7 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
   std::vector<Known> all;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
-    const Pilot* pilot = pilot_of(side, pilots);
+    const Pilot* pilot = pilot_of(question, subject, pilots);
     if (pilot == nullptr || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel data = pilot_channel(side, *pilot, channel);

@@ -122,6 +122,16 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
+/// Names of the estimators whose variances or costs some claim is about.
+std::set<std::string> spread_about(const std::vector<Question>& questions) {
+  std::set<std::string> names;
+  for (const Question& question : questions) {
+    if (!question.on_log_scale()) continue;
+    for (const Subject& subject : question.subjects) names.insert(subject.estimator->name);
+  }
+  return names;
+}
+
 /// Samplers' draws of which a method takes something beforehand.
 std::vector<const Subject*> piloted_draws(const std::vector<Question>& questions,
                                           const std::vector<bool>& chosen) {
@@ -155,6 +165,7 @@ Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
                           {.seed = run.seed,
                            .threads = options.threads,
                            .with_cost = costly(questions),
+                           .with_spread = spread_about(questions),
                            .draws = piloted_draws(questions, chosen)},
                           progress));
   return pilots;

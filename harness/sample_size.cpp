@@ -43,7 +43,7 @@ bool has_log_spread(const Question& question) {
 std::optional<double> pilot_log_spread(const Question& question, std::size_t subject,
                                        const Pilots& pilots, const Plan& plan) {
   const Subject& side = question.subjects[subject];
-  const Pilot& pilot = pilots.at(side.estimator->name);
+  const Pilot& pilot = *pilot_of(question, subject, pilots);
   std::optional<double> most;
   for (const std::size_t channel : side.channels) {
     const auto spread =

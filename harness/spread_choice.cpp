@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "harness/critical.h"
+#include "harness/evidence_ratio.h"
 #include "harness/intended_size.h"
 #include "harness/pilot_shape.h"
 #include "harness/rows.h"
@@ -77,14 +78,14 @@ std::string too_few(const Question& question, std::uint64_t needed) {
 std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, const Plan& plan,
                                double critical) {
   std::uint64_t needed = 2;
-  const CountedCost kind = question.test->cost == CostKind::samples ? samples_cost : rays_cost;
   for (std::size_t i = 0; i < question.compared(); ++i) {
     const Subject& side = question.subjects[i];
-    const Pilot* pilot = pilot_of(side, pilots);
+    const Pilot* pilot = pilot_of(question, i, pilots);
     if (pilot == nullptr || question.test->cost == CostKind::seconds) continue;
     const auto& with_cost = pilot->sums->details(side.channels[0]).with_cost;
-    if (with_cost.empty() || !(with_cost[kind].cost.m2 > 0)) continue;
-    const stats::Moments& cost = with_cost[kind].cost;
+    if (with_cost.empty()) continue;
+    const stats::Moments& cost = by_its_cost(question, with_cost).cost;
+    if (!(cost.m2 > 0)) continue;
     const double primaries = side.averaged(plan.primaries[i]);
     const double variation = std::sqrt(cost.variance()) / cost.mean / std::sqrt(primaries);
     const double skewness = cost.skewness() / std::sqrt(primaries);
@@ -109,25 +110,45 @@ std::uint64_t affordable_secondaries(const Question& question, const FamilyPlace
   return question.test->secondaries || size == most ? size : most_for_a_variance;
 }
 
+/// A forced method runs as asked: where its level is off a red gate says so.
+void note_forced(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                 std::uint64_t most, std::uint64_t needed, Plan& plan) {
+  const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
+  if (needed > size) note_too_few(plan, size, needed);
+}
+
+/// Whether F and chi-square keep their level, with the gates that say so. Where they need not be
+/// taken a red one is answered by the method that is.
+bool are_near_normal(const Question& question, const std::vector<Known>& channels, double critical,
+                     Plan& plan) {
+  const stats::ShapeLimits limits = shape_limits(critical);
+  bool normal = channels.size() == question.subjects.size() * question.channel_count();
+  for (const Known& known : channels) {
+    stats::Gate gate = stats::predicted_kurtosis_gate(stats::primary_shape(known.pilot.moments),
+                                                      whole_secondaries(known.averaged), limits);
+    normal = normal && !known.rows && gate.state == stats::GateState::green;
+    const bool answered = !question.test->method && gate.state == stats::GateState::red;
+    if (answered) gate.state = stats::GateState::amber;
+    note(plan, known, gate);
+  }
+  return normal;
+}
+
 }  // namespace
 
 std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
                                   const Pilots& pilots, std::uint64_t most, Plan& plan) {
   const std::vector<Known> channels = known_channels(question, pilots, plan);
   const double x = critical_value(smallest_level(question, place), two_sided(question));
-  const stats::ShapeLimits limits = shape_limits(x);
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
-  bool normal = channels.size() == question.subjects.size() * question.channel_count();
-  for (const Known& known : channels) {
-    stats::Gate gate = stats::predicted_kurtosis_gate(stats::primary_shape(known.pilot.moments),
-                                                      whole_secondaries(known.averaged), limits);
-    normal = normal && !known.rows && gate.state == stats::GateState::green;
-    // Answered by the method chosen below.
-    if (!question.test->method && gate.state == stats::GateState::red)
-      gate.state = stats::GateState::amber;
-    note(plan, known, gate);
+  const bool forced = question.test->method.has_value();
+  if (forced && plan.method.name == "log-variance") {
+    const std::uint64_t needed = enough_for_log_variance(question, channels, x);
+    note_forced(question, place, pilots, most, needed, plan);
+    return least_secondaries;
   }
-  if (question.test->method) return least_secondaries;
+  const bool normal = are_near_normal(question, channels, x, plan);
+  if (forced) return least_secondaries;
   plan.invalid = heavy;
   if (normal) return least_secondaries;
   plan.method = find_method(question, "log-variance");
@@ -149,8 +170,6 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   while (!channels.empty() && channels.back().subject >= question.compared()) channels.pop_back();
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
-  if (question.test->method) return least_secondaries;
-  plan.invalid = heavy;
   std::uint64_t needed = log_variance_secondaries;
   for (const Known& known : channels) {
     const auto shape = secondary_shape(known);
@@ -158,6 +177,11 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   }
   const std::uint64_t for_costs = enough_for_costs(question, pilots, plan, x);
   needed = std::max(needed, for_costs);
+  if (question.test->method) {
+    note_forced(question, place, pilots, most, needed, plan);
+    return least_secondaries;
+  }
+  plan.invalid = heavy;
   const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
   if (plan.invalid.empty() && needed > affordable) {
     note_too_few(plan, affordable, needed);
@@ -168,9 +192,12 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
 
 std::uint64_t choose_for_costs(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  if (question.test->method) return log_variance_secondaries;
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::uint64_t needed = enough_for_costs(question, pilots, plan, x);
+  if (question.test->method) {
+    note_forced(question, place, pilots, most, needed, plan);
+    return log_variance_secondaries;
+  }
   const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
   if (needed > affordable) {
     note_too_few(plan, affordable, needed);

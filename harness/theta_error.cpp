@@ -60,9 +60,9 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Subject& side = question.subjects[i];
     if (side.setup->observations()) continue;
-    const auto found = pilots.find(side.estimator->name);
-    if (found == pilots.end() || !found->second.trouble.empty()) return std::nullopt;
-    const stats::Moments pilot = found->second.moments(side.channels[channel]);
+    const Pilot* const known_pilot = pilot_of(question, i, pilots);
+    if (known_pilot == nullptr) return std::nullopt;
+    const stats::Moments pilot = known_pilot->moments(side.channels[channel]);
     if (is_constant(question, i, channel, pilot)) return std::nullopt;
     const double averaged = side.averaged(test.plan.primaries[i]);
     data[i] = {.primaries = test.plan.primaries[i],

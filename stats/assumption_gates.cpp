@@ -7,6 +7,7 @@
 
 #include "stats/check.h"
 #include "stats/errors.h"
+#include "stats/log_variance_level.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
@@ -205,6 +206,18 @@ Gate skewness_gate(const Moments& x, const Moments& y, double scale, double crit
   SkewnessPart of_y = skewness_part(y, vy / (vx + vy), cube);
   of_y.value = std::copysign(1, scale) * of_y.value;
   return skewness_gate_of(skewness_part(x, vx / (vx + vy), cube), of_y, cube);
+}
+
+Gate log_mean_gate(const Moments& positive, double critical_value) {
+  check::at_least({"log_mean_gate", "count"}, positive.count, 2);
+  check::positive({"log_mean_gate", "mean"}, positive.mean);
+  if (positive.m2 == 0) throw ZeroVariance("log_mean_gate: zero variance");
+  const double cube = checked_cube(critical_value);
+  SkewnessPart part = skewness_part(positive, 1, cube);
+  part.value = log_mean_slope({.variation = positive.standard_deviation() / positive.mean,
+                               .skewness = positive.skewness()}) /
+               std::sqrt(static_cast<double>(positive.count));
+  return skewness_gate_of(part, {}, cube);
 }
 
 Gate dominance_gate(const Moments& x) {

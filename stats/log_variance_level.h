@@ -32,9 +32,11 @@ struct PlannedLogVariance {
 // where psi = (x - mean)^2 / variance - 1 has variance c^2 = kurtosis - 1 and skewness
 //   g = (sixth - 3 kurtosis + 2) / c^3:
 // g / 3 from the Studentised mean of psi (self-normalised moderate deviations: Jing, Shao & Wang
-// 2003), c / 2 from the bend of the logarithm. With two samples the B of each, weighted by its
-// share of the variance of the difference to the power 3/2, are subtracted; the factor takes their
-// absolute values added, a bound. 1 for a two-valued law at 1/2, whose ln s2 has no first order.
+// 2003), c / 2 from the bend of the logarithm. Where the two nearly cancel the next order is what
+// counts: |B| is taken to be at least a seventh of their sum, |g| / 3 + c / 2, over sqrt n. With
+// two samples the B of each, weighted by its share of the variance of the difference to the power
+// 3/2, are subtracted; the factor takes their absolute values added, a bound. 1 for a two-valued
+// law at 1/2, whose ln s2 has no first order.
 double log_variance_level_factor(const SixthOrderShape& x, PlannedLogVariance plan);
 double log_variance_level_factor(const SixthOrderShape& x, const SixthOrderShape& y,
                                  PlannedLogVariance plan);
@@ -46,12 +48,14 @@ std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrder
                                       double critical_value, double level_factor = 1.25);
 
 // The same of ln of a mean of positive values with standard deviation over mean c and skewness g, a
-// cost: psi is then value / mean - 1.
+// cost: psi is then value / mean - 1, and a quarter stands for the seventh.
 struct PositiveShape {
   double variation = 0;
   double skewness = 0;
 };
 std::uint64_t values_for_log_mean(PositiveShape x, double critical_value,
                                   double level_factor = 1.25);
+// |B| sqrt n of that.
+double log_mean_slope(PositiveShape x);
 
 }  // namespace assay::stats

@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "harness/critical.h"
+#include "harness/planned_run.h"
 #include "questions.h"
 #include "refusal.h"
+#include "running.h"
 #include "stats/power.h"
 #include "stats/tails.h"
 
@@ -230,6 +232,58 @@ TEST(Plan, ForcedMethodStandsWithItsGatesShown) {
   EXPECT_TRUE(std::any_of(gates.begin(), gates.end(), [](const reports::Gate& gate) {
     return gate.name.starts_with("excess kurtosis") && gate.state == "red";
   }));
+}
+
+// A logarithm asks for no normal values, but for more of them than a thousand where they are
+// skewed.
+TEST(Plan, AForcedLogarithmShowsThatItHasTooFewValues) {
+  const auto too_few = [](const std::string& test) {
+    const Planned planned = plan_text("  - {" + test + ", secondaries: 1000}\n");
+    EXPECT_EQ(planned.plans[0].invalid, "") << test;
+    EXPECT_EQ(planned.plans[0].most_secondaries(), 1000) << test;
+    return std::any_of(planned.plans[0].gates.begin(), planned.plans[0].gates.end(),
+                       [](const reports::Gate& gate) {
+                         return gate.name.starts_with("number of observations") &&
+                                gate.state == "red";
+                       });
+  };
+  EXPECT_TRUE(too_few("claim: variance(heavy-single) <= 100, test: log-variance"));
+  EXPECT_TRUE(too_few("claim: total_variance(heavy-single) <= 100, test: log-total-variance"));
+  EXPECT_TRUE(too_few("claim: cost(multi) <= 2, test: log-cost"));
+  EXPECT_FALSE(too_few("claim: variance(normal) <= 100, test: log-variance"));
+  EXPECT_FALSE(too_few("claim: cost(hemisphere) <= 2, test: log-cost"));
+}
+
+// Of two estimators one is near normal; of the other the mean is tested by 512 values of its pilot,
+// the variance by 8192, the same 512 among them.
+TEST(Plan, OfAVarianceFarFromNormalThePilotIsLarger) {
+  const std::string suite = R"(suite: pilots
+estimators:
+  corners: {plugin: virtual_lights/weighted, primaries: 2}
+  many: {plugin: analytic/ratio, primaries: 1024}
+tests:
+  - {claim: mean(corners) == analytic}
+)";
+  const Workplace place;
+  const auto piloted = [&](const std::string& tests) {
+    Silence silence;
+    return plan_run({load_suite(place.write("pilots.yaml", suite + tests))}, {}, silence);
+  };
+  const std::string variances = R"(  - {claim: variance(corners) <= 100}
+  - {claim: variance(many) <= 100}
+)";
+  const PlannedRun planned = piloted(variances);
+  const SuiteRun& run = *planned.suites[0];
+  const Pilot& corners = run.pilots.at("corners");
+  ASSERT_NE(corners.larger, nullptr);
+  EXPECT_EQ(corners.values[0].size(), 512);
+  ASSERT_EQ(corners.larger->values[0].size(), 8192);
+  EXPECT_TRUE(std::equal(corners.values[0].begin(), corners.values[0].end(),
+                         corners.larger->values[0].begin()));
+  EXPECT_EQ(run.pilots.at("many").larger, nullptr);
+  EXPECT_EQ(pilot_of(run.tests[0].outcome.question, 0, run.pilots), &corners);
+  EXPECT_EQ(pilot_of(run.tests[1].outcome.question, 0, run.pilots), corners.larger.get());
+  EXPECT_EQ(piloted("").suites[0]->pilots.at("corners").larger, nullptr);
 }
 
 TEST(Plan, StaysWithinABudgetOfPrimaries) {

@@ -48,6 +48,20 @@ TEST(AssumptionGates, SkewnessValueIsTheFactorOfTheFormula) {
   EXPECT_GT(skewness_gate(x, x, -1, 3).value, 1.05);
 }
 
+// Half of some costs are 1, the others 3: skewness 0, deviation half the mean, so that of the slope
+// the bend's quarter is left. One in a thousand dearer by 1000: a quarter of both.
+TEST(AssumptionGates, OfALogMeanTheValueIsTheFactorOfItsSlope) {
+  Moments even;
+  for (int i = 0; i < 400; ++i) even.add(i % 2 == 0 ? 1 : 3);
+  const double variation = even.standard_deviation() / 2;
+  EXPECT_NEAR(log_mean_gate(even, 3).value, std::exp(variation / 2 * 27 / 20), 1e-12);
+  Moments rare;
+  for (int i = 0; i < 1000; ++i) rare.add(i == 0 ? 1001 : 1);
+  const double slope = (rare.skewness() / 3 + rare.standard_deviation() / 2 / 2) / 4;
+  EXPECT_NEAR(log_mean_gate(rare, 3).value, std::exp(slope * 27 / std::sqrt(1000)), 1e-9);
+  EXPECT_EQ(log_mean_gate(rare, 3).state, GateState::red);
+}
+
 // What each observation adds to a contrast's mean: (x - mean x) / n_x, or -scale (y - mean y) /
 // n_y.
 std::vector<double> influences(const std::vector<double>& values, double scale) {
@@ -184,11 +198,15 @@ TEST(AssumptionGates, NormalDataAreRedLessThanOnceInTenThousand) {
     const double limit = 11.5 / 20000;
     const double skewness =
         red_rate(study, normal, [](const Moments& x) { return skewness_gate(x, 4.42); });
+    const double log_mean = red_rate(
+        study, [](Philox& random) { return 10 + random.normal(); },
+        [](const Moments& x) { return log_mean_gate(x, 4.42); });
     const double dominance = red_rate(study, normal, dominance_gate);
     const double kurtosis = red_rate(study, normal, kurtosis_gate);
     std::cout << "  n = " << n << ": red skewness " << skewness << ", dominance " << dominance
               << ", kurtosis " << kurtosis << "\n";
     EXPECT_LE(skewness, limit) << n;
+    EXPECT_LE(log_mean, limit) << n;
     EXPECT_LE(dominance, limit) << n;
     EXPECT_LE(kurtosis, limit) << n;
   }
@@ -229,6 +247,8 @@ TEST(AssumptionGates, GrossViolationsAreRed) {
 TEST(AssumptionGates, BadSamplesThrow) {
   const Moments constant = moments_of(std::vector<double>{1, 1, 1, 1, 1});
   EXPECT_THROW(skewness_gate(constant, 3), ZeroVariance);
+  EXPECT_THROW(log_mean_gate(constant, 3), ZeroVariance);
+  EXPECT_THROW(log_mean_gate(moments_of(std::vector<double>{-1, -2, -3}), 3), std::domain_error);
   EXPECT_THROW(dominance_gate(constant), ZeroVariance);
   EXPECT_THROW(kurtosis_gate(constant), ZeroVariance);
   EXPECT_THROW(skewness_gate(moments_of(std::vector<double>{1, 2, 3}), -1), std::domain_error);

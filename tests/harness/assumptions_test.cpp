@@ -1,0 +1,51 @@
+#include "harness/assumptions.h"
+
+#include <gtest/gtest.h>
+
+#include "questions.h"
+
+namespace assay::harness {
+namespace {
+
+/// Costs of 1, of which every so many-th is dearer.
+struct DearOnes {
+  int every;
+  double more;
+};
+/// The gates on a thousand of them.
+std::vector<reports::Gate> gates_of_costs(const std::string& claim, DearOnes dear) {
+  const auto asked = ask_text(R"(suite: costs
+estimators: {multi: {plugin: direct_light/multi_sample, primaries: 1}}
+tests: [{name: t, claim: )" + claim +
+                              "}]\n");
+  TestOutcome outcome{.question = asked->question("t"),
+                      .place = {.inside = false, .share = {.alpha = 0.01, .beta = 0.01}}};
+  outcome.plan.method = methods_for(outcome.question).front();
+  outcome.plan.looks = {{1000}, {1}};
+  std::vector<stats::JointMoments> sums(counted_costs);
+  ChannelData data;
+  for (int i = 0; i < 1000; ++i) {
+    const double value = i % 7;
+    data.moments.add(value);
+    for (stats::JointMoments& joint : sums)
+      joint.add(value, i % dear.every == 0 ? 1 + dear.more : 1);
+  }
+  data.with_cost = sums;
+  return data_gates(outcome, 0, {&data, 1});
+}
+
+// One in a thousand as dear as all the others: the logarithm of the mean is not near normal.
+TEST(Assumptions, RareCostsThatWeighAreRed) {
+  for (const char* claim : {"cost(multi) == 2", "efficiency(multi) == 1"}) {
+    const std::vector<reports::Gate> rare = gates_of_costs(claim, {.every = 1000, .more = 1000});
+    ASSERT_EQ(rare.size(), 1) << claim;
+    EXPECT_EQ(rare[0].name, "level factor by skewness, costs of multi");
+    EXPECT_EQ(rare[0].state, "red");
+    EXPECT_EQ(gates_of_costs(claim, {.every = 2, .more = 1})[0].state, "green");
+    EXPECT_TRUE(gates_of_costs(claim, {.every = 1, .more = 1}).empty())
+        << "a cost that does not vary";
+  }
+}
+
+}  // namespace
+}  // namespace assay::harness
