@@ -231,6 +231,16 @@ TEST(SlopeClaim, ReferenceMayBeAnEstimatorOrANumber) {
             Verdict::fail);
 }
 
+// An unbiased estimator has no exponent: p-values of all are far from small.
+TEST(SlopeClaim, OfWhatIsNotSeenSaysThatNothingCouldHaveBeenFound) {
+  const auto message_of = [](const std::string& test) { return tested(test).message; };
+  const std::string over = ", over: {primaries: [8, 16, 32]}}";
+  EXPECT_NE(message_of("{claim: slope(bias(uniform)) == -1" + over).find("exclude no exponent"),
+            std::string::npos);
+  EXPECT_EQ(message_of("{claim: slope(variance(wis)) == -1" + over).find("exclude no exponent"),
+            std::string::npos);
+}
+
 TEST(SlopeClaim, RefusesWhatHasNoSlope) {
   const std::string over = ", over: {primaries: [8, 16]}}";
   EXPECT_NE(refused("{claim: slope(efficiency(wis)) == 1" + over).find("takes a mean, bias"),
