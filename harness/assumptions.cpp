@@ -76,11 +76,10 @@ std::vector<reports::Gate> cost_gates(const Question& question, std::span<const 
                                       double x) {
   std::vector<reports::Gate> gates;
   for (std::size_t subject = 0; subject < question.compared(); ++subject) {
-    if (data[subject].with_cost.empty()) continue;
     const stats::Moments& cost = by_its_cost(question, data[subject].with_cost).cost;
     if (!(cost.m2 > 0 && cost.mean > 0)) continue;
     gates.push_back(gate_of(stats::log_mean_gate(cost, x),
-                            ", costs of " + question.subjects[subject].estimator->name));
+                            " of " + question.subjects[subject].estimator->name));
   }
   return gates;
 }
@@ -155,7 +154,10 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
       gates.push_back(gate_of(stats::kurtosis_gate(data[subject].moments), whose));
     }
   }
-  for (const reports::Gate& gate : cost_gates(question, data, x)) gates.push_back(gate);
+  // Channels share their costs.
+  if (outcome.plan.method.keeps == Keeps::costs && channel == 0) {
+    for (const reports::Gate& gate : cost_gates(question, data, x)) gates.push_back(gate);
+  }
   if (question.kind == QuestionKind::slope) {
     gates.push_back(power_law_gate(question, channel, data));
   }

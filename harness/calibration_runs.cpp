@@ -8,6 +8,7 @@
 
 #include "harness/interrupt.h"
 #include "harness/looks.h"
+#include "harness/pilot_run.h"
 #include "harness/plan.h"
 #include "harness/pools.h"
 
@@ -56,18 +57,15 @@ std::vector<Item> items_of(const CalibrationBench& bench, const std::vector<doub
 /// The pilots of all estimators that the questions name, each drawn once.
 Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed) {
   std::map<std::string, const PreparedEstimator*> used;
-  std::set<std::string> costly;
   for (const Question& question : questions) {
-    const bool costs = methods_for(question).front().keeps == Keeps::costs;
     for (const Subject& subject : question.subjects) {
       used.emplace(subject.estimator->name, subject.estimator);
-      if (costs) costly.insert(subject.estimator->name);
     }
   }
   std::vector<const PreparedEstimator*> estimators;
   for (const auto& [name, estimator] : used) estimators.push_back(estimator);
   Silence silence;
-  return run_pilots(estimators, {.seed = seed, .threads = 1, .with_cost = costly}, silence);
+  return run_pilots(estimators, pilot_run_of(questions, seed, 1), silence);
 }
 
 bool is_red(const reports::Gate& gate) { return gate.state == "red"; }

@@ -111,9 +111,8 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     const bool of_slope = outcome.question.kind == QuestionKind::slope;
     if (of_slope && !channel.effect.low && !channel.effect.high) {
       return text +
-             ", nor could there be: these observations exclude no exponent at all; take more of "
-             "them, "
-             "or say with `detect` how far off it must not be";
+             "; but these observations exclude no exponent at all: take more of them, or say with "
+             "`detect` how far off it must not be";
     }
     if (channel.detectable) {
       // The same sum of squares in a few pixels, or of both signs, is seen by other cells: from

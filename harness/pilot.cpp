@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "estimators/ready_made.h"
+#include "harness/interrupt.h"
 #include "harness/recorded_run.h"
 #include "harness/scheduler.h"
 #include "stats/image.h"
@@ -10,24 +11,30 @@
 namespace assay::harness {
 namespace {
 
-// Enough to know a skewness and a kurtosis of light-tailed primaries to some per cent, and cheap
-// against any test. One that does not average may be a chain or an image: fewer, unless they are so
-// far from normal that the test of a variance takes thousands anyway.
-constexpr std::uint64_t many_observations = 8192;
+// many_observations are enough to know a skewness and a kurtosis of light-tailed primaries to some
+// per cent, and cheap against any test. One that does not average may be a chain or an image:
+// fewer, unless they are so far from normal that the test of a variance takes thousands anyway.
 constexpr std::uint64_t few_observations = 512;
-// Of few normal values three standard errors of a kurtosis, sqrt(24 / 512).
+// The most primaries that a larger pilot takes: chains may have millions.
+constexpr std::uint64_t most_primaries_of_larger = std::uint64_t{1} << 27;
+// 3 + 3 sqrt(24 / 512): three standard errors above that of as few normal values.
 constexpr double near_normal_kurtosis = 3.65;
 // Of images as many as this many elements pay for, at least the fewest that tell their variance.
 constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
 constexpr std::uint64_t least_images = 2 * stats::least_replicates;
 
-/// Whether many observations may be drawn of one that does not average: no images, and no files,
-/// of which each may be a rendering.
-bool may_be_larger(const PreparedEstimator& estimator, const PilotRun& run) {
-  return run.with_spread.contains(estimator.name) && !estimator.nature().averages &&
-         !estimator.setup->observations() && !estimator.setup->image() &&
-         !recorded::keeps_files(*estimator.setup) &&
-         estimator.setup->channels().size() <= most_kept_channels;
+/// How many observations a larger pilot has; those of any where there is none: of images, and of
+/// files, of which each may be a rendering.
+std::uint64_t larger_size(const PreparedEstimator& estimator, const PilotRun& run) {
+  const auto worth = run.on_tails.find(estimator.name);
+  const Setup& setup = *estimator.setup;
+  if (worth == run.on_tails.end() || estimator.nature().averages || setup.observations() ||
+      setup.image() || recorded::keeps_files(setup) ||
+      setup.channels().size() > most_kept_channels) {
+    return few_observations;
+  }
+  const std::uint64_t affordable = most_primaries_of_larger / estimator.primaries.value_or(1);
+  return std::clamp(std::min(worth->second, affordable), few_observations, many_observations);
 }
 
 bool is_far_from_normal(const stats::Moments& moments) {
@@ -59,7 +66,7 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, const Pilot
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
   if (pool->channels() <= most_kept_channels) {
-    const std::uint64_t kept = may_be_larger(estimator, run) ? many_observations : count;
+    const std::uint64_t kept = std::max(count, larger_size(estimator, run));
     for (ChannelPlan& channel : pool->plans()) channel.keep = kept;
   }
   pool->request(count);
@@ -140,7 +147,7 @@ PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size
 
 const Pilot* pilot_of(const Question& question, std::size_t subject, const Pilots& pilots) {
   const Pilot* const pilot = pilot_of(question.subjects[subject], pilots);
-  const bool larger = pilot != nullptr && pilot->larger && question.on_log_scale();
+  const bool larger = pilot != nullptr && pilot->larger && question.rests_on_tails();
   return larger ? pilot->larger.get() : pilot;
 }
 
@@ -155,20 +162,24 @@ namespace {
 void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estimators,
              const std::vector<std::shared_ptr<Pool>>& pools, const PilotRun& run,
              Progress& progress) {
-  std::vector<std::pair<std::string, std::shared_ptr<Pool>>> enlarged;
+  std::vector<std::string> names;
+  std::vector<std::shared_ptr<Pool>> enlarged;
   for (std::size_t i = 0; i < estimators.size(); ++i) {
+    const std::uint64_t size = larger_size(*estimators[i], run);
     const Pilot& few = pilots.at(estimators[i]->name);
-    if (!few.trouble.empty() || !may_be_larger(*estimators[i], run)) continue;
-    if (is_far_from_normal(*pools[i], *few.sums)) {
-      enlarged.emplace_back(estimators[i]->name, pools[i]);
-      pools[i]->request(many_observations);
-    }
+    if (size == few_observations || !few.trouble.empty()) continue;
+    if (!is_far_from_normal(*pools[i], *few.sums)) continue;
+    names.push_back(estimators[i]->name);
+    enlarged.push_back(pools[i]);
+    pools[i]->request(size);
   }
-  draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
-  for (const auto& [name, pool] : enlarged) {
-    // An estimator that fails later on fails in its tests: those on means do without this.
-    auto more = std::make_shared<const Pilot>(read(*pool));
-    if (more->trouble.empty()) pilots.at(name).larger = std::move(more);
+  if (enlarged.empty()) return;
+  draw_all(enlarged, {.threads = run.threads, .phase = "pilot"}, progress);
+  if (interrupted()) return;
+  for (std::size_t i = 0; i < enlarged.size(); ++i) {
+    // Claims on means do without: an estimator that fails only here has not failed them.
+    auto more = std::make_shared<const Pilot>(read(*enlarged[i]));
+    if (more->trouble.empty()) pilots.at(names[i]).larger = std::move(more);
   }
 }
 
@@ -191,7 +202,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
   Pilots pilots;
   for (std::size_t i = 0; i < pools.size(); ++i) pilots.emplace(names[i], read(*pools[i]));
-  enlarge(pilots, estimators, pools, run, progress);
+  if (!interrupted()) enlarge(pilots, estimators, pools, run, progress);
   return pilots;
 }
 

@@ -39,6 +39,9 @@ struct Pilot {
   stats::Moments moments(std::size_t channel) const { return sums->moments(channel); }
 };
 
+/// Observations of a pilot of an estimator that averages, primaries then, and the most of others.
+inline constexpr std::uint64_t many_observations = 8192;
+
 /// Images that a pilot takes of an estimator of them.
 std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries);
 /// Of estimators of no more channels a pilot keeps their values.
@@ -51,8 +54,10 @@ using Pilots = std::map<std::string, Pilot>;
 struct PilotRun {
   std::uint64_t seed;
   unsigned threads;
-  std::set<std::string> with_cost = {};    ///< names of those whose costs are wanted
-  std::set<std::string> with_spread = {};  ///< names of those whose variances or costs are tested
+  std::set<std::string> with_cost = {};  ///< names of those whose costs are wanted
+  /// Names of those whose variances or costs are tested, with the most observations that a pilot of
+  /// them is worth.
+  std::map<std::string, std::uint64_t> on_tails = {};
   std::vector<const Subject*> draws = {};  ///< samplers whose draws are wanted besides
 };
 

@@ -12,6 +12,7 @@
 #include "harness/image_memory.h"
 #include "harness/interrupt.h"
 #include "harness/picture_stream.h"
+#include "harness/pilot_run.h"
 #include "harness/plan.h"
 #include "stats/image.h"
 
@@ -112,37 +113,6 @@ std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEsti
   return estimators;
 }
 
-/// Names of the estimators whose costs some claim is about.
-std::set<std::string> costly(const std::vector<Question>& questions) {
-  std::set<std::string> names;
-  for (const Question& question : questions) {
-    if (methods_for(question).front().keeps != Keeps::costs) continue;
-    for (const Subject& subject : question.subjects) names.insert(subject.estimator->name);
-  }
-  return names;
-}
-
-/// Names of the estimators whose variances or costs some claim is about.
-std::set<std::string> spread_about(const std::vector<Question>& questions) {
-  std::set<std::string> names;
-  for (const Question& question : questions) {
-    if (!question.on_log_scale()) continue;
-    for (const Subject& subject : question.subjects) names.insert(subject.estimator->name);
-  }
-  return names;
-}
-
-/// Samplers' draws of which a method takes something beforehand.
-std::vector<const Subject*> piloted_draws(const std::vector<Question>& questions,
-                                          const std::vector<bool>& chosen) {
-  std::vector<const Subject*> all;
-  for (std::size_t i = 0; i < questions.size(); ++i) {
-    if (!chosen[i]) continue;
-    for (const Subject* subject : piloted_draws(questions[i])) all.push_back(subject);
-  }
-  return all;
-}
-
 /// The pilots of a suite's estimators: those of pictures that are taken rows after rows, then the
 /// others.
 Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
@@ -162,12 +132,7 @@ Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
   std::erase_if(used, [&](const PreparedEstimator* each) { return pilots.contains(each->name); });
   if (used.empty()) return pilots;
   pilots.merge(run_pilots(with_sweeps(used, questions, chosen),
-                          {.seed = run.seed,
-                           .threads = options.threads,
-                           .with_cost = costly(questions),
-                           .with_spread = spread_about(questions),
-                           .draws = piloted_draws(questions, chosen)},
-                          progress));
+                          pilot_run_of(questions, chosen, run.seed, options.threads), progress));
   return pilots;
 }
 

@@ -95,6 +95,9 @@ struct Question {
   }
   /// What is tested is or contains a variance.
   bool of_spread() const;
+  /// What is tested is or contains a variance or a cost: its tests have to know the tails of
+  /// values.
+  bool rests_on_tails() const { return of_spread() || kind == QuestionKind::cost; }
   /// The law of single values is the subject, not a mean over them.
   bool of_laws() const {
     return kind == QuestionKind::fit_to_density || kind == QuestionKind::fit_to_law ||

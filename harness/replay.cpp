@@ -170,7 +170,9 @@ struct Rebuilt {
   TestWork work;
 };
 
-/// The pilots of the run: they depend on the seed and the estimators alone.
+/// The pilots of the run as far as methods take from them: they depend on the seed and the
+/// estimators alone. Larger ones, which a suite's claims may ask for, only choose methods and
+/// sizes.
 Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t seed) {
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : rebuilt.estimators) all.push_back(&estimator);

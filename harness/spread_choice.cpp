@@ -102,19 +102,24 @@ std::string too_skewed_costs(std::uint64_t needed) {
       reports::human(static_cast<double>(needed), 2));
 }
 
-/// The most secondaries that a claim on efficiencies, total variances or costs may come to: those
-/// that it asks for or all that there are, else what such a method may ask for.
+/// The most secondaries that a claim may come to: those that it asks for or all that there are,
+/// else what it is worth or such a method may ask for.
 std::uint64_t affordable_secondaries(const Question& question, const FamilyPlace& place,
                                      const Pilots& pilots, std::uint64_t most, const Plan& plan) {
   const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
-  return question.test->secondaries || size == most ? size : most_for_a_variance;
+  const bool fixed = question.test->secondaries || size == most;
+  return fixed ? size : std::max(size, most_for_a_variance);
 }
 
-/// A forced method runs as asked: where its level is off a red gate says so.
-void note_forced(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                 std::uint64_t most, std::uint64_t needed, Plan& plan) {
-  const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
+/// A forced method runs as asked, from the fewest secondaries on: where its level is off a red gate
+/// says so.
+std::uint64_t as_forced(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                        std::uint64_t most, std::uint64_t needed, std::uint64_t fewest,
+                        Plan& plan) {
+  const std::uint64_t intended = intended_secondaries(question, place, pilots, most, plan);
+  const std::uint64_t size = question.test->secondaries ? intended : std::max(intended, fewest);
   if (needed > size) note_too_few(plan, size, needed);
+  return fewest;
 }
 
 /// Whether F and chi-square keep their level, with the gates that say so. Where they need not be
@@ -144,8 +149,7 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const bool forced = question.test->method.has_value();
   if (forced && plan.method.name == "log-variance") {
     const std::uint64_t needed = enough_for_log_variance(question, channels, x);
-    note_forced(question, place, pilots, most, needed, plan);
-    return least_secondaries;
+    return as_forced(question, place, pilots, most, needed, least_secondaries, plan);
   }
   const bool normal = are_near_normal(question, channels, x, plan);
   if (forced) return least_secondaries;
@@ -153,14 +157,12 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   if (normal) return least_secondaries;
   plan.method = find_method(question, "log-variance");
   const std::uint64_t needed = enough_for_log_variance(question, channels, x);
-  const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
-  const bool fixed = question.test->secondaries || size == most;
-  const std::uint64_t affordable = fixed ? size : std::max(size, most_for_a_variance);
+  const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
   if (plan.invalid.empty() && needed > affordable) {
     note_too_few(plan, affordable, needed);
     plan.invalid = too_few(question, needed);
   }
-  return std::min(needed, fixed ? size : most_for_a_variance);
+  return std::min(needed, affordable);
 }
 
 std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& place,
@@ -178,8 +180,7 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   const std::uint64_t for_costs = enough_for_costs(question, pilots, plan, x);
   needed = std::max(needed, for_costs);
   if (question.test->method) {
-    note_forced(question, place, pilots, most, needed, plan);
-    return least_secondaries;
+    return as_forced(question, place, pilots, most, needed, least_secondaries, plan);
   }
   plan.invalid = heavy;
   const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
@@ -195,8 +196,7 @@ std::uint64_t choose_for_costs(const Question& question, const FamilyPlace& plac
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::uint64_t needed = enough_for_costs(question, pilots, plan, x);
   if (question.test->method) {
-    note_forced(question, place, pilots, most, needed, plan);
-    return log_variance_secondaries;
+    return as_forced(question, place, pilots, most, needed, log_variance_secondaries, plan);
   }
   const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
   if (needed > affordable) {

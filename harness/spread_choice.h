@@ -14,9 +14,9 @@ namespace assay::harness {
 std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
                                   const Pilots& pilots, std::uint64_t most, Plan& plan);
 
-/// Of efficiencies and total variances, which have one method each: from how many secondaries on
-/// the logarithm of every variance, and of every mean cost, that is part of the claim is near
-/// normal.
+/// Of efficiencies, total variances and slopes of variances, which have one method each: from how
+/// many secondaries on the logarithm of every variance, and of every mean cost, that is part of the
+/// claim is near normal.
 std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& place,
                                 const Pilots& pilots, std::uint64_t most, Plan& plan);
 

@@ -211,13 +211,18 @@ Gate skewness_gate(const Moments& x, const Moments& y, double scale, double crit
 Gate log_mean_gate(const Moments& positive, double critical_value) {
   check::at_least({"log_mean_gate", "count"}, positive.count, 2);
   check::positive({"log_mean_gate", "mean"}, positive.mean);
+  check::positive({"log_mean_gate", "critical_value"}, critical_value);
   if (positive.m2 == 0) throw ZeroVariance("log_mean_gate: zero variance");
   const double cube = checked_cube(critical_value);
+  const LogMeanSlope slope =
+      log_mean_slope({.variation = positive.standard_deviation() / positive.mean,
+                      .skewness = positive.skewness()});
   SkewnessPart part = skewness_part(positive, 1, cube);
-  part.value = log_mean_slope({.variation = positive.standard_deviation() / positive.mean,
-                               .skewness = positive.skewness()}) /
-               std::sqrt(static_cast<double>(positive.count));
-  return skewness_gate_of(part, {}, cube);
+  part.value = slope.value / std::sqrt(static_cast<double>(positive.count));
+  part.allowance *= slope.share_of_skewness;
+  Gate gate = skewness_gate_of(part, {}, cube);
+  gate.name = "level factor of the mean cost";
+  return gate;
 }
 
 Gate dominance_gate(const Moments& x) {

@@ -61,7 +61,8 @@ Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, Planne
 Gate skewness_gate(const Moments& x, double critical_value);
 // The same of the contrast mean x - scale mean y: a = sum psi^3 / (6 (sum psi^2)^1.5).
 Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value);
-// The same of ln mean, of positive values, with log_mean_slope (log_variance_level.h) for |g1| / 3.
+// The same of ln of a mean cost, with log_mean_slope (log_variance_level.h) for |g1| / 3; the
+// confidence limit takes the error of g1 alone. Of two sides each has its own, a bound.
 // std::domain_error where the mean is not positive.
 Gate log_mean_gate(const Moments& positive, double critical_value);
 

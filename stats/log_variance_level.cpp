@@ -16,16 +16,19 @@ constexpr double largest_exponent = 700;
 // cancel, as they do for rare values of some weight: of normal values with one of 41 deviations in
 // a thousand a test at .01 would be planned with 2110 of them and err 12 times as often. Of normal
 // values the two differ by a seventh of their sum, and no others are taken to be better. Costs are
-// counts, often of few outcomes: with a seventh a tail is off by 2.6 at 9 rare ones, with a quarter
-// by 1.5 at most.
+// counts, often of few outcomes: with a seventh the lower tail of costs that are 1, or 1701 once in
+// a thousand times, is off by 2.9, with a quarter by 1.5 at most. Exponential costs, whose parts
+// differ by a seventh too, pay for it with three times the observations that they need.
 constexpr double least_share_of_variance = 1 / 7.0;
 constexpr double least_share_of_mean = 1 / 4.0;
 
 // B sqrt n.
-double slope(PositiveShape psi, double least_share) {
+LogMeanSlope slope(PositiveShape psi, double least_share) {
   const double of_skewness = psi.skewness / 3;
   const double of_bend = psi.variation / 2;
-  return std::max(std::abs(of_skewness - of_bend), least_share * (std::abs(of_skewness) + of_bend));
+  const double difference = std::abs(of_skewness - of_bend);
+  const double least = least_share * (std::abs(of_skewness) + of_bend);
+  return difference > least ? LogMeanSlope{difference, 1} : LogMeanSlope{least, least_share};
 }
 
 // B sqrt n of one sample; `share` of the variance of the difference.
@@ -34,7 +37,8 @@ double slope(const SixthOrderShape& x, double share) {
   if (!(square > 0)) return 0;
   const double c = std::sqrt(square);
   const double g = (x.sixth - 3 * x.kurtosis + 2) / (square * c);
-  return slope({.variation = c, .skewness = g}, least_share_of_variance) * std::pow(share, 1.5);
+  return slope({.variation = c, .skewness = g}, least_share_of_variance).value *
+         std::pow(share, 1.5);
 }
 
 double slope_of_both(const SixthOrderShape& x, const SixthOrderShape& y) {
@@ -124,9 +128,9 @@ std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrder
 std::uint64_t values_for_log_mean(PositiveShape x, double critical_value, double level_factor) {
   check::non_negative({"values_for_log_mean", "variation"}, x.variation);
   check::finite({"values_for_log_mean", "skewness"}, x.skewness);
-  return needed(log_mean_slope(x), critical_value, level_factor);
+  return needed(log_mean_slope(x).value, critical_value, level_factor);
 }
 
-double log_mean_slope(PositiveShape x) { return slope(x, least_share_of_mean); }
+LogMeanSlope log_mean_slope(PositiveShape x) { return slope(x, least_share_of_mean); }
 
 }  // namespace assay::stats

@@ -55,7 +55,11 @@ struct PositiveShape {
 };
 std::uint64_t values_for_log_mean(PositiveShape x, double critical_value,
                                   double level_factor = 1.25);
-// |B| sqrt n of that.
-double log_mean_slope(PositiveShape x);
+// |B| sqrt n of that, and how much of an error of |g| / 3 enters it.
+struct LogMeanSlope {
+  double value = 0;
+  double share_of_skewness = 1;
+};
+LogMeanSlope log_mean_slope(PositiveShape x);
 
 }  // namespace assay::stats

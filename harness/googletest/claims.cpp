@@ -9,6 +9,7 @@
 #include "harness/cli_values.h"
 #include "harness/googletest/sources.h"
 #include "harness/looks.h"
+#include "harness/pilot_run.h"
 #include "harness/plan.h"
 #include "harness/pools.h"
 #include "harness/record_of.h"
@@ -94,16 +95,10 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
   const harness::Question question = harness::ask(suite.tests[0], asked.estimators, seed);
   const std::vector<harness::FamilyPlace> place = harness::places(suite, {question});
   std::vector<const harness::PreparedEstimator*> used;
-  std::set<std::string> costly;
-  for (const harness::Subject& subject : question.subjects) {
-    used.push_back(subject.estimator);
-    costly.insert(subject.estimator->name);
-  }
-  const bool costs = harness::methods_for(question).front().keeps == harness::Keeps::costs;
+  for (const harness::Subject& subject : question.subjects) used.push_back(subject.estimator);
   harness::Silence silence;
-  const harness::Pilots pilots = harness::run_pilots(
-      used, {.seed = seed, .threads = 0, .with_cost = costs ? costly : std::set<std::string>()},
-      silence);
+  const harness::Pilots pilots =
+      harness::run_pilots(used, harness::pilot_run_of({question}, seed, 0), silence);
   TestWork work{.outcome = {.question = question,
                             .place = place[0],
                             .plan = harness::plan_test(

@@ -36,14 +36,22 @@ tests: [{name: t, claim: )" + claim +
 
 // One in a thousand as dear as all the others: the logarithm of the mean is not near normal.
 TEST(Assumptions, RareCostsThatWeighAreRed) {
+  const DearOnes rare_ones{.every = 1000, .more = 1000};
   for (const char* claim : {"cost(multi) == 2", "efficiency(multi) == 1"}) {
-    const std::vector<reports::Gate> rare = gates_of_costs(claim, {.every = 1000, .more = 1000});
+    const std::vector<reports::Gate> rare = gates_of_costs(claim, rare_ones);
     ASSERT_EQ(rare.size(), 1) << claim;
-    EXPECT_EQ(rare[0].name, "level factor by skewness, costs of multi");
+    EXPECT_EQ(rare[0].name, "level factor of the mean cost of multi");
     EXPECT_EQ(rare[0].state, "red");
     EXPECT_EQ(gates_of_costs(claim, {.every = 2, .more = 1})[0].state, "green");
     EXPECT_TRUE(gates_of_costs(claim, {.every = 1, .more = 1}).empty())
         << "a cost that does not vary";
+  }
+  // A pool keeps costs for all its tests.
+  for (const char* claim :
+       {"mean(multi) == 1", "variance(multi) == 1", "cost(multi) == 1, cost: seconds"}) {
+    for (const reports::Gate& gate : gates_of_costs(claim, rare_ones)) {
+      EXPECT_EQ(gate.name.find("cost"), std::string::npos) << claim << ": " << gate.name;
+    }
   }
 }
 

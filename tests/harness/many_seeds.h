@@ -12,6 +12,7 @@
 
 #include "harness/evaluate.h"
 #include "harness/frozen.h"
+#include "harness/pilot_run.h"
 #include "harness/plan.h"
 #include "harness/pools.h"
 #include "harness/scheduler.h"
@@ -69,11 +70,7 @@ inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : prepared.asked->estimators) all.push_back(&estimator);
   Silence silence;
-  std::vector<const Subject*> draws;
-  for (const Question& question : prepared.asked->questions) {
-    for (const Subject* subject : piloted_draws(question)) draws.push_back(subject);
-  }
-  prepared.pilots = run_pilots(all, {.seed = seed, .threads = 1, .draws = draws}, silence);
+  prepared.pilots = run_pilots(all, pilot_run_of(prepared.asked->questions, seed, 1), silence);
   const Primaries primaries =
       choose_primaries(prepared.asked->questions, prepared.place, prepared.pilots);
   for (std::size_t i = 0; i < prepared.place.size(); ++i) {

@@ -231,7 +231,7 @@ TEST(SlopeClaim, ReferenceMayBeAnEstimatorOrANumber) {
             Verdict::fail);
 }
 
-// An unbiased estimator has no exponent: p-values of all are far from small.
+// An unbiased estimator has no exponent: none has a small p-value.
 TEST(SlopeClaim, OfWhatIsNotSeenSaysThatNothingCouldHaveBeenFound) {
   const auto message_of = [](const std::string& test) { return tested(test).message; };
   const std::string over = ", over: {primaries: [8, 16, 32]}}";

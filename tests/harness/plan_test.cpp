@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "harness/critical.h"
+#include "harness/pilot_run.h"
 #include "harness/planned_run.h"
 #include "questions.h"
 #include "refusal.h"
@@ -44,8 +45,7 @@ tests:
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : planned.asked->estimators) all.push_back(&estimator);
   Silence silence;
-  planned.pilots =
-      run_pilots(all, {.seed = seed, .threads = 1, .with_cost = {"multi", "hemisphere"}}, silence);
+  planned.pilots = run_pilots(all, pilot_run_of(planned.asked->questions, seed, 1), silence);
   const Primaries primaries =
       choose_primaries(planned.asked->questions, planned.place, planned.pilots);
   for (std::size_t i = 0; i < planned.place.size(); ++i) {
@@ -254,25 +254,27 @@ TEST(Plan, AForcedLogarithmShowsThatItHasTooFewValues) {
   EXPECT_FALSE(too_few("claim: cost(hemisphere) <= 2, test: log-cost"));
 }
 
-// Of two estimators one is near normal; of the other the mean is tested by 512 values of its pilot,
-// the variance by 8192, the same 512 among them.
+// Of the mean of `corners` 512 values of its pilot are known, of its variance 8192, the same 512
+// among them. `ratio` is near normal, and who asks for 600 observations needs no more.
 TEST(Plan, OfAVarianceFarFromNormalThePilotIsLarger) {
-  const std::string suite = R"(suite: pilots
+  const Workplace place;
+  const auto piloted = [&](const std::string& tests, RunOptions options = {}) {
+    Silence silence;
+    return plan_run({load_suite(place.write("pilots.yaml", R"(suite: pilots
 estimators:
   corners: {plugin: virtual_lights/weighted, primaries: 2}
-  many: {plugin: analytic/ratio, primaries: 1024}
+  fewer: {plugin: virtual_lights/weighted, primaries: 2}
+  ratio: {plugin: analytic/ratio, primaries: 1024}
 tests:
-  - {claim: mean(corners) == analytic}
-)";
-  const Workplace place;
-  const auto piloted = [&](const std::string& tests) {
-    Silence silence;
-    return plan_run({load_suite(place.write("pilots.yaml", suite + tests))}, {}, silence);
+  - {name: mean, claim: mean(corners) == analytic}
+)" + tests))},
+                    options, silence);
   };
-  const std::string variances = R"(  - {claim: variance(corners) <= 100}
-  - {claim: variance(many) <= 100}
+  const std::string variances = R"(  - {name: corners, claim: variance(corners) <= 100}
+  - {name: fewer, claim: variance(fewer) <= 100, secondaries: 600}
+  - {name: ratio, claim: variance(ratio) <= 100}
 )";
-  const PlannedRun planned = piloted(variances);
+  const PlannedRun planned = piloted(variances, {.threads = 1});
   const SuiteRun& run = *planned.suites[0];
   const Pilot& corners = run.pilots.at("corners");
   ASSERT_NE(corners.larger, nullptr);
@@ -280,10 +282,20 @@ tests:
   ASSERT_EQ(corners.larger->values[0].size(), 8192);
   EXPECT_TRUE(std::equal(corners.values[0].begin(), corners.values[0].end(),
                          corners.larger->values[0].begin()));
-  EXPECT_EQ(run.pilots.at("many").larger, nullptr);
   EXPECT_EQ(pilot_of(run.tests[0].outcome.question, 0, run.pilots), &corners);
   EXPECT_EQ(pilot_of(run.tests[1].outcome.question, 0, run.pilots), corners.larger.get());
-  EXPECT_EQ(piloted("").suites[0]->pilots.at("corners").larger, nullptr);
+  ASSERT_NE(run.pilots.at("fewer").larger, nullptr);
+  EXPECT_EQ(run.pilots.at("fewer").larger->values[0].size(), 600);
+  EXPECT_EQ(run.pilots.at("ratio").larger, nullptr);
+
+  const PlannedRun again = piloted(variances, {.threads = 4, .filter = "pilots/corners"});
+  const Pilot& alone = again.suites[0]->pilots.at("corners");
+  ASSERT_NE(alone.larger, nullptr);
+  EXPECT_EQ(alone.larger->values, corners.larger->values);
+  EXPECT_EQ(alone.larger->moments(0).m4, corners.larger->moments(0).m4);
+
+  const PlannedRun means = piloted(variances, {.filter = "pilots/mean"});
+  EXPECT_EQ(means.suites[0]->pilots.at("corners").larger, nullptr) << "no such test is chosen";
 }
 
 TEST(Plan, StaysWithinABudgetOfPrimaries) {

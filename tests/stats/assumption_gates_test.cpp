@@ -60,6 +60,7 @@ TEST(AssumptionGates, OfALogMeanTheValueIsTheFactorOfItsSlope) {
   const double slope = (rare.skewness() / 3 + rare.standard_deviation() / 2 / 2) / 4;
   EXPECT_NEAR(log_mean_gate(rare, 3).value, std::exp(slope * 27 / std::sqrt(1000)), 1e-9);
   EXPECT_EQ(log_mean_gate(rare, 3).state, GateState::red);
+  EXPECT_EQ(log_mean_gate(rare, 1.96).state, GateState::red);
 }
 
 // What each observation adds to a contrast's mean: (x - mean x) / n_x, or -scale (y - mean y) /
