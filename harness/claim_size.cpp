@@ -9,6 +9,7 @@
 #include "harness/sampler_setup.h"
 #include "stats/quantile_test.h"
 #include "stats/slope.h"
+#include "stats/sorted.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
@@ -161,20 +162,73 @@ std::optional<std::uint64_t> draws_secondaries(const Question& question, const E
   return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
 }
 
+namespace {
+
+/// Values on one side of a quantile, sorted away from it: the least slope of their distribution
+/// function, with two standard errors of a count, from the quantile to `distance`, or as far as 64
+/// of them reach. 0 where there are not so many.
+double slope_beside(std::span<const double> distances, double distance, double total) {
+  constexpr std::size_t fewest = 64;
+  if (distances.size() < fewest) return 0;
+  const auto beyond = std::upper_bound(distances.begin(), distances.end(), distance);
+  const auto within = static_cast<std::size_t>(beyond - distances.begin());
+  const double count = static_cast<double>(std::max(within, fewest));
+  const double reach = std::max(distance, distances[fewest - 1]);
+  return (count - 2 * std::sqrt(count)) / total / reach;
+}
+
+/// quantile_standard_deviation of values as the pilot's, whose counts move over this distance as
+/// they do on the side of the quantile where they move less; nothing where the pilot does not tell.
+std::optional<double> observed_deviation(std::span<const double> pilot, double probability,
+                                         double distance) {
+  std::vector<double> values(pilot.begin(), pilot.end());
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) return std::nullopt;
+  values = stats::sorted(std::move(values));
+  const double total = static_cast<double>(values.size());
+  const auto rank = static_cast<std::size_t>(std::min(total - 1, std::floor(probability * total)));
+  const double middle = values[rank];
+  std::vector<double> below;
+  for (std::size_t i = rank; i-- > 0;) below.push_back(middle - values[i]);
+  std::vector<double> above;
+  for (std::size_t i = rank + 1; i < values.size(); ++i) above.push_back(values[i] - middle);
+  const double slope =
+      std::min(slope_beside(below, distance, total), slope_beside(above, distance, total));
+  if (!(slope > 0) || !std::isfinite(slope)) return std::nullopt;
+  return stats::quantile_standard_deviation(probability, slope);
+}
+
+/// Of one secondary; of means of several as if they were normal.
+double quantile_deviation(const Question& question, std::size_t subject, std::size_t channel,
+                          double distance, const Pilots& pilots, const Plan& plan) {
+  const double probability = question.test->claim.left.arguments[0];
+  const PilotChannel pilot = pilot_channel(question, subject, channel, pilots);
+  if (question.subjects[subject].averaged(plan.primaries[subject]) == 1) {
+    const auto observed = observed_deviation(pilot.values, probability, distance);
+    if (observed) return *observed;
+  }
+  const double z = stats::normal_quantile({stats::Tail::lower, std::log(probability)});
+  return stats::quantile_standard_deviation(probability, normal_density(z)) *
+         deviation(question, subject, channel, pilots, plan);
+}
+
+}  // namespace
+
 std::optional<std::uint64_t> quantile_secondaries(const Question& question, const ErrorShare& share,
                                                   const Pilots& pilots, const Plan& plan) {
-  const double probability = question.test->claim.left.arguments[0];
-  const double z = stats::normal_quantile({stats::Tail::lower, std::log(probability)});
-  const double spread = stats::quantile_standard_deviation(probability, normal_density(z));
   return most_of(question, [&](std::size_t channel) -> std::optional<std::uint64_t> {
     const double unit =
         is_relative(question, channel) ? std::abs(question.references[channel].value) : 1;
     const double distance = distance_of(plan.regions[channel]) * unit;
-    double sd = spread * deviation(question, 0, channel, pilots, plan);
+    if (!(distance > 0)) return std::nullopt;
+    double sd = quantile_deviation(question, 0, channel, distance, pilots, plan);
     if (question.of_two()) {
-      sd = std::hypot(sd, spread * question.factor * deviation(question, 1, channel, pilots, plan));
+      const double factor = std::abs(question.factor);
+      const double other =
+          quantile_deviation(question, 1, channel, distance / factor, pilots, plan);
+      sd = std::hypot(sd, factor * other);
     }
-    if (!(distance > 0) || !(sd > 0)) return std::nullopt;
+    if (!(sd > 0)) return std::nullopt;
     const double count = std::ceil(stats::normal_sample_size(
         sd, {.allow = 0, .detect = distance}, planned_rates(share, plan.regions[channel])));
     return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;

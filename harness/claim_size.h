@@ -11,9 +11,10 @@
 
 namespace assay::harness {
 
-/// As if the secondary estimates were normal with the pilot's standard deviation: their density at
-/// the quantile says how counts move with the value. Of another law the plan is off by the ratio of
-/// the densities, and the verdict may be inconclusive; the test itself is exact for every law.
+/// By how counts of the pilot's values move from the quantile over the distance to be found; of
+/// means of several primaries as if they were normal with the pilot's standard deviation. Where
+/// they are not, the plan is off by the ratio of the densities at the quantile, and the verdict may
+/// be inconclusive; the test itself is exact for every law.
 std::optional<std::uint64_t> quantile_secondaries(const Question& question, const ErrorShare& share,
                                                   const Pilots& pilots, const Plan& plan);
 
