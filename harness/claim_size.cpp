@@ -186,7 +186,7 @@ std::optional<double> observed_deviation(std::span<const double> pilot, double p
   if (values.empty()) return std::nullopt;
   values = stats::sorted(std::move(values));
   const double total = static_cast<double>(values.size());
-  const auto rank = static_cast<std::size_t>(std::min(total - 1, std::floor(probability * total)));
+  const std::size_t rank = stats::sample_quantile_rank(values.size(), probability);
   const double middle = values[rank];
   std::vector<double> below;
   for (std::size_t i = rank; i-- > 0;) below.push_back(middle - values[i]);

@@ -1,6 +1,5 @@
 #include "harness/evidence_quantile.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -18,9 +17,7 @@ std::vector<double> sorted(std::span<const double> values, double factor) {
 
 /// The sample quantile: where the counts on both sides agree with the probability.
 double middle(const std::vector<double>& sorted, double probability) {
-  const double n = static_cast<double>(sorted.size());
-  const auto rank = static_cast<std::size_t>(std::min(n - 1, std::floor(probability * n)));
-  return sorted[rank];
+  return sorted[stats::sample_quantile_rank(sorted.size(), probability)];
 }
 
 Evidence against_number(const Question& question, std::size_t channel, std::vector<double> values) {

@@ -242,4 +242,10 @@ double quantile_standard_deviation(double probability, double density) {
   return std::sqrt(probability * (1 - probability)) / density;
 }
 
+std::size_t sample_quantile_rank(std::size_t count, double probability) {
+  check::at_least({"sample_quantile_rank", "count"}, count, 1);
+  const double n = static_cast<double>(count);
+  return static_cast<std::size_t>(std::min(n - 1, std::floor(probability * n)));
+}
+
 }  // namespace assay::stats

@@ -37,6 +37,10 @@ struct QuantileContrast {
   double offset = 0;
 };
 
+// Where in sorted values, of which there is one at least, the sample quantile stands: floor(q n),
+// of q = 1 the last.
+std::size_t sample_quantile_rank(std::size_t count, double probability);
+
 // Null hypothesis: Q(x) = scale Q(y) + offset for the quantiles Q of one probability, independent
 // samples. To reject "Q(x) <= scale Q(y) + offset" is to reject, for every number v, "Q(x) <= v or
 // v <= scale Q(y) + offset": the two exact p-values at v are independent, their product c has

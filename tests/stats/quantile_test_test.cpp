@@ -220,5 +220,12 @@ TEST(QuantileTest, TheNormalLimitOfAMedianIsPiHalves) {
   EXPECT_NEAR(quantile_standard_deviation(.5, density), std::sqrt(std::numbers::pi / 2), 1e-12);
 }
 
+TEST(Quantile, StandsWhereTheCountsAgree) {
+  EXPECT_EQ(sample_quantile_rank(5, 0.5), 2U);
+  EXPECT_EQ(sample_quantile_rank(4, 0.25), 1U);
+  EXPECT_EQ(sample_quantile_rank(4, 1), 3U);
+  EXPECT_THROW(sample_quantile_rank(0, 0.5), std::domain_error);
+}
+
 }  // namespace
 }  // namespace assay::stats
