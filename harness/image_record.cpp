@@ -204,6 +204,7 @@ reports::Sample image_sample(const TestWork& work, std::size_t subject) {
                          .plugin = side.estimator->entry->information.name,
                          .parameters = side.estimator->parameters,
                          .channel = image_name(*side.image),
+                         .stream = stream_text(*work.pools[subject]),
                          .primaries = outcome.plan.primaries[subject],
                          .secondaries = outcome.secondaries()};
   const Extremes extremes = extremes_of(summary, side.channels);

@@ -1,5 +1,7 @@
 #include "harness/picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -66,6 +68,7 @@ reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run)
       .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(nature.bias),
       .original = information.original,
       .defect = information.defect,
+      .stream = stream_text(*picture.pool),
       .primaries = picture.pool->primaries(),
       .secondaries = count,
       .confidence = confidence,
@@ -103,6 +106,8 @@ reports::Cost cost_of(const Summary& summary) {
           .samples = summary.cost.samples,
           .seconds = summary.seconds};
 }
+
+std::string stream_text(const Pool& pool) { return fmt::format("{:016x}", pool.key().bits); }
 
 std::uint64_t shown_by(const Picture& picture, const SuiteRun& run) {
   if (picture.own) return *picture.own;

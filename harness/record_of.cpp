@@ -58,6 +58,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
                          .plugin = side.estimator->entry->information.name,
                          .parameters = side.estimator->parameters,
                          .channel = side.setup->channels()[index].name,
+                         .stream = stream_text(*work.pools[subject]),
                          .primaries = work.outcome.plan.primaries[subject],
                          .secondaries = summary.count};
   sample.nonzero = moments.nonzero;

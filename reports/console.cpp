@@ -98,6 +98,15 @@ class Screen {
     }
   }
 
+  // What is meant to be pasted is never cut, however long a quoted claim.
+  void command(const std::string& label, const std::string& text) {
+    std::string first = pad_right("      " + label, label_width + 6);
+    for (const std::string& part : wrap_command(text, beside_width())) {
+      out_ += first + part + "\n";
+      first.assign(static_cast<std::size_t>(label_width + 6), ' ');
+    }
+  }
+
   int beside_width() const { return options_.width - label_width - 6; }
 
   void fact(const std::string& label, const std::string& text) {
@@ -176,13 +185,8 @@ class Screen {
 
   // The table had no room for what each test cost.
   void cost_of(const Suite& suite) {
-    Cost sum;
-    for (const EstimatorSummary& estimator : suite.estimators) {
-      sum.closest_hit_rays += rays(estimator.cost);
-      sum.samples += estimator.cost.samples;
-    }
-    if (const std::string cost = cost_text(sum); !cost.empty()) {
-      paragraph("All estimators of the suite: " + cost + ".");
+    if (const std::string cost = cost_text(total_cost(suite)); !cost.empty()) {
+      paragraph("All observations of the suite: " + cost + ".");
       blank();
     }
   }
@@ -191,7 +195,7 @@ class Screen {
     for (const auto& [label, sentence] : facts(test)) fact(label, sentence);
     fact("cost", cost_text(total_cost(test)));
     fact("where", place(test));
-    if (!test.replay.empty()) beside("replay", wrap_command(plain(test.replay), beside_width()));
+    if (!test.replay.empty()) command("replay", plain(test.replay));
     blank();
   }
 

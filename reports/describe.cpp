@@ -89,10 +89,13 @@ int nesting(char c) { return (c == '{' || c == '[') - (c == '}' || c == ']'); }
 std::string observations_fact(const Test& test) {
   std::string text;
   // Where several channels are counted together each has a sample of the same observations.
-  std::set<std::tuple<std::string, std::uint64_t, std::uint64_t>> said;
+  std::set<std::tuple<std::string, std::string, std::uint64_t, std::uint64_t>> said;
   for (const Sample* sample : worst_samples(test)) {
     if (text.size() > 1000) break;
-    if (!said.insert({sample->estimator, sample->primaries, sample->nonfinite}).second) continue;
+    if (!said.insert({sample->estimator, sample->stream, sample->primaries, sample->nonfinite})
+             .second) {
+      continue;
+    }
     if (!text.empty()) text += "; ";
     text += fmt::format("{} of {} with {} each", count_text(sample->secondaries), sample->estimator,
                         counted(sample->primaries, "primary", "primaries"));

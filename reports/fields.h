@@ -64,6 +64,7 @@ void fields(Archive& a, T& sample) {
   a("plugin", sample.plugin);
   a("parameters", sample.parameters);
   a("channel", sample.channel);
+  a("stream", sample.stream);
   a("primaries", sample.primaries);
   a("secondaries", sample.secondaries);
   a("mean", sample.mean);
@@ -212,6 +213,7 @@ void fields(Archive& a, T& estimator) {
   a("bias", estimator.bias);
   a("original", estimator.original);
   a("defect", estimator.defect);
+  a("stream", estimator.stream);
   a("primaries", estimator.primaries);
   a("secondaries", estimator.secondaries);
   a("confidence", estimator.confidence);

@@ -1,9 +1,42 @@
 #include "reports/record.h"
 
-#include <set>
+#include <map>
 #include <tuple>
 
 namespace assay::reports {
+namespace {
+
+/// Draws that samples and estimators' rows share are counted once, as far as the longest reaches.
+class Draws {
+ public:
+  template <class Source>
+  void add(const Source& source) {
+    Longest& longest =
+        longest_[{source.plugin, source.parameters, source.stream, source.primaries}];
+    if (source.secondaries >= longest.secondaries) longest = {source.secondaries, source.cost};
+  }
+
+  Cost cost() const {
+    Cost sum;
+    for (const auto& [draws, longest] : longest_) {
+      sum.camera_rays += longest.cost.camera_rays;
+      sum.closest_hit_rays += longest.cost.closest_hit_rays;
+      sum.shadow_rays += longest.cost.shadow_rays;
+      sum.samples += longest.cost.samples;
+      sum.seconds += longest.cost.seconds;
+    }
+    return sum;
+  }
+
+ private:
+  struct Longest {
+    std::uint64_t secondaries = 0;
+    Cost cost;
+  };
+  std::map<std::tuple<std::string, std::string, std::string, std::uint64_t>, Longest> longest_;
+};
+
+}  // namespace
 
 const char* to_string(Verdict verdict) {
   switch (verdict) {
@@ -82,17 +115,18 @@ Record without_times(Record record) {
 }
 
 Cost total_cost(const Test& test) {
-  Cost sum;
-  std::set<std::tuple<std::string, std::string, std::string>> seen;
-  for (const Sample& sample : test.samples) {
-    if (!seen.emplace(sample.estimator, sample.plugin, sample.parameters).second) continue;
-    sum.camera_rays += sample.cost.camera_rays;
-    sum.closest_hit_rays += sample.cost.closest_hit_rays;
-    sum.shadow_rays += sample.cost.shadow_rays;
-    sum.samples += sample.cost.samples;
-    sum.seconds += sample.cost.seconds;
+  Draws draws;
+  for (const Sample& sample : test.samples) draws.add(sample);
+  return draws.cost();
+}
+
+Cost total_cost(const Suite& suite) {
+  Draws draws;
+  for (const EstimatorSummary& estimator : suite.estimators) draws.add(estimator);
+  for (const Test& test : suite.tests) {
+    for (const Sample& sample : test.samples) draws.add(sample);
   }
-  return sum;
+  return draws.cost();
 }
 
 }  // namespace assay::reports

@@ -76,6 +76,9 @@ struct Sample {
   std::string plugin;
   std::string parameters;  ///< canonical text
   std::string channel;
+  /// 16 hexadecimal digits. Samples of one plugin, parameters, stream and number of primaries are
+  /// the same draws, or the longer of them begins with the shorter.
+  std::string stream;
   std::uint64_t primaries = 0;
   std::uint64_t secondaries = 0;
   Number mean, variance, skewness, kurtosis, minimum, maximum;  ///< of secondary estimates
@@ -213,6 +216,7 @@ struct EstimatorSummary {
   std::string bias;      ///< bias class
   std::string original;  ///< of a mutant
   std::string defect;    ///< of a mutant
+  std::string stream;    ///< as in Sample
   std::uint64_t primaries = 0;
   std::uint64_t secondaries = 0;
   double confidence = 0;  ///< of the intervals in channels
@@ -357,7 +361,10 @@ Tally tally(const Record&);
 /// every `seconds`, and `environment.threads`. Two runs agree when these are equal byte for byte.
 Record without_times(Record);
 
-/// What a test cost: each estimator once, though each of its channels has a sample.
+/// What a test cost: the same draws once, though each of their channels has a sample.
 Cost total_cost(const Test&);
+
+/// What the suite's tests and the rows of its estimators cost, without pilots: the same draws once.
+Cost total_cost(const Suite&);
 
 }  // namespace assay::reports

@@ -113,13 +113,25 @@ TEST(Console, ColourChangesNoText) {
   EXPECT_EQ(bare, console(example_record()));
 }
 
-RC_GTEST_PROP(Console, NoLineIsWiderThanAskedFor, ()) {
-  const Record record = random_record();
+// A command to paste is whole, whatever its width.
+RC_GTEST_PROP(Console, NoLineButACommandIsWiderThanAskedFor, ()) {
+  Record record = random_record();
+  for (Suite& suite : record.suites) {
+    for (Test& test : suite.tests) test.replay.clear();
+  }
   const int width = *rc::gen::element(60, 80, 100, 200);
   const bool verbose = *rc::gen::arbitrary<bool>();
   const std::string text = console(record, {.width = width, .verbose = verbose});
   for (const std::string& line : lines(text)) RC_ASSERT(columns(line) <= width);
   RC_ASSERT(clean(text) == text);
+}
+
+TEST(Console, NeverCutsTheCommandThatRepeatsATest) {
+  Record record = example_record();
+  const std::string claim = "'mean(" + std::string(200, 'x') + ") == analytic'";
+  record.suites[0].tests[0].replay = "assay check " + claim + " --seed 1";
+  const std::string text = console(record, {.width = 80, .verbose = true});
+  EXPECT_NE(text.find(claim + " \\\n"), text.npos);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ EstimatorSummary summary(const Entry& entry) {
   e.bias = "unbiased";
   e.original = entry.original;
   e.defect = entry.defect;
+  e.stream = "5d3c1f0a9b7e2468";
   e.primaries = 64;
   e.secondaries = 16384;
   e.confidence = 0.99;

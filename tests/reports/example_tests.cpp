@@ -42,6 +42,7 @@ Sample sample(const std::string& estimator, const Law& law) {
   s.plugin = "luminaire/" + estimator;
   s.parameters = R"(sampler=":published",scene="triangle")";
   s.channel = "value";
+  s.stream = "5d3c1f0a9b7e2468";
   s.primaries = 64;
   s.secondaries = 16384;
   s.mean = law.mean;
