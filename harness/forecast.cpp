@@ -59,26 +59,33 @@ std::optional<double> share_of(const TestOutcome& test, const Pilots& pilots) {
   return drawn / static_cast<double>(sizes.back());
 }
 
+/// What the pilots let expect of a channel; nullopt where they say nothing of it.
+std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::size_t channel,
+                                               const Pilots& pilots, std::uint64_t secondaries) {
+  const Question& question = test.question;
+  const Regions& regions = test.plan.regions[channel];
+  const bool of_moments = question.of_means() || question.of_variances();
+  if (!of_moments && !question.on_log_scale()) return PlannedChannel{.regions = regions};
+  for (const Subject& side : question.subjects) {
+    if (side.setup->observations()) return std::nullopt;
+  }
+  if (!of_moments) return planned_log_channel(question, regions, pilots, test.plan);
+  const auto data = expected_data(test, channel, pilots, secondaries);
+  if (!data) return std::nullopt;
+  return observed_channel(question, regions, channel, *data);
+}
+
 std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilots) {
   const Plan& plan = test.plan;
   const double weight = plan.looks.weights.back();
   const TestSize size{
       .share = {.alpha = test.place.share.alpha * weight, .beta = test.place.share.beta * weight},
       .secondaries = plan.most_secondaries()};
-  const bool of_moments = test.question.of_means() || test.question.of_variances();
   std::optional<double> largest;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
-    const Regions& regions = plan.regions[channel];
-    PlannedChannel planned{.regions = regions};
-    if (of_moments) {
-      for (const Subject& side : test.question.subjects) {
-        if (side.setup->observations()) return std::nullopt;
-      }
-      const auto data = expected_data(test, channel, pilots, size.secondaries);
-      if (!data) return std::nullopt;
-      planned = observed_channel(test.question, regions, channel, *data);
-    }
-    const auto found = detectable_effect(test.question, size, plan, planned);
+    const auto planned = expected_channel(test, channel, pilots, size.secondaries);
+    if (!planned) return std::nullopt;
+    const auto found = detectable_effect(test.question, size, plan, *planned);
     if (found) largest = std::max(*found, largest.value_or(0));
   }
   return largest;

@@ -72,12 +72,15 @@ Total total_of(const TestWork& work, const UnitCosts& costs) {
   return total;
 }
 
+/// Of the one subject, of both where they differ, and of a sweep from the least to the most.
 std::string primaries_text(const Plan& plan) {
-  std::string text = count_of(static_cast<double>(plan.primaries[0]));
-  if (plan.primaries.size() > 1 && plan.primaries[1] != plan.primaries[0]) {
-    text += " + " + count_of(static_cast<double>(plan.primaries[1]));
-  }
-  return text;
+  const auto [least, most] = std::minmax_element(plan.primaries.begin(), plan.primaries.end());
+  const auto text = [](std::uint64_t primaries) {
+    return count_of(static_cast<double>(primaries));
+  };
+  if (*least == *most) return text(*most);
+  if (plan.primaries.size() > 2) return text(*least) + " to " + text(*most);
+  return text(plan.primaries[0]) + " + " + text(plan.primaries[1]);
 }
 
 std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
@@ -89,9 +92,9 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
     effect = forecast.detectable ? forecast.detectable : effect;
   }
   if (!effect) return unknown;
-  return plain(reports::margin_text(
-      *effect, {.quantity = test.question.of_variances() ? "ln(ratio of variances)" : "",
-                .relative = is_relative(test.question, 0)}));
+  return plain(
+      reports::margin_text(*effect, {.quantity = test.question.on_log_scale() ? "ln(ratio)" : "",
+                                     .relative = is_relative(test.question, 0)}));
 }
 
 std::string gate_text(const reports::Gate& gate) {

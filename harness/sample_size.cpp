@@ -56,13 +56,6 @@ std::optional<double> pilot_log_spread(const Question& question, std::size_t sub
   return most;
 }
 
-std::optional<PlannedChannel> log_spread_channel(const Regions& regions,
-                                                 std::optional<double> first,
-                                                 std::optional<double> second) {
-  if (!first || !second || !(*first + *second > 0)) return std::nullopt;
-  return PlannedChannel{.regions = regions, .kurtosis = 1 + *first, .other_kurtosis = 1 + *second};
-}
-
 void note_range(const Question& question, std::size_t channel, const stats::Moments& moments,
                 PlannedChannel& planned) {
   if (question.kind != QuestionKind::mean_of_one) return;
@@ -74,9 +67,7 @@ void note_range(const Question& question, std::size_t channel, const stats::Mome
 std::optional<PlannedChannel> planned_channel(const Question& question, std::size_t channel,
                                               const Pilots& pilots, const Plan& plan) {
   if (has_log_spread(question)) {
-    return log_spread_channel(
-        plan.regions[channel], pilot_log_spread(question, 0, pilots, plan),
-        question.of_two() ? pilot_log_spread(question, 1, pilots, plan) : std::optional(0.0));
+    return planned_log_channel(question, plan.regions[channel], pilots, plan);
   }
   const stats::Moments& first = pilot_channel(question, 0, channel, pilots).moments;
   PlannedChannel planned{.regions = plan.regions[channel]};
@@ -272,6 +263,16 @@ std::optional<std::uint64_t> planned_secondaries(const Question& question, const
     }
   }
   return most;
+}
+
+std::optional<PlannedChannel> planned_log_channel(const Question& question, const Regions& regions,
+                                                  const Pilots& pilots, const Plan& plan) {
+  if (!has_log_spread(question) || !all_piloted(question, pilots)) return std::nullopt;
+  const auto first = pilot_log_spread(question, 0, pilots, plan);
+  const auto second =
+      question.of_two() ? pilot_log_spread(question, 1, pilots, plan) : std::optional(0.0);
+  if (!first || !second || !(*first + *second > 0)) return std::nullopt;
+  return PlannedChannel{.regions = regions, .kurtosis = 1 + *first, .other_kurtosis = 1 + *second};
 }
 
 std::optional<double> detectable_effect(const Question& question, const TestSize& size,

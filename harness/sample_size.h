@@ -38,6 +38,12 @@ inline constexpr std::uint64_t impossible_secondaries = std::uint64_t{1} << 53;
 std::optional<std::uint64_t> planned_secondaries(const Question& question, const ErrorShare& share,
                                                  const Pilots& pilots, const Plan& plan);
 
+/// What the pilots say of a claim on costs, efficiencies or total variances, the worst over its
+/// channels: 1 + the spread of each side's logarithm stands for a kurtosis. nullopt for other
+/// claims, where an estimator has no pilot, and where nothing spreads: exact costs.
+std::optional<PlannedChannel> planned_log_channel(const Question& question, const Regions& regions,
+                                                  const Pilots& pilots, const Plan& plan);
+
 /// The least theta that a test of that size finds with probability 1 - beta.
 std::optional<double> detectable_effect(const Question& question, const TestSize& size,
                                         const Plan& plan, const PlannedChannel& channel);
@@ -51,7 +57,7 @@ bool finds_nothing(const Question& question, const TestSize& size, const Plan& p
 std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,
                                const PlannedChannel& channel, double effect);
 
-/// The same from the test's own data, for what is reported about its n.
+/// A channel from the test's own data, for what is reported about its n.
 PlannedChannel observed_channel(const Question& question, const Regions& regions,
                                 std::size_t channel, std::span<const ChannelData> data);
 
