@@ -168,7 +168,7 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
 }
 
 int calibrate(const CalibrateArguments& arguments, const Output& output) {
-  require_writable(output);
+  require_writable(output, {});
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Calibration measured = calibration(arguments, *progress);
   write_reports(

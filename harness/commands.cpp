@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "estimators/text_pattern.h"
+#include "harness/files_read.h"
 #include "harness/github.h"
 #include "harness/image_record.h"
 #include "harness/plan_table.h"
@@ -58,9 +59,10 @@ std::string written(const reports::Record& record, const std::string& kind, bool
 
 }  // namespace
 
-void require_writable(const Output& output) {
+void require_writable(const Output& output, const std::vector<std::string>& kept) {
   for (const ReportRequest& request : output.reports) {
     if (request.path == "-") continue;
+    refuse_overwriting(request.path, kept);
     const std::filesystem::path path(request.path);
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     if (!std::filesystem::is_directory(folder)) {
@@ -147,7 +149,9 @@ void report_run(reports::Record& record, const Output& output) {
 }
 
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
-  require_writable(output);
+  std::vector<std::string> kept = files_read(suites);
+  if (!options.ledger.empty()) kept.push_back(options.ledger);
+  require_writable(output, kept);
   if (selects_nothing(suites, options)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   reports::Record record = run(suites, options, *progress);
@@ -165,6 +169,7 @@ int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, boo
 }
 
 int report_saved_run(const std::string& file, const Output& output) {
+  require_writable(output, {file});
   reports::Record record = read_record(file);
   write_reports(record, output);
   return 0;

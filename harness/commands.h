@@ -29,9 +29,9 @@ struct Output {
 /// The text of a report, in colour or not.
 using ReportWriter = std::function<std::string(const ReportRequest& request, bool colour)>;
 
-/// InputError where a report's file cannot be written: better known before the hours of sampling
-/// than after.
-void require_writable(const Output& output);
+/// InputError where a report's file cannot be written, or is one of `kept`, which the command reads
+/// or keeps (files_read.h): better known before the hours of sampling than after.
+void require_writable(const Output& output, const std::vector<std::string>& kept);
 /// Every report asked for, the console's in any case. Files first: what standard output shows has
 /// then been written.
 void write_reports(const Output& output, const ReportWriter& written);

@@ -16,11 +16,13 @@ constexpr const char* version_words = "assay-ledger 1 budget ";
 
 constexpr const char* introduction[] = {
     "# Evidence of nights with fresh seeds about each claim (harness/README.md, \"The ledger\").",
-    "# An alarm: E >= 1 / (budget x the test's share), where E is the likelihood ratio of all "
-    "nights",
-    "# of a series. Score and information add up also over nights that stopped early, and E is a",
-    "# martingale while the claim holds: the budget is kept however often, and whenever, one "
-    "looks.",
+    "# An alarm: E >= 1.202 k^3 / (budget x the test's share) in a test's k-th series, where E is "
+    "the",
+    "# likelihood ratio of all nights of the series. Score and information add up also over nights "
+    "that",
+    "# stopped early, and E is a martingale while the claim holds: the budget is kept however "
+    "often,",
+    "# and whenever, one looks.",
     "# Lines are checked: do not edit them. A line  begin \"suite/test\"  starts that test anew.",
     "#"};
 

@@ -195,7 +195,7 @@ reports::Record merge(std::vector<ShardFile> shards) {
 }
 
 int merge_shards(const MergeArguments& arguments, const Output& output) {
-  require_writable(output);
+  require_writable(output, arguments.records);
   std::vector<ShardFile> shards;
   for (const std::string& file : arguments.records) shards.push_back({file, read_record(file)});
   reports::Record record = merge(std::move(shards));

@@ -113,7 +113,7 @@ test_ledger_keeps_nights_and_refuses_changed_lines() {
   sed -i 's/seed 1 /seed 3 /' n.ledger
   expect 2 run good.yaml --seed 4 --ledger n.ledger --quiet
   empty out
-  contains err 'n.ledger:9:1: '
+  contains err 'n.ledger:10:1: '
   contains err 'version control'
   head -n -1 before >n.ledger
   expect 2 run good.yaml --seed 4 --ledger n.ledger --quiet
@@ -162,6 +162,24 @@ test_report_that_cannot_be_written_is_2() {
   : >file
   expect 2 run good.yaml --report json=file/run.json
   [ "$(find . -name '*run.json*' | wc -l)" -eq 0 ] || fail "something was left: $(ls -A)"
+}
+
+test_report_over_what_is_read_is_2() {
+  write_suite good.yaml "$good"
+  cp good.yaml before
+  expect 2 run good.yaml --report json=./good.yaml
+  contains err 'name another file'
+  cmp good.yaml before || fail 'the suite was written over'
+  expect 2 run good.yaml --seed 1 --ledger n.ledger --report html=./n.ledger
+  expect 0 run good.yaml --report json=run.json
+  cp run.json before
+  expect 2 report run.json --report html=run.json
+  cmp run.json before || fail 'the saved run was written over'
+  "$assay" sample analytic/normal --secondaries 200 >rows.txt 2>err
+  cp rows.txt before
+  expect 2 check 'mean(old) == 0' --estimator 'old=recorded,file=rows.txt' --report html=rows.txt
+  contains err 'rows.txt: is read'
+  cmp rows.txt before || fail 'the rows were written over'
 }
 
 test_report_replaces_the_old_file_whole() {
