@@ -271,7 +271,7 @@ void require_calibrated(const std::string& method) {
   if (known.contains(method)) return;
   const std::string near = nearest(method, {known.begin(), known.end()});
   throw InputError({}, fmt::format("no method `{}` can be calibrated{}; there is {}", method,
-                                   near.empty() ? "" : fmt::format(", did you mean `{}`?", near),
+                                   near.empty() ? "" : fmt::format(" (did you mean `{}`?)", near),
                                    fmt::join(known, ", ")));
 }
 

@@ -88,6 +88,9 @@ void check_side(const Claim& claim, const Constant& side) {
     refuse(left.where, fmt::format("`{}` is never negative, but it is compared with {}",
                                    to_string(left.name), side.value));
   }
+  if (left.name == variance && !left.slope && side.value == 0) {
+    refuse(left.where, "`variance` is tested as a ratio: give a number above 0");
+  }
   // A bias has its reference to be measured by.
   const bool has_unit = left.name == bias && !left.slope;
   if (claim.relation == Relation::within && claim.margin.relative && side.value == 0 && !has_unit) {

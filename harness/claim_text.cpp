@@ -70,7 +70,7 @@ namespace {
 std::string percent_text(double value) {
   for (int digits = 1; digits <= 17; ++digits) {
     const std::string text = fmt::format("{:.{}g}", 100 * value, digits);
-    if (parse_margin(text + "%", {}, "").value == value) return text;
+    if (parse_margin(text + "%", {}, "").value == value) return fmt::format("{}", std::stod(text));
   }
   // 100 * value rounded away from every decimal that leads back: move the point in the text.
   const std::string text = fmt::format("{:.16e}", value);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "stats/equivalence.h"
 
@@ -30,6 +31,14 @@ double log_p_outside(const Evidence& evidence, double margin) {
   return stats::equivalence(evidence.at(-margin), evidence.at(margin)).log_p;
 }
 
+/// p of "theta < 0" and "theta > 0": as of the closed regions, but of a theta that is 0 exactly.
+double log_p_beside(const Evidence& evidence, double log_p_closed) {
+  constexpr double impossible = std::numeric_limits<double>::lowest();
+  const bool at_the_end =
+      evidence.exact && log_p_at_most(evidence, 0) == 0 && log_p_at_least(evidence, 0) == 0;
+  return at_the_end ? impossible : log_p_closed;
+}
+
 }  // namespace
 
 bool Regions::proof() const {
@@ -50,9 +59,9 @@ double log_p_claimed(const Evidence& evidence, const Regions& regions) {
     case Relation::at_least:
       return log_p_at_least(evidence, -regions.allow);
     case Relation::less:
-      return log_p_at_most(evidence, 0);
+      return log_p_beside(evidence, log_p_at_most(evidence, 0));
     case Relation::greater:
-      return log_p_at_least(evidence, 0);
+      return log_p_beside(evidence, log_p_at_least(evidence, 0));
     case Relation::within:
       return log_p_between(evidence, regions.within);
   }

@@ -22,6 +22,7 @@ struct Evidence {
   bool relative = false;   ///< shown in per cent
   bool ratio = false;      ///< theta is the logarithm of a ratio
   bool distance = false;   ///< theta cannot be negative: `==` has one direction
+  bool exact = false;      ///< theta is the estimate, without an error: costs that never vary
 };
 
 }  // namespace assay::harness

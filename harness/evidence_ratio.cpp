@@ -34,7 +34,8 @@ Evidence of_means(const Moments& x, const Moments& y, double factor) {
                 return moved(stats::log_cost_ratio_interval(x, y, confidence), std::log(factor));
               },
           .quantity = "",
-          .ratio = true};
+          .ratio = true,
+          .exact = exact};
 }
 
 Evidence of_mean(const Moments& x, double null) {
@@ -43,7 +44,8 @@ Evidence of_mean(const Moments& x, double null) {
       .at = [=](double t) { return stats::log_cost(x, null * std::exp(t)); },
       .interval = [=](double confidence) { return stats::log_cost_interval(x, null, confidence); },
       .quantity = "",
-      .ratio = true};
+      .ratio = true,
+      .exact = x.m2 == 0};
 }
 
 /// Means per primary: of one subject, or of two.

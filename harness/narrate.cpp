@@ -99,7 +99,23 @@ std::string wide_margin(const TestOutcome& outcome, const ChannelOutcome& channe
       detect->value / size, detect->value, detect->value);
 }
 
+/// The exponents or quantiles that speak against the claim and of which the interval excludes none,
+/// however far off; "" where there are none such.
+std::string what_is_not_excluded(const Question& question, const ChannelOutcome& channel) {
+  const bool no_low = !channel.effect.low || !std::isfinite(*channel.effect.low);
+  const bool no_high = !channel.effect.high || !std::isfinite(*channel.effect.high);
+  if (question.kind == QuestionKind::slope) return no_low && no_high ? "exponent" : "";
+  if (question.kind != QuestionKind::quantile) return "";
+  // A claim `<=` is refuted by a lower limit alone.
+  const bool low_counts = channel.regions.relation != Relation::at_least;
+  const bool high_counts = channel.regions.relation != Relation::at_most;
+  if (low_counts && no_low && high_counts && no_high) return "quantile";
+  if (low_counts && no_low) return "smaller quantile";
+  return high_counts && no_high ? "larger quantile" : "";
+}
+
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  if (channel.evidence.exact) return "as claimed: what never varies is compared exactly";
   if (!channel.regions.has_forbidden()) {
     std::string text = "no evidence against the claim";
     if (channel.finds_nothing) {
@@ -108,11 +124,11 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
           "with probability {:g}",
           text, outcome.secondaries(), 1 - outcome.share().beta);
     }
-    const bool of_slope = outcome.question.kind == QuestionKind::slope;
-    if (of_slope && !channel.effect.low && !channel.effect.high) {
-      return text +
-             "; but these observations exclude no exponent at all: take more of them, or say with "
-             "`detect` how far off it must not be";
+    if (const std::string all = what_is_not_excluded(outcome.question, channel); !all.empty()) {
+      return fmt::format(
+          "{}; but these observations exclude no {} at all: take more of them, or say with "
+          "`detect` how far off it must not be",
+          text, all);
     }
     if (channel.detectable) {
       // The same sum of squares in a few pixels, or of both signs, is seen by other cells: from

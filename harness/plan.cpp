@@ -22,6 +22,8 @@ namespace {
 constexpr double most_planned_primaries = 1e12;
 // Ten looks cost twice the observations of one at most, where no reference's error takes part.
 constexpr std::uint64_t dearest_looks = 4;
+// Secondaries that have a spread.
+constexpr std::uint64_t fewest_tested = 2;
 
 /// Primaries that a secondary of each subject costs together; of an image in all its elements.
 std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
@@ -33,6 +35,17 @@ std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
   return sum;
 }
 
+/// Secondaries of each subject that a budget in primaries pays for: two at least, or it is refused.
+std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t budget) {
+  const std::uint64_t each = primaries_of_each(question, plan);
+  if (budget / each >= fewest_tested) return budget / each;
+  throw InputError(question.test->where,
+                   fmt::format("its budget (or its share of the suite's) of {} primaries does not "
+                               "pay for two observations, the fewest that can be tested: these "
+                               "take {}; give a larger budget, or fewer `primaries`",
+                               budget, fewest_tested * each));
+}
+
 /// The most secondaries there are, or that a budget in primaries pays for, all subjects together.
 std::uint64_t most_available(const Question& question, const Plan& plan) {
   std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
@@ -41,8 +54,7 @@ std::uint64_t most_available(const Question& question, const Plan& plan) {
   }
   const std::optional<Budget>& budget = question.test->budget;
   if (!budget || !budget->primaries) return most;
-  return std::min(
-      most, std::max<std::uint64_t>(2, *budget->primaries / primaries_of_each(question, plan)));
+  return std::min(most, paid_for(question, plan, *budget->primaries));
 }
 
 /// Stops before hours are spent on what was hardly meant.

@@ -84,6 +84,10 @@ using Refuse = std::function<void(const char* key, const std::string& why)>;
 
 void check_margins(const TestEntry& test, const Refuse& refuse) {
   if (test.detect && test.detect->value == 0) refuse("detect", "`detect` must be above 0");
+  if (test.detect && test.claim.relation == Relation::within) {
+    refuse("detect",
+           "`within` says how far off the claim must not be: `detect` has no meaning beside it");
+  }
   if (test.allow && is_proof(test.claim.relation)) {
     refuse("allow",
            fmt::format("`allow` has no meaning with `{}`: what is claimed must be shown in "

@@ -1,5 +1,6 @@
 #include "stats/cost_ratio.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -22,8 +23,10 @@ LogMean log_mean(const char* function, const Moments& cost) {
 }
 
 // Both sides of an exact comparison: nothing against what holds, everything against what does not.
-TestResult deterministic(double difference) {
+TestResult deterministic(double cost, double claimed) {
   constexpr double impossible = std::numeric_limits<double>::lowest();
+  const bool equal = std::abs(cost - claimed) <= cost_rounding * std::max(cost, claimed);
+  const double difference = equal ? 0 : cost - claimed;
   return {difference,
           {"bound", {}},
           difference < 0 ? impossible : 0,
@@ -49,7 +52,7 @@ TestResult log_cost_ratio(const Moments& cost_x, const Moments& cost_y, double n
   const LogMean x = log_mean("log_cost_ratio", cost_x);
   const LogMean y = log_mean("log_cost_ratio", cost_y);
   const double variance = x.variance + y.variance;
-  if (variance == 0) return deterministic(cost_x.mean - null_ratio * cost_y.mean);
+  if (variance == 0) return deterministic(cost_x.mean, null_ratio * cost_y.mean);
   return normal_result((x.value - y.value - std::log(null_ratio)) / std::sqrt(variance));
 }
 
@@ -63,7 +66,7 @@ Interval log_cost_ratio_interval(const Moments& cost_x, const Moments& cost_y, d
 TestResult log_cost(const Moments& cost, double null_cost) {
   check::positive({"log_cost", "null_cost"}, null_cost);
   const LogMean mean = log_mean("log_cost", cost);
-  if (mean.variance == 0) return deterministic(cost.mean - null_cost);
+  if (mean.variance == 0) return deterministic(cost.mean, null_cost);
   return normal_result((mean.value - std::log(null_cost)) / std::sqrt(mean.variance));
 }
 

@@ -107,6 +107,24 @@ TEST(CostClaim, OfACostThatNeverVariesIsExact) {
   EXPECT_EQ(verdict_of("{claim: cost(wis) <= cost(normal), cost: samples}"), Verdict::fail);
 }
 
+// The end of an open region does not belong to it.
+TEST(CostClaim, OfACostThatNeverVariesRefutesTheProofAtItsEnd) {
+  EXPECT_EQ(verdict_of("claim: cost(area) < 1"), Verdict::fail);
+  EXPECT_EQ(verdict_of("claim: cost(area) > cost(hemisphere)"), Verdict::fail);
+  EXPECT_EQ(verdict_of("claim: cost(area) < 1.001"), Verdict::pass);
+  EXPECT_EQ(verdict_of("claim: cost(area) > 0.999"), Verdict::pass);
+}
+
+TEST(Budget, ThatPaysForNoTestIsRefused) {
+  EXPECT_NE(
+      refusal([] { run_text(estimators + "{claim: mean(uniform) == analytic, budget: 127}\n"); })
+          .find("does not pay for two observations, the fewest that can be tested: these take "
+                "128"),
+      std::string::npos);
+  const reports::Test least = tested("{claim: mean(uniform) == analytic, budget: 128}");
+  EXPECT_EQ(least.samples[0].secondaries, 2u);
+}
+
 TEST(CostClaim, WithoutAnythingCountedIsInvalid) {
   const reports::Test test = tested("{claim: cost(normal) <= 1}");
   EXPECT_EQ(test.verdict, Verdict::invalid);
@@ -153,6 +171,20 @@ TEST(EfficiencyClaim, OfABiasedEstimatorTakesTheMeanSquaredError) {
 TEST(QuantileClaim, MarksItsNumberInTheHistogram) {
   const reports::Test test = tested("{claim: \"quantile(normal, 0.5) == 2\", detect: 0.2}");
   EXPECT_EQ(test.channels[0].reference, 2);
+}
+
+// 500 observations say nothing of how low the quantile of 1/10000 lies.
+TEST(QuantileClaim, ThatNothingCouldRefuteSaysSo) {
+  const auto message = [](const std::string& claim) {
+    return tested("{claim: '" + claim + "', secondaries: 500}").message;
+  };
+  const std::string low = "exclude no smaller quantile at all";
+  const std::string high = "exclude no larger quantile at all";
+  EXPECT_NE(message("quantile(normal, 0.0001) == -100").find(low), std::string::npos);
+  EXPECT_NE(message("quantile(normal, 0.0001) <= 1").find(low), std::string::npos);
+  EXPECT_NE(message("quantile(normal, 0.9999) >= 3").find(high), std::string::npos);
+  EXPECT_EQ(message("quantile(normal, 0.0001) >= -100").find("exclude no"), std::string::npos);
+  EXPECT_EQ(message("quantile(normal, 0.5) == 2").find("exclude no"), std::string::npos);
 }
 
 TEST(QuantileClaim, IsExactOfOneAndOfTwo) {

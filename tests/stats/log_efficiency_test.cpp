@@ -156,6 +156,23 @@ TEST(CostRatio, ConstantCostsAreComparedExactly) {
   EXPECT_DOUBLE_EQ(point.low, std::log(3) - std::log(2));
 }
 
+Moments always(double cost) { return moments_of(std::vector<double>{cost, cost, cost}); }
+
+// 1.15 * 100 is 114.99999999999999. One part in a million beside the quotient is another ratio.
+TEST(Cost, ThatNeverVariesHasTheQuotientOfWholeCostsHoweverItIsRounded) {
+  for (int x = 1; x <= 150; ++x) {
+    for (int y = 1; y <= 150; ++y) {
+      const Moments cost_x = always(x);
+      const Moments cost_y = always(y);
+      const double ratio = std::exp(std::log(static_cast<double>(x) / y));
+      ASSERT_EQ(log_p_two_sided(log_cost_ratio(cost_x, cost_y, ratio)), 0) << x << " / " << y;
+      ASSERT_LT(log_cost_ratio(cost_x, cost_y, ratio * (1 - 1e-6)).log_p_upper, -1e300);
+      ASSERT_LT(log_cost_ratio(cost_x, cost_y, ratio * (1 + 1e-6)).log_p_lower, -1e300);
+    }
+  }
+  EXPECT_EQ(log_p_two_sided(log_cost(always(115), 1.15 * 100)), 0);
+}
+
 TEST(CostRatio, IntervalsEndWhereTheTestIsAtItsLevel) {
   const Moments cost = joint(pairs(1, 50)).cost;
   const Moments two = moments_of(std::vector<double>{2, 2, 2});
