@@ -47,8 +47,13 @@ std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) 
   const auto worst =
       std::max_element(fit.cells.begin(), fit.cells.end(),
                        [&](const auto& a, const auto& b) { return part(a) < part(b); });
-  return fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
-                     draws.describe_cell(worst->members.front()), worst->observed, worst->expected);
+  std::string text;
+  if (fit.impossible > 0) {
+    text = fmt::format("; {} draws where the density is 0", fit.impossible);
+  }
+  return text + fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
+                            draws.describe_cell(worst->members.front()), worst->observed,
+                            worst->expected);
 }
 
 }  // namespace

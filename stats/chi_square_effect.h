@@ -1,12 +1,14 @@
 #pragma once
 
+#include <functional>
+
+#include "stats/tails.h"
 #include "stats/test_result.h"
 
 namespace assay::stats {
 
-// Internal. X2 of `observations` values in cells, whose noncentrality is observations w^2: for the
-// fit of one sample (chi_square_fit.h) their number, of two (chi_square_two_sample.h)
-// m n / (m + n).
+// Internal. X2 of two samples of m and n values in cells (chi_square_two_sample.h), whose
+// noncentrality is `observations` w^2, m n / (m + n) of them.
 struct ChiSquareStatistic {
   double value = 0;
   double degrees_of_freedom = 1;
@@ -22,5 +24,11 @@ TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_ef
 
 // Central interval of w, low end at least 0.
 Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence);
+
+// Central interval of an effect w >= 0, where `tails(w)` are those of the data if w were the
+// effect: the upper rises with w and the lower falls. Low end at least 0; the high end, sought from
+// `start` on, is infinite where no w is too large.
+Interval effect_interval(const std::function<LogTails(double)>& tails, double start,
+                         double confidence);
 
 }  // namespace assay::stats

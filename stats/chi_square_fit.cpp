@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "stats/cell_effect.h"
 #include "stats/check.h"
 #include "stats/chi_square_effect.h"
 #include "stats/special.h"
@@ -93,12 +94,6 @@ std::uint64_t impossible_observations(const CellCounts& counts) {
   return total;
 }
 
-double log_p_impossible(const ChiSquareFit& fit, double tolerance) {
-  if (fit.impossible == 0) return 0;
-  if (tolerance == 0) return special::lowest_log();
-  return binomial_upper(fit.impossible, {fit.observations, std::min(tolerance, 1.0)});
-}
-
 double pearson(const std::vector<PooledCell>& cells) {
   double sum = 0;
   for (const PooledCell& cell : cells) {
@@ -108,10 +103,39 @@ double pearson(const std::vector<PooledCell>& cells) {
   return sum;
 }
 
-ChiSquareStatistic statistic_of(const ChiSquareFit& fit) {
-  return {.value = fit.test.statistic,
-          .degrees_of_freedom = fit.degrees_of_freedom,
-          .observations = static_cast<double>(fit.observations)};
+CellEffect cell_effect(const ChiSquareFit& fit) {
+  std::vector<CellEffect::Cell> cells;
+  for (const PooledCell& cell : fit.cells) cells.push_back({cell.observed, cell.expected});
+  return {cells, fit.observations};
+}
+
+double effect_of(const ChiSquareFit& fit) {
+  if (fit.observations < 4) return 0;
+  const double squared = std::max(0.0, cell_effect(fit).squared());
+  if (fit.impossible == 0) return std::sqrt(squared);
+  const double t = fit.probability_tolerance;
+  const double share = static_cast<double>(fit.impossible) / static_cast<double>(fit.observations);
+  const double beyond = std::max(0.0, share - t);
+  return std::sqrt(squared + beyond * beyond / t);
+}
+
+/// Of the number of impossible observations where w is null_effect by them alone: both 0 where
+/// there are none.
+LogTails impossible_tails(const ChiSquareFit& fit, double null_effect) {
+  if (fit.impossible == 0) return {0, 0};
+  const double t = fit.probability_tolerance;
+  if (t == 0) return {0, special::lowest_log()};
+  const double share = std::min(1.0, t + null_effect * std::sqrt(t));
+  return binomial_tails(fit.impossible, {fit.observations, share});
+}
+
+LogTails effect_tails(const ChiSquareFit& fit, const CellEffect& cells, double null_effect) {
+  const LogTails by_cells = cells.tails(null_effect);
+  if (fit.impossible == 0) return by_cells;
+  const LogTails by_impossible = impossible_tails(fit, null_effect);
+  const double upper = std::min(by_cells.upper, by_impossible.upper) + std::log(2.0);
+  return {.lower = std::max(by_cells.lower, by_impossible.lower),
+          .upper = special::clamp_log(upper)};
 }
 
 }  // namespace
@@ -126,28 +150,40 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
   fit.cells = pooled(counts, n, options.minimum_expected);
   check::at_least({"chi_square_fit", "pooled cells"}, fit.cells.size(), 2);
   fit.impossible = impossible_observations(counts);
+  fit.probability_tolerance = options.probability_tolerance;
   fit.degrees_of_freedom = static_cast<double>(fit.cells.size() - 1);
   const double statistic = pearson(fit.cells);
   const LogTails tails = chi_square_tails(statistic, fit.degrees_of_freedom);
   // Two ways to reject share the level.
-  const double impossible = log_p_impossible(fit, options.probability_tolerance);
   const bool two_ways = fit.impossible > 0;
+  const double impossible = impossible_tails(fit, 0).upper;
   const double log_p = two_ways ? std::min(tails.upper, impossible) + std::log(2.0) : tails.upper;
   fit.test = {statistic,
               {"chi-square", {fit.degrees_of_freedom}},
               tails.lower,
               special::clamp_log(log_p),
               Exactness::asymptotic};
-  fit.effect = statistic_of(fit).effect();
+  fit.effect = effect_of(fit);
   return fit;
 }
 
 TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect) {
-  return chi_square_effect(statistic_of(fit), null_effect);
+  check::non_negative({"chi_square_fit_effect", "null_effect"}, null_effect);
+  const CellEffect cells = cell_effect(fit);
+  const LogTails tails = effect_tails(fit, cells, null_effect);
+  const double n = static_cast<double>(fit.observations);
+  return {cells.statistic(null_effect),
+          {"noncentral-chi-square", {fit.degrees_of_freedom, n * null_effect * null_effect}},
+          tails.lower,
+          tails.upper,
+          Exactness::asymptotic};
 }
 
 Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence) {
-  return chi_square_effect_interval(statistic_of(fit), confidence);
+  const CellEffect cells = cell_effect(fit);
+  const double start =
+      std::sqrt(std::max(0.0, cells.squared()) + 1 / static_cast<double>(fit.observations));
+  return effect_interval([&](double w) { return effect_tails(fit, cells, w); }, start, confidence);
 }
 
 }  // namespace assay::stats

@@ -39,7 +39,9 @@ struct ChiSquareFit {
   // of the chi-square tail and ln P(Binomial(n, probability_tolerance) >= impossible), and with a
   // zero tolerance the most negative finite double.
   std::uint64_t impossible = 0;
-  // sqrt(max(0, X2 - nu) / n), the estimate of w below.
+  double probability_tolerance = 0;  // as given
+  // Estimate of w below: sqrt(max(0, U)) by CellEffect (cell_effect.h), with impossible
+  // observations sqrt(max(0, U) + max(0, m - t)^2 / t), m their share, t the tolerance.
   double effect = 0;
 };
 
@@ -51,9 +53,13 @@ struct ChiSquareFit {
 // sum off 1 by more than the tolerance (plus rounding), fewer than two pools.
 ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options = {});
 
-// Effect size over the pooled cells, w = sqrt(sum (p1 - p0)^2 / p0) (Cohen 1988). X2 is compared
-// with the noncentral chi-square of ncp = n null_effect^2: log_p_upper rejects "w <= null_effect",
-// log_p_lower rejects "w >= null_effect". Asymptotic.
+// Effect size over the pooled cells, w = sqrt(sum (p1 - p0)^2 / p0) (Cohen 1988), tested by its
+// unbiased estimate (cell_effect.h): log_p_upper rejects "w <= null_effect", log_p_lower rejects
+// "w >= null_effect". Cells of probability zero are one of probability t, the tolerance: that
+// w <= w0 means a share of at most t + w0 sqrt(t) of observations in them (binomial, where there
+// are any). To reject "w <= w0" either way is enough, at half the level; to reject "w >= w0" takes
+// both. Statistic: CellEffect::statistic. Asymptotic. Throws std::domain_error below 4
+// observations.
 TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect);
 
 // Central interval of w, low end at least 0.

@@ -181,9 +181,7 @@ ChiSquareFit chi_square_fit(const CellProbabilities& cells, const CellObservatio
   }
   if (fit.impossible == 0) {
     fit.test.statistic = statistic;
-    const LogTails tails = chi_square_tails(statistic, fit.degrees_of_freedom);
-    fit.test.log_p_upper = tails.upper;
-    fit.test.log_p_lower = tails.lower;
+    fit.test.log_p_upper = chi_square_tails(statistic, fit.degrees_of_freedom).upper;
   }
   return fit;
 }

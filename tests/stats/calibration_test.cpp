@@ -187,12 +187,12 @@ TEST(Calibration, ChiSquareFitIsUniform) {
 }
 
 TEST(Calibration, ChiSquareFitEffectIsUniformAtItsOwnNull) {
-  std::vector<double> tilted = uneven;
-  tilted[5] += .03;
-  tilted[6] -= .03;
+  std::vector<double> slight = uneven;
+  slight[5] += .03;
+  slight[6] -= .03;
   const double effect = std::sqrt(.03 * .03 / .2 + .03 * .03 / .1);
   expect_calibrated({27, 4000}, [&](Philox& random) {
-    const auto fit = chi_square_fit({counts_of(random, 4000, tilted), uneven});
+    const auto fit = chi_square_fit({counts_of(random, 4000, slight), uneven});
     return chi_square_fit_effect(fit, effect).log_p_upper;
   });
 }

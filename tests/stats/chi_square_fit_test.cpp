@@ -73,13 +73,38 @@ TEST(ChiSquareFit, AnImpossibleObservationRejectsAtOnce) {
   EXPECT_NEAR(std::exp(tolerant.test.log_p_upper), 2e-7, 1e-12);
 }
 
+// One observation in a hundred where the law has none: w is (.01 - 1e-9) / sqrt(1e-9) at least, and
+// neither a small effect nor the absence of a large one can be shown.
+TEST(ChiSquareFit, ImpossibleObservationsAreAnEffectThatNoAllowanceCovers) {
+  const CellCounts counts{{4950, 4950, 100}, {.5, .5, 0}};
+  const ChiSquareFit fit = chi_square_fit(counts, {.probability_tolerance = 1e-9});
+  EXPECT_NEAR(fit.effect, .01 / std::sqrt(1e-9), 1);
+  const TestResult small = chi_square_fit_effect(fit, .1);
+  EXPECT_LT(small.log_p_upper, std::log(1e-9));
+  EXPECT_NEAR(small.log_p_lower, 0, 1e-12);
+  const Interval interval = chi_square_fit_interval(fit, .98);
+  EXPECT_GT(interval.low, 200);
+  EXPECT_LT(interval.high, 500);
+  const ChiSquareFit strict = chi_square_fit(counts, {.probability_tolerance = 0});
+  EXPECT_EQ(strict.effect, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(chi_square_fit_interval(strict, .98).high, std::numeric_limits<double>::infinity());
+}
+
+// Within the tolerance they are what quadrature missed.
+TEST(ChiSquareFit, AFewImpossibleObservationsAreTheTolerances) {
+  const ChiSquareFit fit =
+      chi_square_fit({{50000, 49999, 1}, {.5, .5, 0}}, {.probability_tolerance = 1e-5});
+  EXPECT_LT(chi_square_fit_effect(fit, .1).log_p_lower, std::log(1e-3));
+}
+
 TEST(ChiSquareFit, TheEffectMovesTheNullAndTheIntervalInvertsIt) {
   const CellCounts counts{{700, 300, 500, 500}, {.25, .25, .25, .25}};
   const ChiSquareFit fit = chi_square_fit(counts);
   // X2 = 2 * 200^2 / 500 = 160
   EXPECT_NEAR(fit.test.statistic, 160, 1e-12);
-  EXPECT_NEAR(fit.effect, std::sqrt(157.0 / 2000), 1e-12);
-  EXPECT_NEAR(chi_square_fit_effect(fit, 0).log_p_upper, fit.test.log_p_upper, 1e-9);
+  const double pairs = 700 * 699 + 300 * 299 + 2 * 500 * 499;
+  EXPECT_NEAR(fit.effect, std::sqrt(pairs / (2000 * 1999 * .25) - 1), 1e-12);
+  EXPECT_NEAR(chi_square_fit_effect(fit, 0).log_p_upper / fit.test.log_p_upper, 1, .01);
   const Interval interval = chi_square_fit_interval(fit, .98);
   EXPECT_LT(interval.low, fit.effect);
   EXPECT_GT(interval.high, fit.effect);
