@@ -158,6 +158,32 @@ bool about_draws(const Question& question) {
                      [](const Subject& side) { return !side.purpose.empty(); });
 }
 
+[[noreturn]] void refuse(const Question& question, const std::string& method,
+                         const std::string& why) {
+  const Location& where = question.test->where;
+  // A claim of the command line has its method from an option.
+  if (where.file == "claim") throw InputError({"--test " + method, 0, 0}, why);
+  throw InputError(where, fmt::format("`test: {}` {}", method, why));
+}
+
+/// Methods whose p-values are exact take the reference for exact, and the range for declared.
+void require_exact_data(const Method& method, const Question& question) {
+  const bool of_range = method.name == "bounded" || method.name == "betting";
+  if (!of_range && method.name != "binomial") return;
+  for (const Constant& reference : question.references) {
+    if (reference.standard_error == 0) continue;
+    refuse(question, method.name,
+           "takes the reference for exact, but it has a standard error; leave `test` out");
+  }
+  for (const Subject& subject : question.subjects) {
+    if (!of_range || !subject.setup->observations()) continue;
+    refuse(question, method.name,
+           fmt::format("needs a range that is declared, and the rows of `{}` declare none; leave "
+                       "`test` out",
+                       subject.estimator->name));
+  }
+}
+
 /// A margin that the method cannot test.
 void require_margins(const Method& method, const Question& question) {
   const TestEntry& test = *question.test;
@@ -230,16 +256,13 @@ Method find_method(const Question& question, const std::string& name) {
   std::string known;
   for (const Method& method : methods_for(question)) {
     if (method.name == name) {
+      require_exact_data(method, question);
       require_margins(method, question);
       return method;
     }
     known += (known.empty() ? "`" : ", `") + method.name + "`";
   }
-  const std::string why = "does not answer this claim; there is " + known;
-  const Location& where = question.test->where;
-  // A claim of the command line has its method from an option.
-  if (where.file == "claim") throw InputError({"--test " + name, 0, 0}, why);
-  throw InputError(where, fmt::format("`test: {}` {}", name, why));
+  refuse(question, name, "does not answer this claim; there is " + known);
 }
 
 std::string null_hypothesis(const Method&, const Question& question, std::size_t channel) {

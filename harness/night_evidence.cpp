@@ -9,7 +9,6 @@
 #include "harness/rows.h"
 #include "harness/text_hash.h"
 #include "harness/theta_error.h"
-#include "stats/log_variance.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
@@ -60,17 +59,6 @@ double z_of(const stats::TestResult& at_null) {
   return at_null.log_p_upper < at_null.log_p_lower ? z : -z;
 }
 
-/// What E ln s^2 lacks of ln Var x, first minus second source, where the method leaves it.
-double bias_of(const TestOutcome& test, std::span<const ChannelData> data) {
-  if (test.plan.method.name != "log-variance") return 0;
-  double bias = 0;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const double error = stats::log_variance_standard_error(data[i].moments);
-    bias += (i == 0 ? 1 : -1) * error * error / 2;
-  }
-  return bias;
-}
-
 /// The effect a series looks for, from the pilot; nullopt where it has no spread.
 std::optional<double> prior_effect(const TestOutcome& test, std::size_t channel,
                                    const Pilots& pilots) {
@@ -89,7 +77,7 @@ NightEvidence of_score(const TestWork& work, std::size_t channel, const Pilots& 
   const ThetaError error = theta_error(test.question, channel, data).value();
   if (!(error.drawn > 0)) return {.missing = "its observations have no spread"};
   const double total = std::hypot(error.drawn, error.fixed);
-  const double difference = z_of(outcome_of(test, channel)->at_null) * total + bias_of(test, data);
+  const double difference = z_of(outcome_of(test, channel)->at_null) * total;
   return {.evidence = stats::evidence_of({difference, error.drawn}),
           .prior = {.effect = *effect, .reference_error = error.fixed}};
 }

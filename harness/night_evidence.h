@@ -7,8 +7,7 @@
 //   V = 1 / e^2,   S = z E / e^2,
 // e: the drawn data's standard error of theta (theta_error.h), E: hypot(e, what is the same in all
 // runs), z: the normal quantile of the test's own p-value of theta = 0. For a mean that is
-// S = sum (x - r) / sigma^2 and V = n / sigma^2 in units of theta, up to Student's t made normal;
-// e of ln s^2 is corrected for its bias of -SE^2 / 2 where the method does not do so itself.
+// S = sum (x - r) / sigma^2 and V = n / sigma^2 in units of theta, up to Student's t made normal.
 // A run that stopped early gives the S and V it has. Its z is not normal then, since a small
 // estimate stops sooner; but S is a Brownian motion observed at the time V, wherever it is stopped,
 // and the ledger's E-value a martingale in V (optional stopping), so its level holds all the same.

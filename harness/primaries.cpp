@@ -10,7 +10,6 @@
 namespace assay::harness {
 namespace {
 
-// What a test without `detect` takes; here only the skewness of their mean counts.
 // Below this the cost of an observation (stream, moments) shows against 20 ns a primary.
 constexpr std::uint64_t least_primaries = 64;
 // Beyond this a larger mean no longer tames the tail in reasonable time: another method, or none.

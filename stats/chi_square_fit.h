@@ -35,9 +35,9 @@ struct ChiSquareFit {
   double degrees_of_freedom = 0;
   std::vector<PooledCell> cells;
   std::uint64_t observations = 0;
-  // Observations in cells of probability zero. They reject at once: log_p_upper is then the smaller
-  // of the chi-square tail and ln P(Binomial(n, probability_tolerance) >= impossible), and with a
-  // zero tolerance the most negative finite double.
+  // Observations in cells of probability zero. They reject at once: log_p_upper is then ln 2 plus
+  // the smaller of the chi-square tail and ln P(Binomial(n, probability_tolerance) >= impossible),
+  // and with a zero tolerance the most negative finite double.
   std::uint64_t impossible = 0;
   double probability_tolerance = 0;  // as given
   // Estimate of w below: sqrt(max(0, U)) by CellEffect (cell_effect.h), with impossible

@@ -116,12 +116,12 @@ DistributionBand ecdf_band(std::uint64_t n, std::size_t points, double confidenc
 }
 
 DistributionBand ecdf_band(TwoSizes sizes, std::size_t points, double confidence) {
-  check::at_least({"ecdf_band", "size of x"}, sizes.x, 1);
-  check::at_least({"ecdf_band", "size of y"}, sizes.y, 1);
+  check::at_least({"ecdf_band", "size of x"}, sizes.m, 1);
+  check::at_least({"ecdf_band", "size of y"}, sizes.n, 1);
   check::inside_unit({"ecdf_band", "confidence"}, confidence);
-  const std::uint64_t total = sizes.x + sizes.y;
+  const std::uint64_t total = sizes.m + sizes.n;
   const auto ranks = equal_ranks(total, points);
-  DistributionBand band = widest(BandWalk::two_samples({sizes.x, total}, ranks), confidence);
+  DistributionBand band = widest(BandWalk::two_samples({sizes.m, total}, ranks), confidence);
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     band.points[i].rank = ranks[i];
     band.points[i].z = static_cast<double>(ranks[i]) / static_cast<double>(total);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stats/test_result.h"
+#include "stats/two_sizes.h"
 
 namespace assay::stats {
 
@@ -37,10 +38,6 @@ DistributionBand ecdf_band(std::uint64_t n, std::size_t points, double confidenc
 
 // Of the number of x among the first r_i of the pooled sorted values, r_i = i (m + n) / points
 // rounded, when both samples have one continuous law: hypergeometric. m, n >= 1.
-struct TwoSizes {
-  std::uint64_t x = 1;
-  std::uint64_t y = 1;
-};
 DistributionBand ecdf_band(TwoSizes sizes, std::size_t points, double confidence);
 
 // The pointwise error gamma at which the intervals of Clopper & Pearson (binomial.h), at points - 1

@@ -46,9 +46,9 @@ ParetoTail pareto_tail(std::span<const double> largest, std::uint64_t count,
                        double confidence = 0.9999);
 
 // The largest shape at which a claim can be tested.
-//   mean:     min(1/2, mean_by_sums(n)): the variance exists, as t and Welch need
-//   variance: 1/4: the fourth moment exists
-//   any_mean: min(.7, 1 - 1 / log10 n): beyond it sums of n values have not settled at all
+//   any_mean: s(n) = min(.7, 1 - 1 / log10 n): beyond it sums of n values have not settled at all
+//   mean:     min(1/2, s(n)): the variance exists, as t and Welch need
+//   variance: min(1/4, s(n)): the fourth moment exists
 enum class TailClaim { mean, variance, any_mean };
 double pareto_limit(TailClaim claim, std::uint64_t count);
 

@@ -44,8 +44,7 @@ std::uint64_t largest_kept(Trials trials, double log_level) {
 }
 
 double sample_quantile(std::span<const double> sorted, double probability) {
-  const double rank = std::ceil(probability * static_cast<double>(sorted.size()));
-  return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+  return sorted[sample_quantile_rank(sorted.size(), probability)];
 }
 
 // ln of Fisher's combination of two independent p-values: c (1 - ln c).
@@ -245,7 +244,8 @@ double quantile_standard_deviation(double probability, double density) {
 std::size_t sample_quantile_rank(std::size_t count, double probability) {
   check::at_least({"sample_quantile_rank", "count"}, count, 1);
   const double n = static_cast<double>(count);
-  return static_cast<std::size_t>(std::min(n - 1, std::floor(probability * n)));
+  // .29 * 100 is 28.999999999999996.
+  return static_cast<std::size_t>(std::min(n - 1, std::floor(probability * n * (1 + 1e-14))));
 }
 
 }  // namespace assay::stats

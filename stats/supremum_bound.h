@@ -1,13 +1,8 @@
 #pragma once
 
-#include <cstdint>
+#include "stats/two_sizes.h"
 
 namespace assay::stats {
-
-struct TwoSizes {
-  std::uint64_t m = 1;
-  std::uint64_t n = 1;
-};
 
 // Internal. ln of an upper bound on P(A + B >= gap), A = sup |F_m - F| and B = sup |G_n - G|
 // independent, whatever F and G are. Each is dominated by the law with tail min(1, 2 exp(-2 n a^2))

@@ -8,7 +8,8 @@ namespace assay::stats {
 // The law of a statistic under the null hypothesis, by name and parameters:
 //   "normal" {}, "student-t" {nu}, "chi-square" {nu}, "F" {nu1, nu2}, "binomial" {n, p},
 //   "noncentral-chi-square" {nu, ncp}, "kolmogorov" {n}, "smirnov" {m, n}, "bound" {} (a
-//   probability inequality: the p-value is an upper bound, the statistic has no stated law).
+//   probability inequality: the p-value is an upper bound, the statistic has no stated law),
+//   "image-family" {sums} (the smallest p-value of so many sums over an image, of other laws).
 struct Distribution {
   std::string family;
   std::vector<double> parameters;

@@ -6,6 +6,7 @@
 
 #include "questions.h"
 #include "refusal.h"
+#include "running.h"
 #include "stats/tails.h"
 #include "tests/philox.h"
 
@@ -199,6 +200,21 @@ TEST(Method, MarginOnARatioIsItsLogarithm) {
   EXPECT_NEAR(margin_on_theta(asked->question("variance"), 0, {.value = 0.4}), std::log(1.1),
               1e-15);
   EXPECT_DOUBLE_EQ(margin_on_theta(asked->question("mean"), 0, tenth), 0.1);
+}
+
+// Their p-values are exact: an error of the reference's own has no place in them.
+TEST(Method, ThatIsExactRefusesAReferenceWithAnError) {
+  for (const char* claim :
+       {"mean(darts) == 3.1 +- 0.1, test: binomial", "mean(darts) == 3.1 +- 0.1, test: bounded",
+        "mean(darts) <= 3.1 +- 0.1, test: betting"}) {
+    const std::string text = refusal([&] {
+      run_text(
+          "suite: s\nestimators:\n  darts: {plugin: analytic/dart_throwing}\n"
+          "tests:\n  - {claim: " +
+          std::string(claim) + "}\n");
+    });
+    EXPECT_NE(text.find("takes the reference for exact"), text.npos) << text;
+  }
 }
 
 }  // namespace

@@ -110,7 +110,8 @@ TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
     const TestOutcome& outcome = planned.suites[0]->tests[i].outcome;
     const auto foretold = forecast(outcome, planned.suites[0]->pilots).detectable;
     ASSERT_EQ(foretold.has_value(), test.detectable.has_value()) << test.name;
-    if (foretold) EXPECT_NEAR(*foretold / *test.detectable, 1, 0.1) << test.name;
+    if (!foretold) continue;
+    EXPECT_NEAR(*foretold / *test.detectable, 1, 0.1) << test.name;
   }
 }
 

@@ -58,6 +58,15 @@ TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
   EXPECT_EQ(judged(rows, "claim: mean(rows) == 0, test: t").verdict, Verdict::pass);
 }
 
+// Their least and largest value are no bounds of what they come from.
+TEST(Rows, DeclareNoRangeForAForcedTest) {
+  const std::vector<double> rows = rows_of(60, 1, normal);
+  for (const char* test :
+       {"claim: mean(rows) == 0, test: bounded", "claim: mean(rows) <= 1, test: betting"}) {
+    EXPECT_THAT(refusal([&] { judged(rows, test); }), HasSubstr("declare none")) << test;
+  }
+}
+
 // Claims whose plan rests on sixth powers of what the pilot saw.
 TEST(Rows, ThatAreNotFiniteAreAnErrorWithTheFirstOfThem) {
   std::vector<double> rows = rows_of(3000, 3, normal);

@@ -224,6 +224,7 @@ TEST(Quantile, StandsWhereTheCountsAgree) {
   EXPECT_EQ(sample_quantile_rank(5, 0.5), 2U);
   EXPECT_EQ(sample_quantile_rank(4, 0.25), 1U);
   EXPECT_EQ(sample_quantile_rank(4, 1), 3U);
+  EXPECT_EQ(sample_quantile_rank(100, 0.29), 29U);
   EXPECT_THROW(sample_quantile_rank(0, 0.5), std::domain_error);
 }
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+namespace assay::stats {
+
+// Of two samples.
+struct TwoSizes {
+  std::uint64_t m = 1;
+  std::uint64_t n = 1;
+};
+
+}  // namespace assay::stats
