@@ -14,6 +14,7 @@
 #include "stats/errors.h"
 #include "stats/image_equivalence.h"
 #include "stats/image_pyramid.h"
+#include "stats/image_reference_error.h"
 #include "stats/moments.h"
 #include "stats/tails.h"
 
@@ -113,10 +114,14 @@ stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
 }
 
 template <class Real>
-stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative) {
-  const stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
+stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative,
+                                 stats::ElementErrors errors) {
+  stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
     return stats::image_distance(first, second, on_all_threads);
   });
+  if (!pair.of_two()) {
+    distance = stats::with_reference_error(distance, pair.first(), pair.reference(), errors);
+  }
   return in_units_of_margin(distance, pair.extent(), relative);
 }
 
@@ -182,7 +187,9 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                              const ImagePair<Real>& pair, ImageOutcome& outcome) {
   stats::check::replicates("image", pair.replicates());
   const bool relative = is_relative(question, 0);
-  const stats::ImageDistance distance = distance_of(pair, relative);
+  const auto errors =
+      test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown;
+  const stats::ImageDistance distance = distance_of(pair, relative, errors);
   const VaryingPart varying(question, pair, test.weights);
   require_spread(question, varying.any(), distance);
   outcome.unseen = varying.unseen();
