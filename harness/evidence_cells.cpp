@@ -75,8 +75,10 @@ Evidence cells_against_density(const Question& question, const ChannelData& data
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
   const stats::CellProbabilities& grid = draws.cells().grid;
   stats::CellCounts counts{.observed = {data.cells.begin(), data.cells.end()},
-                           .probability = grid.probability};
+                           .probability = grid.probability,
+                           .error = grid.error};
   counts.probability.push_back(draws.cells().missing());
+  counts.error.push_back(grid.total_error);
   const stats::ChiSquareFit fit =
       stats::chi_square_fit(counts, {.probability_tolerance = draws.cells().tolerance()});
   const auto at = [fit](double theta) {

@@ -13,11 +13,21 @@
 namespace assay::stats {
 namespace {
 
+// As CellEffect needs them.
+constexpr std::uint64_t fewest_for_effect = 4;
+
 void check_cells(const CellCounts& counts, const FitOptions& options) {
   check::at_least({"chi_square_fit", "number of cells"}, counts.probability.size(), 1);
   if (counts.observed.size() != counts.probability.size()) {
     check::fail({"chi_square_fit", "number of counts"}, counts.observed.size(),
                 "the number of probabilities, " + std::to_string(counts.probability.size()));
+  }
+  if (!counts.error.empty() && counts.error.size() != counts.probability.size()) {
+    check::fail({"chi_square_fit", "number of errors"}, counts.error.size(),
+                "the number of probabilities, " + std::to_string(counts.probability.size()));
+  }
+  for (const double error : counts.error) {
+    check::non_negative({"chi_square_fit", "error"}, error);
   }
   check::non_negative({"chi_square_fit", "minimum_expected"}, options.minimum_expected);
   check::non_negative({"chi_square_fit", "probability_tolerance"}, options.probability_tolerance);
@@ -103,6 +113,17 @@ double pearson(const std::vector<PooledCell>& cells) {
   return sum;
 }
 
+double error_effect_of(const ChiSquareFit& fit, const std::vector<double>& error) {
+  if (error.empty()) return 0;
+  double sum = 0;
+  for (const PooledCell& cell : fit.cells) {
+    double total = 0;
+    for (const std::size_t member : cell.members) total += error[member];
+    sum += total * total / cell.expected;
+  }
+  return std::sqrt(sum * static_cast<double>(fit.observations));
+}
+
 CellEffect cell_effect(const ChiSquareFit& fit) {
   std::vector<CellEffect::Cell> cells;
   for (const PooledCell& cell : fit.cells) cells.push_back({cell.observed, cell.expected});
@@ -110,7 +131,7 @@ CellEffect cell_effect(const ChiSquareFit& fit) {
 }
 
 double effect_of(const ChiSquareFit& fit) {
-  if (fit.observations < 4) return 0;
+  if (fit.observations < fewest_for_effect) return 0;
   const double squared = std::max(0.0, cell_effect(fit).squared());
   if (fit.impossible == 0) return std::sqrt(squared);
   const double t = fit.probability_tolerance;
@@ -130,7 +151,11 @@ LogTails impossible_tails(const ChiSquareFit& fit, double null_effect) {
 }
 
 LogTails effect_tails(const ChiSquareFit& fit, const CellEffect& cells, double null_effect) {
-  const LogTails by_cells = cells.tails(null_effect);
+  const double r = fit.error_effect;
+  const LogTails by_cells =
+      r == 0 ? cells.tails(null_effect)
+             : LogTails{.lower = cells.tails(std::max(0.0, null_effect - r)).lower,
+                        .upper = cells.tails(null_effect + r).upper};
   if (fit.impossible == 0) return by_cells;
   const LogTails by_impossible = impossible_tails(fit, null_effect);
   const double upper = std::min(by_cells.upper, by_impossible.upper) + std::log(2.0);
@@ -152,8 +177,12 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
   fit.impossible = impossible_observations(counts);
   fit.probability_tolerance = options.probability_tolerance;
   fit.degrees_of_freedom = static_cast<double>(fit.cells.size() - 1);
+  fit.error_effect = error_effect_of(fit, counts.error);
   const double statistic = pearson(fit.cells);
-  const LogTails tails = chi_square_tails(statistic, fit.degrees_of_freedom);
+  LogTails tails = chi_square_tails(statistic, fit.degrees_of_freedom);
+  if (fit.error_effect > 0 && fit.observations >= fewest_for_effect) {
+    tails.upper = std::max(tails.upper, cell_effect(fit).tails(fit.error_effect).upper);
+  }
   // Two ways to reject share the level.
   const bool two_ways = fit.impossible > 0;
   const double impossible = impossible_tails(fit, 0).upper;

@@ -161,29 +161,14 @@ EqualMassIntervals equal_mass_intervals(const std::function<double(double)>& den
 
 ChiSquareFit chi_square_fit(const CellProbabilities& cells, const CellObservations& counts,
                             double minimum_expected) {
-  CellCounts full{counts.observed, cells.probability};
-  std::vector<double> error = cells.error;
+  CellCounts full{counts.observed, cells.probability, cells.error};
   const double missing = 1 - cells.total;
   if (missing > cells.total_error || counts.missing > 0) {
     full.observed.push_back(counts.missing);
     full.probability.push_back(std::max(0.0, missing));
-    error.push_back(cells.total_error);
+    full.error.push_back(cells.total_error);
   }
-  ChiSquareFit fit = chi_square_fit(full, {minimum_expected, cells.total_error + 1e-9});
-  const double n = static_cast<double>(fit.observations);
-  double statistic = 0;
-  for (const PooledCell& pool : fit.cells) {
-    double slack = 0;
-    for (const std::size_t member : pool.members) slack += n * error[member];
-    const double deviation =
-        std::max(0.0, std::abs(static_cast<double>(pool.observed) - pool.expected) - slack);
-    statistic += deviation * deviation / (pool.expected + slack);
-  }
-  if (fit.impossible == 0) {
-    fit.test.statistic = statistic;
-    fit.test.log_p_upper = chi_square_tails(statistic, fit.degrees_of_freedom).upper;
-  }
-  return fit;
+  return chi_square_fit(full, {minimum_expected, cells.total_error + 1e-9});
 }
 
 }  // namespace assay::stats

@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "stats/chi_square_fit.h"
+#include "tests/stats/multinomial.h"
 
 namespace assay::stats {
 namespace {
+
+using tests::multinomial;
 
 /// Cells of equal probability, or one of `rare` among equal ones, of which the first or the rare
 /// one comes `factor` times as often.
@@ -35,19 +38,6 @@ double effect_of(const Tilted& cells) {
     sum += std::pow(cells.law[i] - cells.null[i], 2) / cells.null[i];
   }
   return std::sqrt(sum);
-}
-
-std::vector<std::uint64_t> multinomial(std::mt19937_64& random, std::uint64_t n,
-                                       const std::vector<double>& law) {
-  std::vector<std::uint64_t> counts(law.size());
-  double left = 1;
-  for (std::size_t i = 0; i < law.size() && n > 0; ++i) {
-    const double share = std::min(1.0, law[i] / left);
-    counts[i] = std::binomial_distribution<std::uint64_t>(n, share)(random);
-    n -= counts[i];
-    left -= law[i];
-  }
-  return counts;
 }
 
 std::vector<CellEffect::Cell> cells_of(const std::vector<std::uint64_t>& counts,

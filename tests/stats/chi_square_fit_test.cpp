@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <numeric>
+#include <random>
 #include <stdexcept>
 
 #include "stats/tails.h"
+#include "tests/stats/multinomial.h"
 
 namespace assay::stats {
 namespace {
@@ -95,6 +97,35 @@ TEST(ChiSquareFit, AFewImpossibleObservationsAreTheTolerances) {
   const ChiSquareFit fit =
       chi_square_fit({{50000, 49999, 1}, {.5, .5, 0}}, {.probability_tolerance = 1e-5});
   EXPECT_LT(chi_square_fit_effect(fit, .1).log_p_lower, std::log(1e-3));
+}
+
+// Probabilities that are off by as much as they say, up and down in turn: w = .02 of the law that
+// they are of, and n so large that X2 alone rejects every time. Neither the truth nor, that near to
+// it, the contrary is rejected more often than .01: of 400 samples 14 or more have a probability of
+// 1e-4.
+TEST(ChiSquareFit, ErrorsOfTheProbabilitiesAreAllowedForBothWays) {
+  constexpr std::size_t cells = 64;
+  constexpr double error = .02 / cells;
+  constexpr std::uint64_t n = 1000000;
+  std::vector<double> off(cells);
+  for (std::size_t i = 0; i < cells; ++i) off[i] = 1.0 / cells + (i % 2 == 0 ? error : -error);
+  const std::vector<double> truth(cells, 1.0 / cells);
+  std::mt19937_64 random(1);
+  int refuted = 0;
+  int excluded = 0;
+  int by_exact = 0;
+  for (int run = 0; run < 400; ++run) {
+    CellCounts counts{.observed = tests::multinomial(random, n, truth), .probability = off};
+    by_exact += chi_square_fit(counts).test.log_p_upper < std::log(.01);
+    counts.error.assign(cells, error);
+    const ChiSquareFit fit = chi_square_fit(counts);
+    EXPECT_NEAR(fit.error_effect, .02, 1e-4);
+    refuted += fit.test.log_p_upper < std::log(.01);
+    excluded += chi_square_fit_effect(fit, .0001).log_p_lower < std::log(.01);
+  }
+  EXPECT_EQ(by_exact, 400);
+  EXPECT_LT(refuted, 14);
+  EXPECT_LT(excluded, 14);
 }
 
 TEST(ChiSquareFit, TheEffectMovesTheNullAndTheIntervalInvertsIt) {
