@@ -15,10 +15,10 @@ double variance_of(Noncentral law) { return 2 * (law.degrees + 2 * law.noncentra
 
 }  // namespace
 
-CellEffect::CellEffect(std::span<const Cell> cells, std::uint64_t observations)
+CellEffect::CellEffect(std::span<const PooledCell> cells, std::uint64_t observations)
     : n_(static_cast<double>(observations)), cells_(static_cast<double>(cells.size())) {
-  check::at_least({"CellEffect", "observations"}, observations, 4);
-  for (const Cell& cell : cells) {
+  check::at_least({"CellEffect", "observations"}, observations, fewest_observations);
+  for (const PooledCell& cell : cells) {
     const double p = cell.expected / n_;
     const double count = static_cast<double>(cell.observed);
     const double first = count / n_ / p;

@@ -1,11 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "stats/tails.h"
 
 namespace assay::stats {
+
+struct PooledCell {
+  std::uint64_t observed = 0;
+  double expected = 0;               // n p0
+  std::vector<std::size_t> members;  // indices of the caller's cells
+};
 
 // Counts O of n >= 4 multinomial observations in cells of probabilities p0 > 0 that sum to 1, and
 // how far their law p1 lies from p0:
@@ -13,13 +21,10 @@ namespace assay::stats {
 // Sums over d are estimated without bias by falling factorials, O (O-1) ... / n (n-1) ...
 class CellEffect {
  public:
-  struct Cell {
-    std::uint64_t observed = 0;
-    double expected = 0;  // n p0
-  };
+  static constexpr std::uint64_t fewest_observations = 4;
 
-  // Throws std::domain_error where n < 4.
-  CellEffect(std::span<const Cell> cells, std::uint64_t observations);
+  // Throws std::domain_error where n is less.
+  CellEffect(std::span<const PooledCell> cells, std::uint64_t observations);
 
   // The unbiased estimate U = sum O (O-1) / (n (n-1) p0) - 1 of w^2, which may be negative.
   double squared() const { return squared_; }

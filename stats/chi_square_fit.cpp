@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "stats/cell_effect.h"
 #include "stats/check.h"
 #include "stats/chi_square_effect.h"
 #include "stats/special.h"
@@ -13,19 +12,15 @@
 namespace assay::stats {
 namespace {
 
-// As CellEffect needs them.
-constexpr std::uint64_t fewest_for_effect = 4;
-
 void check_cells(const CellCounts& counts, const FitOptions& options) {
   check::at_least({"chi_square_fit", "number of cells"}, counts.probability.size(), 1);
-  if (counts.observed.size() != counts.probability.size()) {
-    check::fail({"chi_square_fit", "number of counts"}, counts.observed.size(),
+  const auto as_many = [&](const char* what, std::size_t size) {
+    if (size == counts.probability.size()) return;
+    check::fail({"chi_square_fit", what}, size,
                 "the number of probabilities, " + std::to_string(counts.probability.size()));
-  }
-  if (!counts.error.empty() && counts.error.size() != counts.probability.size()) {
-    check::fail({"chi_square_fit", "number of errors"}, counts.error.size(),
-                "the number of probabilities, " + std::to_string(counts.probability.size()));
-  }
+  };
+  as_many("number of counts", counts.observed.size());
+  if (!counts.error.empty()) as_many("number of errors", counts.error.size());
   for (const double error : counts.error) {
     check::non_negative({"chi_square_fit", "error"}, error);
   }
@@ -124,14 +119,10 @@ double error_effect_of(const ChiSquareFit& fit, const std::vector<double>& error
   return std::sqrt(sum * static_cast<double>(fit.observations));
 }
 
-CellEffect cell_effect(const ChiSquareFit& fit) {
-  std::vector<CellEffect::Cell> cells;
-  for (const PooledCell& cell : fit.cells) cells.push_back({cell.observed, cell.expected});
-  return {cells, fit.observations};
-}
+CellEffect cell_effect(const ChiSquareFit& fit) { return {fit.cells, fit.observations}; }
 
 double effect_of(const ChiSquareFit& fit) {
-  if (fit.observations < fewest_for_effect) return 0;
+  if (fit.observations < CellEffect::fewest_observations) return 0;
   const double squared = std::max(0.0, cell_effect(fit).squared());
   if (fit.impossible == 0) return std::sqrt(squared);
   const double t = fit.probability_tolerance;
@@ -180,7 +171,7 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
   fit.error_effect = error_effect_of(fit, counts.error);
   const double statistic = pearson(fit.cells);
   LogTails tails = chi_square_tails(statistic, fit.degrees_of_freedom);
-  if (fit.error_effect > 0 && fit.observations >= fewest_for_effect) {
+  if (fit.error_effect > 0 && fit.observations >= CellEffect::fewest_observations) {
     tails.upper = std::max(tails.upper, cell_effect(fit).tails(fit.error_effect).upper);
   }
   // Two ways to reject share the level.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "stats/cell_effect.h"
 #include "stats/test_result.h"
 
 namespace assay::stats {
@@ -24,12 +25,6 @@ struct FitOptions {
   // Bound on the total probability that quadrature may have missed in cells whose probability is 0,
   // and on the error of the sum of all probabilities.
   double probability_tolerance = 1e-9;
-};
-
-struct PooledCell {
-  std::uint64_t observed = 0;
-  double expected = 0;
-  std::vector<std::size_t> members;  // indices of the caller's cells
 };
 
 struct ChiSquareFit {

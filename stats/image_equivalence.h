@@ -12,8 +12,9 @@ namespace assay::stats {
 // with va, vb the squared errors of the means, or se^2 of a reference. U may be negative.
 // The standard error is the jackknife over replicates (Efron & Stein 1981: on average not too
 // small), each stack's replicates left out in turn; correlated elements are in it. Degrees: the
-// smaller count of replicates, less one. A reference's own error is subtracted; the variance that it
-// adds is with_reference_error's (image_reference_error.h). All throw std::domain_error as welch_z does.
+// smaller count of replicates, less one. A reference's own error is subtracted; the variance that
+// it adds is with_reference_error's (image_reference_error.h). All throw std::domain_error as
+// welch_z does.
 struct SquaredBias {
   double estimate = 0;
   double standard_error = 0;

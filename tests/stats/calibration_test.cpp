@@ -17,6 +17,7 @@
 #include "stats/student_t.h"
 #include "stats/welch_t.h"
 #include "tests/stats/expect_calibrated.h"
+#include "tests/stats/multinomial.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
@@ -25,6 +26,7 @@ namespace {
 using tests::draw_moments;
 using tests::expect_calibrated;
 using tests::Experiment;
+using tests::multinomial;
 using tests::Philox;
 using tests::sample_of;
 using tests::Shape;
@@ -166,23 +168,11 @@ TEST(Calibration, KolmogorovSmirnovMarginsHoldAtTheirOwnNull) {
 }
 
 // Counts of n draws from a discrete law by its cumulative probabilities.
-std::vector<std::uint64_t> counts_of(Philox& random, std::size_t n,
-                                     const std::vector<double>& probability) {
-  std::vector<std::uint64_t> counts(probability.size());
-  for (std::size_t i = 0; i < n; ++i) {
-    double u = random.uniform();
-    std::size_t cell = 0;
-    while (cell + 1 < probability.size() && u >= probability[cell]) u -= probability[cell++];
-    ++counts[cell];
-  }
-  return counts;
-}
-
 const std::vector<double> uneven{.02, .05, .08, .1, .15, .2, .1, .1, .1, .1};
 
 TEST(Calibration, ChiSquareFitIsUniform) {
   expect_calibrated({26, 5000}, [](Philox& random) {
-    return chi_square_fit({counts_of(random, 2000, uneven), uneven}).test.log_p_upper;
+    return chi_square_fit({multinomial(random, 2000, uneven), uneven}).test.log_p_upper;
   });
 }
 
@@ -192,7 +182,7 @@ TEST(Calibration, ChiSquareFitEffectIsUniformAtItsOwnNull) {
   slight[6] -= .03;
   const double effect = std::sqrt(.03 * .03 / .2 + .03 * .03 / .1);
   expect_calibrated({27, 4000}, [&](Philox& random) {
-    const auto fit = chi_square_fit({counts_of(random, 4000, slight), uneven});
+    const auto fit = chi_square_fit({multinomial(random, 4000, slight), uneven});
     return chi_square_fit_effect(fit, effect).log_p_upper;
   });
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "stats/chi_square_fit.h"
@@ -14,6 +13,7 @@ namespace assay::stats {
 namespace {
 
 using tests::multinomial;
+using tests::Philox;
 
 /// Cells of equal probability, or one of `rare` among equal ones, of which the first or the rare
 /// one comes `factor` times as often.
@@ -40,26 +40,26 @@ double effect_of(const Tilted& cells) {
   return std::sqrt(sum);
 }
 
-std::vector<CellEffect::Cell> cells_of(const std::vector<std::uint64_t>& counts,
-                                       const std::vector<double>& null, std::uint64_t n) {
-  std::vector<CellEffect::Cell> cells;
+std::vector<PooledCell> cells_of(const std::vector<std::uint64_t>& counts,
+                                 const std::vector<double>& null, std::uint64_t n) {
+  std::vector<PooledCell> cells;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    cells.push_back({counts[i], static_cast<double>(n) * null[i]});
+    cells.push_back({counts[i], static_cast<double>(n) * null[i], {}});
   }
   return cells;
 }
 
 // U = sum of O (O-1) / p0 over n (n-1), less 1, by hand.
 TEST(CellEffect, IsEstimatedFromPairsInOneCell) {
-  const CellEffect effect(std::vector<CellEffect::Cell>{{6, 5}, {3, 2.5}, {1, 2.5}}, 10);
+  const CellEffect effect(std::vector<PooledCell>{{6, 5, {}}, {3, 2.5, {}}, {1, 2.5, {}}}, 10);
   EXPECT_NEAR(effect.squared(), (6 * 5 / .5 + 3 * 2 / .25 + 0) / 90 - 1, 1e-12);
-  EXPECT_THROW(CellEffect(std::vector<CellEffect::Cell>{{1, 1}, {2, 2}}, 3), std::domain_error);
+  EXPECT_THROW(CellEffect(std::vector<PooledCell>{{1, 1, {}}, {2, 2, {}}}, 3), std::domain_error);
 }
 
 // Over 4000 samples the mean of U lies within five of its standard errors of w^2: 6e-7.
 TEST(CellEffect, IsWithoutBias) {
   const Tilted cells = tilted(65, 2e-4, 5);
-  std::mt19937_64 random(2);
+  Philox random(1252);
   constexpr int runs = 4000;
   double sum = 0;
   double squares = 0;
@@ -76,7 +76,7 @@ TEST(CellEffect, IsWithoutBias) {
 
 TEST(CellEffect, HasFallingAndRisingTails) {
   const Tilted cells = tilted(64, 1 / 64.0, 3);
-  std::mt19937_64 random(3);
+  Philox random(1253);
   const CellEffect effect(cells_of(multinomial(random, 20000, cells.law), cells.null, 20000),
                           20000);
   LogTails before = effect.tails(0);
@@ -101,7 +101,7 @@ TEST(CellEffect, HoldsItsLevelWhereOneCellCarriesIt) {
                {tilted(65, 2e-4, 50), 100000},
                {tilted(64, 1 / 64.0, 1e-9), 20000}};
   constexpr int runs = 4000;
-  std::mt19937_64 random(1);
+  Philox random(1251);
   for (const auto& [cells, n] : cases) {
     const double effect = effect_of(cells);
     std::vector<TestResult> results;

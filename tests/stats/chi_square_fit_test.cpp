@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <stdexcept>
 
 #include "stats/tails.h"
@@ -110,7 +109,7 @@ TEST(ChiSquareFit, ErrorsOfTheProbabilitiesAreAllowedForBothWays) {
   std::vector<double> off(cells);
   for (std::size_t i = 0; i < cells; ++i) off[i] = 1.0 / cells + (i % 2 == 0 ? error : -error);
   const std::vector<double> truth(cells, 1.0 / cells);
-  std::mt19937_64 random(1);
+  tests::Philox random(1254);
   int refuted = 0;
   int excluded = 0;
   int by_exact = 0;

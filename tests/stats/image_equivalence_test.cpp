@@ -15,6 +15,7 @@
 namespace assay::stats {
 namespace {
 
+using tests::below_half;
 using tests::calibrate;
 using tests::Calibration;
 using tests::draw_stack;
@@ -30,10 +31,6 @@ OwnedStack image(Philox& random, double bias, double sd = 1) {
   return draw_stack(extent, 32,
                     [&](std::size_t) { return 10 * (1 + bias) + sd * random.normal(); });
 }
-
-// Where the noise of the means is as large as the bias, the jackknife's variance is too large (up
-// to twice, Efron & Stein): p-values crowd around one half, and only levels below it are judged.
-double below_half(double log_p) { return log_p < std::log(0.5) ? log_p : 0; }
 
 Calibration at_margin(std::uint32_t test_case, double sd, bool lower) {
   return calibrate({test_case, 2000, Shape::at_most_uniform}, [&](Philox& random) {

@@ -11,6 +11,7 @@
 namespace assay::stats {
 namespace {
 
+using tests::below_half;
 using tests::calibrate;
 using tests::Calibration;
 using tests::draw_stack;
@@ -29,8 +30,7 @@ struct Case {
 };
 
 // How the margin's p-values are distributed where the bias is at the margin and the reference as
-// uncertain as the images: `judge` makes the distance. Above one half nothing is judged, as the
-// jackknife is conservative there.
+// uncertain as the images: `judge` makes the distance.
 template <class Judge>
 Calibration at_margin(std::uint32_t test_case, const Case& given, const Judge& judge) {
   return calibrate({test_case, 2000, Shape::at_most_uniform}, [&](Philox& random) {
@@ -44,8 +44,7 @@ Calibration at_margin(std::uint32_t test_case, const Case& given, const Judge& j
     const std::vector<double> errors(extent.elements(), error);
     const ImageDistance distance = judge(a.view(), ImageReference{extent, value, errors});
     const TestResult result = squared_margin_test(distance, margin * margin);
-    const double log_p = given.lower ? result.log_p_lower : result.log_p_upper;
-    return log_p < std::log(0.5) ? log_p : 0;
+    return below_half(given.lower ? result.log_p_lower : result.log_p_upper);
   });
 }
 

@@ -118,4 +118,9 @@ inline void add_defect(std::span<double> z, const stats::ImageExtent& extent, co
   }
 }
 
+// Of a squared margin's test. Where the noise of the means is as large as the bias, the jackknife's
+// variance is too large (up to twice, Efron & Stein): p-values crowd around one half, and only
+// levels below it are judged.
+inline double below_half(double log_p) { return log_p < std::log(0.5) ? log_p : 0; }
+
 }  // namespace assay::tests

@@ -5,11 +5,13 @@
 #include <random>
 #include <vector>
 
+#include "tests/philox.h"
+
 namespace assay::tests {
 
 /// Counts of n values in cells of these probabilities, cell by cell from the binomial law that the
 /// cells before leave.
-inline std::vector<std::uint64_t> multinomial(std::mt19937_64& random, std::uint64_t n,
+inline std::vector<std::uint64_t> multinomial(Philox& random, std::uint64_t n,
                                               const std::vector<double>& law) {
   std::vector<std::uint64_t> counts(law.size());
   double left = 1;
