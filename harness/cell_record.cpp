@@ -24,29 +24,29 @@ std::string axis(const Marginal& marginal, const std::vector<double>& borders) {
   return fmt::format("{} {:.4g} to {:.4g}", marginal.name, borders.front(), borders.back());
 }
 
-/// Of the fixed cells of a domain, which have the same measure.
-std::string axes_of(const SamplerSetup& draws) {
+/// Of the cells of a domain that have the same measure.
+std::string axes_of(const SamplerSetup& draws, const stats::PlaneGrid& grid) {
   std::vector<Marginal> coordinates = draws.marginals();
   // Of a triangle the second coordinate of a cell is a share of what the first leaves.
   if (draws.sampler().domain() == Domain::triangle) coordinates[1].name = "v / (1 - u)";
   return fmt::format("{} from top to bottom, {} from left to right",
-                     axis(coordinates[0], draws.grid().x_borders),
-                     axis(coordinates[1], draws.grid().y_borders));
+                     axis(coordinates[0], grid.x_borders), axis(coordinates[1], grid.y_borders));
 }
 
-/// Summed over the lobes, whose cells follow one another; what comes behind them has no place.
+/// Summed over the lobes and over the parts of a cell that was halved.
 Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
-  const std::size_t each = draws.grid().size();
-  const std::size_t all = each * static_cast<std::size_t>(draws.sampler().lobes());
+  const stats::PlaneGrid grid = measure_grid(draws.sampler());
+  const DensityCells& density = draws.cells();
   const auto total = static_cast<double>(data.moments.count);
-  Cells cells{.axes = axes_of(draws),
-              .width = draws.grid().y_borders.size() - 1,
-              .height = draws.grid().x_borders.size() - 1,
-              .observed = std::vector<double>(each),
-              .expected = std::vector<double>(each)};
-  for (std::size_t i = 0; i < all; ++i) {
-    cells.observed[i % each] += static_cast<double>(data.cells[i]);
-    cells.expected[i % each] += total * draws.cells().grid.probability[i];
+  Cells cells{.axes = axes_of(draws, grid),
+              .width = grid.columns(),
+              .height = grid.rows(),
+              .observed = std::vector<double>(grid.size()),
+              .expected = std::vector<double>(grid.size())};
+  for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
+    const std::size_t place = density.cells.place(i);
+    cells.observed[place] += static_cast<double>(data.cells[i]);
+    cells.expected[place] += total * density.mass.probability[i];
   }
   return cells;
 }

@@ -139,7 +139,7 @@ class ConsistencyEstimator final : public Estimator {
     if (density < 0) sound_density(setup_.named(), draw.point, density);
     // NaN is not consistent either.
     const bool consistent = difference <= rounding_;
-    out[0] = consistent ? 0 : 1 + static_cast<double>(setup_.cell(sound(setup_.named(), draw)));
+    out[0] = consistent ? 0 : 1 + static_cast<double>(setup_.places().index(sound(setup_.named(), draw)));
     out[1] = difference;
     cost.samples += 1;
   }

@@ -17,7 +17,7 @@ namespace assay::harness {
 double inconsistency(const Sampler& sampler, const SamplerDraw& draw);
 
 /// A sampler's draws as observations of a channel `inconsistent`: 0 for a draw no farther than the
-/// sampler's rounding() from what it declares, else 1 + the number of its cell (SamplerSetup); and
+/// sampler's rounding() from what it declares, else 1 + the number of its cell (SamplerSetup::places()); and
 /// of a channel `difference`, how far it is.
 class ConsistencySetup final : public SamplerSetup {
  public:

@@ -35,13 +35,13 @@ const Summary& summary_of(const TestWork& work, std::size_t subject) {
 bool density_is_proper(TestOutcome& outcome) try {
   if (outcome.question.kind != QuestionKind::fit_to_density) return true;
   const auto& draws = dynamic_cast<const SamplerSetup&>(*outcome.question.subjects[0].setup);
-  const stats::CellProbabilities& grid = draws.cells().grid;
-  const double excess = grid.total - 1;
+  const double total = draws.cells().mass.total;
+  const double excess = total - 1;
   if (excess <= draws.cells().tolerance()) return true;
   settle(outcome, Verdict::fail,
          fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
                      "{:.1g}): more than 1, so no sampler can follow it",
-                     grid.total, draws.cells().tolerance()));
+                     total, draws.cells().tolerance()));
   return false;
 } catch (const std::domain_error& error) {
   settle(outcome, Verdict::invalid, in_words(error));

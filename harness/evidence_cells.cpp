@@ -52,7 +52,7 @@ std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) 
     text = fmt::format("; {} draws where the density is 0", fit.impossible);
   }
   return text + fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
-                            draws.describe_cell(worst->members.front()), worst->observed,
+                            draws.cells().cells.describe(worst->members.front()), worst->observed,
                             worst->expected);
 }
 
@@ -73,12 +73,12 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Sub
 
 Evidence cells_against_density(const Question& question, const ChannelData& data) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  const stats::CellProbabilities& grid = draws.cells().grid;
+  const stats::CellProbabilities& mass = draws.cells().mass;
   stats::CellCounts counts{.observed = {data.cells.begin(), data.cells.end()},
-                           .probability = grid.probability,
-                           .error = grid.error};
+                           .probability = mass.probability,
+                           .error = mass.error};
   counts.probability.push_back(draws.cells().missing());
-  counts.error.push_back(grid.total_error);
+  counts.error.push_back(mass.total_error);
   const stats::ChiSquareFit fit =
       stats::chi_square_fit(counts, {.probability_tolerance = draws.cells().tolerance()});
   const auto at = [fit](double theta) {

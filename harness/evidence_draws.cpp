@@ -66,13 +66,13 @@ Evidence evidence_of_integral(const Question& question, const ChannelData& data)
   const DensityCells& cells = draws.cells();
   Evidence evidence =
       from_probability({.seen = {.successes = data.cells.back(), .trials = sum(data.cells)},
-                        .offset = cells.grid.total - question.references[0].value,
+                        .offset = cells.mass.total - question.references[0].value,
                         .error = cells.tolerance()});
   evidence.quantity = fmt::format(
       "integral of the density ({:.10g}, quadrature error {:.1g}) and the mass without a point, "
       "less "
       "{:g},",
-      cells.grid.total, cells.tolerance(), question.references[0].value);
+      cells.mass.total, cells.tolerance(), question.references[0].value);
   return evidence;
 }
 
@@ -89,7 +89,7 @@ Evidence evidence_of_inconsistency(const Question& question, const ChannelData& 
     evidence.where =
         fmt::format("; more in one cell than in any other, {} of them, in {}",
                     per_cent(static_cast<double>(*most) / static_cast<double>(inconsistent)),
-                    draws.describe_cell(cell));
+                    draws.places().describe(cell));
   }
   return evidence;
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "harness/claim_size.h"
 #include "harness/sampler_setup.h"
+#include "stats/chi_square_fit.h"
 #include "stats/power.h"
 
 namespace assay::harness {
@@ -23,17 +25,40 @@ bool in_cells(const Plan& plan) {
   return plan.method.keeps == Keeps::cells || plan.method.frozen.cells != nullptr;
 }
 
-double degrees_of_freedom(const Question& question, const Plan& plan) {
+/// Of `observations`, or more: cells that expect fewer than the test asks for are pooled.
+double degrees_of_freedom(const Question& question, const Plan& plan, double observations) {
   // The cells and the draws without a point.
   if (plan.method.frozen.cells) return static_cast<double>(plan.method.frozen.cells->size());
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  return static_cast<double>(draws.cells().size() - 1);
+  const double least = stats::FitOptions{}.minimum_expected;
+  double pools = 0;
+  for (const double p : draws.cells().mass.probability) {
+    pools += std::min(1.0, observations * p / least);
+  }
+  pools += std::min(1.0, observations * draws.cells().missing() / least);
+  return std::max(1.0, pools - 1);
 }
 
-stats::FitPlan fit_plan(const Question& question, const Plan& plan, const ErrorShare& share) {
-  return {.degrees_of_freedom = degrees_of_freedom(question, plan),
+stats::FitPlan fit_plan(const Question& question, const Plan& plan, const ErrorShare& share,
+                        double observations) {
+  return {.degrees_of_freedom = degrees_of_freedom(question, plan, observations),
           .allow = plan.regions[0].allow,
           .rates = rates_of(share)};
+}
+
+/// Fewer observations are counted in fewer pools, and fewer pools need fewer observations.
+std::optional<std::uint64_t> fit_secondaries(const Question& question, const ErrorShare& share,
+                                             const Plan& plan) {
+  double observations = std::numeric_limits<double>::max();
+  std::optional<std::uint64_t> enough;
+  for (int round = 0; round < 4; ++round) {
+    const auto found = stats::chi_square_fit_sample_size(
+        fit_plan(question, plan, share, observations), *plan.regions[0].detect);
+    if (!found) return enough;
+    enough = found;
+    observations = static_cast<double>(*found);
+  }
+  return enough;
 }
 
 /// Observations of each side that are worth one of a single sample: m n / (m + n) of n each.
@@ -60,8 +85,7 @@ std::optional<std::uint64_t> laws_secondaries(const Question& question, const Er
   if (question.of_draws()) return draws_secondaries(question, share, regions);
   if (!regions.detect) return std::nullopt;
   if (in_cells(plan)) {
-    const auto alone =
-        stats::chi_square_fit_sample_size(fit_plan(question, plan, share), *regions.detect);
+    const auto alone = fit_secondaries(question, share, plan);
     return alone ? sides(question) * *alone : impossible_secondaries;
   }
   const std::optional<double> atom = largest_atom(plan.method);
@@ -76,8 +100,9 @@ std::optional<std::uint64_t> laws_secondaries(const Question& question, const Er
 
 double detectable_between_laws(const Question& question, const TestSize& size, const Plan& plan) {
   if (in_cells(plan)) {
-    return stats::chi_square_fit_detectable(fit_plan(question, plan, size.share),
-                                            worth(question, size));
+    const double observations = worth(question, size);
+    return stats::chi_square_fit_detectable(fit_plan(question, plan, size.share, observations),
+                                            observations);
   }
   return stats::ks_detectable(distance_plan(question, size.share, plan.regions[0].allow),
                               static_cast<double>(size.secondaries));
@@ -86,8 +111,9 @@ double detectable_between_laws(const Question& question, const TestSize& size, c
 double power_between_laws(const Question& question, const TestSize& size, const Plan& plan,
                           double effect) {
   if (in_cells(plan)) {
-    return stats::chi_square_fit_power(fit_plan(question, plan, size.share), worth(question, size),
-                                       effect);
+    const double observations = worth(question, size);
+    return stats::chi_square_fit_power(fit_plan(question, plan, size.share, observations),
+                                       observations, effect);
   }
   return stats::ks_power_bound(distance_plan(question, size.share, plan.regions[0].allow),
                                static_cast<double>(size.secondaries), effect);

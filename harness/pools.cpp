@@ -48,13 +48,13 @@ std::vector<Range> data_ranges(const Setup& setup, std::uint64_t rows) {
 
 std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
   if (dynamic_cast<const ConsistencySetup*>(&setup) != nullptr) {
-    return {{.cells = 1 + setup.cell_count()}, {}};
+    return {{.cells = 1 + setup.places().size()}, {}};
   }
   std::vector<ChannelPlan> plan;
   for (const Marginal& marginal : setup.marginals()) {
     plan.push_back(with_histogram({marginal.low, marginal.high}));
   }
-  plan.push_back({.cells = setup.cell_count()});
+  plan.push_back({});
   return plan;
 }
 
@@ -83,12 +83,25 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   return plan;
 }
 
+/// Counts draws in the cells of their density. Where that cannot be had the plan says so, or the
+/// look.
+void count_cells(const Subject& side, Pool& pool) {
+  if (dynamic_cast<const ConsistencySetup*>(side.setup.get()) != nullptr) return;
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*side.setup);
+  try {
+    pool.plans()[side.channels[0]].cells = draws.cells().cells.size();
+  } catch (const NoDensity&) {
+  } catch (const std::domain_error&) {
+  }
+}
+
 void keep_for(const Method& method, const Subject& side, Pool& pool) {
   if (method.keeps == Keeps::costs) {
     for (const std::size_t channel : side.channels) pool.plans()[channel].with_cost = true;
   }
   if (method.keeps == Keeps::group_variances) pool.keep_group_variances(side.channels);
   if (method.keeps == Keeps::blocks) pool.keep_blocks();
+  if (method.keeps == Keeps::cells) count_cells(side, pool);
 }
 
 }  // namespace

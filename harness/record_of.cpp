@@ -75,7 +75,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
                                 .m21 = joint.m21});
   }
   // The number of a cell is a name: it has no mean.
-  if (!details.cells.empty()) return sample;
+  if (work.outcome.plan.method.keeps == Keeps::cells) return sample;
   if (moments.count > 0) {
     sample.mean = number(moments.mean);
     sample.minimum = number(moments.minimum);

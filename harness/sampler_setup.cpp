@@ -7,158 +7,26 @@
 #include <limits>
 #include <stdexcept>
 
-#include "harness/domain_chart.h"
+#include "harness/declared_density.h"
 #include "harness/fetched_ahead.h"
 #include "harness/sound_draw.h"
 
 namespace assay::harness {
 namespace {
 
-// Fine enough to see a defect of one quadrant or a wrong exponent; cells that expect fewer than 20
-// points are pooled by the test.
-constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
-constexpr std::size_t interval_cells = 64;
-// Where a density jumps the cells that it jumps in come out right to some 1e-6 together, a tenth of
-// what corners of its support between the nodes may hide; more digits take two and a half times as
-// long, and a million draws tell 1e-4 of a cell.
-constexpr stats::QuadratureLimits cell_limits{.tolerance = 1e-8, .deepest_bisection = 24};
 constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7, .deepest_bisection = 24};
 // A table begins with no fewer parts.
 constexpr std::size_t least_parts = 32;
-// So many panels of both coordinates together cost about as much as the limits allow.
-constexpr std::size_t most_panels = std::size_t{1} << 15;
 
 bool on_interval(const Sampler& sampler) { return sampler.domain() == Domain::interval; }
-
-stats::IntervalGrid interval_grid(const Sampler& sampler) {
-  return {.low = sampler.bounds()[0], .high = sampler.bounds()[1], .cells = interval_cells};
-}
-
-/// Halved until they can be paid for: jumps then lie inside panels, and bisection finds them.
-Panels affordable(Panels panels) {
-  while (panels.first * panels.second > most_panels) {
-    std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
-    larger = (larger + 1) / 2;
-  }
-  return panels;
-}
-
-/// A density at many points, of a sampler that may write those of the first few only.
-using Densities = std::function<std::size_t(std::span<const Point>, std::span<double>)>;
-
-/// Throws as sound_density().
-Densities sound_densities(const NamedSampler& named, Densities densities) {
-  return [&named, densities](std::span<const Point> points, std::span<double> out) {
-    const std::size_t written = densities(points, out);
-    for (std::size_t i = 0; i < written; ++i) sound_density(named, points[i], out[i]);
-    return written;
-  };
-}
-
-void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out) {
-  for (std::size_t done = 0; done < points.size();) {
-    done += densities(points.subspan(done), out.subspan(done));
-  }
-}
-
-/// A density on a plane as stats integrates it.
-class OnChart {
- public:
-  OnChart(const DomainChart& chart, Densities densities)
-      : chart_(chart),
-        densities_(std::move(densities)),
-        firsts_(chart.coordinate),
-        seconds_(chart.coordinate) {}
-
-  void operator()(std::span<const double> x, std::span<const double> y, std::span<double> values) {
-    points_.clear();
-    jacobians_.clear();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const Coordinate& first = firsts_(x[i]);
-      const Coordinate& second = seconds_(y[i]);
-      points_.push_back(chart_.point(first, second));
-      jacobians_.push_back(chart_.jacobian(first, second));
-    }
-    write_all(densities_, points_, values);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] *= jacobians_[i];
-  }
-
- private:
-  DomainChart chart_;
-  Densities densities_;
-  RememberedCoordinates firsts_;
-  RememberedCoordinates seconds_;
-  std::vector<Point> points_;
-  std::vector<double> jacobians_;
-};
-
-stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
-                                  Densities densities) {
-  const DomainChart chart = chart_by(sampler.domain(), marginal);
-  const Panels panels = affordable(sampler.panels());
-  return {.x = chart.first,
-          .y = chart.second,
-          .values = OnChart(chart, std::move(densities)),
-          .x_panels = marginal == 0 ? panels.first : panels.second,
-          .y_panels = marginal == 0 ? panels.second : panels.first};
-}
-
-stats::CellProbabilities cells_of_lobe(const NamedSampler& named, const stats::PlaneGrid& grid,
-                                       int lobe) {
-  const Sampler& sampler = *named.sampler;
-  if (on_interval(sampler)) {
-    return stats::cell_probabilities(interval_grid(sampler), [&](double x) {
-      const Point point{x, 0, 0};
-      return sound_density(named, point, sampler.lobe_density(lobe, point));
-    });
-  }
-  const Densities densities =
-      sound_densities(named, [&](std::span<const Point> points, std::span<double> out) {
-        return sampler.lobe_densities(lobe, points, out);
-      });
-  return stats::cell_probabilities(grid, plane_density(sampler, 0, densities), cell_limits);
-}
-
-void append(stats::CellProbabilities& all, const stats::CellProbabilities& more) {
-  all.probability.insert(all.probability.end(), more.probability.begin(), more.probability.end());
-  all.error.insert(all.error.end(), more.error.begin(), more.error.end());
-  all.total += more.total;
-  all.total_error += more.total_error;
-}
-
-DensityCells cells_of(const NamedSampler& named, const stats::PlaneGrid& grid) {
-  const Sampler& sampler = *named.sampler;
-  DensityCells cells;
-  for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
-    append(cells.grid, cells_of_lobe(named, grid, lobe));
-  }
-  for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
-    const double mass = sampler.point_mass(lobe);
-    if (mass == 0) continue;
-    append(cells.grid, {.probability = {mass}, .error = {0}, .total = mass});
-    cells.point_masses += mass;
-  }
-  return cells;
-}
-
-/// That of all lobes together.
-Densities densities_of(const NamedSampler& named) {
-  return sound_densities(named, [&named](std::span<const Point> points, std::span<double> out) {
-    return named.sampler->densities(points, out);
-  });
-}
 
 stats::TabulatedLaw law_on_interval(const NamedSampler& named) {
   const Sampler& sampler = *named.sampler;
   stats::AdaptiveQuadrature rule(table_limits);
   const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
-  const auto parts = stats::cut(range, range, std::max(sampler.panels().first, least_parts));
-  const auto density = [&](std::span<const double> x, std::span<double> values) {
-    std::vector<Point> points;
-    for (const double each : x) points.push_back({each, 0, 0});
-    write_all(densities_of(named), points, values);
-  };
-  return stats::tabulate(rule.of(density), parts, rule);
+  const stats::LineDensity density = line_density(sampler, densities_of(named));
+  const auto parts = stats::cut(range, range, std::max(density.panels, least_parts));
+  return stats::tabulate(rule.of(density.values), parts, rule);
 }
 
 stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal) {
@@ -179,7 +47,7 @@ bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
 class SamplerEstimator final : public Estimator {
  public:
   explicit SamplerEstimator(const SamplerSetup& setup)
-      : setup_(setup), marginals_(setup.marginals()) {}
+      : setup_(setup), marginals_(setup.marginals()), density_cells_(setup.cells_asked_for()) {}
 
   void announce(const Announcement& next) override { ahead_.announce(next); }
   double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
@@ -195,19 +63,18 @@ class SamplerEstimator final : public Estimator {
     for (std::size_t i = 0; i < marginals_.size(); ++i) {
       out[i] = point ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
     }
-    out[marginals_.size()] = static_cast<double>(setup_.cell(draw));
+    if (density_cells_) {
+      out[marginals_.size()] = static_cast<double>(density_cells_->cells.index(draw));
+    }
     cost.samples += 1;
   }
 
  private:
   const SamplerSetup& setup_;
   std::vector<Marginal> marginals_;
+  std::shared_ptr<const DensityCells> density_cells_;
   FetchedAhead<SamplerDraw> ahead_;
 };
-
-std::string range_text(const std::string& name, double low, double high) {
-  return fmt::format("{} {:.3g} to {:.3g}", name, low, high);
-}
 
 }  // namespace
 
@@ -231,30 +98,12 @@ void require_sound(const NamedSampler& named, const Location& where) {
   }
 }
 
-double DensityCells::tolerance() const {
-  const double parts = static_cast<double>(size()) + 10;
-  return 2 * grid.total_error + parts * std::numeric_limits<double>::epsilon() * grid.total;
-}
-
-double DensityCells::missing() const {
-  const double rest = 1 - grid.total;
-  return rest <= tolerance() ? 0 : rest;
-}
-
 double no_point(const Marginal& marginal) { return marginal.low - 1; }
 
-SamplerSetup::SamplerSetup(NamedSampler named) : named_(std::move(named)) {
-  if (!on_interval(sampler())) grid_ = equal_measure_grid(sampler().domain(), plane_cells);
-}
+SamplerSetup::SamplerSetup(NamedSampler named)
+    : named_(std::move(named)), places_(*named_.sampler) {}
 
-std::vector<Marginal> SamplerSetup::marginals() const {
-  std::vector<Marginal> all = assay::marginals(named_.sampler->domain());
-  if (named_.sampler->domain() == Domain::interval) {
-    all[0].low = named_.sampler->bounds()[0];
-    all[0].high = named_.sampler->bounds()[1];
-  }
-  return all;
-}
+std::vector<Marginal> SamplerSetup::marginals() const { return marginals_of(sampler()); }
 
 std::vector<Channel> SamplerSetup::channels() const {
   std::vector<Channel> all;
@@ -284,67 +133,14 @@ const DensityCells& SamplerSetup::cells() const {
   const std::scoped_lock lock(once_);
   if (!cells_) {
     cells_ =
-        integrated([&] { return std::make_shared<const DensityCells>(cells_of(named_, grid_)); });
+        integrated([&] { return std::make_shared<const DensityCells>(density_cells(named_)); });
   }
   return *cells_;
 }
 
-std::size_t SamplerSetup::cell_count() const {
-  const int lobes = sampler().lobes();
-  std::size_t count =
-      static_cast<std::size_t>(lobes) * (on_interval(sampler()) ? interval_cells : grid_.size());
-  for (int lobe = 0; lobe < lobes; ++lobe)
-    if (sampler().point_mass(lobe) != 0) ++count;
-  return count + 1;
-}
-
-std::size_t SamplerSetup::cell(const SamplerDraw& draw) const {
-  const std::size_t each = on_interval(sampler()) ? interval_cells : grid_.size();
-  const int lobes = sampler().lobes();
-  const auto lobe = static_cast<std::size_t>(draw.lobe);
-  std::size_t next = static_cast<std::size_t>(lobes) * each;
-  for (int other = 0; other < lobes; ++other) {
-    if (sampler().point_mass(other) == 0) continue;
-    if (draw.valid && other == draw.lobe) return next;
-    ++next;
-  }
-  if (!draw.valid) return next;
-  if (on_interval(sampler())) return lobe * each + interval_grid(sampler()).index(draw.point[0]);
-  const auto [first, second] = chart_by(sampler().domain(), 0).coordinates(draw.point);
-  return lobe * each + grid_.index(first, second);
-}
-
-std::string SamplerSetup::describe_cell(std::size_t cell) const {
-  const bool interval = on_interval(sampler());
-  const std::size_t each = interval ? interval_cells : grid_.size();
-  const auto lobes = static_cast<std::size_t>(sampler().lobes());
-  const std::vector<Marginal> coordinates = marginals();
-  if (cell < lobes * each) {
-    const std::string lobe = lobes > 1 ? fmt::format(" of lobe {}", cell / each) : "";
-    const std::size_t place = cell % each;
-    if (interval) {
-      const auto [low, high] = sampler().bounds();
-      const double width = (high - low) / static_cast<double>(interval_cells);
-      const double from = low + static_cast<double>(place) * width;
-      return range_text(coordinates[0].name, from, from + width) + lobe;
-    }
-    const std::size_t row = grid_.y_borders.size() - 1;
-    const auto range = [&](std::size_t which, const std::vector<double>& borders, std::size_t i) {
-      return range_text(coordinates[which].name, borders[i], borders[i + 1]);
-    };
-    // Of a triangle the second coordinate of a cell is a share of what the first leaves.
-    const bool triangle = sampler().domain() == Domain::triangle;
-    const std::string second = triangle ? range_text("v / (1 - u)", grid_.y_borders[place % row],
-                                                     grid_.y_borders[place % row + 1])
-                                        : range(1, grid_.y_borders, place % row);
-    return range(0, grid_.x_borders, place / row) + ", " + second + lobe;
-  }
-  std::size_t next = lobes * each;
-  for (std::size_t lobe = 0; lobe < lobes; ++lobe) {
-    if (sampler().point_mass(static_cast<int>(lobe)) == 0) continue;
-    if (cell == next++) return fmt::format("the points of lobe {}", lobe);
-  }
-  return "the draws without a point";
+std::shared_ptr<const DensityCells> SamplerSetup::cells_asked_for() const {
+  const std::scoped_lock lock(once_);
+  return cells_;
 }
 
 const stats::TabulatedLaw& SamplerSetup::marginal_law(const std::string& marginal) const {

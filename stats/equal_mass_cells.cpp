@@ -1,174 +1,230 @@
 #include "stats/equal_mass_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
+#include <optional>
+#include <queue>
 #include <span>
 
 #include "stats/check.h"
-#include "stats/tails.h"
 
 namespace assay::stats {
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
+constexpr int most_halvings = 48;
+// Places at which a cell is looked at to find the side to halve.
+constexpr std::size_t looks_a_side = 16;
 
-// Ends of consecutive groups whose masses reach `least`; a short last group joins the one before.
-std::vector<std::size_t> groups(std::span<const double> mass, double least) {
-  std::vector<std::size_t> ends;
+enum class Along { x, y };
+
+// What is asked of a density, cell by cell.
+struct Questions {
+  std::function<Integral(const PlaneCell&)> integral;
+  std::function<Along(const PlaneCell&, int halvings)> narrower;
+  std::function<bool()> exhausted;
+};
+
+std::array<PlaneCell, 2> halves_of(const PlaneCell& cell, Along along) {
+  if (along == Along::x) return {{{cell.x.halves()[0], cell.y}, {cell.x.halves()[1], cell.y}}};
+  return {{{cell.x, cell.y.halves()[0]}, {cell.x, cell.y.halves()[1]}}};
+}
+
+// The heaviest cell is halved, then the heaviest of what there is then, and so on.
+class Halving {
+ public:
+  Halving(const PlaneGrid& grid, std::span<const Integral> masses, const Questions& ask)
+      : grid_(grid), ask_(ask) {
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      add({.cell = grid.cell(i), .mass = masses[i], .place = i});
+    }
+  }
+
+  void halve_until(double most) {
+    while (!heaviest_.empty() && heaviest_.top().mass > most) {
+      const std::size_t number = heaviest_.top().number;
+      heaviest_.pop();
+      if (known_[number].halvings < most_halvings && !halve(number)) return;
+    }
+  }
+
+  EqualMassCells numbered() const {
+    EqualMassCells found;
+    found.cells.grid = grid_;
+    for (std::size_t i = 0; i < grid_.size(); ++i) found.cells.parts.push_back(number(i, found));
+    return found;
+  }
+
+ private:
+  struct Known {
+    PlaneCell cell;
+    Integral mass;
+    std::size_t place = 0;
+    int halvings = 0;
+    Along along = Along::x;
+    std::size_t halves = 0;  // where its halves are, 0 where it has none
+  };
+  struct Candidate {
+    double mass;
+    std::size_t number;
+    // Of two that weigh the same the first.
+    bool operator<(const Candidate& other) const {
+      return mass != other.mass ? mass < other.mass : number > other.number;
+    }
+  };
+
+  void add(const Known& known) {
+    heaviest_.push({.mass = known.mass.value, .number = known_.size()});
+    known_.push_back(known);
+  }
+
+  // False where that takes more evaluations than are left: numbers that the last of them had to do
+  // for would be worse than those of the whole.
+  bool halve(std::size_t number) {
+    const Known whole = known_[number];
+    const Along along = ask_.narrower(whole.cell, whole.halvings);
+    const auto [lower, upper] = halves_of(whole.cell, along);
+    const Integral one = ask_.integral(lower);
+    const Integral two = ask_.integral(upper);
+    if (ask_.exhausted()) return false;
+    known_[number].along = along;
+    known_[number].halves = known_.size();
+    add({.cell = lower, .mass = one, .place = whole.place, .halvings = whole.halvings + 1});
+    add({.cell = upper, .mass = two, .place = whole.place, .halvings = whole.halvings + 1});
+    return true;
+  }
+
+  HalvedCells::Part number(std::size_t cell, EqualMassCells& found) const {
+    const Known& known = known_[cell];
+    if (known.halves == 0) return whole(known, found);
+    const std::size_t number_of_it = found.cells.halves.size();
+    const PlaneCell& upper = known_[known.halves + 1].cell;
+    const bool along_x = known.along == Along::x;
+    found.cells.halves.push_back(
+        {.along_x = along_x, .border = along_x ? upper.x.low : upper.y.low});
+    const HalvedCells::Part one = number(known.halves, found);
+    const HalvedCells::Part two = number(known.halves + 1, found);
+    found.cells.halves[number_of_it].parts = {one, two};
+    return {.whole = false, .number = number_of_it};
+  }
+
+  static HalvedCells::Part whole(const Known& known, EqualMassCells& found) {
+    const HalvedCells::Part part{.whole = true, .number = found.cells.size()};
+    found.cells.cells.push_back(known.cell);
+    found.cells.places.push_back(known.place);
+    found.mass.probability.push_back(known.mass.value);
+    found.mass.error.push_back(known.mass.error);
+    found.mass.total += known.mass.value;
+    found.mass.total_error += known.mass.error;
+    return part;
+  }
+
+  const PlaneGrid& grid_;
+  const Questions& ask_;
+  std::vector<Known> known_;
+  std::priority_queue<Candidate> heaviest_;
+};
+
+EqualMassCells halved(const PlaneGrid& grid, std::span<const Integral> masses, double largest_share,
+                      const Questions& ask) {
+  double total = 0;
+  for (const Integral& mass : masses) total += mass.value;
+  Halving halving(grid, masses, ask);
+  halving.halve_until(largest_share * std::max(total, 1.0));
+  return halving.numbered();
+}
+
+// The standard deviation of where the mass is along one side, in units of the side.
+double spread(std::span<const double, looks_a_side> masses) {
+  double total = 0;
+  double mean = 0;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    total += masses[i];
+    mean += masses[i] * (static_cast<double>(i) + .5);
+  }
+  mean /= total;
   double sum = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    sum += mass[i];
-    if (sum < least) continue;
-    ends.push_back(i + 1);
-    sum = 0;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    const double distance = static_cast<double>(i) + .5 - mean;
+    sum += masses[i] * distance * distance;
   }
-  if (ends.empty()) ends.push_back(mass.size());
-  ends.back() = mass.size();
-  return ends;
+  return std::sqrt(sum / total) / static_cast<double>(masses.size());
 }
 
-double line(std::size_t i, std::size_t resolution) {
-  return static_cast<double>(i) / static_cast<double>(resolution);
-}
-
-std::size_t cell_of(const std::vector<double>& edges, double x) {
-  const auto after = std::upper_bound(edges.begin(), edges.end() - 1, x);
-  return static_cast<std::size_t>(after - edges.begin()) - 1;
-}
-
-// Sums of the fine squares of one band over its rows.
-CellProbabilities columns(const CellProbabilities& fine, std::size_t resolution, std::size_t from,
-                          std::size_t to) {
-  CellProbabilities sums;
-  sums.probability.assign(resolution, 0);
-  sums.error.assign(resolution, 0);
-  for (std::size_t row = from; row < to; ++row) {
-    for (std::size_t column = 0; column < resolution; ++column) {
-      sums.probability[column] += fine.probability[row * resolution + column];
-      sums.error[column] += fine.error[row * resolution + column];
-    }
+// The side along which the mass of a cell lies closer together, as a share of the side; nothing
+// where there is little between them.
+std::optional<Along> narrower_along(const PlaneDensity& density, const PlaneCell& cell) {
+  constexpr std::size_t n = looks_a_side;
+  std::vector<double> x;
+  std::vector<double> y;
+  for (std::size_t i = 0; i < n * n; ++i) {
+    const auto share = [](std::size_t k) {
+      return (static_cast<double>(k) + .5) / static_cast<double>(n);
+    };
+    x.push_back(cell.x.low + share(i / n) * cell.x.width());
+    y.push_back(cell.y.low + share(i % n) * cell.y.width());
   }
-  return sums;
-}
-
-double least_mass(const CellPlan& plan, double total) {
-  check::at_least({"equal_mass_cells", "observations"}, plan.observations, 1);
-  check::at_least({"equal_mass_cells", "most_cells"}, plan.most_cells, 1);
-  check::positive({"equal_mass_cells", "minimum_expected"}, plan.minimum_expected);
-  check::positive({"equal_mass_cells", "total mass"}, total);
-  return std::max(plan.minimum_expected / static_cast<double>(plan.observations),
-                  total / static_cast<double>(plan.most_cells));
-}
-
-// Sums of consecutive cells up to these ends.
-void append_sums(CellProbabilities& result, const CellProbabilities& fine,
-                 const std::vector<std::size_t>& ends) {
-  std::size_t from = 0;
-  for (const std::size_t to : ends) {
-    double mass = 0;
-    double error = 0;
-    for (std::size_t i = from; i < to; ++i) {
-      mass += fine.probability[i];
-      error += fine.error[i];
-    }
-    result.probability.push_back(mass);
-    result.error.push_back(error);
-    from = to;
+  std::vector<double> values(n * n);
+  density.values(x, y, values);
+  std::array<double, n> along_x{};
+  std::array<double, n> along_y{};
+  for (std::size_t i = 0; i < n * n; ++i) {
+    along_x[i / n] += values[i];
+    along_y[i % n] += values[i];
   }
+  const double of_x = spread(along_x);
+  const double of_y = spread(along_y);
+  if (of_x < .9 * of_y) return Along::x;
+  if (of_y < .9 * of_x) return Along::y;
+  return std::nullopt;
+}
+
+void check_share(double largest_share) {
+  check::unit({"equal_mass_cells", "largest_share"}, largest_share);
+  check::positive({"equal_mass_cells", "largest_share"}, largest_share);
 }
 
 }  // namespace
 
-Barycentric triangle_point(SquarePoint point) {
-  check::unit({"triangle_point", "a"}, point.a);
-  check::unit({"triangle_point", "b"}, point.b);
-  const double s = std::sqrt(point.a);
-  return {1 - s, s * (1 - point.b), s * point.b};
-}
-
-SquarePoint square_point(Barycentric point) {
-  const double s = point.second + point.third;
-  check::unit({"square_point", "second + third"}, s);
-  check::non_negative({"square_point", "third"}, point.third);
-  return {s * s, s == 0 ? 0 : point.third / s};
-}
-
-std::size_t EqualMassCells::index(SquarePoint point) const {
-  check::unit({"EqualMassCells::index", "a"}, point.a);
-  check::unit({"EqualMassCells::index", "b"}, point.b);
-  const std::size_t band = std::min(cell_of(band_edges, point.a), cut_edges.size() - 1);
-  std::size_t before = 0;
-  for (std::size_t i = 0; i < band; ++i) before += cut_edges[i].size() - 1;
-  const auto& cuts = cut_edges[band];
-  return before + std::min(cell_of(cuts, point.b), cuts.size() - 2);
-}
-
-EqualMassCells equal_mass_cells(const std::function<double(SquarePoint)>& density,
-                                const CellPlan& plan, QuadratureOptions options) {
-  check::at_least({"equal_mass_cells", "resolution"}, plan.resolution, 1);
-  // The square as a hemisphere of measure 2 pi: the same quadrature.
-  const auto as_direction = [&](Direction direction) {
-    return density({direction.cos_theta, direction.phi / two_pi}) / two_pi;
+EqualMassCells equal_mass_cells(const PlaneGrid& grid, const PlaneDensity& density,
+                                double largest_share, QuadratureLimits limits) {
+  check_share(largest_share);
+  check::positive({"equal_mass_cells", "tolerance"}, limits.tolerance);
+  CellQuadrature rule(density, limits);
+  const std::vector<Integral> masses = integrals_over(grid, rule);
+  // The other half of one that shows no density has some.
+  const auto integral = [&](const PlaneCell& cell) {
+    const Integral mass = rule.over(cell);
+    return mass.value > 0 ? mass : rule.beside_support(cell);
   };
-  const std::size_t m = plan.resolution;
-  const CellProbabilities fine = cell_probabilities(HemisphereGrid{m, m}, as_direction, options);
-  const double least = least_mass(plan, fine.total);
-  std::vector<double> rows(m, 0);
-  for (std::size_t i = 0; i < fine.probability.size(); ++i) rows[i / m] += fine.probability[i];
-  EqualMassCells result;
-  result.band_edges.push_back(0);
-  std::size_t start = 0;
-  for (const std::size_t end : groups(rows, std::max(least, std::sqrt(least * fine.total)))) {
-    const CellProbabilities band = columns(fine, m, start, end);
-    std::vector<double> cuts{0};
-    const std::vector<std::size_t> ends = groups(band.probability, least);
-    append_sums(result.cells, band, ends);
-    for (const std::size_t to : ends) cuts.push_back(line(to, m));
-    result.cut_edges.push_back(cuts);
-    result.band_edges.push_back(line(end, m));
-    start = end;
-  }
-  result.cells.total = fine.total;
-  result.cells.total_error = fine.total_error;
-  return result;
+  const auto narrower = [&](const PlaneCell& cell, int halvings) {
+    return narrower_along(density, cell).value_or(halvings % 2 == 0 ? Along::x : Along::y);
+  };
+  return halved(
+      grid, masses, largest_share,
+      {.integral = integral, .narrower = narrower, .exhausted = [&] { return rule.exhausted(); }});
 }
 
-std::size_t EqualMassIntervals::index(double x) const {
-  if (!(x >= edges.front() && x <= edges.back())) {
-    check::fail({"EqualMassIntervals::index", "x"}, x, "inside the interval");
-  }
-  return std::min(cell_of(edges, x), size() - 1);
-}
-
-EqualMassIntervals equal_mass_intervals(const std::function<double(double)>& density,
-                                        const IntervalGrid& fine, const CellPlan& plan,
-                                        QuadratureOptions options) {
-  const CellProbabilities parts = cell_probabilities(fine, density, options);
-  const std::vector<std::size_t> ends = groups(parts.probability, least_mass(plan, parts.total));
-  EqualMassIntervals result;
-  append_sums(result.cells, parts, ends);
-  result.edges.push_back(fine.low);
-  for (const std::size_t end : ends) {
-    const double share = line(end, fine.cells);
-    result.edges.push_back(end == fine.cells ? fine.high
-                                             : fine.low + (fine.high - fine.low) * share);
-  }
-  result.cells.total = parts.total;
-  result.cells.total_error = parts.total_error;
-  return result;
-}
-
-ChiSquareFit chi_square_fit(const CellProbabilities& cells, const CellObservations& counts,
-                            double minimum_expected) {
-  CellCounts full{counts.observed, cells.probability, cells.error};
-  const double missing = 1 - cells.total;
-  if (missing > cells.total_error || counts.missing > 0) {
-    full.observed.push_back(counts.missing);
-    full.probability.push_back(std::max(0.0, missing));
-    full.error.push_back(cells.total_error);
-  }
-  return chi_square_fit(full, {minimum_expected, cells.total_error + 1e-9});
+EqualMassCells equal_mass_cells(const std::vector<double>& borders, const LineDensity& density,
+                                double largest_share, QuadratureLimits limits) {
+  check_share(largest_share);
+  check::positive({"equal_mass_cells", "tolerance"}, limits.tolerance);
+  const PlaneGrid grid{.x_borders = borders, .y_borders = {0, 1}};
+  check_borders(grid);
+  const Span whole{borders.front(), borders.back()};
+  AdaptiveQuadrature rule(limits);
+  const AdaptiveQuadrature::Function along = rule.of(density.values);
+  const auto integral = [&](const PlaneCell& cell) {
+    Integral sum;
+    for (const Span& part : cut(cell.x, whole, density.panels)) sum = sum + rule.over(along, part);
+    return sum;
+  };
+  std::vector<Integral> masses;
+  for (std::size_t i = 0; i < grid.size(); ++i) masses.push_back(integral(grid.cell(i)));
+  return halved(grid, masses, largest_share,
+                {.integral = integral,
+                 .narrower = [](const PlaneCell&, int) { return Along::x; },
+                 .exhausted = [&] { return rule.exhausted(); }});
 }
 
 }  // namespace assay::stats

@@ -1,81 +1,48 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
-#include "stats/cells.h"
-#include "stats/chi_square_fit.h"
+#include "stats/halved_cells.h"
 
 namespace assay::stats {
 
-// A point of the unit square. Other domains are its images under maps of constant Jacobian: a
-// density per unit of their measure, times the measure, is the density on the square.
-//   triangle:   a = s^2, (1 - s, s (1 - b), s b) barycentric; measure = area
-//   hemisphere: cos theta = a, phi = 2 pi b;                  measure = 2 pi
-//   sphere:     cos theta = 2 a - 1, phi = 2 pi b;            measure = 4 pi
-struct SquarePoint {
-  double a = 0;
-  double b = 0;
-};
-struct Barycentric {
-  double first = 1;
-  double second = 0;
-  double third = 0;
-};
-Barycentric triangle_point(SquarePoint point);
-SquarePoint square_point(Barycentric point);
-
-struct CellPlan {
-  std::uint64_t observations = 1000;
-  double minimum_expected = 20;
-  std::size_t most_cells = 1024;
-  std::size_t resolution = 64;  // cell edges lie on a grid of this many lines each way
+// What a law gives each of some cells.
+struct CellProbabilities {
+  std::vector<double> probability;
+  std::vector<double> error;  // estimated absolute error of each
+  double total = 0;           // sum of probability: 1 minus it is the mass of "no point"
+  double total_error = 0;
 };
 
-// Cells of about equal probability, each with an expected count of at least minimum_expected,
-// chosen from the density alone and never from the data: bands of a, cut along b, every edge on the
-// lines of the grid. A density that is concentrated in few squares of the grid gives fewer, heavier
-// cells.
+// Cells of no more than a share of a density's mass each, chosen from the density alone and never
+// from data: those of a grid, the heaviest halved until none holds more, each along the coordinate
+// in which its mass lies closer together (of an interval, its own). So a density that is about even
+// over the grid is counted in the grid's cells, and a narrow lobe in its own. None is halved more
+// often than 48 times, nor once the quadrature's evaluations are used up. A density of mass below
+// 1, one lobe of several, has its share of 1.
 struct EqualMassCells {
-  std::vector<double> band_edges;              // from 0 to 1
-  std::vector<std::vector<double>> cut_edges;  // of each band, from 0 to 1
-  // total and total_error say whether the density integrates to 1.
-  CellProbabilities cells;
-
-  std::size_t size() const { return cells.probability.size(); }
-  // Throws std::domain_error outside the unit square.
-  std::size_t index(SquarePoint point) const;
+  HalvedCells cells;
+  CellProbabilities mass;  // by quadrature, with its errors
 };
 
-// Throws std::domain_error: no observation, a negative or non-finite density, no mass.
-EqualMassCells equal_mass_cells(const std::function<double(SquarePoint)>& density,
-                                const CellPlan& plan,
-                                QuadratureOptions options = hemisphere_quadrature);
+// Throws std::domain_error: borders that do not ascend, a share that is not in (0, 1], a density
+// that is negative or not finite.
+EqualMassCells equal_mass_cells(const PlaneGrid& grid, const PlaneDensity& density,
+                                double largest_share,
+                                QuadratureLimits limits = {.tolerance = 1e-9});
 
-// The same on an interval: edges on those of `fine` (whose number of cells replaces the
-// resolution).
-struct EqualMassIntervals {
-  std::vector<double> edges;
-  CellProbabilities cells;
-
-  std::size_t size() const { return cells.probability.size(); }
-  std::size_t index(double x) const;
+// A density of one coordinate at many places, and its panels (PlaneDensity).
+struct LineDensity {
+  std::function<void(std::span<const double> x, std::span<double> values)> values;
+  std::size_t panels = 1;
 };
-EqualMassIntervals equal_mass_intervals(const std::function<double(double)>& density,
-                                        const IntervalGrid& fine, const CellPlan& plan,
-                                        QuadratureOptions options = {});
 
-// Null hypothesis: the counts follow probabilities that lie within their errors of these. Every
-// deviation |O - E| is lessened by n error, every expectation raised by it: a lower bound of X2
-// over all such probabilities, so p is an upper bound of theirs. The mass 1 - total, where it
-// exceeds total_error, is a last cell of points that were not generated, `missing` of them.
-struct CellObservations {
-  std::vector<std::uint64_t> observed;
-  std::uint64_t missing = 0;
-};
-ChiSquareFit chi_square_fit(const CellProbabilities& cells, const CellObservations& counts,
-                            double minimum_expected = 20);
+// The same of an interval between these borders; y of its cells is [0, 1].
+EqualMassCells equal_mass_cells(const std::vector<double>& borders, const LineDensity& density,
+                                double largest_share,
+                                QuadratureLimits limits = {.tolerance = 1e-9});
 
 }  // namespace assay::stats

@@ -195,7 +195,7 @@ TEST(SamplerElsewhere, HasTheTablesThatItHasHere) {
   for (const std::size_t at_once : {1u, 4u, 5000u}) {
     const SamplerSetup there(
         NamedSampler{"ramp", std::make_shared<Elsewhere>(Limits{.at_once = at_once})});
-    EXPECT_EQ(there.cells().grid.probability, here.cells().grid.probability);
+    EXPECT_EQ(there.cells().mass.probability, here.cells().mass.probability);
     EXPECT_EQ(there.marginal_law("x").cumulated, here.marginal_law("x").cumulated);
   }
 }

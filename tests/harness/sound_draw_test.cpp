@@ -122,7 +122,7 @@ TEST(SoundDraw, APointInItsDomainStaysAsItIs) {
 TEST(SoundDraw, ACellIsFoundForEveryPointThatRoundingMoved) {
   const auto cell = [](const Always::Terms& terms, const Point& point) {
     const SamplerSetup setup(always(terms));
-    return setup.cell(sound(setup.named(), {.point = point, .density = 1}));
+    return setup.places().index(sound(setup.named(), {.point = point, .density = 1}));
   };
   const auto same = [&](const Always::Terms& terms, const Point& moved, const Point& border) {
     EXPECT_EQ(cell(terms, moved), cell(terms, border));

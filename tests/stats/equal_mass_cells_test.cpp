@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numeric>
+#include <numbers>
 #include <vector>
 
+#include "stats/chi_square_fit.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::stats {
@@ -16,100 +18,205 @@ using tests::calibrate;
 using tests::Experiment;
 using tests::Philox;
 
-// Density 4 a b: mass a^2 b^2 below (a, b).
-double product(SquarePoint p) { return 4 * p.a * p.b; }
-
-const CellPlan plan{.observations = 2000, .most_cells = 40, .resolution = 32};
-
-TEST(EqualMassCells, EveryCellHasItsMassAndTheFloor) {
-  const EqualMassCells grid = equal_mass_cells(product, plan);
-  ASSERT_GE(grid.size(), 20U);
-  ASSERT_LE(grid.size(), 40U);
-  EXPECT_NEAR(grid.cells.total, 1, 1e-9);
-  const auto square = [](double x) { return x * x; };
-  std::size_t cell = 0;
-  for (std::size_t i = 0; i < grid.cut_edges.size(); ++i) {
-    const double band = square(grid.band_edges[i + 1]) - square(grid.band_edges[i]);
-    for (std::size_t j = 0; j + 1 < grid.cut_edges[i].size(); ++j, ++cell) {
-      const double cut = square(grid.cut_edges[i][j + 1]) - square(grid.cut_edges[i][j]);
-      EXPECT_NEAR(grid.cells.probability[cell], band * cut, 1e-10);
-      EXPECT_GE(2000 * grid.cells.probability[cell], 20);
-      const double a = (grid.band_edges[i] + grid.band_edges[i + 1]) / 2;
-      const double b = (grid.cut_edges[i][j] + grid.cut_edges[i][j + 1]) / 2;
-      EXPECT_EQ(grid.index({a, b}), cell);
-    }
+std::vector<double> even(std::size_t cells) {
+  std::vector<double> borders;
+  for (std::size_t k = 0; k <= cells; ++k) {
+    borders.push_back(static_cast<double>(k) / static_cast<double>(cells));
   }
-  EXPECT_EQ(cell, grid.size());
-  EXPECT_EQ(grid.index({1, 1}), grid.size() - 1);
+  return borders;
 }
 
-TEST(EqualMassCells, TheTriangleMapsToTheSquareAndBack) {
-  const SquarePoint p{.3, .8};
-  const Barycentric t = triangle_point(p);
-  EXPECT_NEAR(t.first + t.second + t.third, 1, 1e-15);
-  EXPECT_NEAR(square_point(t).a, .3, 1e-15);
-  EXPECT_NEAR(square_point(t).b, .8, 1e-15);
+PlaneGrid unit_grid(std::size_t rows, std::size_t columns) { return {even(rows), even(columns)}; }
+
+PlaneDensity on_unit_square(auto density) {
+  return {.x = {0, 1}, .y = {0, 1}, .values = one_by_one(density)};
 }
 
-TEST(EqualMassCells, ADensityThatDoesNotIntegrateToOneSaysSo) {
-  const auto grid = equal_mass_cells([](SquarePoint p) { return .9 * product(p); }, plan);
-  EXPECT_NEAR(grid.cells.total, .9, 1e-9);
-  EXPECT_LT(grid.cells.total_error, 1e-6);
-}
-
-TEST(EqualMassCells, RefusesMalformedDensities) {
-  EXPECT_THROW(equal_mass_cells([](SquarePoint) { return -1.0; }, plan), std::domain_error);
-  EXPECT_THROW(equal_mass_cells([](SquarePoint) { return 0.0; }, plan), std::domain_error);
-  EXPECT_THROW(equal_mass_cells(product, {.observations = 0}), std::domain_error);
-  EXPECT_THROW(equal_mass_cells(product, plan).index({1.5, 0}), std::domain_error);
-}
-
-TEST(EqualMassCells, IntervalsOfADensityHaveTheirMass) {
-  const auto grid = equal_mass_intervals([](double x) { return x / 2; }, {0, 2, 256}, plan);
-  EXPECT_GE(grid.size(), 30U);
-  EXPECT_LE(grid.size(), 40U);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const double low = grid.edges[i];
-    const double high = grid.edges[i + 1];
-    EXPECT_NEAR(grid.cells.probability[i], (high * high - low * low) / 4, 1e-12);
-    EXPECT_GE(grid.cells.probability[i], .025);
-    EXPECT_EQ(grid.index((low + high) / 2), i);
+void expect_a_partition(const HalvedCells& cells) {
+  double area = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const PlaneCell& cell = cells.cells[i];
+    area += cell.x.width() * cell.y.width();
+    EXPECT_EQ(cells.index(cell.x.middle(), cell.y.middle()), i);
+    EXPECT_EQ(cells.index(cell.x.low, cell.y.low), i) << "closed below";
+    EXPECT_EQ(cells.grid.index(cell.x.middle(), cell.y.middle()), cells.places[i]);
   }
-  EXPECT_THROW(grid.index(2.1), std::domain_error);
+  EXPECT_NEAR(area, 1, 1e-12);
 }
 
-CellObservations draw(Philox& random, const EqualMassCells& grid, double power) {
-  CellObservations counts{std::vector<std::uint64_t>(grid.size())};
-  for (int i = 0; i < 2000; ++i) {
-    const double a = std::pow(random.uniform(), 1 / power);
-    ++counts.observed[grid.index({a, std::sqrt(random.uniform())})];
+// Of 4 x y a cell has the product of the differences of squares.
+TEST(EqualMassCells, EveryCellHasItsMassAndNoMoreThanItsShare) {
+  const auto found = equal_mass_cells(
+      unit_grid(4, 4), on_unit_square([](double x, double y) { return 4 * x * y; }), 1.0 / 64);
+  const auto below = [](const Span& s) { return s.high * s.high - s.low * s.low; };
+  for (std::size_t i = 0; i < found.cells.size(); ++i) {
+    const PlaneCell& cell = found.cells.cells[i];
+    EXPECT_NEAR(found.mass.probability[i], below(cell.x) * below(cell.y), 1e-12);
+    EXPECT_LE(found.mass.probability[i], 1.0 / 64);
+  }
+  EXPECT_NEAR(found.mass.total, 1, 1e-12);
+  // (7/16)^2 of the mass is in one cell of the grid, which needs 16 parts; (1/16)^2 in another.
+  EXPECT_GT(found.cells.size(), 64U);
+  EXPECT_LT(found.cells.size(), 160U);
+  expect_a_partition(found.cells);
+}
+
+TEST(EqualMassCells, AnEvenDensityIsLeftInTheGridsCells) {
+  const auto found = equal_mass_cells(unit_grid(3, 5),
+                                      on_unit_square([](double, double) { return .25; }), 2.0 / 15);
+  ASSERT_EQ(found.cells.size(), 15U);
+  for (const double mass : found.mass.probability) EXPECT_NEAR(mass, .25 / 15, 1e-15);
+  EXPECT_TRUE(found.cells.halves.empty());
+  expect_a_partition(found.cells);
+}
+
+TEST(EqualMassCells, OneLobeOfSeveralHasItsShareOfOne) {
+  const auto part = [](double mass) {
+    const auto peak = [mass](double x, double) { return mass * 3 * x * x; };
+    return equal_mass_cells(unit_grid(4, 4), on_unit_square(peak), 1.0 / 16).cells.size();
+  };
+  EXPECT_EQ(part(.1), 16U) << "no cell has a sixteenth of 1";
+  EXPECT_GT(part(1), 20U);
+  EXPECT_EQ(part(10), part(1)) << "a density that is none gets no more cells than one";
+}
+
+/// A normal law of this deviation about a point, cut off nowhere: all but 1e-9 is on the square.
+struct Peak {
+  double x;
+  double y;
+  double deviation;
+
+  double operator()(double u, double v) const {
+    const double r2 = ((u - x) * (u - x) + (v - y) * (v - y)) / (deviation * deviation);
+    return std::exp(-r2 / 2) / (2 * std::numbers::pi * deviation * deviation);
+  }
+};
+
+double normal_mass(Span span, double mean, double deviation) {
+  const double root = std::sqrt(2) * deviation;
+  return (std::erf((span.high - mean) / root) - std::erf((span.low - mean) / root)) / 2;
+}
+
+constexpr Peak narrow{.x = .4, .y = .7, .deviation = .004};
+
+PlaneDensity density_of(const Peak& peak) {
+  PlaneDensity density = on_unit_square(peak);
+  density.x_panels = density.y_panels = 100;
+  return density;
+}
+
+TEST(EqualMassCells, ANarrowPeakIsCountedInManyCells) {
+  const auto found = equal_mass_cells(unit_grid(16, 32), density_of(narrow), 1.0 / 256);
+  std::size_t held = 0;
+  for (std::size_t i = 0; i < found.cells.size(); ++i) {
+    const PlaneCell& cell = found.cells.cells[i];
+    const double mass = normal_mass(cell.x, narrow.x, narrow.deviation) *
+                        normal_mass(cell.y, narrow.y, narrow.deviation);
+    EXPECT_NEAR(found.mass.probability[i], mass, 1e-7);
+    EXPECT_LE(found.mass.probability[i], 1.0 / 256);
+    held += mass > 1.0 / 2048 ? 1 : 0;
+  }
+  EXPECT_GT(held, 256U);
+  EXPECT_LT(found.cells.size(), 1600U);
+  expect_a_partition(found.cells);
+}
+
+/// Counts of points of a peak of another deviation.
+CellCounts counts_of(Philox& random, const EqualMassCells& found, double deviation) {
+  CellCounts counts{.observed = std::vector<std::uint64_t>(found.cells.size()),
+                    .probability = found.mass.probability,
+                    .error = found.mass.error};
+  for (int i = 0; i < 4000; ++i) {
+    const double radius = deviation * std::sqrt(-2 * std::log1p(-random.uniform()));
+    const double angle = 2 * std::numbers::pi * random.uniform();
+    ++counts.observed[found.cells.index(narrow.x + radius * std::cos(angle),
+                                        narrow.y + radius * std::sin(angle))];
   }
   return counts;
 }
 
-// False alarm 1e-5 (tests/stats/calibration.h).
-TEST(EqualMassCells, TheFitIsCalibratedAndAWrongDensityIsCaught) {
-  const EqualMassCells grid = equal_mass_cells(product, plan);
-  const auto right = calibrate(Experiment{381, 3000}, [&](Philox& random) {
-    return chi_square_fit(grid.cells, draw(random, grid, 2)).test.log_p_upper;
-  });
+// Four thousand points of a peak a fifth too wide. Of the grid's own cells one holds nearly all
+// of it, and there is nothing to test. False alarm 1e-5 (tests/stats/calibration.h).
+TEST(EqualMassCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
+  const auto cells = [](double share) {
+    return equal_mass_cells(unit_grid(16, 32), density_of(narrow), share);
+  };
+  const EqualMassCells fine = cells(1.0 / 256);
+  const EqualMassCells coarse = cells(1);
+  const auto fit = [&](const EqualMassCells& found, double wider) {
+    return [&found, wider](Philox& random) {
+      const CellCounts counts = counts_of(random, found, wider * narrow.deviation);
+      return chi_square_fit(counts, {.probability_tolerance = 1e-6}).test.log_p_upper;
+    };
+  };
+  const auto right = calibrate(Experiment{381, 3000}, fit(fine, 1));
   EXPECT_TRUE(right.ok) << right.text();
   std::cout << "  3000 repetitions: " << right.text() << "\n";
-  const auto wrong = calibrate(Experiment{382, 1000}, [&](Philox& random) {
-    return chi_square_fit(grid.cells, draw(random, grid, 1.8)).test.log_p_upper;
-  });
+  const auto wrong = calibrate(Experiment{382, 1000}, fit(fine, 1.2));
   EXPECT_FALSE(wrong.ok) << wrong.text();
+  std::cout << "  a fifth too wide: " << wrong.text() << "\n";
+  Philox random(383);
+  EXPECT_THROW(fit(coarse, 1)(random), std::domain_error) << "one pool";
 }
 
-TEST(EqualMassCells, AnErrorOfTheQuadratureRaisesP) {
-  EqualMassCells grid = equal_mass_cells(product, plan);
-  Philox random(383);
-  const CellObservations counts = draw(random, grid, 1.8);
-  const double sharp = chi_square_fit(grid.cells, counts).test.log_p_upper;
-  for (double& error : grid.cells.error) error = .002;
-  EXPECT_GT(chi_square_fit(grid.cells, counts).test.log_p_upper, sharp);
-  for (double& error : grid.cells.error) error = 1;
-  EXPECT_GT(chi_square_fit(grid.cells, counts).test.log_p_upper, std::log(.5));
+// Half a unit of mass on a disc within one cell of the grid: it jumps along a curve.
+TEST(EqualMassCells, AJumpAlongACurveStaysWithinItsErrors) {
+  constexpr double r = .03;
+  const auto disc = [&](double x, double y) {
+    return std::hypot(x - .43, y - .57) < r ? 1 / (std::numbers::pi * r * r) : 0.0;
+  };
+  PlaneDensity density = on_unit_square(disc);
+  density.x_panels = density.y_panels = 32;
+  const auto found = equal_mass_cells(unit_grid(16, 16), density, 1.0 / 64, {.tolerance = 1e-6});
+  EXPECT_NEAR(found.mass.total, 1, found.mass.total_error);
+  EXPECT_LT(found.mass.total_error, 1e-3);
+  EXPECT_LE(*std::ranges::max_element(found.mass.probability), 1.0 / 64);
+  expect_a_partition(found.cells);
+}
+
+TEST(EqualMassCells, WithoutEvaluationsACellStaysWhole) {
+  std::uint64_t evaluations = 0;
+  const auto counted = [&](double x, double y) {
+    ++evaluations;
+    return narrow(x, y);
+  };
+  PlaneDensity density = on_unit_square(counted);
+  density.x_panels = density.y_panels = 100;
+  const QuadratureLimits enough{.tolerance = 1e-8};
+  equal_mass_cells(unit_grid(4, 4), density, 1, enough);
+  const QuadratureLimits limits{.tolerance = 1e-8, .evaluations = evaluations + 20000};
+  const auto some = equal_mass_cells(unit_grid(4, 4), density, 1.0 / 256, limits);
+  const auto all = equal_mass_cells(unit_grid(4, 4), density, 1.0 / 256, enough);
+  EXPECT_LT(some.cells.size(), all.cells.size());
+  EXPECT_NEAR(some.mass.total, 1, 1e-6);
+  expect_a_partition(some.cells);
+}
+
+TEST(EqualMassCells, PartsOfAnIntervalHaveTheirMass) {
+  const LineDensity density{.values = [](std::span<const double> x, std::span<double> values) {
+    for (std::size_t i = 0; i < x.size(); ++i) values[i] = 50 * std::exp(-50 * x[i]);
+  }};
+  const auto found = equal_mass_cells(even(64), density, 1.0 / 32);
+  for (std::size_t i = 0; i < found.cells.size(); ++i) {
+    const Span& part = found.cells.cells[i].x;
+    EXPECT_NEAR(found.mass.probability[i], std::exp(-50 * part.low) - std::exp(-50 * part.high),
+                1e-12);
+    EXPECT_LE(found.mass.probability[i], 1.0 / 32);
+  }
+  EXPECT_GT(found.cells.size(), 64U + 30);
+  expect_a_partition(found.cells);
+}
+
+TEST(EqualMassCells, RefusesWhatIsNoDensityAndNoShare) {
+  const PlaneGrid grid = unit_grid(2, 2);
+  const auto flat = on_unit_square([](double, double) { return 1.0; });
+  EXPECT_THROW(equal_mass_cells(grid, on_unit_square([](double, double) { return -1.0; }), 1),
+               std::domain_error);
+  EXPECT_THROW(equal_mass_cells(grid, flat, 0), std::domain_error);
+  EXPECT_THROW(equal_mass_cells(grid, flat, 1.5), std::domain_error);
+  EXPECT_THROW(equal_mass_cells({{0, 1}, {1, 0}}, flat, 1), std::domain_error);
+  EXPECT_THROW(whole_cells({{0, 1}, {1, 0}}), std::domain_error);
+  EXPECT_THROW(whole_cells(grid).index(1.5, 0), std::domain_error);
 }
 
 }  // namespace
