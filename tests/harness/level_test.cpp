@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "known_effects.h"
 #include "many_seeds.h"
 #include "tests/philox.h"
 
@@ -20,7 +21,7 @@ struct TrueClaim {
   Shape shape = Shape::uniform;
 };
 
-const std::map<std::string, std::string> estimators{
+const std::map<std::string, std::string> estimators = with_known_effects({
     {"normal", "plugin: analytic/normal, mean: 2, primaries: 1"},
     {"again", "plugin: analytic/normal, mean: 2, primaries: 1"},
     {"wide", "plugin: analytic/normal, mean: 4, deviation: 3, primaries: 1"},
@@ -32,7 +33,7 @@ const std::map<std::string, std::string> estimators{
     {"ward", "plugin: brdf/ward"},
     {"ward_again", "plugin: brdf/ward"},
     {"importance", "plugin: analytic/exponential_importance, primaries: 16"},
-};
+});
 
 std::string suite_of(const std::vector<TrueClaim>& claims) {
   std::string tests;
@@ -166,6 +167,45 @@ tests:
   expect_as_in_runs(text);
   expect_p_value("==", outcomes.at("equal").log_p, Shape::at_most_uniform);
   expect_p_value("<=", outcomes.at("at most").log_p, Shape::at_most_uniform);
+}
+
+// Claims that are true only just, at the edge of what they allow.
+TEST(Level, OfQuantilesCostsAndEfficienciesAtTheirMarginIsWhatThePValuesSay) {
+  expect_level(
+      1000,
+      {{"claim: 'quantile(normal, 0.5) == 1.6', allow: 0.4, secondaries: 100",
+        Shape::at_most_uniform},
+       {"claim: 'quantile(normal, 0.5) <= 0.8 * quantile(again, 0.5)', allow: 0.4, "
+        "secondaries: 100",
+        Shape::at_most_uniform},
+       {"claim: cost(path) == 0.8 * cost(path_again), allow: 25%, secondaries: 500",
+        Shape::at_most_uniform},
+       {"claim: cost(path) <= 0.8 * cost(path_again), allow: 25%, secondaries: 500"},
+       {"claim: efficiency(path) == 0.8 * efficiency(path_again), allow: 25%, secondaries: 2000",
+        Shape::at_most_uniform},
+       {"claim: efficiency(path) <= 0.8 * efficiency(path_again), allow: 25%, secondaries: 2000"}});
+}
+
+TEST(Level, OfSlopesAtTheirMarginIsWhatThePValuesSay) {
+  expect_level(1000, {{"claim: slope(mean(normal)) == 0.9, allow: 0.1, over: {mean: [1, 2, 4]}, "
+                       "secondaries: 100",
+                       Shape::at_most_uniform},
+                      {"claim: slope(variance(normal)) == 1.8, allow: 0.2, "
+                       "over: {deviation: [1, 2, 4]}, secondaries: 400",
+                       Shape::at_most_uniform},
+                      {"claim: slope(variance(normal)) <= 1.8, allow: 0.2, "
+                       "over: {deviation: [1, 2, 4]}, secondaries: 400",
+                       Shape::at_most_uniform}});
+}
+
+TEST(Level, OfCellsAtTheirMarginIsWhatThePValuesSay) {
+  expect_level(1000, {{fmt::format("claim: distribution(triangle.point) == density, "
+                                   "allow: {:.17g}, secondaries: 20000",
+                                   effect_of_triangle())},
+                      {fmt::format("claim: distribution(three_in_ten) == distribution(half), "
+                                   "test: chi-square-two-sample, allow: {:.17g}, secondaries: 1000",
+                                   effect_of_halves()),
+                       Shape::at_most_uniform}});
 }
 
 TEST(Level, InLooksIsWhatThePValuesSay) {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "known_effects.h"
 #include "many_seeds.h"
 #include "stats/binomial.h"
 #include "tests/philox.h"
@@ -26,12 +27,12 @@ struct AtTheEdge {
   Shape shape = Shape::uniform;
 };
 
-const std::map<std::string, std::string> estimators{
+const std::map<std::string, std::string> estimators = with_known_effects({
     {"normal", "plugin: analytic/normal, mean: 2, primaries: 1"},
     {"again", "plugin: analytic/normal, mean: 2, primaries: 1"},
     {"negative", "plugin: analytic/normal, mean: -2, primaries: 1"},
     {"shifted", "plugin: analytic/normal, mean: 2.5066942, primaries: 1"},
-};
+});
 
 std::string suite_of(const std::vector<AtTheEdge>& claims, double level, bool one_look) {
   std::string tests;
@@ -43,9 +44,11 @@ std::string suite_of(const std::vector<AtTheEdge>& claims, double level, bool on
                      estimators_of(estimators, tests), tests);
 }
 
-/// The verdict must be what the p-values say, seed by seed.
+/// The verdict must be what the p-values say, seed by seed, where gates let there be one: some
+/// methods are not valid of so few observations at so small an alpha.
 void expect_passes_at_beta(const std::string& name, const Outcomes& outcomes, double share) {
   for (std::size_t i = 0; i < outcomes.verdicts.size(); ++i) {
+    if (outcomes.verdicts[i] == Verdict::invalid) continue;
     const bool failed = outcomes.log_p[i] <= std::log(share);
     const bool excluded = outcomes.log_p_pass[i] <= std::log(beta);
     const Verdict expected = failed     ? Verdict::fail
@@ -122,6 +125,40 @@ const std::vector<AtTheEdge> laws{
 };
 
 TEST(Misses, OfLawsAreAtMostBeta) { expect_misses(laws); }
+
+const std::vector<AtTheEdge> quantiles_and_costs{
+    {"claim: 'quantile(normal, 0.5) == 1.6', detect: 0.4", "60", Shape::at_most_uniform},
+    {"claim: 'quantile(normal, 0.5) >= 2.4', detect: 0.4", "60", Shape::at_most_uniform},
+    {"claim: 'quantile(normal, 0.5) <= 0.8 * quantile(again, 0.5)', detect: 0.4", "100",
+     Shape::at_most_uniform},
+    {"claim: cost(path) == 0.8 * cost(path_again), detect: 25%", "400", Shape::at_most_uniform},
+    {"claim: cost(path) < cost(path_again)", "400"},
+    {"claim: efficiency(path) == 0.8 * efficiency(path_again), detect: 25%", "2000",
+     Shape::at_most_uniform},
+    {"claim: efficiency(path) > efficiency(path_again)", "2000"},
+};
+
+TEST(Misses, OfQuantilesCostsAndEfficienciesAreAtMostBeta) { expect_misses(quantiles_and_costs); }
+
+const std::vector<AtTheEdge> slopes{
+    {"claim: slope(mean(normal)) == 0.9, detect: 0.1, over: {mean: [1, 2, 4]}", "100",
+     Shape::at_most_uniform},
+    {"claim: slope(variance(normal)) == 1.8, detect: 0.2, over: {deviation: [1, 2, 4]}", "400",
+     Shape::at_most_uniform},
+    {"claim: slope(variance(normal)) within 0.2 of 1.8, over: {deviation: [1, 2, 4]}", "400",
+     Shape::at_most_uniform},
+};
+
+TEST(Misses, OfSlopesAreAtMostBeta) { expect_misses(slopes); }
+
+const std::vector<AtTheEdge> cells{
+    {fmt::format("claim: distribution(three_in_ten) == distribution(half), "
+                 "test: chi-square-two-sample, detect: {:.17g}",
+                 effect_of_halves()),
+     "100", Shape::at_most_uniform},
+};
+
+TEST(Misses, OfCellsAreAtMostBeta) { expect_misses(cells); }
 
 /// A test planned for its `detect`, in looks: at 1e-4 no rate at most (or at least) `rate` shows so
 /// many (few) of `runs`.
