@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "harness/sample_size.h"
+#include "stats/power.h"
 
 namespace assay::harness {
 

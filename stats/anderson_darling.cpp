@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
+#include <vector>
 
 #include "stats/check.h"
 
@@ -85,65 +85,6 @@ std::vector<double> continuous_probabilities(std::span<const double> sorted,
   return probabilities(sorted, law);
 }
 
-// The pooled values in order, each with the sample that it came from.
-struct Labelled {
-  double value;
-  std::size_t sample;
-};
-
-std::vector<Labelled> pool(const std::vector<std::vector<double>>& samples) {
-  check::at_least({"anderson_darling_k", "samples"}, samples.size(), 2);
-  std::vector<Labelled> pooled;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    check::at_least({"anderson_darling_k", "values of a sample"}, samples[i].size(), 1);
-    check_sorted("anderson_darling_k", samples[i]);
-    for (const double value : samples[i]) pooled.push_back({value, i});
-  }
-  std::stable_sort(pooled.begin(), pooled.end(),
-                   [](const Labelled& a, const Labelled& b) { return a.value < b.value; });
-  if (pooled.front().value == pooled.back().value) {
-    check::fail({"anderson_darling_k", "value of all samples"}, pooled.front().value,
-                "different from some other value");
-  }
-  return pooled;
-}
-
-std::vector<double> sizes_of(const std::vector<std::vector<double>>& samples) {
-  std::vector<double> sizes;
-  for (const auto& sample : samples) sizes.push_back(static_cast<double>(sample.size()));
-  return sizes;
-}
-
-// (N-1)/N sum_i 1/n_i sum_j l_j/N (N M_aij - n_i B_aj)^2 / (B_aj (N - B_aj) - N l_j / 4), over the
-// distinct values j, with midranks M_a and B_a inside the groups of ties l_j.
-double k_statistic(const std::vector<Labelled>& pooled, const std::vector<double>& sizes) {
-  const double total = static_cast<double>(pooled.size());
-  std::vector<double> before(sizes.size(), 0);
-  std::vector<double> here(sizes.size());
-  double sum = 0;
-  double behind = 0;
-  for (std::size_t start = 0; start < pooled.size();) {
-    std::fill(here.begin(), here.end(), 0);
-    std::size_t end = start;
-    while (end < pooled.size() && pooled[end].value == pooled[start].value) {
-      ++here[pooled[end++].sample];
-    }
-    const double ties = static_cast<double>(end - start);
-    const double middle = behind + ties / 2;
-    double squares = 0;
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-      const double deviation = total * (before[i] + here[i] / 2) - sizes[i] * middle;
-      squares += deviation * deviation / sizes[i];
-      before[i] += here[i];
-    }
-    const double scale = middle * (total - middle) - total * ties / 4;
-    if (scale > 0) sum += ties / total * squares / scale;
-    behind += ties;
-    start = end;
-  }
-  return (total - 1) / total * sum;
-}
-
 }  // namespace
 
 double log_anderson_darling_upper(double x, std::uint64_t n) {
@@ -175,30 +116,6 @@ TestResult anderson_darling(Probabilities at, double error) {
           0,
           log_anderson_darling_upper(statistic, at.of_values.size()),
           Exactness::asymptotic};
-}
-
-double anderson_darling_k_statistic(const std::vector<std::vector<double>>& sorted_samples) {
-  return k_statistic(pool(sorted_samples), sizes_of(sorted_samples));
-}
-
-TestResult anderson_darling_k(const std::vector<std::vector<double>>& sorted_samples,
-                              const PermutationPlan& plan) {
-  check::at_least({"anderson_darling_k", "permutations"}, plan.permutations, 1);
-  std::vector<Labelled> pooled = pool(sorted_samples);
-  const std::vector<double> sizes = sizes_of(sorted_samples);
-  const double observed = k_statistic(pooled, sizes);
-  // Equal arrangements may differ by rounding: they count as equal.
-  const double reached = observed * (1 - 1e-12);
-  std::uint64_t as_large = 0;
-  for (std::uint64_t b = 0; b < plan.permutations; ++b) {
-    for (std::size_t i = pooled.size() - 1; i > 0; --i) {
-      std::swap(pooled[i].sample, pooled[plan.random_below(i + 1)].sample);
-    }
-    as_large += k_statistic(pooled, sizes) >= reached;
-  }
-  const double log_p = std::log(static_cast<double>(as_large + 1)) -
-                       std::log(static_cast<double>(plan.permutations) + 1);
-  return {observed, {"bound", {}}, 0, log_p, Exactness::exact};
 }
 
 }  // namespace assay::stats

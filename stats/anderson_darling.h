@@ -1,9 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
-#include <vector>
 
 #include "stats/kolmogorov_smirnov.h"
 #include "stats/test_result.h"
@@ -37,23 +35,5 @@ TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw&
 TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law, double error);
 // Of values whose F(x_i) are known, in the values' order. Throws as above.
 TestResult anderson_darling(Probabilities at, double error);
-
-// k samples against each other by permutation. `random_below(b)` must return a uniform whole number
-// in [0, b); permutations >= 1.
-struct PermutationPlan {
-  std::uint64_t permutations = 9999;
-  std::function<std::uint64_t(std::uint64_t)> random_below;
-};
-
-// Null hypothesis: all samples follow one law. statistic = A2_akN of Scholz & Stephens (1987, eq.
-// 7), which allows ties. p = (1 + permutations at least as large) / (permutations + 1): exact, and
-// never below 1 / (permutations + 1), so a level below that needs more of them. (Its limit law is
-// not offered: known approximations stop at .001.) Throws std::domain_error: fewer than two
-// samples, an empty one, all values equal, unsorted or non-finite values.
-TestResult anderson_darling_k(const std::vector<std::vector<double>>& sorted_samples,
-                              const PermutationPlan& plan);
-
-// The statistic alone.
-double anderson_darling_k_statistic(const std::vector<std::vector<double>>& sorted_samples);
 
 }  // namespace assay::stats

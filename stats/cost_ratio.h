@@ -1,7 +1,6 @@
 #pragma once
 
 #include "stats/moments.h"
-#include "stats/power.h"
 #include "stats/test_result.h"
 
 namespace assay::stats {
@@ -26,16 +25,5 @@ Interval log_cost_ratio_interval(const Moments& cost_x, const Moments& cost_y, d
 // Null hypothesis: E cost = null_cost; all as above with ln(mean / null_cost).
 TestResult log_cost(const Moments& cost, double null_cost);
 Interval log_cost_interval(const Moments& cost, double reference_cost, double confidence);
-
-// Samples of each estimator for the ratio `detect` > allow >= 1 of mean costs:
-//   n = (cv_x^2 + cv_y^2) ((z_alpha + z_beta) / ln(detect / allow))^2, cv = sd / mean.
-// One sample: cv_y = 0.
-struct CostPlan {
-  double variation_x = 1;
-  double variation_y = 0;
-  double allow = 1;
-  ErrorRates rates;
-};
-double log_cost_sample_size(const CostPlan& plan, double detect);
 
 }  // namespace assay::stats

@@ -5,7 +5,7 @@
 
 #include "stats/check.h"
 #include "stats/errors.h"
-#include "stats/tails.h"
+#include "stats/normal_test.h"
 
 namespace assay::stats {
 namespace {
@@ -51,23 +51,7 @@ TestResult lag_one_test(std::span<const double> values) {
   const double n = static_cast<double>(values.size());
   const double variance = (n * n * n * n - 4 * n * n * n + 3 * n * n + 4 * n - 4) /
                           ((n + 1) * n * n * (n - 1) * (n - 1));
-  const double z = (r + 1 / n) / std::sqrt(variance);
-  const LogTails tails = normal_tails(z);
-  return {z, {"normal", {}}, tails.lower, tails.upper, Exactness::asymptotic};
-}
-
-TestResult ljung_box(std::span<const double> values, std::size_t lags) {
-  check::at_least({"ljung_box", "lags"}, lags, 1);
-  const Sequence sequence("ljung_box", values, std::max<std::size_t>(4, lags + 1));
-  const double n = static_cast<double>(values.size());
-  double q = 0;
-  for (std::size_t k = 1; k <= lags; ++k) {
-    const double r = sequence.correlation(k);
-    q += n * (n + 2) * r * r / (n - static_cast<double>(k));
-  }
-  const double degrees = static_cast<double>(lags);
-  const LogTails tails = chi_square_tails(q, degrees);
-  return {q, {"chi-square", {degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
+  return normal_test({r + 1 / n, std::sqrt(variance)});
 }
 
 double effective_sample_size(std::span<const double> values) {
@@ -106,21 +90,8 @@ Moments batch_means(std::span<const double> values, std::size_t length) {
   return means;
 }
 
-BatchedMean batch_means_t(std::span<const double> values, Reference null_mean, std::size_t length) {
-  const Moments means = batch_means(values, length);
-  TestResult result = student_t(means, null_mean);
-  result.exactness = Exactness::asymptotic;
-  const double tau = static_cast<double>(values.size()) / effective_sample_size(values);
-  return {result, length, static_cast<double>(length) >= 10 * tau && means.count >= 20};
-}
-
 double batch_variance(std::span<const double> values, std::size_t length) {
   return static_cast<double>(length) * batch_means(values, length).variance();
-}
-
-double lugsail_variance(std::span<const double> values, std::size_t length) {
-  check::at_least({"lugsail_variance", "length"}, length, 3);
-  return 2 * batch_variance(values, length) - batch_variance(values, length / 3);
 }
 
 }  // namespace assay::stats

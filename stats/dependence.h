@@ -4,7 +4,6 @@
 #include <span>
 
 #include "stats/moments.h"
-#include "stats/student_t.h"
 #include "stats/test_result.h"
 
 namespace assay::stats {
@@ -22,11 +21,6 @@ double autocorrelation(std::span<const double> values, std::size_t lag);
 // 1964). log_p_upper is the tail of positive correlation. Throws for n < 4; ZeroVariance.
 TestResult lag_one_test(std::span<const double> values);
 
-// Null hypothesis: independent values. Q = n (n + 2) sum_(k <= lags) r_k^2 / (n - k), chi-square
-// with `lags` degrees of freedom (Ljung & Box 1978, Biometrika 65). Throws for lags = 0 or lags >=
-// n.
-TestResult ljung_box(std::span<const double> values, std::size_t lags);
-
 // Effective sample size n / tau, tau = -1 + 2 sum Gamma_m, Gamma_m = r_2m + r_(2m+1) summed while
 // positive and made monotone (Geyer 1992, Stat. Sci. 7, section 3.3). Of independent values about
 // n, of an AR(1) chain n (1 - phi) / (1 + phi). May exceed n for alternating sequences; at most
@@ -36,24 +30,12 @@ double effective_sample_size(std::span<const double> values);
 // floor(sqrt n), the default length of a batch.
 std::size_t default_batch(std::size_t n);
 // The moments of the means of floor(n / length) whole batches; the rest at the end is left out.
+// student_t on them tests the mean of a stationary sequence; asymptotic, it needs batches of about
+// ten integrated autocorrelation times and at least 20 of them (Glynn & Iglehart 1990).
 // Throws std::domain_error for fewer than two batches or length 0.
 Moments batch_means(std::span<const double> values, std::size_t length);
 
-// Null hypothesis: E x = null_mean.value, for a stationary sequence: student_t on the batch means,
-// degrees of freedom (batches - 1) before the reference's error. Asymptotic; needs batches of about
-// ten integrated autocorrelation times tau and at least 20 of them (Glynn & Iglehart 1990).
-struct BatchedMean {
-  TestResult result;
-  std::size_t length = 0;
-  bool enough = false;  // length >= 10 n / effective_sample_size and batches >= 20
-};
-BatchedMean batch_means_t(std::span<const double> values, Reference null_mean, std::size_t length);
-
-// lim n Var(mean): length times the variance of batch means, and the lugsail estimate
-// 2 v(length) - v(length / 3), which leans to the safe side where correlation is positive (Vats &
-// Flegal 2022, Biometrika 109, with r = 3, c = 1/2). length / 3 is rounded down, hence
-// length >= 3. The lugsail estimate can be negative by chance.
+// lim n Var(mean), estimated as length times the variance of batch means.
 double batch_variance(std::span<const double> values, std::size_t length);
-double lugsail_variance(std::span<const double> values, std::size_t length);
 
 }  // namespace assay::stats

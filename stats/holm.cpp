@@ -66,20 +66,4 @@ std::vector<double> weighted_holm(std::span<const WeightedLogP> entries) {
   return adjusted;
 }
 
-double log_bonferroni_share(double alpha, double weight) {
-  check::inside_unit({"log_bonferroni_share", "alpha"}, alpha);
-  check::positive({"log_bonferroni_share", "weight"}, weight);
-  if (weight > 1) check::fail({"log_bonferroni_share", "weight"}, weight, "at most 1");
-  return std::log(alpha) + std::log(weight);
-}
-
-double log_p_of_looks(std::span<const WeightedLogP> looks) {
-  checked_total("log_p_of_looks", looks);
-  double smallest = 0;
-  for (const WeightedLogP& look : looks) {
-    smallest = std::min(smallest, look.log_p - std::log(look.weight));
-  }
-  return smallest;
-}
-
 }  // namespace assay::stats

@@ -24,11 +24,4 @@ std::vector<double> holm(std::span<const double> log_p);
 // rounding).
 std::vector<double> weighted_holm(std::span<const WeightedLogP> entries);
 
-// ln(alpha weight), the fixed share of one entry: reject when log p <= share.
-double log_bonferroni_share(double alpha, double weight);
-
-// One p-value from several looks, or from any fixed set of tests of one hypothesis:
-// ln min(1, min_k p_k / w_k), weights fixed beforehand, positive, summing to at most 1.
-double log_p_of_looks(std::span<const WeightedLogP> looks);
-
 }  // namespace assay::stats

@@ -10,10 +10,6 @@
 namespace assay::stats {
 namespace {
 
-double two_sided(LogTails tails) {
-  return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
-}
-
 bool tested(const ZMap& map, std::size_t element) {
   return map.untested.empty() || map.untested[element] == 0;
 }
@@ -85,7 +81,7 @@ void add_windows(ImageFamily& family, const ZMap& map) {
     double windows = 0;
     for (const Channel& channel : channels) channel.scan(group, best, windows);
     if (windows == 0) continue;
-    best.log_p = two_sided(normal_tails(best.z));
+    best.log_p = log_p_two_sided(normal_tails(best.z));
     best.adjusted_log_p = adjusted(best.log_p, {windows, group.share});
     family.groups.push_back(best);
   }

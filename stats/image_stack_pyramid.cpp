@@ -24,10 +24,6 @@ constexpr const char* function_name = "image_pyramid";
 // elements is not kept of all of them.
 constexpr std::size_t rows_at_a_time = 512;
 
-double two_sided(LogTails tails) {
-  return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
-}
-
 LogTails tails_of(StudentValue value) {
   return std::isinf(value.degrees) ? normal_tails(value.t)
                                    : student_t_tails(value.t, value.degrees);
@@ -196,7 +192,7 @@ void RowPyramid<Real>::add_best_windows(ImageFamily& family) const {
     const BestCell& best = found_.best[g];
     if (best.windows == 0) continue;
     ImageFinding finding = best.finding;
-    finding.log_p = two_sided(tails_of(best.value));
+    finding.log_p = log_p_two_sided(tails_of(best.value));
     finding.adjusted_log_p = adjusted(finding.log_p, {best.windows, groups_[g].share});
     family.groups.push_back(finding);
   }

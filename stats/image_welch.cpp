@@ -8,9 +8,9 @@
 
 #include "stats/check.h"
 #include "stats/errors.h"
+#include "stats/normal_test.h"
 #include "stats/student_t.h"
 #include "stats/t_to_z.h"
-#include "stats/tails.h"
 #include "stats/vector_copies.h"
 #include "stats/welch_t.h"
 
@@ -208,9 +208,7 @@ TestResult welch_element(const ImageStack<Real>& a, const ImageReference& b, std
   const Moments moments = element_moments(a, element);
   if (moments.m2 > 0 || error == 0) return student_t(moments, {b.value[element], error});
   // Only the reference varies: nothing was estimated, the law is normal.
-  const double z = (moments.mean - b.value[element]) / error;
-  const LogTails tails = normal_tails(z);
-  return {z, {"normal", {}}, tails.lower, tails.upper, Exactness::asymptotic};
+  return normal_test({moments.mean - b.value[element], error});
 }
 
 template WelchCounts welch_z(const ImageStack<float>&, const ImageStack<float>&, std::size_t,

@@ -26,7 +26,7 @@ Gate batch_gate(std::span<const double> values);
 // n Var(mean) / Var x, the integrated autocorrelation time, by effective_sample_size; of more than
 // 8192 values from the means of neighbours, which have the same n Var(mean).
 double autocorrelation_time(std::span<const double> values);
-// The length of a batch that is long enough for batch_means_t: the larger of default_batch and ten
+// The length of a batch that is long enough for batch_means: the larger of default_batch and ten
 // autocorrelation times, rounded up, and so much longer that less than a batch is left over.
 std::size_t sufficient_batch(std::span<const double> values);
 

@@ -5,27 +5,10 @@
 #include "stats/check.h"
 #include "stats/errors.h"
 #include "stats/log_variance.h"
-#include "stats/tails.h"
+#include "stats/normal_test.h"
 
 namespace assay::stats {
 namespace {
-
-struct Estimate {
-  double value;
-  double standard_error;
-};
-
-TestResult normal_result(Estimate estimate) {
-  const double z = estimate.value / estimate.standard_error;
-  const LogTails tails = normal_tails(z);
-  return {z, {"normal", {}}, tails.lower, tails.upper, Exactness::asymptotic};
-}
-
-Interval normal_interval(Estimate estimate, double confidence) {
-  const double z = normal_quantile({Tail::upper, std::log((1 - confidence) / 2)});
-  return {estimate.value - z * estimate.standard_error,
-          estimate.value + z * estimate.standard_error, confidence};
-}
 
 void check_sample(const JointMoments& sample) {
   check::at_least({"log_efficiency_of", "count"}, sample.x.count, 4);
@@ -38,7 +21,7 @@ double relative_cost_variance(const JointMoments& sample) {
   return sample.cost.variance() / sample.cost.mean / sample.cost.mean;
 }
 
-Estimate one_sample(const char* function, const LogEfficiency& x, double null_efficiency) {
+NormalEstimate one_sample(const char* function, const LogEfficiency& x, double null_efficiency) {
   check::positive({function, "null efficiency"}, null_efficiency);
   return {x.value - std::log(null_efficiency), x.standard_error()};
 }
@@ -54,7 +37,7 @@ double reference_variance(const LogEfficiency& x, const LogEfficiency& y, Refere
   return (own_x - own_y) * (own_x - own_y);
 }
 
-Estimate difference(const LogEfficiency& x, const LogEfficiency& y, References references) {
+NormalEstimate difference(const LogEfficiency& x, const LogEfficiency& y, References references) {
   const double variance =
       x.spread / x.count + y.spread / y.count + reference_variance(x, y, references);
   return {x.value - y.value, std::sqrt(variance)};
@@ -106,7 +89,7 @@ LogEfficiency log_efficiency_of(const JointMoments& sample, Reference reference)
 }
 
 TestResult log_efficiency(const LogEfficiency& x, double null_efficiency) {
-  return normal_result(one_sample("log_efficiency", x, null_efficiency));
+  return normal_test(one_sample("log_efficiency", x, null_efficiency));
 }
 
 Interval log_efficiency_interval(const LogEfficiency& x, double reference_efficiency,
@@ -119,9 +102,9 @@ Interval log_efficiency_interval(const LogEfficiency& x, double reference_effici
 TestResult log_efficiency_ratio(const LogEfficiency& x, const LogEfficiency& y, double null_ratio,
                                 References references) {
   check::positive({"log_efficiency_ratio", "null_ratio"}, null_ratio);
-  Estimate estimate = difference(x, y, references);
+  NormalEstimate estimate = difference(x, y, references);
   estimate.value -= std::log(null_ratio);
-  return normal_result(estimate);
+  return normal_test(estimate);
 }
 
 Interval log_efficiency_ratio_interval(const LogEfficiency& x, const LogEfficiency& y,

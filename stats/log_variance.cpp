@@ -4,26 +4,10 @@
 
 #include "stats/check.h"
 #include "stats/errors.h"
-#include "stats/tails.h"
+#include "stats/normal_test.h"
 
 namespace assay::stats {
 namespace {
-
-TestResult normal_result(double z) {
-  const LogTails tails = normal_tails(z);
-  return {z, {"normal", {}}, tails.lower, tails.upper, Exactness::asymptotic};
-}
-
-struct Estimate {
-  double value;
-  double standard_error;
-};
-
-Interval normal_interval(Estimate estimate, double confidence) {
-  const double z = normal_quantile({Tail::upper, std::log((1 - confidence) / 2)});
-  return {estimate.value - z * estimate.standard_error,
-          estimate.value + z * estimate.standard_error, confidence};
-}
 
 double ratio_standard_error(const Moments& x, const Moments& y) {
   return std::hypot(log_variance_standard_error(x), log_variance_standard_error(y));
@@ -42,7 +26,7 @@ double log_variance_standard_error(const Moments& x) {
 TestResult log_variance(const Moments& x, double null_variance) {
   check::positive({"log_variance", "null_variance"}, null_variance);
   const double error = log_variance_standard_error(x);
-  return normal_result(std::log(x.variance() / null_variance) / error);
+  return normal_test({std::log(x.variance() / null_variance), error});
 }
 
 Interval log_variance_interval(const Moments& x, double reference_variance, double confidence) {
@@ -55,7 +39,7 @@ Interval log_variance_interval(const Moments& x, double reference_variance, doub
 TestResult log_variance_ratio(const Moments& x, const Moments& y, double null_ratio) {
   check::positive({"log_variance_ratio", "null_ratio"}, null_ratio);
   const double error = ratio_standard_error(x, y);
-  return normal_result(std::log(x.variance() / y.variance() / null_ratio) / error);
+  return normal_test({std::log(x.variance() / y.variance() / null_ratio), error});
 }
 
 Interval log_variance_ratio_interval(const Moments& x, const Moments& y, double confidence) {

@@ -70,19 +70,6 @@ LookSchedule geometric_looks(LookRange range, double growth) {
   return schedule;
 }
 
-LookSchedule with_weights(LookSchedule schedule, std::span<const double> proportions) {
-  if (proportions.size() != schedule.sizes.size()) {
-    check::fail({"with_weights", "number of proportions"}, proportions.size(),
-                "the number of looks");
-  }
-  for (const double value : proportions) check::positive({"with_weights", "proportion"}, value);
-  const double sum = std::accumulate(proportions.begin(), proportions.end(), 0.0);
-  check::positive({"with_weights", "sum of proportions"}, sum);
-  schedule.weights.assign(proportions.begin(), proportions.end());
-  for (double& weight : schedule.weights) weight /= sum;
-  return schedule;
-}
-
 double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p) {
   check_taken("log_p_over_looks", schedule, log_p.size());
   double smallest = 0;
@@ -109,38 +96,6 @@ TestResult over_looks(const LookSchedule& schedule, std::span<const TestResult> 
   });
   combined.exactness = exact ? Exactness::exact : Exactness::asymptotic;
   return combined;
-}
-
-double look_confidence(const LookSchedule& schedule, std::size_t look, double confidence) {
-  check_taken("look_confidence", schedule, look + 1);
-  check::inside_unit({"look_confidence", "confidence"}, confidence);
-  return 1 - schedule.weights[look] * (1 - confidence);
-}
-
-Interval intersection(std::span<const Interval> intervals, double confidence) {
-  check::at_least({"intersection", "intervals"}, intervals.size(), 1);
-  check::inside_unit({"intersection", "confidence"}, confidence);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Interval common{-infinity, infinity, confidence};
-  for (const Interval& interval : intervals) {
-    common.low = std::max(common.low, interval.low);
-    common.high = std::min(common.high, interval.high);
-  }
-  return common;
-}
-
-ErrorRates look_rates(ErrorRates rates, double weight) {
-  planning::check_rates("look_rates", rates);
-  if (!(weight > 0 && weight <= 1)) check::fail({"look_rates", "weight"}, weight, "in (0, 1]");
-  return {rates.alpha * weight, rates.beta * weight, rates.two_sided};
-}
-
-double look_cost(ErrorRates rates, double weight) {
-  const ErrorRates share = look_rates(rates, weight);
-  const double z_beta = planning::z_upper(rates.beta);
-  const double ratio = (normal_quantile(planning::critical_tail(share)) + z_beta) /
-                       (normal_quantile(planning::critical_tail(rates)) + z_beta);
-  return ratio * ratio;
 }
 
 }  // namespace assay::stats

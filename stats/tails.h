@@ -14,6 +14,9 @@ struct LogTails {
   double upper = 0;
 };
 
+// ln min(1, 2 min(lower, upper)).
+double log_p_two_sided(LogTails tails);
+
 enum class Tail { lower, upper };
 
 // A tail given by its log probability: the quantile q of {lower, ln a} has P(X <= q) = a, that of

@@ -77,12 +77,4 @@ TwoPartTest two_part_ks(std::span<const double> sorted_x, std::span<const double
   return result;
 }
 
-QuantisationGate quantisation_gate(double step, double n, double alpha) {
-  check::non_negative({"quantisation_gate", "step"}, step);
-  check::positive({"quantisation_gate", "n"}, n);
-  check::inside_unit({"quantisation_gate", "alpha"}, alpha);
-  const double threshold = std::sqrt(std::log(2 / alpha) / (2 * n));
-  return {step / (2 * threshold)};
-}
-
 }  // namespace assay::stats

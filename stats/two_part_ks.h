@@ -36,16 +36,4 @@ TwoPartTest two_part_ks(std::span<const double> sorted, const AtomLaw& law);
 TwoPartTest two_part_ks(std::span<const double> sorted_x, std::span<const double> sorted_y,
                         double atom);
 
-// Are the values fine enough for the law of D? With values that are multiples of `step` (in units
-// of probability: 2^-8 for eight bits) D is off by up to step / 2. Sound while that is less than a
-// twentieth of the threshold d at this alpha, d = sqrt(ln(2 / alpha) / 2n) (Massart 1990); two
-// samples: n = m n / (m + n). Otherwise add uniform noise of one step or compare by intervals.
-struct QuantisationGate {
-  double value = 0;  // step / (2 d)
-  double limit = 0.05;
-
-  bool sound() const { return value < limit; }
-};
-QuantisationGate quantisation_gate(double step, double n, double alpha);
-
 }  // namespace assay::stats

@@ -25,17 +25,6 @@ using tests::sorted;
 const ContinuousLaw uniform_law{[](double u) { return u; }};
 const ContinuousLaw exponential_law{[](double x) { return -std::expm1(-x); }};
 
-// The data sets of make_ratios.py.
-std::vector<double> sample(int k, int size, bool rounded) {
-  std::vector<double> values;
-  for (int i = 1; i <= size; ++i) {
-    const double tooth = 1 + std::fmod(0.05 * k * i, 3);
-    const double value = std::cos(i * (0.7 + 0.1 * k)) * tooth + 0.01 * k * i + 0.3 * k;
-    values.push_back(rounded ? std::nearbyint(value) : value);
-  }
-  return sorted(values);
-}
-
 TEST(AndersonDarling, LimitLawAgreesWithTheSeriesOfTheOtherTail) {
   constexpr std::uint64_t endless = 1'000'000'000'000'000;
   for (const Row& row : tests::read_table("anderson_darling")) {
@@ -47,17 +36,6 @@ TEST(AndersonDarling, LimitLawAgreesWithTheSeriesOfTheOtherTail) {
 TEST(AndersonDarling, GoldenStatistic) {
   EXPECT_NEAR(anderson_darling_statistic(sorted(tests::golden_x), exponential_law),
               .174383413363932, 1e-13);
-}
-
-TEST(AndersonDarling, KSampleStatisticAgreesWithScipyWithAndWithoutTies) {
-  for (const Row& row : tests::read_table("anderson_darling_k")) {
-    const int k = static_cast<int>(row["k"]);
-    const bool rounded = row["rounded"] == 1;
-    std::vector<std::vector<double>> samples{sample(k, static_cast<int>(row["n"]), rounded),
-                                             sample(k + 3, static_cast<int>(row["m"]), rounded)};
-    if (row["samples"] == 3) samples.push_back(sample(k + 1, 15, true));
-    EXPECT_NEAR(anderson_darling_k_statistic(samples) / row["statistic"], 1, 1e-11);
-  }
 }
 
 TEST(AndersonDarling, TailsStayFiniteAndFall) {
@@ -88,9 +66,6 @@ TEST(AndersonDarling, RefusesWhatItsLawDoesNotCover) {
   EXPECT_THROW(anderson_darling(unsorted, uniform_law), std::domain_error);
   EXPECT_THROW(anderson_darling(good, {[](double) { return 2.0; }}), std::domain_error);
   EXPECT_THROW(anderson_darling(good, {uniform_law.cdf, uniform_law.cdf}), std::domain_error);
-  EXPECT_THROW(anderson_darling_k_statistic({good}), std::domain_error);
-  EXPECT_THROW(anderson_darling_k_statistic({good, {}}), std::domain_error);
-  EXPECT_THROW(anderson_darling_k_statistic({{1, 1}, {1}}), std::domain_error);
   EXPECT_THROW(log_anderson_darling_upper(std::nan(""), 10), std::domain_error);
 }
 
@@ -137,43 +112,6 @@ TEST(AndersonDarling, TakesTheLeastStatisticOfAllLawsWithinTheError) {
   EXPECT_LT(anderson_darling(u, shifted).log_p_upper, -1e300);
   EXPECT_GT(anderson_darling(u, shifted, .6).log_p_upper, -1e3);
   EXPECT_THROW(anderson_darling(u, uniform_law, -1e-9), std::domain_error);
-}
-
-std::vector<std::vector<double>> three_samples(Philox& random, double shift) {
-  std::vector<std::vector<double>> samples;
-  for (const std::size_t n : {std::size_t{8}, std::size_t{12}, std::size_t{10}}) {
-    samples.push_back(
-        sorted(sample_of(n, [&] { return std::round(2 * random.normal() + shift); })));
-    shift = 0;
-  }
-  return samples;
-}
-
-PermutationPlan permutations(Philox& random, std::uint64_t count) {
-  return {count, [&random](std::uint64_t bound) {
-            return static_cast<std::uint64_t>(random.uniform() * static_cast<double>(bound));
-          }};
-}
-
-TEST(AndersonDarling, OfThreeTiedSamplesIsAtMostUniform) {
-  expect_calibrated({364, 4000, Shape::at_most_uniform}, [](Philox& random) {
-    const auto samples = three_samples(random, 0);
-    return anderson_darling_k(samples, permutations(random, 199)).log_p_upper;
-  });
-}
-
-TEST(AndersonDarling, FindsAShiftOfOneSample) {
-  Philox random(365);
-  const auto result = anderson_darling_k(three_samples(random, 8), permutations(random, 999));
-  EXPECT_NEAR(std::exp(result.log_p_upper), 1e-3, 1e-12);
-}
-
-TEST(AndersonDarling, OneFewerInCountAndPermutationsIsCaught) {
-  expect_caught({366, 8000, Shape::at_most_uniform}, [](Philox& random) {
-    const auto samples = three_samples(random, 0);
-    const double p = std::exp(anderson_darling_k(samples, permutations(random, 19)).log_p_upper);
-    return std::log(std::max(1e-9, (20 * p - 1) / 19));
-  });
 }
 
 TEST(AndersonDarling, WeightsInTheWrongOrderAreCaught) {

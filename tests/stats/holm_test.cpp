@@ -45,13 +45,6 @@ TEST(Holm, BadEntriesThrow) {
   EXPECT_TRUE(holm(std::vector<double>{}).empty());
 }
 
-TEST(Holm, LooksAndSharesSpendTheirWeights) {
-  EXPECT_DOUBLE_EQ(log_bonferroni_share(.01, .25), std::log(.01) + std::log(.25));
-  const std::vector<WeightedLogP> looks{{std::log(.5), .25}, {std::log(.001), .25}, {0, .5}};
-  EXPECT_NEAR(std::exp(log_p_of_looks(looks)), .004, 1e-15);
-  EXPECT_EQ(log_p_of_looks(std::vector<WeightedLogP>{{0, .5}}), 0);
-}
-
 RC_GTEST_PROP(Holm, IsMonotoneAndNeverAboveBonferroni,
               (const std::vector<std::uint16_t>& numbers)) {
   const std::vector<double> log_p = log_p_of(numbers);

@@ -40,13 +40,8 @@ TEST(Looks, SmallSizesThatRoundTogetherAreOneLook) {
   EXPECT_EQ(geometric_looks({7, 7}, 2).sizes, (std::vector<std::uint64_t>{7}));
 }
 
-TEST(Looks, WeightsAreNormalised) {
-  const auto schedule = with_weights(geometric_looks({1, 4}, 2), std::vector<double>{1, 1, 2});
-  EXPECT_EQ(schedule.weights, (std::vector<double>{.25, .25, .5}));
-}
-
 TEST(Looks, TheCombinedPIsTheSmallestOfTheLooksTakenEachOverItsWeight) {
-  const auto schedule = with_weights(geometric_looks({1, 4}, 2), std::vector<double>{1, 1, 2});
+  const LookSchedule schedule{.sizes = {1, 2, 4}, .weights = {.25, .25, .5}};
   const double p = std::exp(log_p_over_looks(
       schedule, std::vector<double>{std::log(.02), std::log(.005), std::log(.008)}));
   EXPECT_NEAR(p, .016, 1e-15);
@@ -71,21 +66,6 @@ TEST(Looks, CombineBothSidesOfAMethodAndKeepTheLatestStatistic) {
   EXPECT_EQ(combined.exactness, Exactness::asymptotic);
 }
 
-// The ratios of one test with K looks to one fixed sample: squares of quotients of normal
-// quantiles.
-TEST(Looks, CostWhatTheUnionBoundSays) {
-  struct Known {
-    double alpha, five, ten;
-  };
-  for (const Known& known : {Known{.05, 1.73, 2.05}, Known{1e-3, 1.28, 1.40},
-                             Known{1e-6, 1.13, 1.19}, Known{1e-9, 1.08, 1.12}}) {
-    EXPECT_NEAR(look_cost({known.alpha, .5}, 1 / 5.0), known.five, .005);
-    EXPECT_NEAR(look_cost({known.alpha, .5}, 1 / 10.0), known.ten, .005);
-  }
-  // scipy: ((norm.isf(5e-5) + norm.isf(.01)) / (norm.isf(5e-4) + norm.isf(.01)))**2
-  EXPECT_NEAR(look_cost({1e-3, .01}, .1), 1.2250783401584966, 1e-10);
-}
-
 TEST(Looks, RefuseWhatCannotKeepTheLevel) {
   EXPECT_THROW(geometric_looks({0, 4}, 2), std::domain_error);
   EXPECT_THROW(geometric_looks({5, 4}, 2), std::domain_error);
@@ -99,8 +79,6 @@ TEST(Looks, RefuseWhatCannotKeepTheLevel) {
   EXPECT_THROW(log_p_over_looks({{1}, {1}}, std::vector<double>{-1, -1}), std::domain_error);
   EXPECT_THROW(log_p_over_looks({{1}, {1}}, std::vector<double>{.1}), std::domain_error);
   EXPECT_THROW(log_p_over_looks({{1}, {1}}, std::vector<double>{std::nan("")}), std::domain_error);
-  EXPECT_THROW(with_weights({{1, 2}, {}}, std::vector<double>{1, 0}), std::domain_error);
-  EXPECT_THROW(look_rates({.01, .01}, 0), std::domain_error);
 }
 
 // One normal sample looked at after each doubling; `combine` sees ln p of all looks.
@@ -141,25 +119,6 @@ TEST(Looks, TheSmallestOfTheLooksWithoutWeightsIsCaught) {
         });
       });
   EXPECT_FALSE(calibration.ok) << calibration.text();
-}
-
-// Coverage of the intersection at .9: at most .1 misses; Hoeffding at 1e-5, R = 4000: .0379.
-TEST(Looks, TheIntersectionOfTheLooksIntervalsCovers) {
-  const auto schedule = geometric_looks({8, 128}, 2);
-  Philox random(303);
-  int missed = 0;
-  for (int i = 0; i < 4000; ++i) {
-    Moments x;
-    std::vector<Interval> intervals;
-    for (std::size_t k = 0; k < schedule.sizes.size(); ++k) {
-      while (x.count < schedule.sizes[k]) x.add(3 + random.normal());
-      intervals.push_back(student_t_interval(x, {0}, look_confidence(schedule, k, .9)));
-    }
-    const Interval common = intersection(intervals, .9);
-    missed += common.low > 3 || common.high < 3;
-  }
-  EXPECT_LE(missed / 4000.0, .1 + .0379);
-  EXPECT_GT(missed, 0);
 }
 
 }  // namespace

@@ -70,16 +70,6 @@ TEST(TwoPartKs, RefusesMalformedSamples) {
   EXPECT_THROW(two_part_ks(good, {0, 1.5, half_black.rest}), std::domain_error);
 }
 
-TEST(QuantisationGate, JudgesTheStepAgainstTheThreshold) {
-  // n = 1e6 and alpha = 1e-3: d = .00195. Eight bits fail, sixteen pass.
-  EXPECT_FALSE(quantisation_gate(0x1p-8, 1e6, 1e-3).sound());
-  EXPECT_TRUE(quantisation_gate(0x1p-16, 1e6, 1e-3).sound());
-  EXPECT_NEAR(quantisation_gate(0x1p-10, 1e6, 1e-3).value, .25, .001);
-  EXPECT_TRUE(quantisation_gate(0, 1e6, 1e-3).sound());
-  EXPECT_THROW(quantisation_gate(-1, 10, .1), std::domain_error);
-  EXPECT_THROW(quantisation_gate(.1, 0, .1), std::domain_error);
-}
-
 TEST(TwoPartKs, IsAtMostUniform) {
   expect_calibrated({371, 20000, Shape::at_most_uniform},
                     [](Philox& r) { return two_part_ks(pixels(r, 60, .5), half_black).log_p; });

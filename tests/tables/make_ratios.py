@@ -242,19 +242,6 @@ def anderson_darling_limit():
         yield [x, mp.nstr(mp.log(1 - cdf), 20)]
 
 
-def anderson_darling_rows():
-    """k samples: scipy's statistic before it is standardised."""
-    from scipy.stats._morestats import _anderson_ksamp_midrank
-    for k, n, m in ((1, 20, 30), (2, 50, 40), (3, 25, 25)):
-        groups = [np.sort(sample(k, n)), np.sort(sample(k + 3, m)), np.round(np.sort(sample(k + 1, 15)))]
-        for used in (groups[:2], groups, [np.round(g) for g in groups]):
-            pooled = np.sort(np.concatenate(used))
-            sizes = np.array([len(g) for g in used])
-            value = _anderson_ksamp_midrank(used, pooled, np.unique(pooled), len(used), sizes,
-                                            len(pooled))
-            yield [k, n, m, len(used), int(used is not groups and len(used) == 3), value]
-
-
 if __name__ == "__main__":
     write("log_efficiency", "k,n,value,error,biased,biased_error,ratio_z,ratio_upper,cost_z",
           efficiency_rows())
@@ -263,4 +250,3 @@ if __name__ == "__main__":
     write("ledger", "k,nights,tau,u,log_e,detector,night,change,share_2", ledger_rows())
     write("band", "case,confidence,step,next_step,coverage", band_rows())
     write("anderson_darling", "x,log_upper", anderson_darling_limit())
-    write("anderson_darling_k", "k,n,m,samples,rounded,statistic", anderson_darling_rows())
