@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "harness/evidence_cells.h"
 #include "harness/sampler_setup.h"
+#include "stats/chi_square_fit.h"
 
 namespace assay::harness {
 namespace {
@@ -17,8 +19,16 @@ struct Cells {
   std::string axes;  ///< what rows and columns are
   std::size_t width = 0, height = 0;
   std::vector<double> observed = {}, expected = {};
-  double variance = 1;  ///< of a count, over what is expected
+  std::vector<double> z = {};
 };
+
+/// In standard deviations, of a count whose variance is `variance` times what is expected. A draw
+/// where none is expected is beyond any scale.
+double residual(double observed, double expected, double variance = 1) {
+  const double difference = observed - expected;
+  if (expected > 0) return difference / std::sqrt(expected * variance);
+  return difference > 0 ? std::numeric_limits<double>::infinity() : 0;
+}
 
 std::string axis(const Marginal& marginal, const std::vector<double>& borders) {
   return fmt::format("{} {:.4g} to {:.4g}", marginal.name, borders.front(), borders.back());
@@ -33,21 +43,38 @@ std::string axes_of(const SamplerSetup& draws, const stats::PlaneGrid& grid) {
                      axis(coordinates[0], grid.x_borders), axis(coordinates[1], grid.y_borders));
 }
 
-/// Summed over the lobes and over the parts of a cell that was halved.
+/// Whether some cells of the grid hold several that were counted: parts, or lobes.
+bool are_divided(const DensityCells& density, const stats::PlaneGrid& grid) {
+  return density.cells.in_domain() > grid.size();
+}
+
+/// In the grid's cells: counts summed over the lobes and over the parts of what was halved. The
+/// residual is that of the one of these that is farthest off, of those that are tested by
+/// themselves; where there is none, that of the sum.
 Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
   const stats::PlaneGrid grid = measure_grid(draws.sampler());
-  const DensityCells& density = draws.cells();
+  const DensityCells& density = draws.density_cells();
   const auto total = static_cast<double>(data.moments.count);
   Cells cells{.axes = axes_of(draws, grid),
               .width = grid.columns(),
               .height = grid.rows(),
               .observed = std::vector<double>(grid.size()),
               .expected = std::vector<double>(grid.size())};
+  std::vector<std::optional<double>> farthest(grid.size());
   for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
-    const std::size_t place = density.cells.place(i);
-    cells.observed[place] += static_cast<double>(data.cells[i]);
-    cells.expected[place] += total * density.mass.probability[i];
+    const std::size_t place = density.cells.grid_cell(i);
+    const auto observed = static_cast<double>(data.cells[i]);
+    const double expected = total * density.mass.probability[i];
+    cells.observed[place] += observed;
+    cells.expected[place] += expected;
+    if (expected < stats::FitOptions{}.minimum_expected) continue;
+    const double z = residual(observed, expected);
+    if (std::abs(z) > std::abs(farthest[place].value_or(0))) farthest[place] = z;
   }
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    cells.z.push_back(farthest[i].value_or(residual(cells.observed[i], cells.expected[i])));
+  }
+  if (are_divided(density, grid)) cells.axes += "; of parts of a cell the z that is farthest off";
   return cells;
 }
 
@@ -71,11 +98,11 @@ Cells of_two(const Question& question, const stats::SampledCells& sampled,
                                   first.estimator->listed, channels[first.channels[0]].name,
                                   channels[first.channels[1]].name),
               .width = sampled.cut_borders.front().size() + 1,
-              .height = sampled.cut_borders.size(),
-              .variance = m / (n + m)};
+              .height = sampled.cut_borders.size()};
   for (std::size_t i = 0; i < sampled.size(); ++i) {
     cells.observed.push_back(static_cast<double>(x[i]));
     cells.expected.push_back(static_cast<double>(x[i] + y[i]) * n / (n + m));
+    cells.z.push_back(residual(cells.observed[i], cells.expected[i], m / (n + m)));
   }
   return cells;
 }
@@ -94,13 +121,6 @@ Cells cells_of(const TestWork& work) {
     return of_two(question, *sampled, data);
   }
   return {};
-}
-
-/// A draw where none is expected is beyond any scale.
-double residual(const Cells& cells, std::size_t i) {
-  const double difference = cells.observed[i] - cells.expected[i];
-  if (cells.expected[i] > 0) return difference / std::sqrt(cells.expected[i] * cells.variance);
-  return difference > 0 ? std::numeric_limits<double>::infinity() : 0;
 }
 
 }  // namespace
@@ -124,7 +144,7 @@ void add_cells(const TestWork& work, reports::Test& test) {
   };
   add("cells_observed", [&](std::size_t i) { return cells.observed[i]; });
   add("cells_expected", [&](std::size_t i) { return cells.expected[i]; });
-  add("cells_z", [&](std::size_t i) { return residual(cells, i); });
+  add("cells_z", [&](std::size_t i) { return cells.z[i]; });
 }
 
 }  // namespace assay::harness

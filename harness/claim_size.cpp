@@ -139,7 +139,8 @@ CountedProbability counted_probability(const Question& question) {
   const double claimed = question.references[0].value;
   if (question.kind == QuestionKind::inconsistency) return {.value = claimed};
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  return {.value = claimed - draws.cells().mass.total, .error = draws.cells().tolerance()};
+  return {.value = claimed - draws.density_cells().mass.total,
+          .error = draws.density_cells().tolerance()};
 }
 
 }  // namespace

@@ -48,10 +48,9 @@ std::uint64_t parse_seed(const std::string& text) {
   try {
     return parse_count(text, "--seed", 0);
   } catch (const InputError&) {
-    throw InputError({},
-                     fmt::format("--seed must be a whole number, 0 or more, or `random`, but it "
-                                 "is `{}`",
-                                 text));
+    throw InputError(
+        {}, fmt::format("--seed must be a whole number from 0 to {}, or `random`, but it is `{}`",
+                        std::numeric_limits<std::uint64_t>::max(), text));
   }
 }
 

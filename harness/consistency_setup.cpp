@@ -139,7 +139,8 @@ class ConsistencyEstimator final : public Estimator {
     if (density < 0) sound_density(setup_.named(), draw.point, density);
     // NaN is not consistent either.
     const bool consistent = difference <= rounding_;
-    out[0] = consistent ? 0 : 1 + static_cast<double>(setup_.places().index(sound(setup_.named(), draw)));
+    out[0] =
+        consistent ? 0 : 1 + static_cast<double>(setup_.cells().index(sound(setup_.named(), draw)));
     out[1] = difference;
     cost.samples += 1;
   }
@@ -165,6 +166,9 @@ class ConsistencyEstimator final : public Estimator {
 double inconsistency(const Sampler& sampler, const SamplerDraw& draw) {
   return judged_alone(sampler, draw).difference;
 }
+
+ConsistencySetup::ConsistencySetup(NamedSampler named)
+    : SamplerSetup(std::move(named)), cells_(sampler()) {}
 
 std::vector<Channel> ConsistencySetup::channels() const {
   return {{.name = inconsistent_channel}, {.name = "difference", .diagnostic = true}};

@@ -17,14 +17,20 @@ namespace assay::harness {
 double inconsistency(const Sampler& sampler, const SamplerDraw& draw);
 
 /// A sampler's draws as observations of a channel `inconsistent`: 0 for a draw no farther than the
-/// sampler's rounding() from what it declares, else 1 + the number of its cell (SamplerSetup::places()); and
-/// of a channel `difference`, how far it is.
+/// sampler's rounding() from what it declares, else 1 + the number of its cell; and of a channel
+/// `difference`, how far it is.
 class ConsistencySetup final : public SamplerSetup {
  public:
-  using SamplerSetup::SamplerSetup;
+  explicit ConsistencySetup(NamedSampler named);
+
+  /// Of equal measure: where a draw is, whatever its density.
+  const DrawCells& cells() const { return cells_; }
 
   std::vector<Channel> channels() const override;
   std::unique_ptr<Estimator> make() const override;
+
+ private:
+  DrawCells cells_;
 };
 
 inline const std::string inconsistent_channel = "inconsistent";

@@ -7,7 +7,7 @@
 
 #include "estimators/estimator.h"
 #include "stats/cell_quadrature.h"
-#include "stats/equal_mass_cells.h"
+#include "stats/adaptive_cells.h"
 
 namespace assay::harness {
 

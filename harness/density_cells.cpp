@@ -19,16 +19,16 @@ constexpr stats::QuadratureLimits limits{.tolerance = 1e-8, .deepest_bisection =
 // pole.
 constexpr double largest_share = 1.0 / 40;
 
-stats::EqualMassCells cells_of_lobe(const NamedSampler& named, const stats::PlaneGrid& grid,
-                                    int lobe) {
+stats::AdaptiveCells cells_of_lobe(const NamedSampler& named, const stats::PlaneGrid& grid,
+                                   int lobe) {
   const Sampler& sampler = *named.sampler;
   const Densities densities = densities_of_lobe(named, lobe);
   // The grid's own cells must not all be halved for a little more than the mean.
   const double share = std::max(largest_share, 2 / static_cast<double>(grid.size()));
   if (sampler.domain() == Domain::interval) {
-    return stats::equal_mass_cells(grid.x_borders, line_density(sampler, densities), share, limits);
+    return stats::adaptive_cells(grid.x_borders, line_density(sampler, densities), share, limits);
   }
-  return stats::equal_mass_cells(grid, plane_density(sampler, 0, densities), share, limits);
+  return stats::adaptive_cells(grid, plane_density(sampler, 0, densities), share, limits);
 }
 
 void append(stats::CellProbabilities& all, const stats::CellProbabilities& more) {
@@ -56,7 +56,7 @@ DensityCells density_cells(const NamedSampler& named) {
   std::vector<stats::HalvedCells> of_lobes;
   stats::CellProbabilities mass;
   for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
-    stats::EqualMassCells found = cells_of_lobe(named, grid, lobe);
+    stats::AdaptiveCells found = cells_of_lobe(named, grid, lobe);
     append(mass, found.mass);
     of_lobes.push_back(std::move(found.cells));
   }

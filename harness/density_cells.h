@@ -3,14 +3,15 @@
 // The cells that draws are counted in to hold them against their sampler's density.
 
 #include "harness/draw_cells.h"
-#include "stats/equal_mass_cells.h"
+#include "stats/adaptive_cells.h"
 
 namespace assay::harness {
 
 /// Cells of a sampler's domain with the probability its declared density gives each. Those of equal
-/// measure (measure_grid) are halved until none has more than 1/40 (1/32 on an interval); of
-/// several lobes each has cells of its own, and a lobe that is a point mass is one. The last cell
-/// is not among the probabilities: draws that yield no point.
+/// measure (measure_grid) are halved until none has more than 1/40 (1/32 on an interval), as far as
+/// the quadrature's evaluations reach (stats/adaptive_cells.h); of several lobes each has cells of
+/// its own, and a lobe that is a point mass is one. The last cell is not among the probabilities:
+/// draws that yield no point.
 struct DensityCells {
   DrawCells cells;
   stats::CellProbabilities mass;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "harness/domain_chart.h"
 
@@ -15,10 +17,10 @@ namespace {
 constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
 constexpr std::size_t interval_cells = 64;
 
-/// Ends of a cell, with as many digits as tell them apart.
+/// Ends of a cell, with as many digits as tell them apart; no two doubles share 17.
 std::string range_text(const std::string& name, stats::Span span) {
   const double largest = std::max(std::abs(span.low), std::abs(span.high));
-  const int digits = std::clamp(2 + static_cast<int>(std::log10(largest / span.width())), 3, 15);
+  const int digits = std::clamp(2 + static_cast<int>(std::log10(largest / span.width())), 3, 17);
   return fmt::format("{} {:.{}g} to {:.{}g}", name, span.low, digits, span.high, digits);
 }
 
@@ -32,8 +34,10 @@ stats::PlaneGrid measure_grid(const Sampler& sampler) {
   stats::PlaneGrid grid{.x_borders = {}, .y_borders = {0, 1}};
   for (std::size_t k = 0; k < interval_cells; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(interval_cells);
-    grid.x_borders.push_back(low + (high - low) * share);
+    const double border = low + (high - low) * share;
+    if (grid.x_borders.empty() || border > grid.x_borders.back()) grid.x_borders.push_back(border);
   }
+  if (grid.x_borders.back() == high) grid.x_borders.pop_back();
   grid.x_borders.push_back(high);
   return grid;
 }
@@ -73,9 +77,9 @@ DrawCells::Found DrawCells::found(std::size_t cell) const {
   return {.lobe = lobe, .cell = cell - begin_[lobe]};
 }
 
-std::size_t DrawCells::place(std::size_t cell) const {
+std::size_t DrawCells::grid_cell(std::size_t cell) const {
   const auto [lobe, number] = found(cell);
-  return of_lobes_[lobe].places[number];
+  return of_lobes_[lobe].grid_cells[number];
 }
 
 std::string DrawCells::describe(std::size_t cell) const {
@@ -85,13 +89,13 @@ std::string DrawCells::describe(std::size_t cell) const {
   }
   const auto [lobe, number] = found(cell);
   const std::vector<Marginal> coordinates = marginals_of(sampler_);
-  const stats::PlaneCell& place = of_lobes_[lobe].cells[number];
-  std::string text = range_text(coordinates[0].name, place.x);
+  const stats::PlaneCell& sides = of_lobes_[lobe].cells[number];
+  std::string text = range_text(coordinates[0].name, sides.x);
   // Of a triangle the second coordinate of a cell is a share of what the first leaves.
   if (sampler_.domain() == Domain::triangle) {
-    text += ", " + range_text("v / (1 - u)", place.y);
+    text += ", " + range_text("v / (1 - u)", sides.y);
   } else if (sampler_.domain() != Domain::interval) {
-    text += ", " + range_text(coordinates[1].name, place.y);
+    text += ", " + range_text(coordinates[1].name, sides.y);
   }
   return of_lobes_.size() > 1 ? fmt::format("{} of lobe {}", text, lobe) : text;
 }

@@ -11,7 +11,8 @@
 
 namespace assay::harness {
 
-/// Cells of equal measure: 16 x 32 of two coordinates (domain_chart.h), 64 of an interval.
+/// Cells of equal measure: 16 x 32 of two coordinates (domain_chart.h), 64 of an interval, or as
+/// many as there are numbers between its ends.
 stats::PlaneGrid measure_grid(const Sampler& sampler);
 
 /// The cells of every lobe, one lobe's behind another's, then one for every lobe that is a point
@@ -31,7 +32,7 @@ class DrawCells {
   /// How many are parts of a domain, from number 0 on.
   std::size_t in_domain() const { return lobes_end_; }
   /// The cell of measure_grid() that one of them is part of.
-  std::size_t place(std::size_t cell) const;
+  std::size_t grid_cell(std::size_t cell) const;
 
  private:
   /// One of a lobe's cells.

@@ -35,13 +35,13 @@ const Summary& summary_of(const TestWork& work, std::size_t subject) {
 bool density_is_proper(TestOutcome& outcome) try {
   if (outcome.question.kind != QuestionKind::fit_to_density) return true;
   const auto& draws = dynamic_cast<const SamplerSetup&>(*outcome.question.subjects[0].setup);
-  const double total = draws.cells().mass.total;
+  const double total = draws.density_cells().mass.total;
   const double excess = total - 1;
-  if (excess <= draws.cells().tolerance()) return true;
+  if (excess <= draws.density_cells().tolerance()) return true;
   settle(outcome, Verdict::fail,
          fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
                      "{:.1g}): more than 1, so no sampler can follow it",
-                     total, draws.cells().tolerance()));
+                     total, draws.density_cells().tolerance()));
   return false;
 } catch (const std::domain_error& error) {
   settle(outcome, Verdict::invalid, in_words(error));
@@ -213,8 +213,7 @@ Verdict verdict_of_channels(const TestOutcome& outcome) {
 
 /// The verdict of everything known at this look, and why.
 void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constants) {
-  // A forced method runs as asked: its gates are shown, and do not invalidate.
-  const std::string red = outcome.question.test->method ? "" : red_gates(outcome.gates);
+  const std::string red = outcome.plan.gates_invalidate ? red_gates(outcome.gates) : "";
   remember(outcome, red.empty());
   if (!red.empty() || !outcome.plan.invalid.empty()) {
     settle(outcome, Verdict::invalid,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "harness/law_evidence.h"
 #include "harness/sampler_setup.h"
@@ -39,6 +40,14 @@ const stats::PooledPair& farthest(const stats::ChiSquareTwoSample& fit) {
                            [](const auto& a, const auto& b) { return a.part < b.part; });
 }
 
+/// A cell that was tested, or how many were together, which expect too few draws each.
+std::string pool_text(const std::vector<std::size_t>& members,
+                      const std::function<std::string(std::size_t)>& describe) {
+  if (members.size() == 1) return describe(members.front());
+  return fmt::format("{} sparse cells together (the first of them {})", members.size(),
+                     describe(members.front()));
+}
+
 std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) {
   const auto part = [](const stats::PooledCell& cell) {
     const double difference = static_cast<double>(cell.observed) - cell.expected;
@@ -47,13 +56,15 @@ std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) 
   const auto worst =
       std::max_element(fit.cells.begin(), fit.cells.end(),
                        [&](const auto& a, const auto& b) { return part(a) < part(b); });
+  const auto describe = [&](std::size_t cell) {
+    return draws.density_cells().cells.describe(cell);
+  };
   std::string text;
   if (fit.impossible > 0) {
     text = fmt::format("; {} draws where the density is 0", fit.impossible);
   }
   return text + fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
-                            draws.cells().cells.describe(worst->members.front()), worst->observed,
-                            worst->expected);
+                            pool_text(worst->members, describe), worst->observed, worst->expected);
 }
 
 }  // namespace
@@ -73,14 +84,14 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Sub
 
 Evidence cells_against_density(const Question& question, const ChannelData& data) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  const stats::CellProbabilities& mass = draws.cells().mass;
+  const stats::CellProbabilities& mass = draws.density_cells().mass;
   stats::CellCounts counts{.observed = {data.cells.begin(), data.cells.end()},
                            .probability = mass.probability,
                            .error = mass.error};
-  counts.probability.push_back(draws.cells().missing());
+  counts.probability.push_back(draws.density_cells().missing());
   counts.error.push_back(mass.total_error);
   const stats::ChiSquareFit fit =
-      stats::chi_square_fit(counts, {.probability_tolerance = draws.cells().tolerance()});
+      stats::chi_square_fit(counts, {.probability_tolerance = draws.density_cells().tolerance()});
   const auto at = [fit](double theta) {
     return theta == 0 ? fit.test : stats::chi_square_fit_effect(fit, std::max(0.0, theta));
   };
@@ -109,12 +120,12 @@ Evidence cells_against_cells(const Method& method, const Question& question,
     return stats::chi_square_effect_interval(fit.statistic, confidence);
   };
   const stats::PooledPair& worst = farthest(fit);
+  const auto place = [&](std::size_t cell) { return describe(cells, question.subjects[0], cell); };
   return {.estimate = fit.statistic.effect(),
           .at = at,
           .interval = interval,
           .where = fmt::format("; farthest apart in {}, {} against {}",
-                               describe(cells, question.subjects[0], worst.members.front()),
-                               worst.x, worst.y),
+                               pool_text(worst.members, place), worst.x, worst.y),
           .quantity = quantity,
           .distance = true};
 }

@@ -63,7 +63,7 @@ std::string per_cent(double part) { return fmt::format("{:.3g} %", 100 * part); 
 
 Evidence evidence_of_integral(const Question& question, const ChannelData& data) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  const DensityCells& cells = draws.cells();
+  const DensityCells& cells = draws.density_cells();
   Evidence evidence =
       from_probability({.seen = {.successes = data.cells.back(), .trials = sum(data.cells)},
                         .offset = cells.mass.total - question.references[0].value,
@@ -83,13 +83,16 @@ Evidence evidence_of_inconsistency(const Question& question, const ChannelData& 
   Evidence evidence = from_probability({.seen = {.successes = inconsistent, .trials = draws_made},
                                         .offset = -question.references[0].value});
   evidence.quantity = "probability of an inconsistent draw";
+  if (const double claimed = question.references[0].value; claimed != 0) {
+    evidence.quantity += fmt::format(", less {:g},", claimed);
+  }
   if (inconsistent > 0) {
     const auto most = std::max_element(data.cells.begin() + 1, data.cells.end());
     const auto cell = static_cast<std::size_t>(most - data.cells.begin()) - 1;
     evidence.where =
         fmt::format("; more in one cell than in any other, {} of them, in {}",
                     per_cent(static_cast<double>(*most) / static_cast<double>(inconsistent)),
-                    draws.places().describe(cell));
+                    draws.cells().describe(cell));
   }
   return evidence;
 }

@@ -100,6 +100,12 @@ Slopes exact_slopes(const SlopeData& data) {
 // Quotients of logarithms of whole numbers are good to some units of the last digit.
 constexpr double exact_tolerance = 1e-12;
 
+/// How far a slope is from the claimed one: not at all within what its logarithms are good to.
+double beyond(double slope, double null) {
+  const double difference = slope - null;
+  return std::abs(difference) <= exact_tolerance ? 0 : difference;
+}
+
 /// Costs that never vary say what they are: a slope is theirs or it is not.
 Evidence exact_evidence(const SlopeData& data, double null) {
   const Slopes slopes = exact_slopes(data);
@@ -113,9 +119,9 @@ Evidence exact_evidence(const SlopeData& data, double null) {
     return result;
   };
   const auto interval = [=](double confidence) {
-    return stats::Interval{slopes.least - null, slopes.most - null, confidence};
+    return stats::Interval{beyond(slopes.least, null), beyond(slopes.most, null), confidence};
   };
-  return {.estimate = (slopes.least + slopes.most) / 2 - null,
+  return {.estimate = beyond((slopes.least + slopes.most) / 2, null),
           .at = at,
           .interval = interval,
           .quantity = "difference from the claimed slope"};

@@ -37,6 +37,9 @@ constexpr Meaning meanings[] = {
     {"excess kurtosis",
      "the observations are not normal enough for this test of their variance: their excess "
      "kurtosis is {0}, limit {1}"},
+    {"p of a power law",
+     "the points lie on no power law: p {0}, limit {1}; let `over` begin where one holds, often at "
+     "larger values"},
     {"rounding",
      "the values are rounded too coarsely to be held against a continuous law: a step is {0} of "
      "the distance that is rejected, limit {1}; write more digits"},
@@ -108,7 +111,7 @@ std::string what_would_help(const TestOutcome& outcome) {
   for (const reports::Gate& gate : outcome.gates) {
     if (is_red(gate, "count")) return "";
     if (gate.state != "red") continue;
-    says_it_all = says_it_all && is_red(gate, "rounding");
+    says_it_all = says_it_all && (gate.name == "rounding" || gate.name == "p of a power law");
     heavy = heavy || is_red(gate, "excess kurtosis") || is_red(gate, "largest deviation");
     factor = std::max(factor, wanted(gate));
   }

@@ -144,6 +144,12 @@ bool may_end_beyond(double theta, const Evidence& evidence, double confidence) {
   return evidence.at(theta).log_p_lower >= std::log((1 - confidence) / 2) - rounding;
 }
 
+/// The estimate is the larger of the two distances, and p that of the part with the smaller p.
+std::string what_rejects(const Evidence& points, const Evidence& missing) {
+  if (missing.at(0).log_p_upper >= points.at(0).log_p_upper) return "";
+  return fmt::format("; p is that of the masses without a point, {:.4g} apart", missing.estimate);
+}
+
 /// theta = the larger of the two. "At most" is rejected where either part rejects it at half the
 /// level (Bonferroni), "at least" where both do (intersection of unions).
 Evidence larger_of(const Evidence& points, const Evidence& missing) {
@@ -169,6 +175,7 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
   return {.estimate = std::max(points.estimate, missing.estimate),
           .at = at,
           .interval = interval,
+          .where = what_rejects(points, missing),
           .quantity = quantity_of_both,
           .distance = true};
 }
@@ -231,8 +238,8 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel) {
     declared.error = table.error;
   }
   if (draws != nullptr) {
-    declared.missing = draws->cells().without_density();
-    declared.missing_error = draws->cells().tolerance();
+    declared.missing = draws->density_cells().without_density();
+    declared.missing_error = draws->density_cells().tolerance();
   }
   return declared;
 }
@@ -271,6 +278,7 @@ Evidence points_split_at(double atom, const Points& x, const Points& y) {
   TestResult at_null = atom_decides ? parts.atom : parts.rest;
   at_null.log_p_lower = 0;
   at_null.log_p_upper = parts.log_p;
+  evidence.where = atom_decides ? fmt::format("; p is that of the values at {:.6g}", atom) : "";
   evidence.at = [at_null, margin = std::move(evidence.at)](double theta) {
     return theta <= 0 ? at_null : margin(theta);
   };

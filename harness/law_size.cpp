@@ -32,10 +32,10 @@ double degrees_of_freedom(const Question& question, const Plan& plan, double obs
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
   const double least = stats::FitOptions{}.minimum_expected;
   double pools = 0;
-  for (const double p : draws.cells().mass.probability) {
+  for (const double p : draws.density_cells().mass.probability) {
     pools += std::min(1.0, observations * p / least);
   }
-  pools += std::min(1.0, observations * draws.cells().missing() / least);
+  pools += std::min(1.0, observations * draws.density_cells().missing() / least);
   return std::max(1.0, pools - 1);
 }
 

@@ -29,7 +29,10 @@ struct Plan {
   /// Of an image: too little skewness that its elements' differences have in common for their
   /// squares to add up to a finding. The sum of squares takes part then.
   bool symmetric = true;
-  std::string hint = "";     ///< what the pilot saw of images that explains a fail, if anything
+  std::string hint = "";  ///< what the pilot saw of images that explains a fail, if anything
+  /// Whether red gates on the test's own data make a look count for nothing. A forced method runs
+  /// as asked: its gates are shown only.
+  bool gates_invalidate = true;
   std::string invalid = "";  ///< why no method is valid, if none is
   std::string error = "";    ///< why nothing can be planned, if nothing can
   /// Of pictures that were looked at when they were read.

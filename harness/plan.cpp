@@ -61,6 +61,14 @@ std::uint64_t most_available(const Question& question, const Plan& plan) {
 void require_possible(const Question& question, const Plan& plan, std::uint64_t secondaries) {
   const Location& where = question.test->where;
   if (secondaries >= impossible_secondaries) {
+    if (question.kind == QuestionKind::integral) {
+      const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+      throw InputError(
+          where, fmt::format("no number of observations would decide this claim: the quadrature of "
+                             "the density is certain only to {:.1g}, too little for the margin; "
+                             "give a larger one, or let the sampler's panels() be finer",
+                             draws.density_cells().tolerance()));
+    }
     throw InputError(where,
                      "no number of observations would decide this claim: the reference's own "
                      "standard error is too large for the margin; give a larger margin or a "
@@ -156,7 +164,7 @@ void require_density(const Question& question) {
   if (question.kind != QuestionKind::fit_to_density && question.kind != QuestionKind::integral) {
     return;
   }
-  dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).cells();
+  dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
 }
 
 }  // namespace
@@ -166,7 +174,8 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
   const TestEntry& test = *question.test;
   Plan plan{
       .method = test.method ? find_method(question, *test.method) : methods_for(question).front(),
-      .regions = regions_of(question)};
+      .regions = regions_of(question),
+      .gates_invalidate = !test.method};
   for (const Subject& subject : question.subjects) {
     const bool single = question.of_laws() && !subject.estimator->primaries;
     plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));

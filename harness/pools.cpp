@@ -47,8 +47,8 @@ std::vector<Range> data_ranges(const Setup& setup, std::uint64_t rows) {
 }
 
 std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
-  if (dynamic_cast<const ConsistencySetup*>(&setup) != nullptr) {
-    return {{.cells = 1 + setup.places().size()}, {}};
+  if (const auto* consistency = dynamic_cast<const ConsistencySetup*>(&setup)) {
+    return {{.cells = 1 + consistency->cells().size()}, {}};
   }
   std::vector<ChannelPlan> plan;
   for (const Marginal& marginal : setup.marginals()) {
@@ -83,13 +83,14 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   return plan;
 }
 
-/// Counts draws in the cells of their density. Where that cannot be had the plan says so, or the
-/// look.
+/// Counts draws in the cells of their density: those of the pool's own set-up, which its workers
+/// write the numbers of; the subject's may be another of an equal sampler. Where the density cannot
+/// be had the plan says so, or the look.
 void count_cells(const Subject& side, Pool& pool) {
-  if (dynamic_cast<const ConsistencySetup*>(side.setup.get()) != nullptr) return;
-  const auto& draws = dynamic_cast<const SamplerSetup&>(*side.setup);
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*pool.setup());
+  if (dynamic_cast<const ConsistencySetup*>(&draws) != nullptr) return;
   try {
-    pool.plans()[side.channels[0]].cells = draws.cells().cells.size();
+    pool.plans()[side.channels[0]].cells = draws.density_cells().cells.size();
   } catch (const NoDensity&) {
   } catch (const std::domain_error&) {
   }

@@ -132,13 +132,21 @@ stats::LookSchedule recorded_looks(const reports::Test& test) {
   return looks;
 }
 
+/// Whether the test went on in spite of a red gate, as only a method does that the suite forced.
+bool was_forced(const reports::Test& test) {
+  return test.verdict != reports::Verdict::invalid &&
+         std::ranges::any_of(test.gates,
+                             [](const reports::Gate& gate) { return gate.state == "red"; });
+}
+
 /// The plan as it was: nothing is chosen anew, so no pilot is drawn.
 Plan recorded_plan(const Question& question, const reports::Test& test) {
   Plan plan{
       .method = find_method(question, test.method),
       .looks = recorded_looks(test),
       .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U,
-      .symmetric = !test.image || test.image->symmetric};
+      .symmetric = !test.image || test.image->symmetric,
+      .gates_invalidate = !was_forced(test)};
   // Of each channel the subjects in order.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const bool drawn = i < test.samples.size() &&
@@ -259,6 +267,7 @@ bool print_observation(const TestWork& work, const reports::Test& recorded, std:
         draw_observation(*pool.setup(), pool.key(), pool.primaries(), index);
     const std::vector<Channel> channels = pool.setup()->channels();
     for (std::size_t c = 0; c < values.size(); ++c) {
+      if (channels[c].name == cell_channel && values[c] == no_cell) continue;
       fmt::print("{}.{}  observation {}: {}\n", question.subjects[i].estimator->name,
                  channels[c].name, index, values[c]);
       const reports::Sample* sample = recorded_of(recorded, question, i, c);

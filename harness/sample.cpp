@@ -38,6 +38,20 @@ bool has_marginal(const NamedSampler& named, const std::string& name) {
   return std::ranges::find(all, name, &Marginal::name) != all.end();
 }
 
+/// Where numbers of cells are to be printed.
+void ask_for_cells(const Sampled& sampled, const Source& source) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(sampled.setup.get());
+  if (draws == nullptr) return;
+  const std::vector<Channel> channels = draws->channels();
+  const auto is_cell = [&](std::size_t column) { return channels[column].name == cell_channel; };
+  if (std::ranges::none_of(sampled.columns, is_cell)) return;
+  try {
+    draws->density_cells();
+  } catch (const std::domain_error& error) {
+    throw InputError(source.where, error.what());
+  }
+}
+
 Sampled sampled_by(const PreparedEstimator& estimator, const Source& source) {
   Sampled sampled{.setup = estimator.setup};
   add_columns(sampled, source.part);
@@ -53,7 +67,10 @@ Sampled sampled_by(const PreparedEstimator& estimator, const Source& source) {
     const std::string rest = dot == std::string::npos ? "" : source.part.substr(dot + 1);
     add_columns(sampled, by_name ? rest : source.part);
   }
-  if (!sampled.columns.empty()) return sampled;
+  if (!sampled.columns.empty()) {
+    ask_for_cells(sampled, source);
+    return sampled;
+  }
   throw InputError(source.where,
                    fmt::format("`{}` has no part `{}`; `assay describe {}` lists them",
                                source.estimator, source.part, estimator.entry->information.name));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "harness/declared_density.h"
@@ -63,9 +62,8 @@ class SamplerEstimator final : public Estimator {
     for (std::size_t i = 0; i < marginals_.size(); ++i) {
       out[i] = point ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
     }
-    if (density_cells_) {
-      out[marginals_.size()] = static_cast<double>(density_cells_->cells.index(draw));
-    }
+    out[marginals_.size()] =
+        density_cells_ ? static_cast<double>(density_cells_->cells.index(draw)) : no_cell;
     cost.samples += 1;
   }
 
@@ -100,8 +98,7 @@ void require_sound(const NamedSampler& named, const Location& where) {
 
 double no_point(const Marginal& marginal) { return marginal.low - 1; }
 
-SamplerSetup::SamplerSetup(NamedSampler named)
-    : named_(std::move(named)), places_(*named_.sampler) {}
+SamplerSetup::SamplerSetup(NamedSampler named) : named_(std::move(named)) {}
 
 std::vector<Marginal> SamplerSetup::marginals() const { return marginals_of(sampler()); }
 
@@ -129,11 +126,11 @@ auto SamplerSetup::integrated(auto table) const {
   }
 }
 
-const DensityCells& SamplerSetup::cells() const {
+const DensityCells& SamplerSetup::density_cells() const {
   const std::scoped_lock lock(once_);
   if (!cells_) {
-    cells_ =
-        integrated([&] { return std::make_shared<const DensityCells>(density_cells(named_)); });
+    cells_ = integrated(
+        [&] { return std::make_shared<const DensityCells>(harness::density_cells(named_)); });
   }
   return *cells_;
 }

@@ -1,7 +1,8 @@
 #pragma once
 
 // A sampler's draws as observations: one channel per marginal and one with the number of the cell
-// that the point fell into. So samplers are drawn, counted and replayed like everything else.
+// that the point fell into, once somebody has asked for the density's cells. So samplers are drawn,
+// counted and replayed like everything else.
 
 #include <map>
 #include <memory>
@@ -23,6 +24,9 @@ inline const std::string cell_channel = "cell";
 /// the marginal's range.
 double no_point(const Marginal& marginal);
 
+/// The value of the channel `cell` before density_cells() was asked for: no number of a cell.
+inline constexpr double no_cell = -1;
+
 /// That a sampler's density could not be asked for: the program that it is inside of has ended.
 class NoDensity : public std::runtime_error {
  public:
@@ -39,11 +43,11 @@ class SamplerSetup : public Setup {
   std::vector<Channel> channels() const override;
   std::unique_ptr<Estimator> make() const override;
 
-  /// Where a draw is, whatever its density.
-  const DrawCells& places() const { return places_; }
   /// Made on first use, then kept. Throws NoDensity.
-  const DensityCells& cells() const;
-  /// The same, or nothing where nobody has asked for them yet.
+  const DensityCells& density_cells() const;
+  /// The same, or nothing where nobody has asked for them yet. They take a quadrature of a density
+  /// that most claims are not about, so draws are counted in them only from then on: the plan of
+  /// what is counted asks (Pools), and workers are made later.
   std::shared_ptr<const DensityCells> cells_asked_for() const;
   /// The law of a marginal under the declared density, given a point; 1 - total() is the mass
   /// without one. On first use; then kept. Throws NoDensity.
@@ -57,7 +61,6 @@ class SamplerSetup : public Setup {
   auto integrated(auto table) const;
 
   NamedSampler named_;
-  DrawCells places_;
   mutable std::mutex once_;
   mutable std::shared_ptr<const DensityCells> cells_;
   mutable std::map<std::string, stats::TabulatedLaw> laws_;

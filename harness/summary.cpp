@@ -1,6 +1,7 @@
 #include "harness/summary.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace assay::harness {
 
@@ -10,12 +11,23 @@ void Histogram::merge(const Histogram& other) {
   above += other.above;
 }
 
+namespace {
+
+void count_in(std::vector<std::uint64_t>& cells, double cell) {
+  if (!(cell >= 0 && cell < static_cast<double>(cells.size()))) {
+    throw std::logic_error("an observation in none of the cells that its pool counts");
+  }
+  ++cells[static_cast<std::size_t>(cell)];
+}
+
+}  // namespace
+
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost) {
   if (!details.histogram.counts.empty()) details.histogram.add(value);
   for (std::size_t k = 0; k < details.with_cost.size(); ++k) {
     details.with_cost[k].add(value, cost[k]);
   }
-  if (!details.cells.empty()) ++details.cells[static_cast<std::size_t>(value)];
+  if (!details.cells.empty()) count_in(details.cells, value);
 }
 
 Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> plan)

@@ -13,11 +13,11 @@ std::size_t HalvedCells::index(double x, double y) const {
 
 HalvedCells whole_cells(const PlaneGrid& grid) {
   check_borders(grid);
-  HalvedCells all{.grid = grid, .parts = {}, .halves = {}, .cells = {}, .places = {}};
+  HalvedCells all{.grid = grid, .parts = {}, .halves = {}, .cells = {}, .grid_cells = {}};
   for (std::size_t i = 0; i < grid.size(); ++i) {
     all.parts.push_back({.whole = true, .number = i});
     all.cells.push_back(grid.cell(i));
-    all.places.push_back(i);
+    all.grid_cells.push_back(i);
   }
   return all;
 }

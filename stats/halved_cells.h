@@ -9,8 +9,8 @@
 namespace assay::stats {
 
 // The cells of a grid, some of them halved, and some of their halves again: together they are the
-// grid. They are numbered in the order of the grid's, the parts of one behind one another, the half
-// nearer to the origin first, so that neighbours in number are neighbours in place.
+// grid. They are numbered in the order of the grid's, the parts of one behind one another, the
+// lower half first, so that neighbours in number are neighbours in place.
 struct HalvedCells {
   // A cell that was halved. A part is the number of another such cell, or of a cell that is whole.
   struct Part {
@@ -19,15 +19,15 @@ struct HalvedCells {
   };
   struct Halves {
     bool along_x = true;
-    double border = 0;  // a place on it is in the upper half
+    double border = 0;  // what lies on it is in the upper half
     std::array<Part, 2> parts = {};
   };
 
   PlaneGrid grid;
   std::vector<Part> parts;  // each of the grid's cells
   std::vector<Halves> halves;
-  std::vector<PlaneCell> cells;     // those that are whole
-  std::vector<std::size_t> places;  // the number of the grid's cell that each is part of
+  std::vector<PlaneCell> cells;         // those that are whole
+  std::vector<std::size_t> grid_cells;  // the number of the grid's cell that each is part of
 
   std::size_t size() const { return cells.size(); }
   // Throws std::domain_error outside the grid.

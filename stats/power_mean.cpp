@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <numbers>
@@ -49,20 +50,26 @@ class Power {
   }
 
  private:
+  // Power is monotone in it, and 1 to the last digit a hundred critical values away; farther out
+  // nothing is left of the integrals but rounding.
+  double noncentrality(double effect) const {
+    const double most = 100 * std::max(1.0, std::abs(critical_));
+    return std::clamp(effect / scale_.standard_error, -most, most);
+  }
   double near(EffectPlan effect) const {
-    const double up = (effect.detect - effect.allow) / scale_.standard_error;
+    const double up = noncentrality(effect.detect - effect.allow);
     return std::exp(noncentral_t_tails(critical_, {scale_.degrees, up}).upper);
   }
   double far(EffectPlan effect) const {
     if (!rates_.two_sided) return 0;
-    const double down = (effect.detect + effect.allow) / scale_.standard_error;
+    const double down = noncentrality(effect.detect + effect.allow);
     return std::exp(noncentral_t_tails(-critical_, {scale_.degrees, down}).lower);
   }
   double with_far(double power, EffectPlan effect) const {
     return std::min(power + far(effect), 1.0);
   }
   double score_at(EffectPlan effect) const {
-    const double up = (effect.detect - effect.allow) / scale_.standard_error;
+    const double up = noncentrality(effect.detect - effect.allow);
     const double near = noncentral_t_tails(critical_, {scale_.degrees, up}).lower;
     return planning::score_of_miss(std::exp(near) - far(effect));
   }

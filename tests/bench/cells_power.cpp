@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "stats/chi_square_fit.h"
-#include "stats/equal_mass_cells.h"
+#include "stats/adaptive_cells.h"
 #include "tests/philox.h"
 
 namespace {
@@ -41,7 +41,7 @@ struct Peak {
 };
 
 // The peak in its coordinates; at the pole those are the distance from it and the azimuth in turns.
-EqualMassCells cells_of(const Peak& peak, double share) {
+AdaptiveCells cells_of(const Peak& peak, double share) {
   const double variance = peak.deviation * peak.deviation;
   const auto beside = [&](double x, double y) {
     const double r2 = (x - u) * (x - u) + (y - v) * (y - v);
@@ -55,7 +55,7 @@ EqualMassCells cells_of(const Peak& peak, double share) {
                              .values = peak.at_pole ? one_by_one(about) : one_by_one(beside),
                              .x_panels = 100,
                              .y_panels = peak.at_pole ? 1U : 100U};
-  return equal_mass_cells({even(16), even(32)}, density, share);
+  return adaptive_cells({even(16), even(32)}, density, share);
 }
 
 enum class Defect { none, wide, moved, spot };
@@ -84,7 +84,7 @@ Offset drawn(Philox& random, double deviation, Defect defect) {
   return moves ? Offset{-at.x, -at.y} : at;
 }
 
-bool rejects(const EqualMassCells& found, Philox& random, const Peak& peak, Defect defect) {
+bool rejects(const AdaptiveCells& found, Philox& random, const Peak& peak, Defect defect) {
   CellCounts counts{.observed = std::vector<std::uint64_t>(found.cells.size() + 1),
                     .probability = found.mass.probability,
                     .error = found.mass.error};
@@ -117,7 +117,7 @@ int main() {
     for (const auto& [defect, name] : defects) {
       std::printf("%s %-6g  %-6s", peak.at_pole ? "pole  " : "beside", peak.deviation, name);
       for (const double share : shares) {
-        const EqualMassCells found = cells_of(peak, share);
+        const AdaptiveCells found = cells_of(peak, share);
         Philox random(391);
         int rejected = 0;
         for (int i = 0; i < samples; ++i) rejected += rejects(found, random, peak, defect);

@@ -62,7 +62,7 @@ void make_tables(const std::vector<harness::TestWork*>& tests) {
   for (const harness::TestWork* work : tests) {
     const harness::Question& question = work->outcome.question;
     if (question.kind != harness::QuestionKind::fit_to_density) continue;
-    dynamic_cast<const harness::SamplerSetup&>(*question.subjects[0].setup).cells();
+    dynamic_cast<const harness::SamplerSetup&>(*question.subjects[0].setup).density_cells();
     if (work->outcome.plan.method.keeps != harness::Keeps::values) continue;
     for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
       harness::declared_law(question, channel);

@@ -19,6 +19,7 @@ estimators:
   quadrant: {plugin: mutants/ashikhmin_shirley_single_quadrant}
   disk: {plugin: luminaire/area, scene: triangle}
   normal: {plugin: analytic/exponential_importance}
+  narrow: {plugin: mutants/ward_uniform_azimuth, alpha_x: 0.02, alpha_y: 0.03}
 tests:
   - {claim: )";
 
@@ -103,6 +104,24 @@ TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
   ASSERT_EQ(test.maps.size(), 3u) << test.message;
   EXPECT_EQ(test.maps[0].source,
             "u 0 to 1 from top to bottom, v / (1 - u) 0 to 1 from left to right");
+}
+
+// The lobe is halved within few cells of the picture, whose sums show nothing of a wrong azimuth.
+TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
+  const reports::Test test = tested("distribution(narrow.direction) == density");
+  ASSERT_EQ(test.maps.size(), 3u) << test.message;
+  EXPECT_NE(test.maps[2].source.find("farthest off"), std::string::npos) << test.maps[2].source;
+  double of_sums = 0;
+  double shown = 0;
+  for (std::size_t i = 0; i < 512; ++i) {
+    const double expected = test.maps[1].texels.values[i];
+    if (expected < 20) continue;
+    of_sums =
+        std::max(of_sums, std::abs(test.maps[0].texels.values[i] - expected) / std::sqrt(expected));
+    shown = std::max(shown, std::abs(double{test.maps[2].texels.values[i]}));
+  }
+  EXPECT_LT(of_sums, 5);
+  EXPECT_GT(shown, 10);
 }
 
 // Of both samples together each cell has its part, so what is expected of the first sums to what it

@@ -222,10 +222,11 @@ TEST(CommandLine, RefusesValuesOutOfRange) {
   const auto run = [](const std::string& option, const std::string& value) {
     return refused({"run", "a.yaml", option, value});
   };
-  EXPECT_EQ(run("--seed", "-1"),
-            "--seed must be a whole number, 0 or more, or `random`, but it is `-1`");
+  EXPECT_EQ(
+      run("--seed", "-1"),
+      "--seed must be a whole number from 0 to 18446744073709551615, or `random`, but it is `-1`");
   EXPECT_EQ(run("--seed", "18446744073709551616"),
-            "--seed must be a whole number, 0 or more, or `random`, but it is "
+            "--seed must be a whole number from 0 to 18446744073709551615, or `random`, but it is "
             "`18446744073709551616`");
   EXPECT_EQ(run("--threads", "0"), "--threads must be a whole number, 1 or more, but it is `0`");
   EXPECT_EQ(run("--alpha", "0.6"),

@@ -45,6 +45,57 @@ std::string refused(const std::string& test) {
   return refusal([&] { run_text(estimators + test + "\n"); });
 }
 
+// Ward's rejection sampler has no draws without a point, the other 2 %: more than the distance of
+// the points tells.
+TEST(TwoLaws, SayWhichPartRejects) {
+  const reports::Test test = tested(
+      "{claim: distribution(ward.direction.phi) == distribution(density.direction.phi), "
+      "secondaries: 2000}");
+  EXPECT_EQ(test.verdict, Verdict::fail) << test.message;
+  EXPECT_THAT(test.message, testing::HasSubstr("p is that of the masses without a point"));
+}
+
+// A pool that two entries of one plugin share is first drawn for a claim that needs no density: its
+// draws are counted in the cells of the density nevertheless. So of two suites in one run.
+TEST(CellsOfADensity, AreCountedWhoeverElseDrawsOfThePool) {
+  const std::string head =
+      "suite: s\nestimators:\n  a: {plugin: brdf/ward}\n  b: {plugin: brdf/ward}\ntests:\n";
+  const std::string law =
+      "  - {name: law, claim: 'distribution(a.direction.phi) == uniform(0, 6.283185307179586)', "
+      "secondaries: 2000}\n";
+  const std::string cells =
+      "  - {name: cells, claim: distribution(b.direction) == density, secondaries: 2000}\n";
+  const std::string whole =
+      "  - {name: whole, claim: integral(b.direction) == 1, secondaries: 2000}\n";
+  const Workplace place;
+  const std::string alone = place.write("alone.yaml", head + cells + whole);
+  const std::string other = place.write("other.yaml", head + law);
+  const reports::Suite expected = run_files({alone}).suites[0];
+  EXPECT_EQ(expected.tests[0].verdict, Verdict::pass) << expected.tests[0].message;
+  const auto expect_same = [&](const reports::Test& test, const reports::Test& as) {
+    EXPECT_EQ(test.verdict, as.verdict) << test.message;
+    EXPECT_EQ(test.channels.at(0).statistic, as.channels.at(0).statistic) << test.name;
+    EXPECT_EQ(test.channels.at(0).log10_p, as.channels.at(0).log10_p) << test.name;
+  };
+  const std::string together = place.write("together.yaml", head + law + cells + whole);
+  const reports::Suite shared = run_files({together}).suites[0];
+  const reports::Record both = run_files({other, alone});
+  for (std::size_t i = 0; i < 2; ++i) {
+    expect_same(shared.tests[i + 1], expected.tests[i]);
+    expect_same(both.suites[1].tests[i], expected.tests[i]);
+  }
+}
+
+// So few doubles lie between its ends that some of 64 cells would be empty, and that rounded draws
+// do not follow the density.
+TEST(CellsOfADensity, OfAnIntervalAsNarrowAsRoundingAreFewer) {
+  const reports::Test test = run_test(
+      "suite: s\nalpha: 0.0001\nestimators:\n"
+      "  tiny: {plugin: analytic/law, shift: 1.0e+9, scale: 1.0e-7}\n"
+      "tests:\n  - {claim: distribution(tiny.x) == density, secondaries: 2000}\n");
+  EXPECT_EQ(test.verdict, Verdict::fail) << test.message;
+}
+
 // Verdicts below are right with probability 1 - alpha - beta = 0.9998 at least, with the seed 1.
 
 TEST(AndersonDarlingClaim, HoldsForTheLawAndForADeclaredDensity) {

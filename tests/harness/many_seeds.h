@@ -122,6 +122,7 @@ inline void expect_as_in_runs(const std::string& text) {
     take_first_looks(prepare_text(text, seed), seed, looks);
   }
   for (const auto& [name, outcomes] : whole) {
+    EXPECT_LT(outcomes.share(reports::Verdict::invalid), 1) << name << ": never compared";
     for (std::size_t i = 0; i < runs; ++i) {
       if (outcomes.verdicts[i] == reports::Verdict::invalid) continue;
       const double scale = 1e-12 * (1 + std::abs(looks.at(name).log_p[i]));

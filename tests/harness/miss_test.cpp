@@ -44,11 +44,9 @@ std::string suite_of(const std::vector<AtTheEdge>& claims, double level, bool on
                      estimators_of(estimators, tests), tests);
 }
 
-/// The verdict must be what the p-values say, seed by seed, where gates let there be one: some
-/// methods are not valid of so few observations at so small an alpha.
+/// The verdict must be what the p-values say, seed by seed.
 void expect_passes_at_beta(const std::string& name, const Outcomes& outcomes, double share) {
   for (std::size_t i = 0; i < outcomes.verdicts.size(); ++i) {
-    if (outcomes.verdicts[i] == Verdict::invalid) continue;
     const bool failed = outcomes.log_p[i] <= std::log(share);
     const bool excluded = outcomes.log_p_pass[i] <= std::log(beta);
     const Verdict expected = failed     ? Verdict::fail
@@ -58,10 +56,10 @@ void expect_passes_at_beta(const std::string& name, const Outcomes& outcomes, do
   }
 }
 
-// One look at an alpha that nothing reaches: passes are then beta's alone, and the p-value of the
-// forbidden region is uniform where its method is exact. Wrong alarms: 1.3e-5 for each claim.
-void expect_misses(const std::vector<AtTheEdge>& claims) {
-  const double level = 1e-6;
+// One look at an alpha that nothing reaches, or little where a method is not valid so far out:
+// passes are then beta's alone, and the p-value of the forbidden region is uniform where its method
+// is exact. Wrong alarms: 1.3e-5 for each claim.
+void expect_misses(const std::vector<AtTheEdge>& claims, double level = 1e-6) {
   const std::string text = suite_of(claims, level, true);
   const auto outcomes = first_looks(2000, text);
   const auto whole = over_seeds(3, [&](std::uint64_t) { return text; });
@@ -131,34 +129,39 @@ const std::vector<AtTheEdge> quantiles_and_costs{
     {"claim: 'quantile(normal, 0.5) >= 2.4', detect: 0.4", "60", Shape::at_most_uniform},
     {"claim: 'quantile(normal, 0.5) <= 0.8 * quantile(again, 0.5)', detect: 0.4", "100",
      Shape::at_most_uniform},
-    {"claim: cost(path) == 0.8 * cost(path_again), detect: 25%", "400", Shape::at_most_uniform},
-    {"claim: cost(path) < cost(path_again)", "400"},
-    {"claim: efficiency(path) == 0.8 * efficiency(path_again), detect: 25%", "2000",
+    {"claim: cost(path) == 0.8 * cost(path_again), detect: 25%", "600", Shape::at_most_uniform},
+    {"claim: cost(path) < cost(path_again)", "600"},
+    {"claim: efficiency(normal) == 0.8 * efficiency(again), cost: samples, detect: 25%", "1200",
      Shape::at_most_uniform},
-    {"claim: efficiency(path) > efficiency(path_again)", "2000"},
+    {"claim: efficiency(normal) > efficiency(again), cost: samples", "1200"},
 };
 
-TEST(Misses, OfQuantilesCostsAndEfficienciesAreAtMostBeta) { expect_misses(quantiles_and_costs); }
+TEST(Misses, OfQuantilesCostsAndEfficienciesAreAtMostBeta) {
+  expect_misses(quantiles_and_costs, 0.05);
+}
 
 const std::vector<AtTheEdge> slopes{
     {"claim: slope(mean(normal)) == 0.9, detect: 0.1, over: {mean: [1, 2, 4]}", "100",
      Shape::at_most_uniform},
-    {"claim: slope(variance(normal)) == 1.8, detect: 0.2, over: {deviation: [1, 2, 4]}", "400",
+    {"claim: slope(variance(normal)) == 1.8, detect: 0.2, over: {deviation: [1, 2, 4]}", "1200",
      Shape::at_most_uniform},
-    {"claim: slope(variance(normal)) within 0.2 of 1.8, over: {deviation: [1, 2, 4]}", "400",
+    {"claim: slope(variance(normal)) within 0.2 of 1.8, over: {deviation: [1, 2, 4]}", "1200",
      Shape::at_most_uniform},
 };
 
-TEST(Misses, OfSlopesAreAtMostBeta) { expect_misses(slopes); }
+TEST(Misses, OfSlopesAreAtMostBeta) { expect_misses(slopes, 0.05); }
 
 const std::vector<AtTheEdge> cells{
     {fmt::format("claim: distribution(three_in_ten) == distribution(half), "
                  "test: chi-square-two-sample, detect: {:.17g}",
                  effect_of_halves()),
      "100", Shape::at_most_uniform},
+    {fmt::format("claim: distribution(triangle.point) == density, detect: {:.17g}",
+                 effect_of_triangle()),
+     "12000", Shape::at_most_uniform},
 };
 
-TEST(Misses, OfCellsAreAtMostBeta) { expect_misses(cells); }
+TEST(Misses, OfCellsAreAtMostBeta) { expect_misses(cells, 0.05); }
 
 /// A test planned for its `detect`, in looks: at 1e-4 no rate at most (or at least) `rate` shows so
 /// many (few) of `runs`.

@@ -1,6 +1,7 @@
 #include "harness/replay.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "harness/commands.h"
@@ -75,6 +76,27 @@ TEST(Replay, GivesTheSameNumbersForEveryKindOfClaim) {
     const Said now = said({.record = file, .test = test.id});
     EXPECT_EQ(now.code, 0) << now.text;
     EXPECT_NE(now.text.find("the same numbers as recorded"), std::string::npos) << now.text;
+  }
+}
+
+// Its own data's gate makes every look count for nothing, in the run as in the replay.
+TEST(Replay, OfASlopeThatLiesOnNoPowerLawIsTheSame) {
+  const Workplace place;
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: bent
+estimators:
+  ratio: {plugin: analytic/ratio}
+tests:
+  - {name: bent, claim: slope(bias(ratio)) within 0.1 of -1, over: {primaries: [1, 2, 4, 8]}, secondaries: 20000}
+  - {name: forced, claim: slope(bias(ratio)) == -1, test: slope, over: {primaries: [1, 2, 4, 8]}, secondaries: 20000}
+)")});
+  EXPECT_EQ(record.suites[0].tests[0].verdict, reports::Verdict::invalid);
+  EXPECT_THAT(record.suites[0].tests[0].message, testing::HasSubstr("lie on no power law"));
+  EXPECT_EQ(record.suites[0].tests[1].verdict, reports::Verdict::fail);
+  const std::string file = place.write("run.json", reports::json(record));
+  for (const char* test : {"bent", "forced"}) {
+    const Said now = said({.record = file, .test = test});
+    EXPECT_EQ(now.code, 0) << now.text;
+    EXPECT_THAT(now.text, testing::HasSubstr("the same numbers as recorded")) << test;
   }
 }
 

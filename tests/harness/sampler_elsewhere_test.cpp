@@ -186,7 +186,7 @@ TEST(SamplerElsewhere, ADensityThatCannotBeHadIsAskedForOnce) {
   const std::size_t asked = there->asked;
   EXPECT_GT(asked, 0u);
   EXPECT_THROW(setup.marginal_law("x"), NoDensity);
-  EXPECT_THROW(setup.cells(), NoDensity);
+  EXPECT_THROW(setup.density_cells(), NoDensity);
   EXPECT_EQ(there->asked, asked);
 }
 
@@ -195,7 +195,7 @@ TEST(SamplerElsewhere, HasTheTablesThatItHasHere) {
   for (const std::size_t at_once : {1u, 4u, 5000u}) {
     const SamplerSetup there(
         NamedSampler{"ramp", std::make_shared<Elsewhere>(Limits{.at_once = at_once})});
-    EXPECT_EQ(there.cells().mass.probability, here.cells().mass.probability);
+    EXPECT_EQ(there.density_cells().mass.probability, here.density_cells().mass.probability);
     EXPECT_EQ(there.marginal_law("x").cumulated, here.marginal_law("x").cumulated);
   }
 }

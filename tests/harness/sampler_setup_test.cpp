@@ -47,7 +47,7 @@ TEST(SamplerSetup, AzimuthOfANarrowLobeOffTheNormalIsTabulated) {
   // The mirrored direction's azimuth is phi_i + pi, about which the lobe is symmetric.
   EXPECT_NEAR(law(0.5 + pi), 0.5, 1e-5);
   EXPECT_LT(law.error, 2e-5);
-  EXPECT_NEAR(law.total(), setup->cells().mass.total, 1e-5);
+  EXPECT_NEAR(law.total(), setup->density_cells().mass.total, 1e-5);
 }
 
 TEST(SamplerSetup, ADensityThatJumpsIsTabulatedInBoundedWork) {
@@ -57,13 +57,14 @@ TEST(SamplerSetup, ADensityThatJumpsIsTabulatedInBoundedWork) {
     EXPECT_LT(law.error, 1e-4) << marginal;
     EXPECT_NEAR(law.total(), 1, 1e-5) << marginal;
   }
-  EXPECT_LT(setup->cells().tolerance(), 1e-4);
-  EXPECT_EQ(setup->cells().missing(), 0) << "what the quadrature's error explains is not missing";
+  EXPECT_LT(setup->density_cells().tolerance(), 1e-4);
+  EXPECT_EQ(setup->density_cells().missing(), 0)
+      << "what the quadrature's error explains is not missing";
 }
 
 TEST(SamplerSetup, ReflectanceBelowTheHorizonIsMissing) {
   const auto setup = setup_of("{plugin: brdf/ward}", "direction");
-  EXPECT_NEAR(setup->cells().missing(), 1 - 0.980181, 1e-6);
+  EXPECT_NEAR(setup->density_cells().missing(), 1 - 0.980181, 1e-6);
 }
 
 TEST(SamplerSetup, IsOneForOneSampler) {
@@ -78,19 +79,20 @@ TEST(SamplerSetup, IsOneForOneSampler) {
 TEST(SamplerSetup, ANarrowLobeIsCountedInCellsOfItsOwn) {
   const auto setup = setup_of(
       "{plugin: brdf/ward, alpha_x: 0.02, alpha_y: 0.02, theta_i: 0.8, phi_i: 0}", "direction");
-  const DensityCells& density = setup->cells();
+  const DensityCells& density = setup->density_cells();
   EXPECT_GT(density.cells.size(), 512u + 32);
   double heaviest = 0;
   for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
     heaviest = std::max(heaviest, density.mass.probability[i]);
-    EXPECT_LT(density.cells.place(i), 512u);
+    EXPECT_LT(density.cells.grid_cell(i), 512u);
   }
   EXPECT_LE(heaviest, 1.0 / 40);
   const auto mirrored = [](double theta) {
     return SamplerDraw{.point = {-std::sin(theta), 0, std::cos(theta)}};
   };
   EXPECT_NE(density.cells.index(mirrored(.77)), density.cells.index(mirrored(.81)));
-  EXPECT_EQ(setup->places().index(mirrored(.77)), setup->places().index(mirrored(.81)));
+  const DrawCells grid(setup->sampler());
+  EXPECT_EQ(grid.index(mirrored(.77)), grid.index(mirrored(.81)));
 }
 
 TEST(SamplerSetup, DrawsAreCountedInCellsOnceTheyAreAskedFor) {
@@ -104,8 +106,8 @@ TEST(SamplerSetup, DrawsAreCountedInCellsOnceTheyAreAskedFor) {
     return out.back();
   };
   EXPECT_EQ(setup->cells_asked_for(), nullptr);
-  EXPECT_EQ(cell_drawn(), 0);
-  const DensityCells& cells = setup->cells();
+  EXPECT_EQ(cell_drawn(), no_cell);
+  const DensityCells& cells = setup->density_cells();
   EXPECT_EQ(&cells, setup->cells_asked_for().get());
   EXPECT_GT(cell_drawn(), 0);
 }
@@ -142,9 +144,9 @@ class FarAway final : public Uniform {
 
 TEST(SamplerSetup, EndsOfACellAreToldApart) {
   const FarAway sampler;
-  const auto setup = setup_around(sampler);
-  EXPECT_EQ(setup->places().describe(0), "x 1000 to 1000.008");
-  EXPECT_EQ(setup->places().describe(64), "the draws without a point");
+  const DrawCells grid(sampler);
+  EXPECT_EQ(grid.describe(0), "x 1000 to 1000.008");
+  EXPECT_EQ(grid.describe(64), "the draws without a point");
 }
 
 TEST(SamplerSetup, CellsOfEveryDomainHaveEqualMeasure) {
@@ -152,11 +154,11 @@ TEST(SamplerSetup, CellsOfEveryDomainHaveEqualMeasure) {
        {Domain::interval, Domain::square, Domain::triangle, Domain::hemisphere, Domain::sphere}) {
     const Uniform uniform(domain);
     const auto setup = setup_around(uniform);
-    const stats::CellProbabilities& cells = setup->cells().mass;
+    const stats::CellProbabilities& cells = setup->density_cells().mass;
     for (const double p : cells.probability) {
       ASSERT_NEAR(p * static_cast<double>(cells.probability.size()), 1, 1e-9);
     }
-    EXPECT_EQ(setup->cells().missing(), 0);
+    EXPECT_EQ(setup->density_cells().missing(), 0);
   }
 }
 
@@ -196,15 +198,16 @@ TEST(SamplerSetup, LobesAndPointMassesAreCellsOfTheirOwn) {
   const Lobes sampler;
   const auto setup = setup_around(sampler);
   const auto p = [&](const SamplerDraw& draw) {
-    return setup->cells().mass.probability[setup->cells().cells.index(draw)];
+    return setup->density_cells().mass.probability[setup->density_cells().cells.index(draw)];
   };
   EXPECT_NEAR(p({.point = {.1, .1, 0}, .lobe = 0}), .8 / 512, 1e-9);
   EXPECT_NEAR(p({.point = {.1, .1, 0}, .lobe = 1}), 0, 1e-9);
   EXPECT_NEAR(p({.point = {.9, .1, 0}, .lobe = 1}), .4 / 512, 1e-9);
   EXPECT_NEAR(p({.point = {.9, .1, 0}, .lobe = 2}), .3, 1e-9);
-  EXPECT_EQ(setup->cells().cells.index({.valid = false}), setup->cells().cells.size() - 1);
-  EXPECT_NEAR(setup->cells().missing(), .1, 1e-9);
-  EXPECT_NEAR(setup->cells().without_density(), .4, 1e-9);
+  EXPECT_EQ(setup->density_cells().cells.index({.valid = false}),
+            setup->density_cells().cells.size() - 1);
+  EXPECT_NEAR(setup->density_cells().missing(), .1, 1e-9);
+  EXPECT_NEAR(setup->density_cells().without_density(), .4, 1e-9);
 }
 
 constexpr const char* estimators = R"(suite: samplers

@@ -122,7 +122,7 @@ TEST(SoundDraw, APointInItsDomainStaysAsItIs) {
 TEST(SoundDraw, ACellIsFoundForEveryPointThatRoundingMoved) {
   const auto cell = [](const Always::Terms& terms, const Point& point) {
     const SamplerSetup setup(always(terms));
-    return setup.places().index(sound(setup.named(), {.point = point, .density = 1}));
+    return DrawCells(setup.sampler()).index(sound(setup.named(), {.point = point, .density = 1}));
   };
   const auto same = [&](const Always::Terms& terms, const Point& moved, const Point& border) {
     EXPECT_EQ(cell(terms, moved), cell(terms, border));
@@ -192,7 +192,7 @@ TEST(SoundDraw, ADeclaredDensityBelowZeroIsNamedWithItsPoint) {
       }
       return "";
     };
-    const std::string cells = said([&] { setup.cells(); });
+    const std::string cells = said([&] { setup.density_cells(); });
     const std::string law =
         said([&] { setup.marginal_law(domain == Domain::interval ? "x" : "theta"); });
     EXPECT_TRUE(cells.starts_with("sampler `s` declares the density -1 at ")) << cells;

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "stats/equal_mass_cells.h"
+#include "stats/adaptive_cells.h"
 
 namespace assay::stats {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 /// The grid's own cells.
 CellProbabilities cell_probabilities(const PlaneGrid& grid, const PlaneDensity& density,
                                      QuadratureLimits limits = {.tolerance = 1e-9}) {
-  return equal_mass_cells(grid, density, 1, limits).mass;
+  return adaptive_cells(grid, density, 1, limits).mass;
 }
 
 constexpr double pi = std::numbers::pi;

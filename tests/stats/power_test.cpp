@@ -188,5 +188,16 @@ TEST(Power, BadPlansThrow) {
   EXPECT_THROW(chi_square_fit_power({.degrees_of_freedom = 0}, 10, 1), std::domain_error);
 }
 
+// Rounding noise far from what is claimed: the integrals over the noncentral law have no digits
+// left, the power has all of them.
+TEST(Power, OfAnEffectBeyondAllNoiseIsOne) {
+  for (const double deviation : {1e-3, 1e-8, 1e-15, 1e-100}) {
+    const MeanPlan plan{.standard_deviation = deviation, .rates = {.alpha = .01, .beta = .01}};
+    EXPECT_EQ(student_t_power(plan, 100, .01), 1) << deviation;
+    EXPECT_EQ(student_t_power(plan, 100, -.01), 1) << "two-sided, " << deviation;
+    EXPECT_LT(student_t_detectable(plan, 100), deviation) << deviation;
+  }
+}
+
 }  // namespace
 }  // namespace assay::stats

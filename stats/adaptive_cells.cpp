@@ -1,4 +1,4 @@
-#include "stats/equal_mass_cells.h"
+#include "stats/adaptive_cells.h"
 
 #include <algorithm>
 #include <array>
@@ -21,9 +21,13 @@ enum class Along { x, y };
 // What is asked of a density, cell by cell.
 struct Questions {
   std::function<Integral(const PlaneCell&)> integral;
-  std::function<Along(const PlaneCell&, int halvings)> narrower;
+  std::function<std::optional<Along>(const PlaneCell&, int halvings)> side;
   std::function<bool()> exhausted;
 };
+
+bool can_be_halved(const Span& span) {
+  return span.low < span.middle() && span.middle() < span.high;
+}
 
 std::array<PlaneCell, 2> halves_of(const PlaneCell& cell, Along along) {
   if (along == Along::x) return {{{cell.x.halves()[0], cell.y}, {cell.x.halves()[1], cell.y}}};
@@ -36,7 +40,7 @@ class Halving {
   Halving(const PlaneGrid& grid, std::span<const Integral> masses, const Questions& ask)
       : grid_(grid), ask_(ask) {
     for (std::size_t i = 0; i < masses.size(); ++i) {
-      add({.cell = grid.cell(i), .mass = masses[i], .place = i});
+      add({.cell = grid.cell(i), .mass = masses[i], .grid_cell = i});
     }
   }
 
@@ -48,8 +52,8 @@ class Halving {
     }
   }
 
-  EqualMassCells numbered() const {
-    EqualMassCells found;
+  AdaptiveCells numbered() const {
+    AdaptiveCells found;
     found.cells.grid = grid_;
     for (std::size_t i = 0; i < grid_.size(); ++i) found.cells.parts.push_back(number(i, found));
     return found;
@@ -59,7 +63,7 @@ class Halving {
   struct Known {
     PlaneCell cell;
     Integral mass;
-    std::size_t place = 0;
+    std::size_t grid_cell = 0;
     int halvings = 0;
     Along along = Along::x;
     std::size_t halves = 0;  // where its halves are, 0 where it has none
@@ -78,23 +82,24 @@ class Halving {
     known_.push_back(known);
   }
 
-  // False where that takes more evaluations than are left: numbers that the last of them had to do
-  // for would be worse than those of the whole.
+  // A cell with no number between its ends stays whole. False where halving takes more evaluations
+  // than are left: numbers that the last of them had to do for would be worse than the whole's.
   bool halve(std::size_t number) {
     const Known whole = known_[number];
-    const Along along = ask_.narrower(whole.cell, whole.halvings);
-    const auto [lower, upper] = halves_of(whole.cell, along);
+    const std::optional<Along> along = ask_.side(whole.cell, whole.halvings);
+    if (!along) return true;
+    const auto [lower, upper] = halves_of(whole.cell, *along);
     const Integral one = ask_.integral(lower);
     const Integral two = ask_.integral(upper);
     if (ask_.exhausted()) return false;
-    known_[number].along = along;
+    known_[number].along = *along;
     known_[number].halves = known_.size();
-    add({.cell = lower, .mass = one, .place = whole.place, .halvings = whole.halvings + 1});
-    add({.cell = upper, .mass = two, .place = whole.place, .halvings = whole.halvings + 1});
+    add({.cell = lower, .mass = one, .grid_cell = whole.grid_cell, .halvings = whole.halvings + 1});
+    add({.cell = upper, .mass = two, .grid_cell = whole.grid_cell, .halvings = whole.halvings + 1});
     return true;
   }
 
-  HalvedCells::Part number(std::size_t cell, EqualMassCells& found) const {
+  HalvedCells::Part number(std::size_t cell, AdaptiveCells& found) const {
     const Known& known = known_[cell];
     if (known.halves == 0) return whole(known, found);
     const std::size_t number_of_it = found.cells.halves.size();
@@ -108,10 +113,10 @@ class Halving {
     return {.whole = false, .number = number_of_it};
   }
 
-  static HalvedCells::Part whole(const Known& known, EqualMassCells& found) {
+  static HalvedCells::Part whole(const Known& known, AdaptiveCells& found) {
     const HalvedCells::Part part{.whole = true, .number = found.cells.size()};
     found.cells.cells.push_back(known.cell);
-    found.cells.places.push_back(known.place);
+    found.cells.grid_cells.push_back(known.grid_cell);
     found.mass.probability.push_back(known.mass.value);
     found.mass.error.push_back(known.mass.error);
     found.mass.total += known.mass.value;
@@ -125,8 +130,8 @@ class Halving {
   std::priority_queue<Candidate> heaviest_;
 };
 
-EqualMassCells halved(const PlaneGrid& grid, std::span<const Integral> masses, double largest_share,
-                      const Questions& ask) {
+AdaptiveCells halved(const PlaneGrid& grid, std::span<const Integral> masses, double largest_share,
+                     const Questions& ask) {
   double total = 0;
   for (const Integral& mass : masses) total += mass.value;
   Halving halving(grid, masses, ask);
@@ -180,16 +185,16 @@ std::optional<Along> narrower_along(const PlaneDensity& density, const PlaneCell
 }
 
 void check_share(double largest_share) {
-  check::unit({"equal_mass_cells", "largest_share"}, largest_share);
-  check::positive({"equal_mass_cells", "largest_share"}, largest_share);
+  check::unit({"adaptive_cells", "largest_share"}, largest_share);
+  check::positive({"adaptive_cells", "largest_share"}, largest_share);
 }
 
 }  // namespace
 
-EqualMassCells equal_mass_cells(const PlaneGrid& grid, const PlaneDensity& density,
-                                double largest_share, QuadratureLimits limits) {
+AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
+                             double largest_share, QuadratureLimits limits) {
   check_share(largest_share);
-  check::positive({"equal_mass_cells", "tolerance"}, limits.tolerance);
+  check::positive({"adaptive_cells", "tolerance"}, limits.tolerance);
   CellQuadrature rule(density, limits);
   const std::vector<Integral> masses = integrals_over(grid, rule);
   // The other half of one that shows no density has some.
@@ -197,18 +202,24 @@ EqualMassCells equal_mass_cells(const PlaneGrid& grid, const PlaneDensity& densi
     const Integral mass = rule.over(cell);
     return mass.value > 0 ? mass : rule.beside_support(cell);
   };
-  const auto narrower = [&](const PlaneCell& cell, int halvings) {
-    return narrower_along(density, cell).value_or(halvings % 2 == 0 ? Along::x : Along::y);
+  const auto side = [&](const PlaneCell& cell, int halvings) -> std::optional<Along> {
+    const bool x = can_be_halved(cell.x);
+    const bool y = can_be_halved(cell.y);
+    if (x && y) {
+      return narrower_along(density, cell).value_or(halvings % 2 == 0 ? Along::x : Along::y);
+    }
+    if (x || y) return x ? Along::x : Along::y;
+    return std::nullopt;
   };
-  return halved(
-      grid, masses, largest_share,
-      {.integral = integral, .narrower = narrower, .exhausted = [&] { return rule.exhausted(); }});
+  return halved(grid, masses, largest_share, {.integral = integral, .side = side, .exhausted = [&] {
+                                                return rule.exhausted();
+                                              }});
 }
 
-EqualMassCells equal_mass_cells(const std::vector<double>& borders, const LineDensity& density,
-                                double largest_share, QuadratureLimits limits) {
+AdaptiveCells adaptive_cells(const std::vector<double>& borders, const LineDensity& density,
+                             double largest_share, QuadratureLimits limits) {
   check_share(largest_share);
-  check::positive({"equal_mass_cells", "tolerance"}, limits.tolerance);
+  check::positive({"adaptive_cells", "tolerance"}, limits.tolerance);
   const PlaneGrid grid{.x_borders = borders, .y_borders = {0, 1}};
   check_borders(grid);
   const Span whole{borders.front(), borders.back()};
@@ -221,10 +232,12 @@ EqualMassCells equal_mass_cells(const std::vector<double>& borders, const LineDe
   };
   std::vector<Integral> masses;
   for (std::size_t i = 0; i < grid.size(); ++i) masses.push_back(integral(grid.cell(i)));
-  return halved(grid, masses, largest_share,
-                {.integral = integral,
-                 .narrower = [](const PlaneCell&, int) { return Along::x; },
-                 .exhausted = [&] { return rule.exhausted(); }});
+  return halved(
+      grid, masses, largest_share,
+      {.integral = integral,
+       .side = [](const PlaneCell& cell,
+                  int) { return can_be_halved(cell.x) ? std::optional(Along::x) : std::nullopt; },
+       .exhausted = [&] { return rule.exhausted(); }});
 }
 
 }  // namespace assay::stats

@@ -1,4 +1,4 @@
-#include "stats/equal_mass_cells.h"
+#include "stats/adaptive_cells.h"
 
 #include <gtest/gtest.h>
 
@@ -39,14 +39,14 @@ void expect_a_partition(const HalvedCells& cells) {
     area += cell.x.width() * cell.y.width();
     EXPECT_EQ(cells.index(cell.x.middle(), cell.y.middle()), i);
     EXPECT_EQ(cells.index(cell.x.low, cell.y.low), i) << "closed below";
-    EXPECT_EQ(cells.grid.index(cell.x.middle(), cell.y.middle()), cells.places[i]);
+    EXPECT_EQ(cells.grid.index(cell.x.middle(), cell.y.middle()), cells.grid_cells[i]);
   }
   EXPECT_NEAR(area, 1, 1e-12);
 }
 
 // Of 4 x y a cell has the product of the differences of squares.
-TEST(EqualMassCells, EveryCellHasItsMassAndNoMoreThanItsShare) {
-  const auto found = equal_mass_cells(
+TEST(AdaptiveCells, EveryCellHasItsMassAndNoMoreThanItsShare) {
+  const auto found = adaptive_cells(
       unit_grid(4, 4), on_unit_square([](double x, double y) { return 4 * x * y; }), 1.0 / 64);
   const auto below = [](const Span& s) { return s.high * s.high - s.low * s.low; };
   for (std::size_t i = 0; i < found.cells.size(); ++i) {
@@ -61,19 +61,19 @@ TEST(EqualMassCells, EveryCellHasItsMassAndNoMoreThanItsShare) {
   expect_a_partition(found.cells);
 }
 
-TEST(EqualMassCells, AnEvenDensityIsLeftInTheGridsCells) {
-  const auto found = equal_mass_cells(unit_grid(3, 5),
-                                      on_unit_square([](double, double) { return .25; }), 2.0 / 15);
+TEST(AdaptiveCells, AnEvenDensityIsLeftInTheGridsCells) {
+  const auto found =
+      adaptive_cells(unit_grid(3, 5), on_unit_square([](double, double) { return .25; }), 2.0 / 15);
   ASSERT_EQ(found.cells.size(), 15U);
   for (const double mass : found.mass.probability) EXPECT_NEAR(mass, .25 / 15, 1e-15);
   EXPECT_TRUE(found.cells.halves.empty());
   expect_a_partition(found.cells);
 }
 
-TEST(EqualMassCells, OneLobeOfSeveralHasItsShareOfOne) {
+TEST(AdaptiveCells, OneLobeOfSeveralHasItsShareOfOne) {
   const auto part = [](double mass) {
     const auto peak = [mass](double x, double) { return mass * 3 * x * x; };
-    return equal_mass_cells(unit_grid(4, 4), on_unit_square(peak), 1.0 / 16).cells.size();
+    return adaptive_cells(unit_grid(4, 4), on_unit_square(peak), 1.0 / 16).cells.size();
   };
   EXPECT_EQ(part(.1), 16U) << "no cell has a sixteenth of 1";
   EXPECT_GT(part(1), 20U);
@@ -105,8 +105,8 @@ PlaneDensity density_of(const Peak& peak) {
   return density;
 }
 
-TEST(EqualMassCells, ANarrowPeakIsCountedInManyCells) {
-  const auto found = equal_mass_cells(unit_grid(16, 32), density_of(narrow), 1.0 / 256);
+TEST(AdaptiveCells, ANarrowPeakIsCountedInManyCells) {
+  const auto found = adaptive_cells(unit_grid(16, 32), density_of(narrow), 1.0 / 256);
   std::size_t held = 0;
   for (std::size_t i = 0; i < found.cells.size(); ++i) {
     const PlaneCell& cell = found.cells.cells[i];
@@ -122,7 +122,7 @@ TEST(EqualMassCells, ANarrowPeakIsCountedInManyCells) {
 }
 
 /// Counts of points of a peak of another deviation.
-CellCounts counts_of(Philox& random, const EqualMassCells& found, double deviation) {
+CellCounts counts_of(Philox& random, const AdaptiveCells& found, double deviation) {
   CellCounts counts{.observed = std::vector<std::uint64_t>(found.cells.size()),
                     .probability = found.mass.probability,
                     .error = found.mass.error};
@@ -137,13 +137,13 @@ CellCounts counts_of(Philox& random, const EqualMassCells& found, double deviati
 
 // Four thousand points of a peak a fifth too wide. Of the grid's own cells one holds nearly all
 // of it, and there is nothing to test. False alarm 1e-5 (tests/stats/calibration.h).
-TEST(EqualMassCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
+TEST(AdaptiveCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
   const auto cells = [](double share) {
-    return equal_mass_cells(unit_grid(16, 32), density_of(narrow), share);
+    return adaptive_cells(unit_grid(16, 32), density_of(narrow), share);
   };
-  const EqualMassCells fine = cells(1.0 / 256);
-  const EqualMassCells coarse = cells(1);
-  const auto fit = [&](const EqualMassCells& found, double wider) {
+  const AdaptiveCells fine = cells(1.0 / 256);
+  const AdaptiveCells coarse = cells(1);
+  const auto fit = [&](const AdaptiveCells& found, double wider) {
     return [&found, wider](Philox& random) {
       const CellCounts counts = counts_of(random, found, wider * narrow.deviation);
       return chi_square_fit(counts, {.probability_tolerance = 1e-6}).test.log_p_upper;
@@ -159,22 +159,55 @@ TEST(EqualMassCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
   EXPECT_THROW(fit(coarse, 1)(random), std::domain_error) << "one pool";
 }
 
-// Half a unit of mass on a disc within one cell of the grid: it jumps along a curve.
-TEST(EqualMassCells, AJumpAlongACurveStaysWithinItsErrors) {
+// A ridge along y: cut across until it is as wide as its cell, and no cell along y in vain.
+TEST(AdaptiveCells, ARidgeIsCutAcross) {
+  const auto ridge = [](double x, double) {
+    return std::exp(-(x - .3) * (x - .3) / 2e-4) / std::sqrt(2e-4 * std::numbers::pi);
+  };
+  PlaneDensity density = on_unit_square(ridge);
+  density.x_panels = 100;
+  const auto found = adaptive_cells(unit_grid(2, 4), density, 1.0 / 16);
+  for (std::size_t i = 0; i < found.cells.size(); ++i) {
+    EXPECT_GE(found.cells.cells[i].y.width(), 1.0 / 16) << "in turn it would be 1/64";
+    if (found.mass.probability[i] <= 1.0 / 64) continue;
+    EXPECT_LE(found.cells.cells[i].x.width(), 1.0 / 16);
+  }
+  EXPECT_NEAR(found.mass.total, 1, 1e-9);
+  EXPECT_LE(*std::ranges::max_element(found.mass.probability), 1.0 / 16);
+}
+
+// Nearly all mass on one double: its cell is halved until no number lies between its ends, or 48
+// times.
+TEST(AdaptiveCells, ACellIsNotHalvedIntoNothing) {
+  const double spike = .3;
+  const auto at = [&](std::span<const double> x, std::span<double> values) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      values[i] = 1 / (std::abs(x[i] - spike) + 1e-18) / 80;
+    }
+  };
+  const auto found = adaptive_cells(even(4), {.values = at}, 1.0 / 64, {.tolerance = 1e-3});
+  for (const PlaneCell& cell : found.cells.cells) EXPECT_LT(cell.x.low, cell.x.high);
+  const auto tiny = adaptive_cells({1e9, std::nextafter(1e9, 2e9)}, {.values = at}, 1.0 / 64,
+                                   {.tolerance = 1e-3});
+  EXPECT_EQ(tiny.cells.size(), 1U) << "nothing lies between two neighbours";
+}
+
+// A disc within a few cells of the grid: it jumps along a curve.
+TEST(AdaptiveCells, AJumpAlongACurveStaysWithinItsErrors) {
   constexpr double r = .03;
   const auto disc = [&](double x, double y) {
     return std::hypot(x - .43, y - .57) < r ? 1 / (std::numbers::pi * r * r) : 0.0;
   };
   PlaneDensity density = on_unit_square(disc);
   density.x_panels = density.y_panels = 32;
-  const auto found = equal_mass_cells(unit_grid(16, 16), density, 1.0 / 64, {.tolerance = 1e-6});
+  const auto found = adaptive_cells(unit_grid(16, 16), density, 1.0 / 64, {.tolerance = 1e-6});
   EXPECT_NEAR(found.mass.total, 1, found.mass.total_error);
   EXPECT_LT(found.mass.total_error, 1e-3);
   EXPECT_LE(*std::ranges::max_element(found.mass.probability), 1.0 / 64);
   expect_a_partition(found.cells);
 }
 
-TEST(EqualMassCells, WithoutEvaluationsACellStaysWhole) {
+TEST(AdaptiveCells, WithoutEvaluationsACellStaysWhole) {
   std::uint64_t evaluations = 0;
   const auto counted = [&](double x, double y) {
     ++evaluations;
@@ -183,20 +216,20 @@ TEST(EqualMassCells, WithoutEvaluationsACellStaysWhole) {
   PlaneDensity density = on_unit_square(counted);
   density.x_panels = density.y_panels = 100;
   const QuadratureLimits enough{.tolerance = 1e-8};
-  equal_mass_cells(unit_grid(4, 4), density, 1, enough);
+  adaptive_cells(unit_grid(4, 4), density, 1, enough);
   const QuadratureLimits limits{.tolerance = 1e-8, .evaluations = evaluations + 20000};
-  const auto some = equal_mass_cells(unit_grid(4, 4), density, 1.0 / 256, limits);
-  const auto all = equal_mass_cells(unit_grid(4, 4), density, 1.0 / 256, enough);
+  const auto some = adaptive_cells(unit_grid(4, 4), density, 1.0 / 256, limits);
+  const auto all = adaptive_cells(unit_grid(4, 4), density, 1.0 / 256, enough);
   EXPECT_LT(some.cells.size(), all.cells.size());
   EXPECT_NEAR(some.mass.total, 1, 1e-6);
   expect_a_partition(some.cells);
 }
 
-TEST(EqualMassCells, PartsOfAnIntervalHaveTheirMass) {
+TEST(AdaptiveCells, PartsOfAnIntervalHaveTheirMass) {
   const LineDensity density{.values = [](std::span<const double> x, std::span<double> values) {
     for (std::size_t i = 0; i < x.size(); ++i) values[i] = 50 * std::exp(-50 * x[i]);
   }};
-  const auto found = equal_mass_cells(even(64), density, 1.0 / 32);
+  const auto found = adaptive_cells(even(64), density, 1.0 / 32);
   for (std::size_t i = 0; i < found.cells.size(); ++i) {
     const Span& part = found.cells.cells[i].x;
     EXPECT_NEAR(found.mass.probability[i], std::exp(-50 * part.low) - std::exp(-50 * part.high),
@@ -207,14 +240,14 @@ TEST(EqualMassCells, PartsOfAnIntervalHaveTheirMass) {
   expect_a_partition(found.cells);
 }
 
-TEST(EqualMassCells, RefusesWhatIsNoDensityAndNoShare) {
+TEST(AdaptiveCells, RefusesWhatIsNoDensityAndNoShare) {
   const PlaneGrid grid = unit_grid(2, 2);
   const auto flat = on_unit_square([](double, double) { return 1.0; });
-  EXPECT_THROW(equal_mass_cells(grid, on_unit_square([](double, double) { return -1.0; }), 1),
+  EXPECT_THROW(adaptive_cells(grid, on_unit_square([](double, double) { return -1.0; }), 1),
                std::domain_error);
-  EXPECT_THROW(equal_mass_cells(grid, flat, 0), std::domain_error);
-  EXPECT_THROW(equal_mass_cells(grid, flat, 1.5), std::domain_error);
-  EXPECT_THROW(equal_mass_cells({{0, 1}, {1, 0}}, flat, 1), std::domain_error);
+  EXPECT_THROW(adaptive_cells(grid, flat, 0), std::domain_error);
+  EXPECT_THROW(adaptive_cells(grid, flat, 1.5), std::domain_error);
+  EXPECT_THROW(adaptive_cells({{0, 1}, {1, 0}}, flat, 1), std::domain_error);
   EXPECT_THROW(whole_cells({{0, 1}, {1, 0}}), std::domain_error);
   EXPECT_THROW(whole_cells(grid).index(1.5, 0), std::domain_error);
 }
