@@ -281,9 +281,9 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
   page.paragraph(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
                              tests == 1 ? "" : "s", total_text(separate)));
   page.paragraph(fmt::format(
-      "Tests of one estimator share observations, so a run draws at most {}; most tests end at an "
-      "earlier look: about {} if every claim holds exactly (tests whose share is not known "
-      "counted in full).",
+      "Tests of one estimator share observations, and every estimator is drawn for its picture: at "
+      "most {} in all. Most tests end at an earlier look: about {} if every claim holds exactly "
+      "(tests whose share is not known counted in full).",
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(
       "primaries: of one secondary estimate. first, last: secondaries of each source at these "

@@ -9,6 +9,7 @@
 #include "harness/question_claims.h"
 #include "harness/question_image.h"
 #include "harness/recorded_run.h"
+#include "harness/sampler_setup.h"
 
 namespace assay::harness {
 namespace {
@@ -160,6 +161,31 @@ void require_plane(const Question& question) {
                                two_sample_cells, first, second));
 }
 
+/// The marginals that are compared, as "u, v".
+std::string channel_names(const Subject& side) {
+  const std::vector<Channel> channels = side.setup->channels();
+  std::vector<std::string> names;
+  for (const std::size_t channel : side.channels) names.push_back(channels[channel].name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Two whole samplers are compared marginal by marginal: they must be the same ones.
+void require_same_marginals(const Question& question, const Location& where) {
+  const Subject& first = question.subjects[0];
+  const Subject& second = question.subjects[1];
+  const auto is_whole = [](const Subject& side) {
+    return dynamic_cast<const SamplerSetup*>(side.setup.get()) != nullptr &&
+           side.channels.size() > 1;
+  };
+  if (!is_whole(first) || !is_whole(second)) return;
+  const std::string names = channel_names(first);
+  const std::string others = channel_names(second);
+  if (names == others) return;
+  throw InputError(where, fmt::format("the first sampler's points are {}, the second's {}: name "
+                                      "one marginal of each to compare them all the same",
+                                      names, others));
+}
+
 Question about_distribution(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   const Source& source = claim.left.source;
@@ -169,6 +195,7 @@ Question about_distribution(const TestEntry& test, const Estimators& estimators)
         .test = &test,
         .kind = cells ? QuestionKind::same_cells : QuestionKind::same_law,
         .subjects = {values(source, estimators), values(other->quantity.source, estimators)}};
+    require_same_marginals(question, other->quantity.where);
     if (cells) require_plane(question);
     return question;
   }

@@ -31,6 +31,19 @@ std::string parts_of(const PreparedEstimator& estimator) {
   return text;
 }
 
+/// Of what takes channels, where a sampler of the estimator is named.
+void require_no_sampler(const Source& source, const PreparedEstimator& estimator) {
+  const std::string name = source.part.substr(0, source.part.find('.'));
+  const std::vector<NamedSampler> samplers = estimator.setup->samplers();
+  if (std::ranges::find(samplers, name, &NamedSampler::name) == samplers.end()) return;
+  throw InputError(source.where,
+                   fmt::format("`{}` is a sampler of `{}`: claims about it are `distribution`, "
+                               "`integral` and `inconsistency`; others take a channel of the "
+                               "estimator, as `{}.{}`",
+                               name, source.estimator, source.estimator,
+                               estimator.setup->channels().front().name));
+}
+
 [[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
   throw InputError(source.where, fmt::format("`{}` has no part `{}`; it has {}", source.estimator,
                                              source.part, parts_of(estimator)));
@@ -107,7 +120,10 @@ Subject estimates(const Source& source, const PreparedEstimator& estimator) {
     subject.channels =
         source.part.empty() ? tested_channels(channels) : channels_named(channels, source.part);
   }
-  if (subject.channels.empty()) no_such_part(source, estimator);
+  if (subject.channels.empty()) {
+    require_no_sampler(source, estimator);
+    no_such_part(source, estimator);
+  }
   return subject;
 }
 

@@ -55,6 +55,20 @@ TEST(TwoLaws, SayWhichPartRejects) {
   EXPECT_THAT(test.message, testing::HasSubstr("p is that of the masses without a point"));
 }
 
+TEST(TwoLaws, OfDifferentDomainsAreNotCompared) {
+  EXPECT_THAT(refused("{claim: distribution(area.point) == distribution(ward.direction)}"),
+              testing::HasSubstr("points are u, v, the second's theta, phi"));
+  EXPECT_EQ(verdict_of("{claim: distribution(area.point.u) == distribution(ward.direction.theta), "
+                       "secondaries: 2000}"),
+            Verdict::fail)
+      << "one marginal of each, as asked";
+}
+
+TEST(Means, OfASamplerAreRefusedByName) {
+  EXPECT_THAT(refused("{claim: mean(ward.direction) == analytic}"),
+              testing::HasSubstr("`direction` is a sampler of `ward`"));
+}
+
 // A pool that two entries of one plugin share is first drawn for a claim that needs no density: its
 // draws are counted in the cells of the density nevertheless. So of two suites in one run.
 TEST(CellsOfADensity, AreCountedWhoeverElseDrawsOfThePool) {
