@@ -20,6 +20,7 @@ struct Cells {
   std::size_t width = 0, height = 0;
   std::vector<double> observed = {}, expected = {};
   std::vector<double> z = {};
+  std::string of_z = "";  ///< what else is to be said of z
 };
 
 /// In standard deviations, of a count whose variance is `variance` times what is expected. A draw
@@ -74,7 +75,8 @@ Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
   for (std::size_t i = 0; i < grid.size(); ++i) {
     cells.z.push_back(farthest[i].value_or(residual(cells.observed[i], cells.expected[i])));
   }
-  if (are_divided(density, grid)) cells.axes += "; of parts of a cell the z that is farthest off";
+  if (are_divided(density, grid))
+    cells.of_z = "; of the parts of a cell the one that is farthest off";
   return cells;
 }
 
@@ -129,9 +131,9 @@ void add_cells(const TestWork& work, reports::Test& test) {
   if (work.outcome.channels.empty()) return;
   const Cells cells = cells_of(work);
   if (cells.observed.empty()) return;
-  const auto add = [&](const char* name, auto value) {
+  const auto add = [&](const char* name, const std::string& source, auto value) {
     reports::Map map{.name = name,
-                     .source = cells.axes,
+                     .source = source,
                      .file = "",
                      .width = cells.width,
                      .height = cells.height,
@@ -142,9 +144,9 @@ void add_cells(const TestWork& work, reports::Test& test) {
     }
     test.maps.push_back(std::move(map));
   };
-  add("cells_observed", [&](std::size_t i) { return cells.observed[i]; });
-  add("cells_expected", [&](std::size_t i) { return cells.expected[i]; });
-  add("cells_z", [&](std::size_t i) { return cells.z[i]; });
+  add("cells_observed", cells.axes, [&](std::size_t i) { return cells.observed[i]; });
+  add("cells_expected", cells.axes, [&](std::size_t i) { return cells.expected[i]; });
+  add("cells_z", cells.axes + cells.of_z, [&](std::size_t i) { return cells.z[i]; });
 }
 
 }  // namespace assay::harness

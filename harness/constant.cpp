@@ -161,9 +161,13 @@ ConstantVerdict agreeing(const Difference& at_beta, const Regions& regions, doub
                         "values never seen could move the mean by at most {:.3g} (at level {:g})",
                         std::max(at_beta.below, at_beta.above), beta)};
   }
+  const bool has_range = std::isfinite(std::max(at_beta.below, at_beta.above));
   return {Verdict::inconclusive,
-          "every observation is the same and as claimed, but no declared range bounds closely "
-          "enough what values never seen could add; declare the range or give more observations"};
+          has_range
+              ? "every observation is the same and as claimed, but the declared range does not "
+                "bound closely enough what values never seen could add; give more observations"
+              : "every observation is the same and as claimed, but what values never seen "
+                "could add is bounded by no number of observations; declare the range"};
 }
 
 }  // namespace
