@@ -37,9 +37,7 @@ std::string axis(const Marginal& marginal, const std::vector<double>& borders) {
 
 /// Of the cells of a domain that have the same measure.
 std::string axes_of(const SamplerSetup& draws, const stats::PlaneGrid& grid) {
-  std::vector<Marginal> coordinates = draws.marginals();
-  // Of a triangle the second coordinate of a cell is a share of what the first leaves.
-  if (draws.sampler().domain() == Domain::triangle) coordinates[1].name = "v / (1 - u)";
+  const std::vector<Marginal> coordinates = cell_coordinates(draws.sampler());
   return fmt::format("{} from top to bottom, {} from left to right",
                      axis(coordinates[0], grid.x_borders), axis(coordinates[1], grid.y_borders));
 }

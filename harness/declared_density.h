@@ -6,8 +6,8 @@
 #include <span>
 
 #include "estimators/estimator.h"
-#include "stats/cell_quadrature.h"
 #include "stats/adaptive_cells.h"
+#include "stats/cell_quadrature.h"
 
 namespace assay::harness {
 

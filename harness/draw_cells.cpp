@@ -88,15 +88,10 @@ std::string DrawCells::describe(std::size_t cell) const {
     return fmt::format("the points of lobe {}", point_masses_[cell - lobes_end_]);
   }
   const auto [lobe, number] = found(cell);
-  const std::vector<Marginal> coordinates = marginals_of(sampler_);
+  const std::vector<Marginal> coordinates = cell_coordinates(sampler_);
   const stats::PlaneCell& sides = of_lobes_[lobe].cells[number];
   std::string text = range_text(coordinates[0].name, sides.x);
-  // Of a triangle the second coordinate of a cell is a share of what the first leaves.
-  if (sampler_.domain() == Domain::triangle) {
-    text += ", " + range_text("v / (1 - u)", sides.y);
-  } else if (sampler_.domain() != Domain::interval) {
-    text += ", " + range_text(coordinates[1].name, sides.y);
-  }
+  if (coordinates.size() > 1) text += ", " + range_text(coordinates[1].name, sides.y);
   return of_lobes_.size() > 1 ? fmt::format("{} of lobe {}", text, lobe) : text;
 }
 
@@ -106,6 +101,12 @@ std::vector<Marginal> marginals_of(const Sampler& sampler) {
     all[0].low = sampler.bounds()[0];
     all[0].high = sampler.bounds()[1];
   }
+  return all;
+}
+
+std::vector<Marginal> cell_coordinates(const Sampler& sampler) {
+  std::vector<Marginal> all = marginals_of(sampler);
+  if (sampler.domain() == Domain::triangle) all[1].name = "v / (1 - u)";
   return all;
 }
 

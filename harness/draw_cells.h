@@ -52,4 +52,8 @@ class DrawCells {
 /// The marginals of a sampler's domain; of an interval within its bounds.
 std::vector<Marginal> marginals_of(const Sampler& sampler);
 
+/// The coordinates of cells: the marginals, but of a triangle the second is a share of what the
+/// first leaves.
+std::vector<Marginal> cell_coordinates(const Sampler& sampler);
+
 }  // namespace assay::harness

@@ -46,7 +46,8 @@ stats::FitPlan fit_plan(const Question& question, const Plan& plan, const ErrorS
           .rates = rates_of(share)};
 }
 
-/// Fewer observations are counted in fewer pools, and fewer pools need fewer observations.
+/// Fewer observations are counted in fewer pools, and fewer pools need fewer observations. Each
+/// round's are enough; after four there is little left to save.
 std::optional<std::uint64_t> fit_secondaries(const Question& question, const ErrorShare& share,
                                              const Plan& plan) {
   double observations = std::numeric_limits<double>::max();
