@@ -35,6 +35,7 @@ std::string range_text(const ParameterInformation& p) {
     out += (out.empty() ? "" : " and ") + std::string(p.high_excluded ? "below " : "at most ") +
            shown(p.high);
   }
+  if (!out.empty() && !p.unit.empty()) out += " " + p.unit;
   return out.empty() ? "finite" : out;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "harness/constant.h"
 #include "harness/critical.h"
@@ -49,9 +50,10 @@ std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
     if (shift <= tolerated_shift * error) continue;
     return fmt::format(
         "every observation of `{}` is {:.10g}, and values never seen could move its mean by {:.3g} "
-        "where the comparison's standard error is {:.3g}; declare the range, or take more "
-        "observations",
-        question.subjects[subject].estimator->name, mine.moments.mean, shift, error);
+        "where the comparison's standard error is {:.3g}; {}",
+        question.subjects[subject].estimator->name, mine.moments.mean, shift, error,
+        std::isfinite(shift) ? "take more observations"
+                             : "declare the range, or take more observations");
   }
   return "";
 }
@@ -108,9 +110,11 @@ bool are_ordinary(const stats::Moments& moments) {
 std::string beyond_doubles(const stats::Moments& moments, const std::string& name) {
   if (moments.count < 2 || are_ordinary(moments)) return "";
   const double spread = moments.maximum - moments.minimum;
-  const bool sound = moments.m2 > 0 && std::isfinite(moments.m2) && std::isfinite(moments.m4) &&
-                     moments.m4 > 0 && std::isfinite(moments.skewness()) &&
-                     std::isfinite(moments.kurtosis());
+  // Denormal numbers have lost their digits.
+  const double least = std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+  const bool sound = moments.m2 * moments.m2 > least && std::isfinite(moments.m2) &&
+                     std::isfinite(moments.m4) && moments.m4 > least &&
+                     std::isfinite(moments.skewness()) && std::isfinite(moments.kurtosis());
   if (sound) return "";
   return fmt::format(
       "the observations of `{}` spread over {:.3g}, whose fourth power is beyond the numbers that "

@@ -130,7 +130,8 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
                               .environment = this_environment(arguments.threads),
                               .seed = arguments.seed,
                               .runs = arguments.runs,
-                              .started = utc_now()};
+                              .started = utc_now(),
+                              .detect = calibration_effects()};
   std::vector<std::string> laws;
   for (const std::string& law : arguments.laws) laws.push_back(calibration_law(law));
   std::vector<std::string> without_blanks = laws;

@@ -14,9 +14,9 @@
 namespace assay::harness {
 namespace {
 
-// What `detect` is: of means in standard deviations, of variances a ratio, of laws the largest
-// distance of their distribution functions, of the cells' probabilities Cohen's w, of a slope; of
-// images, whose pixels' means are about 6, the bias of each and its share of them.
+// What `detect` is: of means in standard deviations, of variances and costs a ratio, of laws the
+// largest distance of their distribution functions, of the cells' probabilities Cohen's w, of a
+// slope; of images, whose pixels' means are about 6, the bias of each and its share of them.
 constexpr double mean_effect = 0.15;
 constexpr double variance_effect = 0.3;
 constexpr double law_effect = 0.1;
@@ -48,6 +48,13 @@ EstimatorEntry entry_of(const std::string& name, const std::string& law, double 
           .parameters = Value::map({{"law", Value::scalar(law)},
                                     {"shift", Value::scalar(fmt::format("{:.17g}", shift))},
                                     {"scale", Value::scalar(fmt::format("{:.17g}", scale))}}),
+          .primaries = 1};
+}
+
+EstimatorEntry costly(const std::string& name, const std::string& law) {
+  return {.name = name,
+          .plugin = "analytic/costly_law",
+          .parameters = Value::map({{"law", Value::scalar(law)}}),
           .primaries = 1};
 }
 
@@ -109,6 +116,7 @@ struct Draft {
   std::string false_claim = "";
   std::optional<Margin> detect = {};
   bool is_default = true;
+  CostKind cost = CostKind::samples;
 };
 
 void means(const Facts& f, std::vector<Draft>& drafts) {
@@ -136,6 +144,11 @@ void means(const Facts& f, std::vector<Draft>& drafts) {
                       .true_claim = against("==", f.mean),
                       .is_default = false});
   }
+  if (!std::isfinite(f.low)) return;
+  drafts.push_back({.method = "betting",
+                    .question = "mean <= number",
+                    .true_claim = against("<=", f.mean),
+                    .is_default = false});
 }
 
 void variances(const Facts& f, std::vector<Draft>& drafts) {
@@ -162,6 +175,21 @@ void variances(const Facts& f, std::vector<Draft>& drafts) {
                     "total_" + against("==", factor), detect});
   drafts.push_back({"log-efficiency", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
                     "efficiency(y) == efficiency(scaled)", detect});
+  const auto costly = [&](const char* method, const char* question, const std::string& true_claim,
+                          const std::string& false_claim) {
+    drafts.push_back({.method = method,
+                      .question = question,
+                      .true_claim = true_claim,
+                      .false_claim = false_claim,
+                      .detect = detect,
+                      .cost = CostKind::rays});
+  };
+  costly("log-efficiency", "efficiencies at random costs",
+         "efficiency(costly) == efficiency(other_costly)", "");
+  costly("log-cost", "cost == cost", "cost(costly) == cost(other_costly)",
+         fmt::format("cost(costly) == {:.17g} * cost(other_costly)", factor));
+  costly("log-cost", "cost <= cost", "cost(costly) <= cost(other_costly)",
+         fmt::format("cost(costly) <= {:.17g} * cost(other_costly)", 1 / factor));
   drafts.push_back({"slope", "slope of variance", "slope(variance(x)) == 2",
                     fmt::format("slope(variance(x)) == {}", 2 - slope_effect),
                     Margin{.value = slope_effect}});
@@ -178,6 +206,10 @@ void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
                       .is_default = false});
     drafts.push_back({"ks", "law == law", "distribution(x) == distribution(y)",
                       "distribution(moved) == distribution(y)", detect});
+    drafts.push_back({.method = "chi-square-two-sample",
+                      .question = "draws == draws",
+                      .true_claim = "distribution(x.x) == distribution(y.x)",
+                      .is_default = false});
     drafts.push_back({"chi-square-fit", "draws == density", "distribution(x.x) == density", "",
                       Margin{.value = cell_effect}});
     drafts.push_back({"quantile", "median == median", "quantile(x, 0.5) == quantile(y, 0.5)",
@@ -185,6 +217,10 @@ void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
     return;
   }
   drafts.push_back({"ks", "law == law", "distribution(x) == distribution(y)", "", detect});
+  drafts.push_back({.method = "two-part-ks",
+                    .question = "law == law",
+                    .true_claim = "distribution(x) == distribution(y)",
+                    .is_default = false});
 }
 
 void images(std::vector<Draft>& drafts) {
@@ -212,7 +248,7 @@ std::vector<Draft> drafts_of(const Facts& facts) {
 
 TestEntry test_of(const std::string& claim, const Draft& draft) {
   TestEntry test{.name = claim, .id = "calibration/" + claim, .claim = parse_claim(claim, {})};
-  test.cost = CostKind::samples;
+  test.cost = draft.cost;
   if (draft.method == "slope") {
     test.over = Sweep{
         "scale", {Value::scalar("1"), Value::scalar("2"), Value::scalar("4"), Value::scalar("8")}};
@@ -242,6 +278,15 @@ CalibrationCase case_of(const Draft& draft, const CalibrationScope& scope) {
 }
 
 }  // namespace
+
+std::string calibration_effects() {
+  return fmt::format(
+      "{:g} standard deviations of means and medians; {:g} % of variances, efficiencies and costs; "
+      "a distance {:g} of laws; w {:g} of cells; {:g} of slopes; of images a bias of {:g}, or {:g} "
+      "% of one another",
+      mean_effect, 100 * variance_effect, law_effect, cell_effect, slope_effect, image_bias,
+      100 * image_part);
+}
 
 const std::vector<std::string>& calibration_laws() {
   static const std::vector<std::string> laws{
@@ -282,7 +327,8 @@ CalibrationBench::CalibrationBench(const CalibrationScope& scope) : law(scope.la
        {entry_of("x", law, 0, 1), entry_of("y", law, 0, 1),
         entry_of("shifted", law, facts.shift(), 1),
         entry_of("moved", law, facts.shift_at_law_effect, 1),
-        entry_of("scaled", law, 0, std::sqrt(1 + variance_effect)), picture_of("picture", law),
+        entry_of("scaled", law, 0, std::sqrt(1 + variance_effect)), costly("costly", law),
+        costly("other_costly", law), picture_of("picture", law),
         picture_of("other_picture", law)}) {
     estimators.emplace(entry.name, prepare(entry, "."));
   }

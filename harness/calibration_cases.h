@@ -21,6 +21,9 @@ const std::vector<std::string>& calibration_laws();
 /// the laws there are for one that `analytic/law` does not know.
 std::string calibration_law(const std::string& named);
 
+/// What `detect` is of each kind of question, in words.
+std::string calibration_effects();
+
 /// InputError with the methods there are for one that has no cases.
 void require_calibrated(const std::string& method);
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "harness/cell_close_up.h"
 #include "harness/evidence_cells.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_fit.h"
@@ -21,6 +22,7 @@ struct Cells {
   std::vector<double> observed = {}, expected = {};
   std::vector<double> z = {};
   std::string of_z = "";  ///< what else is to be said of z
+  std::optional<CloseUp> close = {};
 };
 
 /// In standard deviations, of a count whose variance is `variance` times what is expected. A draw
@@ -47,6 +49,24 @@ bool are_divided(const DensityCells& density, const stats::PlaneGrid& grid) {
   return density.cells.in_domain() > grid.size();
 }
 
+// The fewest expected draws of which a residual is shown: some tell where, before they are enough
+// for a test.
+constexpr double least_shown = 5;
+
+/// Of each cell in the domain of which so many draws are expected.
+std::vector<std::optional<double>> residuals_of(const DensityCells& density,
+                                                const ChannelData& data, double least) {
+  const auto total = static_cast<double>(data.moments.count);
+  std::vector<std::optional<double>> residuals;
+  for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
+    const double expected = total * density.mass.probability[i];
+    const auto observed = static_cast<double>(data.cells[i]);
+    residuals.push_back(expected >= least ? std::optional(residual(observed, expected))
+                                          : std::nullopt);
+  }
+  return residuals;
+}
+
 /// In the grid's cells: counts summed over the lobes and over the parts of what was halved. The
 /// residual is that of the one of these that is farthest off, of those that are tested by
 /// themselves; where there is none, that of the sum.
@@ -59,22 +79,25 @@ Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
               .height = grid.rows(),
               .observed = std::vector<double>(grid.size()),
               .expected = std::vector<double>(grid.size())};
+  // Those of cells that are tested by themselves.
+  const std::vector<std::optional<double>> tested =
+      residuals_of(density, data, stats::FitOptions{}.minimum_expected);
   std::vector<std::optional<double>> farthest(grid.size());
   for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
     const std::size_t place = density.cells.grid_cell(i);
-    const auto observed = static_cast<double>(data.cells[i]);
-    const double expected = total * density.mass.probability[i];
-    cells.observed[place] += observed;
-    cells.expected[place] += expected;
-    if (expected < stats::FitOptions{}.minimum_expected) continue;
-    const double z = residual(observed, expected);
-    if (std::abs(z) > std::abs(farthest[place].value_or(0))) farthest[place] = z;
+    cells.observed[place] += static_cast<double>(data.cells[i]);
+    cells.expected[place] += total * density.mass.probability[i];
+    if (std::abs(tested[i].value_or(0)) > std::abs(farthest[place].value_or(0))) {
+      farthest[place] = tested[i];
+    }
   }
   for (std::size_t i = 0; i < grid.size(); ++i) {
     cells.z.push_back(farthest[i].value_or(residual(cells.observed[i], cells.expected[i])));
   }
-  if (are_divided(density, grid))
+  if (are_divided(density, grid)) {
     cells.of_z = "; of the parts of a cell the one that is farthest off";
+    cells.close = close_up(density, draws.sampler(), residuals_of(density, data, least_shown));
+  }
   return cells;
 }
 
@@ -129,22 +152,22 @@ void add_cells(const TestWork& work, reports::Test& test) {
   if (work.outcome.channels.empty()) return;
   const Cells cells = cells_of(work);
   if (cells.observed.empty()) return;
-  const auto add = [&](const char* name, const std::string& source, auto value) {
+  const auto add = [&](const char* name, const std::string& axes, std::size_t width,
+                       std::span<const double> values) {
     reports::Map map{.name = name,
-                     .source = source,
+                     .source = axes,
                      .file = "",
-                     .width = cells.width,
-                     .height = cells.height,
+                     .width = width,
+                     .height = values.size() / width,
                      .components = {"draws"},
                      .texels = {}};
-    for (std::size_t i = 0; i < cells.observed.size(); ++i) {
-      map.texels.values.push_back(static_cast<float>(value(i)));
-    }
+    for (const double value : values) map.texels.values.push_back(static_cast<float>(value));
     test.maps.push_back(std::move(map));
   };
-  add("cells_observed", cells.axes, [&](std::size_t i) { return cells.observed[i]; });
-  add("cells_expected", cells.axes, [&](std::size_t i) { return cells.expected[i]; });
-  add("cells_z", cells.axes + cells.of_z, [&](std::size_t i) { return cells.z[i]; });
+  add("cells_observed", cells.axes, cells.width, cells.observed);
+  add("cells_expected", cells.axes, cells.width, cells.expected);
+  add("cells_z", cells.axes + cells.of_z, cells.width, cells.z);
+  if (cells.close) add("cells_z_close", cells.close->axes, cells.close->side, cells.close->z);
 }
 
 }  // namespace assay::harness

@@ -207,6 +207,9 @@ class Parser {
       fail(name.where,
            fmt::format("there is no quantity `{}`; square it: `variance(…)`", name.text));
     }
+    if (name.text == "median") {
+      fail(name.where, "there is no quantity `median`; it is a quantile: `quantile(…, 0.5)`");
+    }
     const std::string near = did_you_mean(name.text, quantity_words());
     if (near.empty() && stands_on_the_right(name.text)) {
       fail(name.where, fmt::format("`{}` stands on the right, as in `mean(area) == analytic` or "

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "harness/assumptions.h"
 #include "stats/holm.h"
 #include "stats/log_variance.h"
 #include "stats/welch_t.h"
@@ -79,6 +80,10 @@ void mark_differences(std::vector<ComparedPair>& pairs, double alpha) {
 }
 
 }  // namespace
+
+bool has_spread(const stats::Moments& moments) {
+  return moments.count > 3 && moments.m2 > 0 && beyond_doubles(moments, "").empty();
+}
 
 std::vector<reports::Comparison> comparisons(const std::vector<Pictured>& estimators,
                                              const std::vector<std::vector<std::string>>& claimed,

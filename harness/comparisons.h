@@ -26,9 +26,7 @@ struct Pictured {
 };
 
 /// Whether moments suffice for intervals of mean and variance.
-inline bool has_spread(const stats::Moments& moments) {
-  return moments.count > 3 && moments.m2 > 0;
-}
+bool has_spread(const stats::Moments& moments);
 
 /// Every pair of estimators of one quantity (equal analytic means, or a claim that compares them:
 /// `claimed` holds their names in pairs): Welch on the means, log-variance ratio on the variances

@@ -150,6 +150,11 @@ std::string seeds(const Question& question) {
   return "";
 }
 
+/// Whether values never seen could move the mean by so much and no more.
+bool has_range(const Difference& difference) {
+  return std::isfinite(std::max(difference.below, difference.above));
+}
+
 ConstantVerdict agreeing(const Difference& at_beta, const Regions& regions, double beta) {
   if (!regions.has_forbidden()) {
     return {Verdict::pass,
@@ -161,9 +166,8 @@ ConstantVerdict agreeing(const Difference& at_beta, const Regions& regions, doub
                         "values never seen could move the mean by at most {:.3g} (at level {:g})",
                         std::max(at_beta.below, at_beta.above), beta)};
   }
-  const bool has_range = std::isfinite(std::max(at_beta.below, at_beta.above));
   return {Verdict::inconclusive,
-          has_range
+          has_range(at_beta)
               ? "every observation is the same and as claimed, but the declared range does not "
                 "bound closely enough what values never seen could add; give more observations"
               : "every observation is the same and as claimed, but what values never seen "
@@ -197,11 +201,14 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                                        "values never seen cannot make up the difference{}",
                                        mean, seeds(question))};
   }
-  return {Verdict::invalid,
-          fmt::format("every observation is {:.10g}, which differs from the reference by {:.3g}; "
-                      "without a spread there is no test, and a rare value may be unseen: declare "
-                      "the range, or take more observations{}",
-                      mean, at_alpha.value, seeds(question))};
+  return {
+      Verdict::invalid,
+      fmt::format("every observation is {:.10g}, which differs from the reference by {:.3g}; "
+                  "without a spread there is no test, and a rare value may be unseen: {}{}",
+                  mean, at_alpha.value,
+                  has_range(at_alpha) ? "more `secondaries` would tell, as the range is declared"
+                                      : "declare the range, or take more observations",
+                  seeds(question))};
 }
 
 }  // namespace assay::harness

@@ -86,6 +86,11 @@ double log_p_forbidden(const Evidence& evidence, const Regions& regions) {
   return 0;
 }
 
+double edge_of_claimed(const Regions& regions) {
+  if (regions.relation == Relation::within) return regions.within;
+  return regions.proof() ? 0 : regions.allow;
+}
+
 std::string tail(const Regions& regions) {
   switch (regions.relation) {
     case Relation::at_most:

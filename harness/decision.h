@@ -35,6 +35,10 @@ double log_p_claimed(const Evidence& evidence, const Regions& regions);
 /// Natural logarithm of the p-value of "theta in F"; 0 where there is no F.
 double log_p_forbidden(const Evidence& evidence, const Regions& regions);
 
+/// Where C ends above 0: at theta = 0, `allow` or the margin of `within`. A theta that cannot be
+/// negative, as a distance, has no other end.
+double edge_of_claimed(const Regions& regions);
+
 /// Which tail of the statistic speaks against C.
 std::string tail(const Regions& regions);
 

@@ -17,14 +17,14 @@ namespace {
 constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
 constexpr std::size_t interval_cells = 64;
 
-/// Ends of a cell, with as many digits as tell them apart; no two doubles share 17.
+}  // namespace
+
 std::string range_text(const std::string& name, stats::Span span) {
   const double largest = std::max(std::abs(span.low), std::abs(span.high));
+  // No two doubles share 17.
   const int digits = std::clamp(2 + static_cast<int>(std::log10(largest / span.width())), 3, 17);
   return fmt::format("{} {:.{}g} to {:.{}g}", name, span.low, digits, span.high, digits);
 }
-
-}  // namespace
 
 stats::PlaneGrid measure_grid(const Sampler& sampler) {
   if (sampler.domain() != Domain::interval) {
@@ -82,17 +82,29 @@ std::size_t DrawCells::grid_cell(std::size_t cell) const {
   return of_lobes_[lobe].grid_cells[number];
 }
 
+stats::PlaneCell DrawCells::sides(std::size_t cell) const {
+  const auto [lobe, number] = found(cell);
+  return of_lobes_[lobe].cells[number];
+}
+
+std::vector<std::size_t> DrawCells::at(double x, double y) const {
+  std::vector<std::size_t> cells;
+  for (std::size_t lobe = 0; lobe < of_lobes_.size(); ++lobe) {
+    cells.push_back(begin_[lobe] + of_lobes_[lobe].index(x, y));
+  }
+  return cells;
+}
+
 std::string DrawCells::describe(std::size_t cell) const {
   if (cell == size() - 1) return "the draws without a point";
   if (cell >= lobes_end_) {
     return fmt::format("the points of lobe {}", point_masses_[cell - lobes_end_]);
   }
-  const auto [lobe, number] = found(cell);
   const std::vector<Marginal> coordinates = cell_coordinates(sampler_);
-  const stats::PlaneCell& sides = of_lobes_[lobe].cells[number];
-  std::string text = range_text(coordinates[0].name, sides.x);
-  if (coordinates.size() > 1) text += ", " + range_text(coordinates[1].name, sides.y);
-  return of_lobes_.size() > 1 ? fmt::format("{} of lobe {}", text, lobe) : text;
+  const stats::PlaneCell where = sides(cell);
+  std::string text = range_text(coordinates[0].name, where.x);
+  if (coordinates.size() > 1) text += ", " + range_text(coordinates[1].name, where.y);
+  return of_lobes_.size() > 1 ? fmt::format("{} of lobe {}", text, found(cell).lobe) : text;
 }
 
 std::vector<Marginal> marginals_of(const Sampler& sampler) {

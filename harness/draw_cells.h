@@ -33,6 +33,10 @@ class DrawCells {
   std::size_t in_domain() const { return lobes_end_; }
   /// The cell of measure_grid() that one of them is part of.
   std::size_t grid_cell(std::size_t cell) const;
+  /// Where one of them lies, in cell_coordinates().
+  stats::PlaneCell sides(std::size_t cell) const;
+  /// Each lobe's at this place. Throws std::domain_error outside the grid.
+  std::vector<std::size_t> at(double x, double y) const;
 
  private:
   /// One of a lobe's cells.
@@ -51,6 +55,9 @@ class DrawCells {
 
 /// The marginals of a sampler's domain; of an interval within its bounds.
 std::vector<Marginal> marginals_of(const Sampler& sampler);
+
+/// "theta 0.1 to 0.2", with as many digits as tell the ends apart.
+std::string range_text(const std::string& name, stats::Span span);
 
 /// The coordinates of cells: the marginals, but of a triangle the second is a share of what the
 /// first leaves.

@@ -8,12 +8,12 @@
 #include "harness/activation.h"
 #include "harness/assumptions.h"
 #include "harness/constant.h"
+#include "harness/found_effect.h"
 #include "harness/gate_text.h"
 #include "harness/image_judge.h"
 #include "harness/narrate.h"
 #include "harness/observation_faults.h"
 #include "harness/rows.h"
-#include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
 
 namespace assay::harness {
@@ -116,16 +116,22 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
   TestOutcome& outcome = work.outcome;
   const Question& question = outcome.question;
   std::vector<ConstantVerdict> constants;
+  const auto add = [&](std::size_t channel, ConstantVerdict constant) {
+    if (question.channel_count() > 1) {
+      constant.message = question.channel_name(channel) + ": " + constant.message;
+    }
+    constants.push_back(std::move(constant));
+  };
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const std::vector<ChannelData> data = data_of(work, channel);
     if (question.of_means() && all_constant(question, channel, data)) {
-      constants.push_back(
+      add(channel,
           judge_constant(question, channel, data, outcome.plan.regions[channel], outcome.share()));
       continue;
     }
     const std::string reason = lack_of_numbers(outcome, channel, data);
     if (!reason.empty()) {
-      constants.push_back({Verdict::invalid, reason});
+      add(channel, {Verdict::invalid, reason});
       continue;
     }
     for (reports::Gate& gate : data_gates(outcome, channel, data)) {
@@ -134,49 +140,6 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
     outcome.channels.push_back(channel_outcome(work, channel, data));
   }
   return constants;
-}
-
-/// What the detectable effect and the power are quoted for: the last look, or the one at which a
-/// budget ended the test.
-TestSize full_size(const TestOutcome& outcome) {
-  const stats::LookSchedule& looks = outcome.plan.looks;
-  const bool ended = outcome.verdict == Verdict::inconclusive;
-  const std::size_t look = ended ? outcome.look : looks.sizes.size() - 1;
-  return {.share = {.alpha = outcome.place.share.alpha * looks.weights[look],
-                    .beta = outcome.place.share.beta * looks.weights[look]},
-          .secondaries = looks.sizes[look]};
-}
-
-/// What a decided test found and could have found: the effect and the least detectable one of every
-/// channel, and the least power over them, at `detect` or, of `within`, of showing a theta of 0.
-void note_sizes(TestWork& work) {
-  TestOutcome& outcome = work.outcome;
-  for (ChannelOutcome& channel : outcome.channels) {
-    channel.effect = effect_of(outcome, channel);
-    if (channel.image) {
-      channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
-      continue;
-    }
-    const std::vector<ChannelData> data = data_of(work, channel.index);
-    PlannedChannel observed =
-        observed_channel(outcome.question, channel.regions, channel.index, data);
-    if (outcome.plan.method.name == "batch-means") {
-      // The deviation of independent values whose mean is as uncertain.
-      observed.standard_deviation =
-          batched(data[0]).standard_error() * std::sqrt(static_cast<double>(data[0].moments.count));
-    }
-    channel.detectable =
-        detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
-    channel.finds_nothing =
-        !channel.detectable &&
-        finds_nothing(outcome.question, full_size(outcome), outcome.plan, observed);
-    const bool equivalence = channel.regions.relation == Relation::within;
-    if (!equivalence && !channel.regions.detect) continue;
-    const std::optional<double> power =
-        power_at(outcome.question, full_size(outcome), outcome.plan, observed,
-                 equivalence ? 0 : *channel.regions.detect);
-    if (power) outcome.power = std::min(*power, outcome.power.value_or(1));
-  }
 }
 
 /// Takes the look's p-values, or nothing where it does not count, into those of all looks.
@@ -222,17 +185,17 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
   }
   settle(outcome, verdict_of_channels(outcome), "");
   for (const ConstantVerdict& constant : constants) {
-    if (badness(constant.verdict) > badness(outcome.verdict) || outcome.message.empty()) {
-      if (badness(constant.verdict) >= badness(outcome.verdict)) {
-        settle(outcome, constant.verdict, constant.message);
-      }
+    const bool says_all = outcome.channels.empty() && outcome.message.empty();
+    if (says_all || badness(constant.verdict) > badness(outcome.verdict)) {
+      settle(outcome, constant.verdict, constant.message);
     }
   }
 }
 
 void require_activation(TestWork& work) {
   TestOutcome& outcome = work.outcome;
-  if (outcome.question.test->expect != Expectation::fail) return;
+  // What is invalid by its plan draws little, and has its reason.
+  if (outcome.question.test->expect != Expectation::fail || !outcome.plan.invalid.empty()) return;
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
     if (was_activated(outcome.question.subjects[subject], *work.pools[subject],
                       outcome.secondaries())) {
@@ -277,52 +240,7 @@ std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
   return replicates;
 }
 
-/// That of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
-double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel,
-                           bool refuted) {
-  const ErrorShare share = outcome.share();
-  if (!refuted && channel.regions.has_forbidden()) {
-    return 1 - 2 * share.beta;
-  }
-  const bool two_tails = channel.regions.two_sided() && !channel.evidence.distance;
-  return 1 - (two_tails ? 1 : 2) * share.alpha;
-}
-
-/// Of a claim with a factor the effect is that against so many times the second side.
-std::string quantity_of(const Evidence& evidence, double factor) {
-  std::string quantity = evidence.quantity;
-  if (factor != 1) {
-    quantity += fmt::format(" {} {:g} times the second",
-                            quantity.starts_with("ratio") ? "to" : "from", factor);
-  }
-  return evidence.ratio ? "ln(" + quantity + ")" : quantity;
-}
-
-reports::Effect effect_at(const Evidence& evidence, double confidence, double factor) {
-  const stats::Interval interval = evidence.interval(confidence);
-  const auto number = [](double value) {
-    return std::isfinite(value) ? reports::Number(value) : reports::Number();
-  };
-  return {.quantity = quantity_of(evidence, factor),
-          .estimate = number(evidence.estimate),
-          .low = number(interval.low),
-          .high = number(interval.high),
-          .confidence = confidence,
-          .relative = evidence.relative};
-}
-
 }  // namespace
-
-reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const bool refuted = outcome.verdict == Verdict::fail;
-  return effect_at(channel.evidence, deciding_confidence(outcome, channel, refuted),
-                   outcome.question.factor);
-}
-
-reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  return effect_at(channel.evidence, deciding_confidence(outcome, channel, true),
-                   outcome.question.factor);
-}
 
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
   std::vector<ChannelData> data;
@@ -390,6 +308,10 @@ void take_look(TestWork& work, bool may_go_on) {
   } catch (const NoDensity& failure) {
     outcome.channels.clear();
     settle(outcome, Verdict::error, lack_of_density(outcome, failure.what()));
+  } catch (const std::domain_error& error) {
+    // A defect of the program's own: what it says of this test is lost, and of no other.
+    outcome.channels.clear();
+    settle(outcome, Verdict::error, fmt::format("internal error: {}", error.what()));
   }
 }
 

@@ -24,14 +24,6 @@ struct TestWork {
 /// may be taken.
 void take_look(TestWork& work, bool may_go_on = true);
 
-/// The effect with the interval that the verdict rests on, at this look's shares. A claim is
-/// refuted where the interval of what its test does not reject at alpha misses the claimed region;
-/// a pass that excludes the forbidden region does so by the ends of the interval at 1 - 2 beta, one
-/// test at beta to each side; what is still undecided is shown by that interval too.
-reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel);
-/// The same, should the claim be refuted.
-reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutcome& channel);
-
 /// The data a channel of the test is judged by.
 std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel);
 

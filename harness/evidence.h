@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "stats/test_result.h"
 
@@ -17,12 +18,19 @@ struct Evidence {
   std::function<stats::TestResult(double)> at;
   /// Two-sided interval of theta.
   std::function<stats::Interval(double)> interval;
-  std::string where = "";  ///< which part of the data speaks most against the claim, in words
-  std::string quantity;    ///< what theta is, in words
-  bool relative = false;   ///< shown in per cent
-  bool ratio = false;      ///< theta is the logarithm of a ratio
-  bool distance = false;   ///< theta cannot be negative: `==` has one direction
-  bool exact = false;      ///< theta is the estimate, without an error: costs that never vary
+  /// Which part of the data speaks most against "theta <= this value", in words; unset where the
+  /// data have no parts.
+  std::function<std::string(double)> most_against = {};
+  std::string quantity;   ///< what theta is, in words
+  bool relative = false;  ///< shown in per cent
+  bool ratio = false;     ///< theta is the logarithm of a ratio
+  bool distance = false;  ///< theta cannot be negative: `==` has one direction
+  bool exact = false;     ///< theta is the estimate, without an error: costs that never vary
 };
+
+/// A part that is the same for every value.
+inline std::function<std::string(double)> always(std::string part) {
+  return [part = std::move(part)](double) { return part; };
+}
 
 }  // namespace assay::harness

@@ -101,7 +101,7 @@ Evidence cells_against_density(const Question& question, const ChannelData& data
   return {.estimate = fit.effect,
           .at = at,
           .interval = interval,
-          .where = worst_of(fit, draws),
+          .most_against = always(worst_of(fit, draws)),
           .quantity = quantity,
           .distance = true};
 }
@@ -124,8 +124,8 @@ Evidence cells_against_cells(const Method& method, const Question& question,
   return {.estimate = fit.statistic.effect(),
           .at = at,
           .interval = interval,
-          .where = fmt::format("; farthest apart in {}, {} against {}",
-                               pool_text(worst.members, place), worst.x, worst.y),
+          .most_against = always(fmt::format("; farthest apart in {}, {} against {}",
+                                             pool_text(worst.members, place), worst.x, worst.y)),
           .quantity = quantity,
           .distance = true};
 }

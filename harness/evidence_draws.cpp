@@ -89,10 +89,10 @@ Evidence evidence_of_inconsistency(const Question& question, const ChannelData& 
   if (inconsistent > 0) {
     const auto most = std::max_element(data.cells.begin() + 1, data.cells.end());
     const auto cell = static_cast<std::size_t>(most - data.cells.begin()) - 1;
-    evidence.where =
-        fmt::format("; more in one cell than in any other, {} of them, in {}",
-                    per_cent(static_cast<double>(*most) / static_cast<double>(inconsistent)),
-                    draws.cells().describe(cell));
+    evidence.most_against =
+        always(fmt::format("; more in one cell than in any other, {} of them, in {}",
+                           per_cent(static_cast<double>(*most) / static_cast<double>(inconsistent)),
+                           draws.cells().describe(cell)));
   }
   return evidence;
 }

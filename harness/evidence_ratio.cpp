@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "harness/evidence_efficiency.h"
 #include "harness/group_variance.h"
 #include "stats/cost_ratio.h"
 #include "stats/log_efficiency.h"
@@ -14,7 +16,6 @@ namespace {
 
 using stats::Interval;
 using stats::JointMoments;
-using stats::LogEfficiency;
 using stats::Moments;
 using stats::TestResult;
 
@@ -74,62 +75,16 @@ Evidence total_variance_evidence(const Question& question, std::span<const Chann
   std::vector<double> divisors;
   for (std::size_t i = 0; i < question.compared(); ++i) {
     totals.push_back(data[i].group_variances);
+    if (!(totals.back().mean > 0)) {
+      throw std::domain_error("no channel of `" + question.subjects[i].estimator->name +
+                              "` varies: it has no total variance");
+    }
     divisors.push_back(1 / question.subjects[i].averaged(data[i].primaries));
   }
   Evidence evidence = compare_means(question, totals, divisors);
   evidence.quantity =
       question.of_two() ? "ratio of total variances" : "total variance over the reference";
   return evidence;
-}
-
-LogEfficiency efficiency_of(const Question& question, std::size_t subject, std::size_t channel,
-                            std::span<const ChannelData> data) {
-  const JointMoments& sample = counted_cost(question, data[subject]);
-  if (question.truths[subject].empty()) return stats::log_efficiency_of(sample);
-  const Constant truth = truth_of(question, subject, channel, data);
-  return stats::log_efficiency_of(sample, {truth.value, truth.standard_error});
-}
-
-/// One reference for both sides: its error is common.
-stats::References references_of(const Question& question, std::size_t channel,
-                                std::span<const ChannelData> data) {
-  if (question.truths[0].empty() || question.truths[1].empty()) {
-    return stats::References::independent;
-  }
-  const Constant first = truth_of(question, 0, channel, data);
-  const Constant second = truth_of(question, 1, channel, data);
-  const bool same = first.value == second.value && first.standard_error == second.standard_error;
-  return same ? stats::References::shared : stats::References::independent;
-}
-
-Evidence efficiency_evidence(const Question& question, std::size_t channel,
-                             std::span<const ChannelData> data) {
-  const LogEfficiency x = efficiency_of(question, 0, channel, data);
-  if (!question.of_two()) {
-    const double null = question.references[channel].value;
-    return {
-        .estimate = x.value - std::log(null),
-        .at = [=](double t) { return stats::log_efficiency(x, null * std::exp(t)); },
-        .interval =
-            [=](double confidence) { return stats::log_efficiency_interval(x, null, confidence); },
-        .quantity = "efficiency over the reference",
-        .ratio = true};
-  }
-  const LogEfficiency y = efficiency_of(question, 1, channel, data);
-  const double factor = question.factor;
-  const stats::References references = references_of(question, channel, data);
-  return {.estimate = x.value - y.value - std::log(factor),
-          .at =
-              [=](double t) {
-                return stats::log_efficiency_ratio(x, y, factor * std::exp(t), references);
-              },
-          .interval =
-              [=](double confidence) {
-                return moved(stats::log_efficiency_ratio_interval(x, y, confidence, references),
-                             std::log(factor));
-              },
-          .quantity = "ratio of efficiencies",
-          .ratio = true};
 }
 
 /// Of each replicate ln(seconds a primary), or -ln(that x variance of a primary).
@@ -177,7 +132,7 @@ Evidence evidence_of_ratio(const Question& question, std::size_t channel,
                            std::span<const ChannelData> data) {
   if (question.kind == QuestionKind::cost) return cost_evidence(question, data);
   if (question.kind == QuestionKind::efficiency) {
-    return efficiency_evidence(question, channel, data);
+    return evidence_of_efficiency(question, channel, data);
   }
   return total_variance_evidence(question, data);
 }
@@ -218,7 +173,7 @@ std::optional<double> log_spread(const Question& question, std::size_t subject, 
     return squared_variation(by_its_cost(question, mine.with_cost).cost);
   }
   if (question.kind == QuestionKind::efficiency) {
-    return efficiency_of(question, subject, channel, data).spread;
+    return efficiency_spread(question, subject, channel, data);
   }
   return static_cast<double>(variance_group) * squared_variation(mine.group_variances);
 }

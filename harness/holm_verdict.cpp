@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "harness/found_effect.h"
 #include "harness/narrate.h"
 #include "stats/holm.h"
 
@@ -11,6 +12,18 @@ using reports::Verdict;
 
 namespace {
 
+std::uint64_t earlier_look(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  // Of several channels the record has no look of its own.
+  if (outcome.question.channel_count() > 1) return 0;
+  const std::vector<double>& log_p = outcome.history[channel.index].log_p_claimed;
+  const stats::LookSchedule& schedule = outcome.plan.looks;
+  std::vector<SingleLook> looks;
+  for (std::size_t k = 0; k < log_p.size(); ++k) {
+    looks.push_back({schedule.sizes[k], schedule.weights[k], log_p[k]});
+  }
+  return earlier_look(looks);
+}
+
 void refute(TestOutcome& outcome, std::size_t by) {
   outcome.verdict = Verdict::fail;
   for (ChannelOutcome& channel : outcome.channels) channel.effect = effect_of(outcome, channel);
@@ -19,7 +32,8 @@ void refute(TestOutcome& outcome, std::size_t by) {
       narrate_holm({.effect = channel.effect,
                     .channel = outcome.question.channel_count() > 1 ? channel.name : "",
                     .log_p = channel.decision.log_p_claimed,
-                    .log_p_adjusted = channel.log_p_adjusted});
+                    .log_p_adjusted = channel.log_p_adjusted,
+                    .earlier_look = earlier_look(outcome, channel)});
 }
 
 void take_over(const FamilyMember& member, TestOutcome& outcome, double alpha) {

@@ -303,13 +303,15 @@ void write_maps(reports::Record& record, const std::string& json_path) {
       if (test.maps.empty()) continue;
       std::filesystem::create_directories(folder);
       const std::string name = file_name(test.id);
+      const MapSize size{test.maps.front().width, test.maps.front().height};
       std::vector<MapLayer> layers;
       for (reports::Map& map : test.maps) {
+        // A close-up of cells stands in the record alone.
+        if (map.width != size.width || map.height != size.height) continue;
         map.file = (folder.filename() / name).string();
         layers.push_back({map.name, map.components, map.texels.values});
       }
-      write_map_file((folder / name).string(), {test.maps.front().width, test.maps.front().height},
-                     layers);
+      write_map_file((folder / name).string(), size, layers);
     }
   }
 }

@@ -21,6 +21,7 @@ using stats::Interval;
 using stats::TestResult;
 
 constexpr const char* quantity = "largest distance of distribution functions";
+constexpr const char* masses_without_a_point = "the masses without a point";
 constexpr const char* quantity_of_both =
     "largest distance of distribution functions, or of the masses without a point";
 
@@ -144,15 +145,21 @@ bool may_end_beyond(double theta, const Evidence& evidence, double confidence) {
   return evidence.at(theta).log_p_lower >= std::log((1 - confidence) / 2) - rounding;
 }
 
+/// A distance with its name.
+struct Part {
+  Evidence evidence;
+  std::string name;
+};
+
 /// The estimate is the larger of the two distances, and p that of the part with the smaller p.
-std::string what_rejects(const Evidence& points, const Evidence& missing) {
-  if (missing.at(0).log_p_upper >= points.at(0).log_p_upper) return "";
-  return fmt::format("; p is that of the masses without a point, {:.4g} apart", missing.estimate);
+std::string p_is_of(const Part& part) {
+  return fmt::format("; p is that of {}, {:.4g} apart", part.name, part.evidence.estimate);
 }
 
 /// theta = the larger of the two. "At most" is rejected where either part rejects it at half the
 /// level (Bonferroni), "at least" where both do (intersection of unions).
-Evidence larger_of(const Evidence& points, const Evidence& missing) {
+Evidence larger_of(const Evidence& points, const Part& masses) {
+  const Evidence& missing = masses.evidence;
   const auto at = [points, missing](double theta) {
     const TestResult one = points.at(theta);
     const TestResult other = missing.at(theta);
@@ -175,7 +182,10 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
   return {.estimate = std::max(points.estimate, missing.estimate),
           .at = at,
           .interval = interval,
-          .where = what_rejects(points, missing),
+          .most_against = [points, masses](double theta) -> std::string {
+            const double of_masses = masses.evidence.at(theta).log_p_upper;
+            return of_masses < points.at(theta).log_p_upper ? p_is_of(masses) : "";
+          },
           .quantity = quantity_of_both,
           .distance = true};
 }
@@ -253,8 +263,8 @@ Evidence points_against_law(const Points& points, const DeclaredLaw& declared, P
     rest = with_anderson_darling(std::move(rest), stats::anderson_darling(at, declared.error));
   }
   if (declared.missing == 0 && points.missing() == 0) return rest;
-  return larger_of(
-      rest, from_proportion({.successes = points.missing(), .trials = points.draws}, declared));
+  const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
+  return larger_of(rest, {from_proportion(missing, declared), masses_without_a_point});
 }
 
 Evidence points_against_points(const Points& x, const Points& y) {
@@ -262,7 +272,7 @@ Evidence points_against_points(const Points& x, const Points& y) {
   require_points(y);
   const Evidence rest = from_distance(stats::ks_distance(x.sorted, y.sorted));
   if (!x.of_a_sampler && !y.of_a_sampler) return rest;
-  return larger_of(rest, from_proportions(x, y));
+  return larger_of(rest, {from_proportions(x, y), masses_without_a_point});
 }
 
 Evidence points_split_at(double atom, const Points& x, const Points& y) {
@@ -270,17 +280,22 @@ Evidence points_split_at(double atom, const Points& x, const Points& y) {
   const Points x_rest = away_from(atom, x);
   const Points y_rest = away_from(atom, y);
   const bool both = !x_rest.sorted.empty() && !y_rest.sorted.empty();
+  const Part at_atom{from_proportions(x_rest, y_rest), fmt::format("the values at {:.6g}", atom)};
   Evidence evidence =
       larger_of(both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted), parts.rest)
                      : unknown_distance(),
-                from_proportions(x_rest, y_rest));
+                at_atom);
   const bool atom_decides = log_p_two_sided(parts.atom) < parts.rest.log_p_upper;
   TestResult at_null = atom_decides ? parts.atom : parts.rest;
   at_null.log_p_lower = 0;
   at_null.log_p_upper = parts.log_p;
-  evidence.where = atom_decides ? fmt::format("; p is that of the values at {:.6g}", atom) : "";
   evidence.at = [at_null, margin = std::move(evidence.at)](double theta) {
     return theta <= 0 ? at_null : margin(theta);
+  };
+  evidence.most_against = [atom_decides, at_atom,
+                           margin = std::move(evidence.most_against)](double theta) -> std::string {
+    if (theta > 0) return margin(theta);
+    return atom_decides ? p_is_of(at_atom) : "";
   };
   evidence.quantity = fmt::format(
       "largest distance of distribution functions away from {0:.6g}, or of the probabilities of "

@@ -89,6 +89,7 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
     for (const LedgerNight& night : nights) total += night.evidence;
     result.score = total.score;
     result.information = total.information;
+    result.reference_error = series.prior.reference_error;
   }
   if (const auto alarm = stats::first_alarm(path, alpha)) {
     result.alarm = true;

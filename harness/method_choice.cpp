@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/constant.h"
 #include "harness/critical.h"
 #include "harness/frozen.h"
 #include "harness/image_plan.h"
@@ -112,8 +113,30 @@ bool can_be_bet_on(const Question& question, const std::vector<Known>& channels)
          });
 }
 
+/// Whether the pilot has seen one value alone of means in declared ranges: what it has not seen of
+/// them is all there is to test.
+bool are_unseen_in_ranges(const Question& question, const Pilots& pilots) {
+  if (question.kind != QuestionKind::mean_of_one || question.subjects.empty()) return false;
+  const Pilot* const pilot = pilot_of(question, 0, pilots);
+  if (pilot == nullptr || has_rows(question)) return false;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    const stats::Moments& seen = pilot_channel(question, 0, channel, pilots).moments;
+    const stats::Range range = range_of(question, 0, channel, seen);
+    const bool finite = std::isfinite(range.low) && std::isfinite(range.high);
+    if (!is_constant(question, 0, channel, seen) || !finite || !(range.low < range.high) ||
+        question.references[channel].standard_error > 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
 std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
                               const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  if (!question.test->method && are_unseen_in_ranges(question, pilots)) {
+    plan.method = find_method(question, "bounded");
+    return least_secondaries;
+  }
   const std::vector<Known> channels = known_channels(question, pilots, plan);
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::mean, plan);

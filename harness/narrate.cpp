@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/plan.h"
 #include "harness/recorded_run.h"
 #include "reports/effect.h"
 #include "reports/number.h"
@@ -168,8 +169,10 @@ std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
         place_text(channel.image->family.winner, *outcome.question.subjects[0].image),
         p_text(channel.decision.log_p_claimed), finding(channel));
   }
+  const auto& most_against = channel.evidence.most_against;
   return fmt::format("{}{}, {}{}", finding(channel), in_channel(outcome, channel),
-                     p_text(channel.decision.log_p_claimed), channel.evidence.where);
+                     p_text(channel.decision.log_p_claimed),
+                     most_against ? most_against(edge_of_claimed(channel.regions)) : "");
 }
 
 /// In an alarm any estimate decides once the room between the margins holds a standard error
@@ -213,6 +216,14 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   return reference.standard_error / (relative ? std::abs(reference.value) : 1);
 }
 
+/// So many secondaries, and what a `budget` counts.
+std::string as_many(const TestOutcome& outcome, double secondaries) {
+  const auto each = static_cast<double>(primaries_of_each(outcome.question, outcome.plan));
+  const std::string text = reports::human(secondaries, 2) + " secondaries";
+  if (each == 1) return text;
+  return fmt::format("{} ({} primaries)", text, reports::human(secondaries * each, 2));
+}
+
 /// n grows with the square of how much narrower the interval must become.
 std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
@@ -242,11 +253,10 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   if (!(wanted > 0)) {
     return "no number of samples would decide: the reference's own error forbids it";
   }
-  const double factor = std::max(0.0, sampled) / wanted;
-  return fmt::format(
-      "about {} secondaries would decide{}",
-      reports::human(std::max(1.1, factor) * static_cast<double>(outcome.secondaries()), 2),
-      channel.regions.proof() ? " if the estimate stands" : "");
+  const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
+  return fmt::format("about {} would decide{}",
+                     as_many(outcome, factor * static_cast<double>(outcome.secondaries())),
+                     channel.regions.proof() ? " if the estimate stands" : "");
 }
 
 std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -288,12 +298,25 @@ std::string left_over(const TestOutcome& outcome) {
 
 }  // namespace
 
+std::uint64_t earlier_look(std::span<const SingleLook> looks) {
+  if (looks.empty()) return 0;
+  const auto share_of_p = [](const SingleLook& look) { return look.log_p - std::log(look.weight); };
+  const auto least = std::ranges::min_element(looks, {}, share_of_p);
+  const bool last = share_of_p(*least) == share_of_p(looks.back());
+  return last ? 0 : least->secondaries;
+}
+
 std::string narrate_holm(const HolmFinding& found) {
+  const std::string look =
+      found.earlier_look == 0
+          ? ""
+          : fmt::format(" (of the look at {} observations, the estimate of all)",
+                        reports::count_text(found.earlier_look));
   return plain(fmt::format(
-      "{}{}, {} and after Holm {}: refuted by the share of alpha that the suite's other "
+      "{}{}, {}{} and after Holm {}: refuted by the share of alpha that the suite's other "
       "refuted claims leave to it, not by its own, which the interval is for",
       finding(found.effect), found.channel.empty() ? "" : " in channel " + found.channel,
-      p_text(found.log_p), p_text(found.log_p_adjusted)));
+      p_text(found.log_p), look, p_text(found.log_p_adjusted)));
 }
 
 std::string narrate(const TestOutcome& outcome) {

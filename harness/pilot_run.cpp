@@ -18,6 +18,9 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
+// Enough to tell a kurtosis of .5 from that of a normal law, whatever few a claim asks for.
+constexpr std::uint64_t least_of_larger = 2048;
+
 /// Of estimators whose variance or cost some claim is about the most observations that such a claim
 /// asks for; of a reference only the mean is used.
 std::map<std::string, std::uint64_t> on_tails(const std::vector<Question>& questions) {
@@ -26,7 +29,8 @@ std::map<std::string, std::uint64_t> on_tails(const std::vector<Question>& quest
     if (!question.rests_on_tails()) continue;
     for (std::size_t i = 0; i < question.compared(); ++i) {
       std::uint64_t& size = most[question.subjects[i].estimator->name];
-      size = std::max(size, question.test->secondaries.value_or(many_observations));
+      size =
+          std::max({size, least_of_larger, question.test->secondaries.value_or(many_observations)});
     }
   }
   return most;

@@ -12,6 +12,7 @@
 #include "harness/image_plan.h"
 #include "harness/method_choice.h"
 #include "harness/pool.h"
+#include "harness/rows.h"
 #include "harness/sample_size.h"
 #include "harness/sampler_setup.h"
 
@@ -24,16 +25,6 @@ constexpr double most_planned_primaries = 1e12;
 constexpr std::uint64_t dearest_looks = 4;
 // Secondaries that have a spread.
 constexpr std::uint64_t fewest_tested = 2;
-
-/// Primaries that a secondary of each subject costs together; of an image in all its elements.
-std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < plan.primaries.size(); ++i) {
-    const std::optional<ImageShape>& image = question.subjects[i].image;
-    sum += plan.primaries[i] * (image ? image->elements() : 1);
-  }
-  return sum;
-}
 
 /// Secondaries of each subject that a budget in primaries pays for: two at least, or it is refused.
 std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t budget) {
@@ -69,10 +60,14 @@ void require_possible(const Question& question, const Plan& plan, std::uint64_t 
                              "give a larger one, or let the sampler's panels() be finer",
                              draws.density_cells().tolerance()));
     }
+    const bool uncertain = std::ranges::any_of(
+        question.references, [](const Constant& each) { return each.standard_error > 0; });
     throw InputError(where,
-                     "no number of observations would decide this claim: the reference's own "
-                     "standard error is too large for the margin; give a larger margin or a "
-                     "better reference");
+                     uncertain ? "no number of observations would decide this claim: the "
+                                 "reference's own standard error is too large for the margin; give "
+                                 "a larger margin or a better reference"
+                               : "this claim would take more observations than can be counted; "
+                                 "give a larger margin");
   }
   const double total =
       static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(question, plan));
@@ -144,6 +139,14 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   return one_look(std::min(*alone, most));
 }
 
+/// Of a test that is invalid before it begins: what is drawn decides nothing, and only shows what
+/// its estimators yield.
+stats::LookSchedule look_for_its_picture(const Question& question, const Plan& plan) {
+  const bool given = question.test->secondaries || is_bounded(question);
+  if (given || plan.method.keeps == Keeps::blocks) return plan.looks;
+  return one_look(std::min(plan.looks.sizes.front(), usual_secondaries));
+}
+
 std::vector<Regions> regions_of(const Question& question) {
   const TestEntry& test = *question.test;
   std::vector<Regions> all;
@@ -169,6 +172,15 @@ void require_density(const Question& question) {
 
 }  // namespace
 
+std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < plan.primaries.size(); ++i) {
+    const std::optional<ImageShape>& image = question.subjects[i].image;
+    sum += plan.primaries[i] * (image ? image->elements() : 1);
+  }
+  return sum;
+}
+
 Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                const Primaries& primaries) {
   const TestEntry& test = *question.test;
@@ -186,6 +198,8 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     const std::uint64_t least = choose_method(question, place, pilots, most, plan);
     plan.looks = plan_looks(question, place, pilots, plan, least);
     if (plan.invalid.empty()) plan.invalid = too_few_replicates(question, plan);
+    if (!plan.invalid.empty()) plan.looks = look_for_its_picture(question, plan);
+    plan.hint += rows_beside_primaries(question);
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2);
     plan.invalid = in_words(error);

@@ -13,4 +13,7 @@ namespace assay::harness {
 Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                const Primaries& primaries);
 
+/// Primaries that a secondary of each subject costs together; of an image in all its elements.
+std::uint64_t primaries_of_each(const Question& question, const Plan& plan);
+
 }  // namespace assay::harness

@@ -89,7 +89,8 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
   if (regions.relation == Relation::within) effect = regions.within;
   // Data that are given may find less than what was asked for.
   if (!effect || test.question.test->secondaries || test.question.test->budget) {
-    effect = forecast.detectable ? forecast.detectable : effect;
+    const bool within = regions.relation == Relation::within;
+    effect = forecast.detectable || !within ? forecast.detectable : effect;
   }
   if (!effect) return unknown;
   return plain(

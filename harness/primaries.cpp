@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "harness/assumptions.h"
 #include "harness/constant.h"
 #include "harness/critical.h"
 #include "stats/assumption_gates.h"
@@ -27,6 +28,7 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
   for (std::size_t channel = 0; channel < question.subjects[subject].channels.size(); ++channel) {
     const stats::Moments& pilot = pilot_channel(question, subject, channel, pilots).moments;
     if (is_constant(question, subject, channel, pilot)) continue;
+    if (!beyond_doubles(pilot, "").empty()) continue;  // the plan says so
     const stats::PrimaryShape shape = stats::primary_shape(pilot);
     const stats::PlannedTest test{
         .secondaries = question.test->secondaries.value_or(usual_secondaries), .critical_value = x};

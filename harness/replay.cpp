@@ -11,6 +11,7 @@
 
 #include "estimators/catalogue.h"
 #include "harness/commands.h"
+#include "harness/draw_text.h"
 #include "harness/frozen.h"
 #include "harness/looks.h"
 #include "harness/pools.h"
@@ -132,13 +133,6 @@ stats::LookSchedule recorded_looks(const reports::Test& test) {
   return looks;
 }
 
-/// Whether the test went on in spite of a red gate, as only a method does that the suite forced.
-bool was_forced(const reports::Test& test) {
-  return test.verdict != reports::Verdict::invalid &&
-         std::ranges::any_of(test.gates,
-                             [](const reports::Gate& gate) { return gate.state == "red"; });
-}
-
 /// The plan as it was: nothing is chosen anew, so no pilot is drawn.
 Plan recorded_plan(const Question& question, const reports::Test& test) {
   Plan plan{
@@ -146,7 +140,7 @@ Plan recorded_plan(const Question& question, const reports::Test& test) {
       .looks = recorded_looks(test),
       .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U,
       .symmetric = !test.image || test.image->symmetric,
-      .gates_invalidate = !was_forced(test)};
+      .gates_invalidate = !test.forced};
   // Of each channel the subjects in order.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const bool drawn = i < test.samples.size() &&
@@ -188,12 +182,26 @@ Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t
   return run_pilots(all, {.seed = seed, .threads = 0, .draws = piloted_draws(question)}, *progress);
 }
 
+/// Data that were recorded elsewhere may have changed since.
+void require_all_rows(const Question& question, const Plan& plan, const std::string& record) {
+  for (const Subject& subject : question.subjects) {
+    const std::uint64_t rows = subject.setup->observations().value_or(plan.most_secondaries());
+    if (rows >= plan.most_secondaries()) continue;
+    throw InputError(
+        {.file = record},
+        fmt::format("the test took {} observations of `{}`, of which there are now {}: "
+                    "replay needs the data as they were",
+                    plan.most_secondaries(), subject.estimator->name, rows));
+  }
+}
+
 std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& record) {
   auto rebuilt = std::make_unique<Rebuilt>();
   rebuilt->suite = suite_of(recorded, record);
   rebuilt->estimators = prepare_all(rebuilt->suite);
   Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
   Plan plan = recorded_plan(question, recorded.test);
+  require_all_rows(question, plan, record);
   if (takes_from_pilot(plan.method)) {
     freeze(question, pilots_of(*rebuilt, question, recorded.seed), plan);
   }
@@ -273,6 +281,10 @@ bool print_observation(const TestWork& work, const reports::Test& recorded, std:
       const reports::Sample* sample = recorded_of(recorded, question, i, c);
       if (sample == nullptr || index >= sample->secondaries) continue;
       same &= print_against(*sample, values[c]);
+    }
+    if (const auto* draws = dynamic_cast<const SamplerSetup*>(pool.setup().get())) {
+      fmt::print("  draw of `{}`: {}\n", draws->name(),
+                 draw_text(draws->sampler(), pool.key(), index));
     }
   }
   return same;

@@ -13,6 +13,7 @@
 #include "harness/exact_size.h"
 #include "stats/dependence.h"
 #include "stats/independence_gates.h"
+#include "stats/lagged_correlation.h"
 #include "stats/quantisation_gate.h"
 #include "stats/repeated_run.h"
 #include "stats/sorted.h"
@@ -68,6 +69,13 @@ bool enough_batches(std::span<const double> values) {
 
 std::string dependent(const Rows& rows) {
   const double time = std::max(1.0, stats::autocorrelation_time(rows.values));
+  const stats::LaggedCorrelation worst = stats::worst_of(stats::lagged_correlations(rows.values));
+  if (static_cast<double>(worst.lag) > time) {
+    return fmt::format(
+        "the {} are not independent: those {} apart have a rank correlation of {:.2g}, as where so "
+        "many chains take turns; give one row a chain",
+        rows.label, worst.lag, worst.correlation);
+  }
   const double worth = static_cast<double>(rows.values.size()) / time;
   return fmt::format(
       "the {} are not independent: {} of them are worth about {:.0f} independent ones; give one "
@@ -167,7 +175,8 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
       plan.gates.push_back(gate_of(repetition_gate(*again), ", " + rows.label));
       if (reason.empty()) reason = repeated(rows, *again);
     }
-    std::vector<Gate> gates{stats::lag_one_gate(rows.values), stats::batch_gate(rows.values)};
+    std::vector<Gate> gates{stats::lag_one_gate(rows.values), stats::lagged_gate(rows.values),
+                            stats::batch_gate(rows.values)};
     const bool red = std::any_of(gates.begin(), gates.end(),
                                  [](const Gate& gate) { return gate.state == GateState::red; });
     const bool averaged = red && batches && !forced && enough_batches(rows.values);
@@ -185,6 +194,20 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     plan.method = find_method(question, "batch-means");
     plan.invalid.clear();
   }
+}
+
+std::string rows_beside_primaries(const Question& question) {
+  if (question.kind != QuestionKind::variance_of_two) return "";
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Subject& rows = question.subjects[i];
+    const Subject& other = question.subjects[1 - i];
+    if (!is_recorded(rows) || !other.averages) continue;
+    return fmt::format(
+        "; a row of `{}` is held against a single primary of `{}`: rows that are means of n have a "
+        "variance n times less, and the claim on them a factor n",
+        rows.estimator->name, other.estimator->name);
+  }
+  return "";
 }
 
 stats::Moments batched(const ChannelData& data) {

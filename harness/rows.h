@@ -41,4 +41,8 @@ stats::Moments batched(const ChannelData& data);
 std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
                                    double critical_value);
 
+/// What explains a fail of two variances of which one is that of rows and the other that of a
+/// primary, as a part of a sentence; "" of all others.
+std::string rows_beside_primaries(const Question& question);
+
 }  // namespace assay::harness

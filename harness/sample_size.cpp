@@ -63,7 +63,21 @@ void note_range(const Question& question, std::size_t channel, const stats::Mome
   planned.null_value = question.references[channel].value + question.offset;
 }
 
-/// From the pilot; nullopt where it has no spread.
+// Beyond this what a constant may hide is left undecided: it may be no more than the constant.
+constexpr std::uint64_t most_for_the_unseen = 1024 * usual_secondaries;
+
+/// The most that a pilot without spread leaves open of a mean in a declared range: the variance of
+/// the two ends at the claimed mean, or of what so many observations have not seen (with
+/// probability .99).
+double unseen_deviation(const PlannedChannel& planned, const stats::Moments& pilot) {
+  const auto [low, high] = planned.range;
+  const double of_the_ends = (planned.null_value - low) * (high - planned.null_value);
+  const double reach = std::max(high - pilot.mean, pilot.mean - low);
+  const double unseen = std::log(100.0) / static_cast<double>(pilot.count) * reach * reach;
+  return std::sqrt(std::max(0.0, std::min(of_the_ends, unseen)));
+}
+
+/// From the pilot; nullopt where it has no spread, and no range says what it may not have seen.
 std::optional<PlannedChannel> planned_channel(const Question& question, std::size_t channel,
                                               const Pilots& pilots, const Plan& plan) {
   if (has_log_spread(question)) {
@@ -72,6 +86,14 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   const stats::Moments& first = pilot_channel(question, 0, channel, pilots).moments;
   PlannedChannel planned{.regions = plan.regions[channel]};
   const bool constant = is_constant(question, 0, channel, first);
+  note_range(question, channel, first, planned);
+  if (constant && plan.method.name == "bounded") {
+    planned.standard_deviation = unseen_deviation(planned, first) /
+                                 std::sqrt(question.subjects[0].averaged(plan.primaries[0]));
+    planned.unseen = true;
+    planned.unit = unit_of_theta(question, channel, 0);
+    return planned;
+  }
   // A mean without spread may be compared with one that has some; nothing else can be planned.
   if (constant && question.kind != QuestionKind::mean_of_two) return std::nullopt;
   if (!constant) {
@@ -95,7 +117,6 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   } else if (!question.references.empty()) {
     planned.reference_error = question.references[channel].standard_error;
   }
-  note_range(question, channel, first, planned);
   planned.unit = unit_of_theta(question, channel, other_mean);
   if (planned.unit == 0) {
     throw std::domain_error(
@@ -194,6 +215,7 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
   } else {
     count = for_means(question, planned_rates(share, regions), regions, *channel);
   }
+  if (channel->unseen && count.value_or(impossible_secondaries) > most_for_the_unseen) return {};
   return count.value_or(impossible_secondaries);
 }
 

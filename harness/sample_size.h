@@ -19,6 +19,7 @@ struct PlannedChannel {
   double other_kurtosis = 1;  ///< 1: there is no second subject
   double unit = 1;            ///< theta times this is in the estimator's unit
   double reference_error = 0;
+  bool unseen = false;      ///< the deviation is what a pilot without spread may not have seen
   stats::Range range = {};  ///< of one mean: what its values are declared to lie in
   double null_value = 0;    ///< of one mean: where theta is 0
 };

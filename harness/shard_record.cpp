@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "harness/found_effect.h"
 #include "harness/holm_verdict.h"
 #include "harness/picture.h"
 #include "harness/recorded_moments.h"

@@ -16,6 +16,16 @@ namespace assay::harness {
 
 namespace {
 
+/// A suite's numbers repeat; a fresh seed is the command line's to ask for.
+std::uint64_t seed_of(const Value& value) {
+  if (value.kind() == Value::Kind::scalar && value.text() == "random") {
+    throw InputError(value.where(),
+                     "a suite's seed is a number, so that its runs repeat; `assay run --seed "
+                     "random` draws a fresh one");
+  }
+  return value.count("`seed`");
+}
+
 std::string folder_of(const std::string& file) {
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   return folder.empty() ? "." : folder.string();
@@ -42,7 +52,7 @@ void read_head(const Document& document, const Keys& keys, Suite& suite) {
                        "of confidence 1 - 2 beta");
     }
   }
-  if (const Value* v = keys.find("seed")) suite.seed = v->count("`seed`");
+  if (const Value* v = keys.find("seed")) suite.seed = seed_of(*v);
   if (const Value* v = keys.find("needs")) suite.needs = read_needs(*v);
   if (const Value* v = keys.find("budget")) suite.budget = read_budget(document, *v);
 }

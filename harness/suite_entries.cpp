@@ -127,10 +127,12 @@ Budget read_short_budget(const Value& value) {
     if (text.ends_with('s')) return {{}, read_seconds(text.substr(0, text.size() - 1), value)};
     return {count_from(value, "`budget`", 1), {}};
   } catch (const InputError&) {
-    throw InputError(value.where(),
-                     fmt::format("`budget` must be a number of primaries (1e7), of seconds (30s), "
-                                 "or a map of both, but it is `{}`",
-                                 text));
+    throw InputError(
+        value.where(),
+        fmt::format(
+            "`budget` must be a number of primaries (1e7), of seconds (ten minutes are 600s), "
+            "or a map of both, but it is `{}`",
+            text));
   }
 }
 

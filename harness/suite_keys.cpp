@@ -68,8 +68,8 @@ double positive_number(const Value& value, std::string_view what) {
 
 double error_rate(const Value& value, std::string_view what) {
   return read_within(
-      value, what, "a number above 0 and at most 0.5", [&] { return value.number(what); },
-      [](double rate) { return rate > 0 && rate <= 0.5; });
+      value, what, "a number above 0 and at most 0.5 (5 % is 0.05)",
+      [&] { return value.number(what); }, [](double rate) { return rate > 0 && rate <= 0.5; });
 }
 
 std::uint64_t count_from(const Value& value, std::string_view what, std::uint64_t least) {

@@ -59,6 +59,7 @@ struct Calibration {
   double seconds = 0;
   double tolerance = 1.25;  ///< times alpha: what no rate may exceed for certain
   double error = 0.001;     ///< probability that a limit is beyond the truth in any cell
+  std::string detect;       ///< what `detect` is of each kind of question, in words
   std::vector<CalibrationCell> cells = {};
 };
 

@@ -61,6 +61,7 @@ void fields(Archive& a, T& calibration) {
   a("seconds", calibration.seconds);
   a("tolerance", calibration.tolerance);
   a("error", calibration.error);
+  a("detect", calibration.detect);
   a("cells", calibration.cells);
 }
 

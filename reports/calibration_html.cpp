@@ -97,6 +97,7 @@ std::string html(const Calibration& calibration) {
   out += fact("commit", calibration.tool.commit);
   out += fact("runs a cell", fmt::format("{}", calibration.runs));
   out += fact("seeds from", fmt::format("{}", calibration.seed));
+  out += fact("detect", calibration.detect);
   out += fact("tolerated", fmt::format("{:g} alpha", calibration.tolerance));
   out += fact("limits wrong in any cell with probability", human(calibration.error));
   out += fact("started", calibration.started);

@@ -84,6 +84,12 @@ alone     the method forced, in one look, gates without effect        red  with 
 !!  mistaken too often for certain        !  alone mistaken too often for certain without a red gate
 )";
 
+std::string wrapped_detect(const Calibration& calibration) {
+  std::string out;
+  for (const std::string& line : wrap("detect    " + calibration.detect, 100)) out += line + "\n";
+  return out;
+}
+
 }  // namespace
 
 std::string console(const Calibration& calibration) {
@@ -104,7 +110,8 @@ std::string console(const Calibration& calibration) {
     }
     out += console_row(calibration, cell);
   }
-  return out + "\n" + legend + "\n" + verdict_sentence(calibration) + "\n";
+  return out + "\n" + legend + wrapped_detect(calibration) + "\n" + verdict_sentence(calibration) +
+         "\n";
 }
 
 std::string markdown(const Calibration& calibration) {
@@ -126,7 +133,7 @@ std::string markdown(const Calibration& calibration) {
     for (const Column& column : table_columns()) out += fmt::format(" {} |", column.text(cell));
     out += "\n";
   }
-  return out + "\n```\n" + legend + "```\n";
+  return out + "\n```\n" + legend + wrapped_detect(calibration) + "```\n";
 }
 
 }  // namespace assay::reports

@@ -61,7 +61,7 @@ ColourScale scale_of(const Map& map) {
     low = std::min(low, static_cast<double>(value));
     high = std::max(high, static_cast<double>(value));
   }
-  if (map.name != "z" && map.name != "cells_z")
+  if (map.name != "z" && !map.name.starts_with("cells_z"))
     return {Palette::brightness, low, high > low ? high : low + 1};
   const double limit = std::clamp(std::ceil(std::max(high, -low)), 5.0, 15.0);
   return {Palette::difference, -limit, limit};

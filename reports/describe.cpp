@@ -34,6 +34,12 @@ const char* detect_words(const Test& test) {
   return is_proof(test) ? "planned for an advantage of" : "must be noticed from";
 }
 
+/// Digits of what is missing to 1 say nothing of a power beyond these.
+std::string power_text(double power) {
+  constexpr double all = 0.9999;
+  return power > all ? "above " + confidence_text(all) : confidence_text(power);
+}
+
 std::string margins_fact(const Test& test) {
   const Effect effect = deciding_channel(test).effect;
   std::string text;
@@ -45,10 +51,9 @@ std::string margins_fact(const Test& test) {
   if (test.allow.value_or(0) != 0) add("allowed up to", test.allow);
   add(detect_words(test), test.detect);
   add("would be noticed from", test.detectable);
-  if (test.power)
-    text +=
-        fmt::format("{}planned power {}", text.empty() ? "" : "; ", confidence_text(*test.power));
-  return text;
+  if (!test.power) return text;
+  return text +
+         fmt::format("{}planned power {}", text.empty() ? "" : "; ", power_text(*test.power));
 }
 
 std::string channels_fact(const Test& test) {

@@ -75,10 +75,15 @@ std::string after_holm(const Channel& channel) {
   return fmt::format(", {} after Holm", adjusted);
 }
 
+// "welch", "forced F".
+std::string method_text(const Test& test) {
+  return test.forced ? "forced " + test.method : test.method;
+}
+
 // "(welch, two-sided), 1 after Holm; its share of alpha is 0.00125".
 std::string about_the_claim(const Test& test) {
   const Channel channel = worst_channel(test);
-  std::string how = test.method, text;
+  std::string how = method_text(test), text;
   if (!test.tail.empty()) how += how.empty() ? test.tail : ", " + test.tail;
   text += over_looks(test, &Look::log10_p);
   if (!how.empty()) text += fmt::format(" ({})", how);
@@ -136,8 +141,8 @@ std::string evidence_text(const Test& test) {
   const NamedP p = headline_p(test);
   if (!p.exists()) return {};
   if (!rests_on_contrary(test)) return p.text() + about_the_claim(test);
-  return p.text() + over_looks(test, &Look::log10_p_pass) + fmt::format(" ({})", test.method) +
-         about_the_contrary(test);
+  return p.text() + over_looks(test, &Look::log10_p_pass) +
+         fmt::format(" ({})", method_text(test)) + about_the_contrary(test);
 }
 
 std::string exclusion_text(const Test& test) {

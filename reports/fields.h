@@ -169,6 +169,7 @@ void fields(Archive& a, T& test) {
   a("expected", test.expected);
   a("ok", test.ok);
   a("method", test.method);
+  a("forced", test.forced);
   a("null_hypothesis", test.null_hypothesis);
   a("tail", test.tail);
   a.repeated("statistic", worst.statistic);
@@ -275,6 +276,7 @@ void fields(Archive& a, T& series) {
   a("last", series.last);
   a("score", series.score);
   a("information", series.information);
+  a("reference_error", series.reference_error);
   a("log_e", series.log_e);
   a("limit", series.limit);
   a("alarm", series.alarm);

@@ -56,6 +56,8 @@ std::string map_title(const Map& map) {
   if (map.name == "cells_observed") return "Draws in each cell";
   if (map.name == "cells_expected") return "Draws expected";
   if (map.name == "cells_z") return "Drawn - expected, in standard deviations";
+  if (map.name == "cells_z_close")
+    return "Where most is drawn, cell by cell, in standard deviations";
   const bool variance = map.name == "variance" || map.name == "other_variance";
   return fmt::format("{} of {}", variance ? "variance of one image" : "mean", map.source);
 }

@@ -21,9 +21,13 @@ std::string day(const std::string& date) { return date.substr(0, date.find('T'))
 std::string theta_sentence(const LedgerSeries& series) {
   if (!series.score || !series.information || !(*series.information > 0)) return {};
   const double theta = *series.score / *series.information;
-  return fmt::format("{} {}, standard error {}, ", series.quantity,
+  const double shared = series.reference_error.value_or(0);
+  return fmt::format("{} {}, standard error {}{}, ", series.quantity,
                      with_sign(theta, series.relative),
-                     magnitude(1 / std::sqrt(*series.information), series.relative));
+                     magnitude(1 / std::sqrt(*series.information), series.relative),
+                     shared > 0 ? fmt::format(" of the nights and {} of the reference",
+                                              magnitude(shared, series.relative))
+                                : "");
 }
 
 bool several_channels(const Ledger& ledger, const std::string& test) {

@@ -20,6 +20,7 @@ struct LedgerSeries {
   std::uint64_t nights = 0;
   std::string first, last;           ///< dates of the first and the last night, UTC, ISO 8601
   Number score, information;         ///< sums over the nights; theta is about score / information
+  Number reference_error;            ///< of theta, the same on all nights: no sum takes it away
   Number log_e;                      ///< ln of the e-value of all nights
   Number limit;                      ///< the ln E that is an alarm
   bool alarm = false;                ///< ln E was at the limit after some night

@@ -200,7 +200,10 @@ AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
   // The other half of one that shows no density has some.
   const auto integral = [&](const PlaneCell& cell) {
     const Integral mass = rule.over(cell);
-    return mass.value > 0 ? mass : rule.beside_support(cell);
+    if (mass.value > 0) return mass;
+    Integral beside = rule.beside_support(cell);
+    beside.error += hidden_beside_support(cell, rule.densest());
+    return beside;
   };
   const auto side = [&](const PlaneCell& cell, int halvings) -> std::optional<Along> {
     const bool x = can_be_halved(cell.x);

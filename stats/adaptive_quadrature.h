@@ -101,7 +101,9 @@ class AdaptiveQuadrature {
   }
   bool exhausted() const { return used_ >= limits_.evaluations; }
   const QuadratureLimits& limits() const { return limits_; }
-  double largest() const { return largest_; }  // of the densities counted
+  // Of the densities counted since the last call of forget_largest().
+  double largest() const { return largest_; }
+  void forget_largest() { largest_ = 0; }
 
  private:
   struct Part;

@@ -41,10 +41,12 @@ AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, Adaptiv
 
 Integral CellQuadrature::over(const PlaneCell& cell) {
   Integral sum;
+  rule_.forget_largest();
   const auto strip = across(density_, cell.y, rule_);
   for (const Span& part : cut(cell.x, density_.x, density_.x_panels)) {
     sum = sum + rule_.over(strip, part);
   }
+  densest_ = std::max(densest_, rule_.largest());
   return sum;
 }
 
@@ -73,20 +75,25 @@ bool CellQuadrature::shown_at_a_side(const PlaneCell& cell) {
 }
 
 Integral CellQuadrature::beside_support(const PlaneCell& cell) {
-  const double step = 1 / static_cast<double>(probes_a_side);
-  const double unseen = rule_.largest() * cell.x.width() * cell.y.width() * step * step / 2;
-  if (!shown_at_a_side(cell)) return {0, unseen};
+  rule_.forget_largest();
+  if (!shown_at_a_side(cell)) return {};
   const PlaneDensity closer{.x = cell.x,
                             .y = cell.y,
                             .values = density_.values,
                             .x_panels = panels_of_a_corner,
                             .y_panels = panels_of_a_corner};
-  Integral sum{0, unseen};
+  Integral sum;
   const auto strip = marginal_density(closer, rule_);
   for (const Span& part : cut(cell.x, cell.x, panels_of_a_corner)) {
     sum = sum + rule_.over(strip, part);
   }
+  densest_ = std::max(densest_, rule_.largest());
   return sum;
+}
+
+double hidden_beside_support(const PlaneCell& cell, double densest) {
+  const double step = 1 / static_cast<double>(probes_a_side);
+  return densest * cell.x.width() * cell.y.width() * step * step / 2;
 }
 
 }  // namespace assay::stats

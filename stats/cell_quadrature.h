@@ -52,9 +52,10 @@ class CellQuadrature {
 
   Integral over(const PlaneCell& cell);
   // Of a cell in which over() met no density, next to one in which it did: looks for it along the
-  // sides, at 256 points each. What a support may still hide there, a corner of half a step
-  // squared, counts as its error.
+  // sides, at 256 points each. What may still hide there is not part of the error.
   Integral beside_support(const PlaneCell& cell);
+  double densest() const { return densest_; }                 // of all met so far
+  double densest_of_last() const { return rule_.largest(); }  // in the last cell asked for
   bool exhausted() const { return rule_.exhausted(); }
 
  private:
@@ -63,6 +64,11 @@ class CellQuadrature {
 
   const PlaneDensity& density_;
   AdaptiveQuadrature rule_;
+  double densest_ = 0;
 };
+
+// The mass that a support may hide from beside_support() in a cell: a corner of half a step squared
+// between the points, as dense as what was met next to it.
+double hidden_beside_support(const PlaneCell& cell, double densest);
 
 }  // namespace assay::stats

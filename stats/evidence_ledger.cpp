@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "stats/check.h"
+#include "stats/special.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
@@ -52,13 +53,6 @@ double log_change(const Evidence& before, const Evidence& after, const LedgerPri
     variance -= slope * u2;
   }
   return log_ratio(after.score / after.information - expected, {variance, square(prior.effect)});
-}
-
-double log_sum_of(const std::vector<double>& logs) {
-  const double largest = *std::max_element(logs.begin(), logs.end());
-  double sum = 0;
-  for (const double value : logs) sum += std::exp(value - largest);
-  return largest + std::log(sum);
 }
 
 Evidence sum_of(std::span<const Evidence> nights) {
@@ -126,7 +120,7 @@ double log_e_detector(std::span<const Evidence> nights, const LedgerPrior& prior
     since += *night;
     starts.push_back(log_e_value(since, prior));
   }
-  return log_sum_of(starts);
+  return special::log_sum_of(starts);
 }
 
 ChangePoint change_point(std::span<const Evidence> nights, const LedgerPrior& prior) {
@@ -143,7 +137,7 @@ ChangePoint change_point(std::span<const Evidence> nights, const LedgerPrior& pr
   const auto best = std::max_element(logs.begin(), logs.end());
   change.night = static_cast<std::size_t>(best - logs.begin());
   change.log_likelihood_ratio = *best;
-  const double total = log_sum_of(logs);
+  const double total = special::log_sum_of(logs);
   for (const double value : logs) change.share.push_back(std::exp(value - total));
   return change;
 }

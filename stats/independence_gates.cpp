@@ -8,6 +8,7 @@
 #include "stats/check.h"
 #include "stats/dependence.h"
 #include "stats/errors.h"
+#include "stats/lagged_correlation.h"
 #include "stats/tails.h"
 
 namespace assay::stats {
@@ -24,6 +25,20 @@ GateState state_of(double value, double green_up_to, double limit) {
 }
 
 double upper_z(double probability) { return normal_quantile({Tail::upper, std::log(probability)}); }
+
+// 0 where there is none. The correlations of values with an autocorrelation time spread about 0 by
+// the root of it more.
+std::size_t farthest_correlated(std::span<const double> values, double time) {
+  const std::vector<LaggedCorrelation> all = lagged_correlations(values);
+  if (all.empty()) return 0;
+  const double limit = upper_z(false_red / static_cast<double>(all.size()));
+  const double beyond_chance = limit * std::sqrt(std::max(1.0, time));
+  std::size_t farthest = 0;
+  for (const LaggedCorrelation& each : all) {
+    if (each.z > beyond_chance) farthest = each.lag;
+  }
+  return farthest;
+}
 
 }  // namespace
 
@@ -62,6 +77,21 @@ Gate batch_gate(std::span<const double> values) {
   return gate;
 }
 
+Gate lagged_gate(std::span<const double> values) {
+  const std::vector<LaggedCorrelation> all = lagged_correlations(values);
+  Gate gate{.name = "correlation of values some steps apart"};
+  if (all.empty()) return gate;
+  const LaggedCorrelation worst = worst_of(all);
+  const auto limit = [&](double probability) {
+    return upper_z(probability / (2 * static_cast<double>(all.size())));
+  };
+  gate.value = worst.correlation;
+  gate.low = worst.correlation;
+  gate.limit = worst.z == 0 ? 0 : worst.correlation * limit(false_red) / std::abs(worst.z);
+  gate.state = state_of(std::abs(worst.z), limit(false_amber), limit(false_red));
+  return gate;
+}
+
 double autocorrelation_time(std::span<const double> values) {
   check::at_least({"autocorrelation_time", "count"}, values.size(), 4);
   const std::size_t length = 1 + (values.size() - 1) / most_correlated;
@@ -81,9 +111,10 @@ double autocorrelation_time(std::span<const double> values) {
 }
 
 std::size_t sufficient_batch(std::span<const double> values) {
-  const double needed = std::ceil(10 * autocorrelation_time(values));
+  const double time = autocorrelation_time(values);
   const std::size_t length =
-      std::max(default_batch(values.size()), static_cast<std::size_t>(needed));
+      std::max({default_batch(values.size()), static_cast<std::size_t>(std::ceil(10 * time)),
+                5 * farthest_correlated(values, time)});
   const std::size_t batches = std::max<std::size_t>(1, values.size() / length);
   return values.size() / batches;
 }

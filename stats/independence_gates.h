@@ -23,11 +23,19 @@ Gate lag_one_gate(std::span<const double> values);
 // ZeroVariance.
 Gate batch_gate(std::span<const double> values);
 
+// Value: the rank correlation of values some steps apart (lagged_correlation.h) that is farthest
+// from 0, over lags 2 to K; limit: what its z is at 5e-5 / (K - 1), two-sided. Sees chains that
+// take turns in a file. Green where there are no such lags.
+Gate lagged_gate(std::span<const double> values);
+
 // n Var(mean) / Var x, the integrated autocorrelation time, by effective_sample_size; of more than
 // 8192 values from the means of neighbours, which have the same n Var(mean).
 double autocorrelation_time(std::span<const double> values);
-// The length of a batch that is long enough for batch_means: the larger of default_batch and ten
-// autocorrelation times, rounded up, and so much longer that less than a batch is left over.
+// The length of a batch that is long enough for batch_means: the largest of default_batch, ten
+// autocorrelation times, rounded up, and five times the farthest lag with a positive rank
+// correlation that is beyond chance for values with such a time (chains that take turns correlate
+// at their number, where the time, which sums from neighbours on, has stopped); and so much longer
+// that less than a batch is left over.
 std::size_t sufficient_batch(std::span<const double> values);
 
 }  // namespace assay::stats

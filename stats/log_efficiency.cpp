@@ -26,28 +26,13 @@ NormalEstimate one_sample(const char* function, const LogEfficiency& x, double n
   return {x.value - std::log(null_efficiency), x.standard_error()};
 }
 
-double reference_variance(const LogEfficiency& x, const LogEfficiency& y, References references) {
-  const double own_x = x.reference_slope * x.reference_error;
-  const double own_y = y.reference_slope * y.reference_error;
-  if (references == References::independent) return own_x * own_x + own_y * own_y;
-  if (x.reference_error != y.reference_error) {
-    check::fail({"log_efficiency_ratio", "reference error of y"}, y.reference_error,
-                "that of x when the reference is shared");
-  }
-  return (own_x - own_y) * (own_x - own_y);
-}
-
-NormalEstimate difference(const LogEfficiency& x, const LogEfficiency& y, References references) {
-  const double variance =
-      x.spread / x.count + y.spread / y.count + reference_variance(x, y, references);
-  return {x.value - y.value, std::sqrt(variance)};
+NormalEstimate difference(const LogEfficiency& x, const LogEfficiency& y) {
+  return {x.value - y.value, std::sqrt(x.spread / x.count + y.spread / y.count)};
 }
 
 }  // namespace
 
-double LogEfficiency::standard_error() const {
-  return std::hypot(std::sqrt(spread / count), reference_slope * reference_error);
-}
+double LogEfficiency::standard_error() const { return std::sqrt(spread / count); }
 
 LogEfficiency log_efficiency_of(const JointMoments& sample) {
   check_sample(sample);
@@ -61,16 +46,15 @@ LogEfficiency log_efficiency_of(const JointMoments& sample) {
   return result;
 }
 
-LogEfficiency log_efficiency_of(const JointMoments& sample, Reference reference) {
+LogEfficiency log_efficiency_of(const JointMoments& sample, double truth) {
   check_sample(sample);
-  check::finite({"log_efficiency_of", "reference"}, reference.value);
-  check::non_negative({"log_efficiency_of", "reference error"}, reference.standard_error);
+  check::finite({"log_efficiency_of", "truth"}, truth);
   const Moments& x = sample.x;
   const double n = static_cast<double>(x.count);
-  const double bias = x.mean - reference.value;
+  const double bias = x.mean - truth;
   const double m2 = x.m2 / n;
-  const double mse = m2 + bias * bias - reference.standard_error * reference.standard_error;
-  check::positive({"log_efficiency_of", "mean squared error"}, mse);
+  const double mse = m2 + bias * bias;
+  if (!(mse > 0)) throw ZeroVariance("log_efficiency_of: the mean squared error is 0");
   // (x - r)^2 = d^2 + 2 bias d + bias^2.
   const double square_variance =
       (x.m4 / n - m2 * m2 + 4 * bias * (x.m3 / n) + 4 * bias * bias * m2) * n / (n - 1);
@@ -80,8 +64,6 @@ LogEfficiency log_efficiency_of(const JointMoments& sample, Reference reference)
   result.spread = square_variance / mse / mse + relative_cost_variance(sample) +
                   2 * covariance / mse / sample.cost.mean;
   result.count = n;
-  result.reference_slope = 2 * bias / mse;
-  result.reference_error = reference.standard_error;
   if (!(result.standard_error() > 0)) {
     throw ZeroVariance("log_efficiency_of: the mean squared error has no spread");
   }
@@ -99,22 +81,17 @@ Interval log_efficiency_interval(const LogEfficiency& x, double reference_effici
                          confidence);
 }
 
-TestResult log_efficiency_ratio(const LogEfficiency& x, const LogEfficiency& y, double null_ratio,
-                                References references) {
+TestResult log_efficiency_ratio(const LogEfficiency& x, const LogEfficiency& y, double null_ratio) {
   check::positive({"log_efficiency_ratio", "null_ratio"}, null_ratio);
-  NormalEstimate estimate = difference(x, y, references);
+  NormalEstimate estimate = difference(x, y);
   estimate.value -= std::log(null_ratio);
   return normal_test(estimate);
 }
 
 Interval log_efficiency_ratio_interval(const LogEfficiency& x, const LogEfficiency& y,
-                                       double confidence, References references) {
+                                       double confidence) {
   check::inside_unit({"log_efficiency_ratio_interval", "confidence"}, confidence);
-  return normal_interval(difference(x, y, references), confidence);
-}
-
-LogVariancePlan efficiency_plan(const EfficiencyPlan& plan) {
-  return {plan.spread_x + 1, plan.spread_y + 1, plan.allow, plan.rates};
+  return normal_interval(difference(x, y), confidence);
 }
 
 }  // namespace assay::stats

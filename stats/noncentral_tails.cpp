@@ -165,6 +165,30 @@ double log_noncentral_upper(double t, Noncentral parameters) {
   return std::log(2.0) + special::log_gamma_prefix(half, half) + f(centre) + std::log(sum);
 }
 
+// Beyond this the mixture has a hundred thousand terms and more; what a saddlepoint leaves out is
+// of the order of ncp^(-3/2).
+constexpr double largest_mixture = 1e8;
+
+// Barndorff-Nielsen's r* = w + ln(v / w) / w at the saddlepoint s of K(s) - s x, for K(s) =
+// ncp s / (1 - 2s) - nu / 2 ln(1 - 2s): with 1 / (1 - 2s) = 1 + d,
+//   w^2 / 2 = ncp d^2 / 2 + nu / 2 (d - ln(1 + d)),   v = s sqrt K''(s).
+LogTails saddlepoint_tails(double x, Noncentral parameters) {
+  const auto [degrees, noncentrality] = parameters;
+  const double beyond_mean = x - noncentrality - degrees;
+  const double sum = 2 * noncentrality + degrees;
+  const double d = 2 * beyond_mean / (sum + std::sqrt(sum * sum + 4 * noncentrality * beyond_mean));
+  const double half_square = noncentrality * d * d / 2 + degrees * -special::log1p_minus(d) / 2;
+  const double w = std::copysign(std::sqrt(2 * half_square), d);
+  constexpr double near_the_mean = 1e-4;
+  if (std::abs(w) < near_the_mean) {
+    const double second = 2 * degrees + 4 * noncentrality;
+    const double third = 8 * degrees + 24 * noncentrality;
+    return normal_tails(w + third / (6 * second * std::sqrt(second)));
+  }
+  const double v = d / 2 * std::sqrt(2 * degrees + 4 * noncentrality * (1 + d));
+  return normal_tails(w + std::log(v / w) / w);
+}
+
 }  // namespace
 
 LogTails noncentral_chi_square_tails(double x, Noncentral parameters) {
@@ -173,6 +197,7 @@ LogTails noncentral_chi_square_tails(double x, Noncentral parameters) {
   check::non_negative({"noncentral_chi_square_tails", "noncentrality"}, parameters.noncentrality);
   if (parameters.noncentrality == 0) return chi_square_tails(x, parameters.degrees);
   if (x <= 0) return special::from_lower(special::lowest_log());
+  if (parameters.noncentrality > largest_mixture) return saddlepoint_tails(x, parameters);
   const Tail tail = x >= parameters.degrees + parameters.noncentrality ? Tail::upper : Tail::lower;
   const double log_p =
       log_mixture({x / 2, parameters.degrees / 2, parameters.noncentrality / 2, tail});

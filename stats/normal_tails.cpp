@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -22,6 +23,10 @@ double log_upper(double x) {
 }
 
 }  // namespace
+
+double log_p_two_sided(LogTails tails) {
+  return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
+}
 
 LogTails normal_tails(double x) {
   check::finite({"normal_tails", "x"}, x);

@@ -24,18 +24,20 @@ std::size_t slot(const std::vector<double>& borders, double x) {
   return std::min(slot, borders.size() - 2);
 }
 
-bool is_beside_support(const PlaneGrid& grid, const std::vector<Integral>& found,
-                       std::size_t index) {
+// The greatest density met in a cell's neighbours, 0 where none showed any.
+double densest_beside(const PlaneGrid& grid, const std::vector<double>& densest,
+                      std::size_t index) {
   const std::size_t columns = grid.columns();
   const std::size_t row = index / columns;
   const std::size_t column = index % columns;
+  double most = 0;
   for (std::size_t r = row == 0 ? 0 : row - 1; r <= std::min(row + 1, grid.rows() - 1); ++r) {
     // An azimuth goes round: the last column is beside the first.
     for (const std::size_t c : {(column + columns - 1) % columns, column, (column + 1) % columns}) {
-      if (found[r * columns + c].value > 0) return true;
+      most = std::max(most, densest[r * columns + c]);
     }
   }
-  return false;
+  return most;
 }
 
 }  // namespace
@@ -57,12 +59,28 @@ void check_borders(const PlaneGrid& grid) {
 
 std::vector<Integral> integrals_over(const PlaneGrid& grid, CellQuadrature& quadrature) {
   check_borders(grid);
-  std::vector<Integral> found(grid.size());
-  for (std::size_t i = 0; i < found.size(); ++i) found[i] = quadrature.over(grid.cell(i));
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].value == 0 && is_beside_support(grid, found, i)) {
+  std::vector<Integral> found;
+  std::vector<double> densest;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    found.push_back(quadrature.over(grid.cell(i)));
+    densest.push_back(quadrature.densest_of_last());
+  }
+  // What is found beside the support is support, with cells beside it.
+  std::vector<bool> searched(grid.size());
+  for (bool more = true; more;) {
+    more = false;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i].value > 0 || searched[i] || densest_beside(grid, densest, i) == 0) continue;
+      searched[i] = true;
       found[i] = quadrature.beside_support(grid.cell(i));
+      densest[i] = quadrature.densest_of_last();
+      more = more || found[i].value > 0;
     }
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!searched[i]) continue;
+    const double beside = std::max(densest[i], densest_beside(grid, densest, i));
+    found[i].error += hidden_beside_support(grid.cell(i), beside);
   }
   return found;
 }

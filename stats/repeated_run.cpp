@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "stats/splitmix64.h"
+
 namespace assay::stats {
 
 namespace {
@@ -15,13 +17,6 @@ constexpr double chance = 1e-5;
 
 bool same(double x, double y) {
   return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
-}
-
-/// Of Steele, Lea and Flood (2014): every bit of x flips each bit of it with probability near 1/2.
-std::uint64_t splitmix64_finalised(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
 }
 
 /// Equal values that follow each other: a stay.

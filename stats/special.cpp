@@ -21,6 +21,13 @@ double log_sum(LogPair terms) {
 
 namespace special {
 
+double log_sum_of(std::span<const double> logs) {
+  const double largest = *std::max_element(logs.begin(), logs.end());
+  double sum = 0;
+  for (const double value : logs) sum += std::exp(value - largest);
+  return largest + std::log(sum);
+}
+
 double lowest_log() { return std::numeric_limits<double>::lowest(); }
 
 double clamp_log(double log_probability) { return std::clamp(log_probability, lowest_log(), 0.0); }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "stats/tails.h"
 
 namespace assay::stats::special {
@@ -16,6 +18,8 @@ LogTails from_upper(double log_upper);
 
 // ln Gamma(z) - ((z - 1/2) ln z - z + ln(2 pi) / 2), Stirling's error.
 double stirling_error(double z);
+// ln sum exp of one or more finite logarithms.
+double log_sum_of(std::span<const double> logs);
 // ln(1 + z) - z without cancellation.
 double log1p_minus(double z);
 // a (ln r - r + 1): minus the deviance of a ratio r at weight a.

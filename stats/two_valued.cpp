@@ -106,14 +106,15 @@ TwoValued two_valued(const Moments& x, Range range) {
   check::at_least({"two_valued", "count"}, x.count, 1);
   for (const double end : {x.minimum, x.maximum}) {
     if (end != range.low && end != range.high) {
-      check::fail({"two_valued", "value"}, end, "one of the two");
+      check::fail({"two_valued", "value"}, end, "one of the two values");
     }
   }
   const double n = static_cast<double>(x.count);
   const double hits = n * ((x.mean - range.low) / width_of(range));
   const double whole = std::clamp(std::round(hits), 0.0, n);
   if (!(std::abs(hits - whole) <= 0.25)) {
-    check::fail({"two_valued", "count of high values"}, hits, "a whole number");
+    check::fail({"two_valued", "mean"}, x.mean,
+                "that of the two values alone: some lie between them");
   }
   return {range, {static_cast<std::uint64_t>(whole), x.count}};
 }
@@ -144,8 +145,12 @@ Interval two_valued_mean_interval(const TwoValued& x, double confidence) {
 TestResult two_valued_contrast(const TwoValued& x, const TwoValued& y, Contrast null_value) {
   check_sample("two_valued_contrast", x);
   check_sample("two_valued_contrast", y);
-  check::positive({"two_valued_contrast", "scale"}, null_value.scale);
+  check::finite({"two_valued_contrast", "scale"}, null_value.scale);
   check::finite({"two_valued_contrast", "offset"}, null_value.offset);
+  if (null_value.scale == 0) return two_valued_mean(x, null_value.offset);
+  if (null_value.scale < 0) {
+    return two_valued_contrast(x, mirrored(y), {-null_value.scale, null_value.offset});
+  }
   return {mean_of(x) - null_value.scale * mean_of(y) - null_value.offset,
           {"bound", {}},
           log_p_lower(x, y, null_value),

@@ -30,7 +30,8 @@ TestResult two_valued_mean(const TwoValued& x, double null_mean);
 // Clopper & Pearson's interval of E x; coverage at least `confidence`.
 Interval two_valued_mean_interval(const TwoValued& x, double confidence);
 
-// Null hypothesis: E x - scale E y = offset, scale > 0 (1 and d: a difference; r and 0: a ratio).
+// Null hypothesis: E x - scale E y = offset (1 and d: a difference; r and 0: a ratio). A scale below
+// 0 is one above it of -y; 0 leaves the exact test of E x.
 // Along the line of the probabilities (p, q) of the null, the tails of the two counts are
 // independent and exact; Fisher's product of them, at the least favourable point:
 //   A = P(X <= hits of x | p),  B = P(Y >= hits of y | q),  W = max over the line of A B
@@ -42,7 +43,7 @@ Interval two_valued_mean_interval(const TwoValued& x, double confidence);
 // need 1.2 times its values at p = .01 and 1.1 times at 3e-5; with one sample much the larger, 1.4
 // and 1.2. The statistic is mean x - scale mean y - offset. A null that no pair of probabilities
 // can meet: the tail that rejects it has the lowest logarithm.
-// Throws std::domain_error: as above, scale not positive, non-finite offset.
+// Throws std::domain_error: as above, non-finite scale or offset.
 TestResult two_valued_contrast(const TwoValued& x, const TwoValued& y, Contrast null_value);
 // Central interval of E x - E y by inversion; p falls with the distance from the estimate.
 Interval two_valued_difference_interval(const TwoValued& x, const TwoValued& y, double confidence);

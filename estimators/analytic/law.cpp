@@ -231,6 +231,13 @@ const std::vector<std::string>& law_signatures() {
   return all;
 }
 
+ParameterInformation law_parameter() {
+  return {.name = "law",
+          .type = ParameterType::string,
+          .summary = "the law with its numbers, as lognormal(0, 0.5)",
+          .fallback = "normal(0, 1)"};
+}
+
 Law law_of(Parameters& parameters) {
   try {
     return Law::parse(parameters.string("law"));
@@ -330,10 +337,7 @@ std::vector<Entry> analytic_law() {
                 "with probability p and else 0. Mean, variance and range are declared where they "
                 "exist. What has a density can be sampled as `x`, within 6 standard deviations of "
                 "the mean. `assay calibrate` measures the methods on it.",
-            .parameters = {{.name = "law",
-                            .type = ParameterType::string,
-                            .summary = "the law with its numbers, as lognormal(0, 0.5)",
-                            .fallback = "normal(0, 1)"},
+            .parameters = {analytic::law_parameter(),
                            {.name = "shift",
                             .summary = "what is added",
                             .fallback = "0",

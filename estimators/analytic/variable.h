@@ -19,7 +19,10 @@ struct Variable {
   double operator()(Stream& random) const { return shift + scale * law.draw(random); }
 };
 
-/// The parameter `law`; a usage error where it is none.
+/// The parameter `law` of an estimator of a variable.
+ParameterInformation law_parameter();
+
+/// What it was given; a usage error where that is no law.
 Law law_of(Parameters& parameters);
 
 /// Its mean, variance and range, as far as they exist.

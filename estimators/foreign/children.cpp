@@ -59,7 +59,7 @@ void Children::witness(Dialogue& dialogue, const Question& question,
 void Children::examine(Dialogue& dialogue, const Question& question) {
   try {
     const auto ask = [&](const Question& one) { return dialogue.ask(one); };
-    const std::string why = why_unfit(ask, question, terms_.name, hello_.nature.averages);
+    const std::string why = why_unfit(ask, question, terms_.name, hello_.means());
     if (!why.empty()) throw NoAnswer(why);
   } catch (const NoAnswer& unfit) {
     const std::scoped_lock lock(mutex_);

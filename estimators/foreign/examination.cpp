@@ -44,11 +44,18 @@ bool ignores_key(const Asking& ask, const Question& question) {
 // 2e-8.
 constexpr std::uint64_t most_alike = 20;
 
-/// All of the observations are the same numbers: these.
-std::optional<std::vector<double>> always_given(const Asking& ask, const Question& question) {
-  const std::vector<double> first = one(ask, question, 0);
+/// The first so many numbers of all of the observations are the same: these. The rays behind them
+/// are no means.
+std::optional<std::vector<double>> always_given(const Asking& ask, const Question& question,
+                                                std::size_t means) {
+  const auto means_of = [&](std::uint64_t index) {
+    std::vector<double> numbers = one(ask, question, index);
+    numbers.resize(std::min(means, numbers.size()));
+    return numbers;
+  };
+  const std::vector<double> first = means_of(0);
   for (std::uint64_t index = 1; index < most_alike; ++index) {
-    if (!same_bits(one(ask, question, index), first)) return {};
+    if (!same_bits(means_of(index), first)) return {};
   }
   return first;
 }
@@ -66,12 +73,12 @@ bool same_but_for_rounding(const std::vector<double>& a, const std::vector<doubl
 
 /// Whether the index of an observation changes nothing, though the number of primaries does, whose
 /// mean it is said to be.
-bool ignores_index(const Asking& ask, const Question& question) {
-  const auto once = always_given(ask, question);
+bool ignores_index(const Asking& ask, const Question& question, std::size_t means) {
+  const auto once = always_given(ask, question, means);
   if (!once) return false;
   Question twice_as_many = question;
   twice_as_many.primaries = 2 * question.primaries;
-  const auto twice = always_given(ask, twice_as_many);
+  const auto twice = always_given(ask, twice_as_many, means);
   return twice && !same_but_for_rounding(*once, *twice, twice_as_many.primaries);
 }
 
@@ -88,14 +95,14 @@ std::string gave_other_numbers(const std::string& name, const std::string& asked
 }  // namespace
 
 std::string why_unfit(const Asking& ask, const Question& question, const std::string& name,
-                      bool averages) {
+                      std::size_t means) {
   if (ignores_key(ask, question)) {
     return "`" + name +
            "` gave the same numbers for two keys: runs of other seeds would repeat each other, and "
            "so would estimators that must be independent; seed its random numbers with key and "
            "index";
   }
-  if (averages && ignores_index(ask, question)) {
+  if (means > 0 && ignores_index(ask, question, means)) {
     return "`" + name + "` gave the same numbers for observations 0 to " +
            std::to_string(most_alike - 1) + " of " + std::to_string(question.primaries) +
            " primaries, and others for all of twice as many: they are not means of independent "

@@ -4,6 +4,7 @@
 // program and of a library that is called in this process alike.
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -18,9 +19,10 @@ using Asking = std::function<std::vector<double>(const Question&)>;
 
 /// Why the observations of a program are worth nothing, as a sentence with its name; "" where
 /// nothing speaks against them. Another key than the question's must give other numbers; of means
-/// of so many primaries, which `averages` says that they are, another index must.
+/// of so many primaries, which the first `means` numbers of an observation are said to be, another
+/// index must.
 std::string why_unfit(const Asking& ask, const Question& question, const std::string& name,
-                      bool averages);
+                      std::size_t means);
 
 /// That a question for one observation or item had other numbers when it was asked again.
 std::string other_numbers(const std::string& name, const Question& question);

@@ -68,6 +68,8 @@ struct Hello {
   bool rays = false;
   std::vector<SamplerNote> samplers = {};
 
+  /// How many numbers of an observation, the first of them, are means of independent primaries.
+  std::size_t means() const { return nature.averages ? channels.size() : 0; }
   /// Numbers of an observation as they are sent.
   std::size_t width() const { return channels.size() + (rays ? 1 : 0); }
 };

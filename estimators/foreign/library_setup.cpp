@@ -189,7 +189,7 @@ std::string why_unfit(const PreparedLibrary& library, std::uint64_t key, std::ui
   const auto ask = [&](const Question& one) { return numbers_of(library, one); };
   try {
     const std::vector<double> numbers = ask(first);
-    const std::string why = why_unfit(ask, first, library.file(), library.hello().nature.averages);
+    const std::string why = why_unfit(ask, first, library.file(), library.hello().means());
     if (!why.empty()) return why;
     return same_bits(ask(first), numbers) ? "" : other_numbers(library.file(), first);
   } catch (const LibraryError&) {

@@ -114,7 +114,7 @@ struct WeightWithoutCosine final : Misreported {
   }
 };
 
-// One hundredth of the azimuth beside the mirrored direction's, phi - pi in [0.05, 0.05 + pi / 50).
+// One hundredth of the azimuth, phi - pi in [0.05, 0.05 + pi / 50).
 bool in_sector(const Point& p) {
   const double turned = std::atan2(-p[1], -p[0]);
   return turned >= 0.05 && turned < 0.05 + pi / 50;
@@ -248,8 +248,8 @@ std::vector<Entry> mutants_brdf() {
           {"ward_weight_without_cosine", "the weight is f / p, without the cosine."}),
       misreported_ward<DensityOffInASector>(
           {"ward_density_sector",
-           "the density at a point is declared .1 % too large in a hundredth of the azimuth, from "
-           "0.05 beyond the mirrored direction's on."}),
+           "the density at a point is declared .1 % too large in a hundredth of the azimuth, that "
+           "from pi + 0.05 on."}),
       misreported_ward<MirroredWeight>(
           {"ward_weight_mirrored",
            "the weight takes the BRDF of the direction with its x and y exchanged."}),

@@ -22,6 +22,9 @@ void write(const std::string& file, const MapSize& size, const std::vector<MapLa
   Imf::FrameBuffer buffer;
   for (const MapLayer& layer : layers) {
     const std::size_t texel = layer.components.size() * sizeof(float);
+    if (layer.values.size() != size.width * size.height * layer.components.size()) {
+      throw std::invalid_argument("layer " + layer.name + " has another size");
+    }
     for (std::size_t c = 0; c < layer.components.size(); ++c) {
       const std::string channel = layer.name + "." + layer.components[c];
       header.channels().insert(channel, Imf::Channel(Imf::FLOAT));

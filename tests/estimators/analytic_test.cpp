@@ -108,6 +108,7 @@ TEST(Analytic, SampledMeansAndVariancesAreTheDeclaredOnes) {
                            {"analytic/rare_spike", "{probability: 0.1, height: 3, noise: 0.5}"},
                            {"analytic/normal"},
                            {"analytic/normal", "{mean: -3, deviation: 0.5}", 5},
+                           {"analytic/costly_law", "{law: exponential(2)}", 3},
                            {"analytic/two_level"},
                            {"analytic/two_level", "{splitting: 0.4}"},
                            {"analytic/two_level", "{splitting: 2.5}"}}) {
@@ -166,6 +167,19 @@ TEST(Analytic, ARareSpikeDeclaresItsRangeOrNot) {
 TEST(Analytic, ARareSpikeStaysUnseenInAShortRun) {
   const Sample sample = observe(prepare("analytic/rare_spike", "{probability: 0}"), 1000)[0];
   EXPECT_EQ(sample.values, std::vector<double>(1000, 0.5));
+}
+
+TEST(Analytic, ACostlyLawCostsWhatItsValuesSay) {
+  const auto plugin = prepare("analytic/costly_law", "{law: student_t(5), rays: 10}");
+  const auto estimator = plugin.setup->make();
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    Stream random(plugin.key, i);
+    std::array<double, 1> out{};
+    Cost cost;
+    estimator->secondary(random, 1, out, cost);
+    const auto rays = static_cast<std::uint64_t>(10 * std::abs(out[0]));
+    EXPECT_EQ(cost, (Cost{.shadow_rays = 1 + rays, .samples = 1}));
+  }
 }
 
 // False alarm 1e-6.

@@ -97,8 +97,8 @@ TEST(Calibrate, ThreadsChangeNoCount) {
   }
 }
 
-// Chi-square and F test data that are flatter than normal as normal ones, and are planned so: as for
-// data of this kurtosis, F found .73 of what it should .99 of, and left the rest undecided.
+// Chi-square and F test data that are flatter than normal as normal ones, and are planned so: as
+// for data of this kurtosis, F found .73 of what it should .99 of, and left the rest undecided.
 TEST(Calibrate, FlatDataAreGivenTheObservationsThatTheirTestNeeds) {
   const auto result = measured({.methods = {"chi-square", "F"},
                                 .laws = {"uniform"},
@@ -137,8 +137,9 @@ TEST(Calibrate, EveryMethodHasCellsOnEveryLawThatSuitsIt) {
                        [&](const auto& c) { return c.method == method && c.law == law; });
   };
   for (const std::string& law : calibration_laws()) {
-    for (const char* method : {"t", "welch", "tost", "chi-square", "F", "log-variance",
-                               "skewness-corrected-t", "log-efficiency", "slope", "ks", "image"}) {
+    for (const char* method :
+         {"t", "welch", "tost", "chi-square", "F", "log-variance", "skewness-corrected-t",
+          "log-cost", "log-efficiency", "slope", "ks", "image"}) {
       EXPECT_TRUE(has(method, law)) << method << " on " << law;
     }
   }
@@ -146,6 +147,10 @@ TEST(Calibrate, EveryMethodHasCellsOnEveryLawThatSuitsIt) {
   EXPECT_FALSE(has("binomial", "normal(0, 1)"));
   EXPECT_TRUE(has("bounded", "uniform(0, 1)"));
   EXPECT_FALSE(has("bounded", "exponential(1)"));
+  EXPECT_TRUE(has("betting", "exponential(1)"));
+  EXPECT_FALSE(has("betting", "normal(0, 1)"));
+  EXPECT_TRUE(has("two-part-ks", "zero_inflated(0.1)"));
+  EXPECT_TRUE(has("chi-square-two-sample", "normal(0, 1)"));
 }
 
 TEST(Calibrate, UnknownMethodsAndLawsAreRefusedWithWhatThereIs) {

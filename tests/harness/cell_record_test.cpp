@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "questions.h"
 #include "running.h"
@@ -109,7 +111,7 @@ TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
 // The lobe is halved within few cells of the picture, whose sums show nothing of a wrong azimuth.
 TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
   const reports::Test test = tested("distribution(narrow.direction) == density");
-  ASSERT_EQ(test.maps.size(), 3u) << test.message;
+  ASSERT_EQ(test.maps.size(), 4u) << test.message;
   EXPECT_NE(test.maps[2].source.find("farthest off"), std::string::npos) << test.maps[2].source;
   double of_sums = 0;
   double shown = 0;
@@ -124,9 +126,71 @@ TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
   EXPECT_GT(shown, 10);
 }
 
+TEST(CellRecord, ShowsTheCellsOfANarrowLobeAsLargeAsTheyAre) {
+  const reports::Test test = tested("distribution(narrow.direction) == density");
+  ASSERT_EQ(test.maps.size(), 4u);
+  const reports::Map& grid = test.maps[2];
+  const reports::Map& close = test.maps[3];
+  EXPECT_EQ(close.name, "cells_z_close");
+  EXPECT_EQ(close.width, 64u);
+  EXPECT_EQ(close.height, 64u);
+  double theta[2];
+  double phi[2];
+  ASSERT_EQ(std::sscanf(close.source.c_str(), "theta %lf to %lf from top to bottom, phi %lf to %lf",
+                        &theta[0], &theta[1], &phi[0], &phi[1]),
+            4);
+  // The mirrored direction of theta .8 and phi .5, and three roughnesses of .03 to either side.
+  EXPECT_LT(theta[0], .8);
+  EXPECT_GT(theta[1], .8);
+  EXPECT_LT(phi[0], .5 + std::numbers::pi);
+  EXPECT_GT(phi[1], .5 + std::numbers::pi);
+  EXPECT_LT(theta[1] - theta[0], .3);
+  EXPECT_LT(phi[1] - phi[0], .3);
+  // The grid shows the same cells' farthest; many cells are seen, some with too many draws and
+  // some with too few, as a wrong azimuth has them.
+  const auto far = [](const reports::Map& map) {
+    return std::ranges::max(map.texels.values, {}, [](float z) { return std::abs(z); });
+  };
+  EXPECT_EQ(far(close), far(grid));
+  const std::set<float> seen(close.texels.values.begin(), close.texels.values.end());
+  EXPECT_GT(seen.size(), 20u);
+  EXPECT_LT(*seen.begin(), -5);
+  EXPECT_GT(*seen.rbegin(), 5);
+}
+
 // Of both samples together each cell has its part, so what is expected of the first sums to what it
 // has, and where nothing differs the differences are of one standard deviation: their mean square
 // over 256 cells is 1 within five of its own standard deviations, sqrt(2 / 256).
+TEST(CellRecord, ShowsALobeAcrossTheStartOfTheAzimuthInOnePiece) {
+  const auto close = [](const std::string& azimuth, const char* draws) {
+    return run_test(
+        "suite: s\nestimators:\n  narrow: {plugin: brdf/ward, alpha_x: 0.03, alpha_y: "
+        "0.06, phi_i: " +
+        azimuth + "}\ntests:\n  - {claim: distribution(narrow.direction) == density, " +
+        "secondaries: " + draws + "}\n");
+  };
+  const reports::Test across = close("3.141592653589793", "20000");
+  ASSERT_EQ(across.maps.size(), 4u);
+  double theta[2];
+  double phi[2];
+  ASSERT_EQ(std::sscanf(across.maps[3].source.c_str(),
+                        "theta %lf to %lf from top to bottom, phi %lf to %lf", &theta[0], &theta[1],
+                        &phi[0], &phi[1]),
+            4);
+  EXPECT_LT(phi[0], 2 * std::numbers::pi);
+  EXPECT_GT(phi[1], 2 * std::numbers::pi);
+  EXPECT_LT(phi[1] - phi[0], 1);
+  // Of a sound sampler these are standard normal, in some dozens of cells.
+  const auto& z = across.maps[3].texels.values;
+  EXPECT_LT(*std::ranges::max_element(z), 5);
+  EXPECT_GT(*std::ranges::min_element(z), -5);
+  // Of the usual 1000 draws most of it is shown; of 100 there is nothing to show.
+  const reports::Test few = close("0.5", "1000");
+  ASSERT_EQ(few.maps.size(), 4u);
+  EXPECT_LT(std::ranges::count(few.maps[3].texels.values, 0.f), 64 * 64 / 2);
+  EXPECT_EQ(close("0.5", "100").maps.size(), 3u);
+}
+
 TEST(CellRecord, OfTwoSamplesTheFirstIsHeldAgainstBothTogether) {
   const reports::Test test = tested(
       "distribution(ward.direction) == distribution(ward.direction), test: "

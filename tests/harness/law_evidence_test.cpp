@@ -48,6 +48,19 @@ TEST(LawEvidence, SharesTheLevelBetweenPointsAndMissingMass) {
   EXPECT_NEAR(p_of(points_against_law(points, uniform_law(0.02))) / (4 * tail), 1, 1e-6);
 }
 
+// Of 20000 draws .04 yield no point where .01 should: some hundreds of standard errors of so rare a
+// thing, and less than the points' distance of .07.
+TEST(LawEvidence, SaysOfWhichPartThePIsAtTheMarginThatIsTested) {
+  tests::Philox random(1);
+  Points points = uniform_points(20000, 800, random);
+  for (double& x : points.sorted) x = std::pow(x, 1.2);
+  const Evidence evidence = points_against_law(points, uniform_law(0.01));
+  EXPECT_NE(evidence.most_against(0).find("the masses without a point, 0.03 apart"),
+            std::string::npos)
+      << evidence.most_against(0);
+  EXPECT_EQ(evidence.most_against(0.05), "");
+}
+
 TEST(LawEvidence, PointsHaveTheWholeLevelWhereNoMassIsMissing) {
   tests::Philox random(1);
   const Points points = uniform_points(1000, 0, random);

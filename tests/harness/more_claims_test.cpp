@@ -27,6 +27,7 @@ estimators:
   scaled: {plugin: mutants/scaled, factor: 1.05, primaries: 64}
   wis: {plugin: analytic/ratio, primaries: 8}
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+  noisy: {plugin: analytic/normal, mean: 2, deviation: 300, primaries: 1}
   area: {plugin: luminaire/area, scene: triangle}
   hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
 tests:
@@ -283,6 +284,14 @@ TEST(SlopeClaim, RefusesWhatHasNoSlope) {
             std::string::npos);
 }
 
+TEST(TotalVarianceClaim, OfWhatDoesNotVaryNamesIt) {
+  const reports::Test test = run_test(
+      "suite: s\nestimators:\n  still: {plugin: analytic/zero_variance}\n  moving: {plugin: "
+      "analytic/normal}\ntests:\n  - {claim: total_variance(still) < total_variance(moving)}\n");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_NE(test.message.find("no channel of `still` varies"), std::string::npos) << test.message;
+}
+
 TEST(WorstVarianceClaim, IsAboutEveryChannel) {
   EXPECT_EQ(verdict_of("{claim: worst_variance(normal) <= 1.5, detect: 20%}"), Verdict::pass);
   EXPECT_EQ(verdict_of("{claim: worst_variance(normal) <= 0.7, detect: 20%}"), Verdict::fail);
@@ -311,6 +320,13 @@ TEST(MoreClaimsLevel, OfBiasIsAtMostAlpha) {
 
 TEST(MoreClaimsLevel, OfEfficiencyIsAtMostAlpha) {
   EXPECT_TRUE(keeps_alpha("{claim: efficiency(normal) == 1, cost: samples, secondaries: 1000}"));
+}
+
+// The reference's error is 9.5: what it makes of the mean squared error is 90 times the variance.
+TEST(MoreClaimsLevel, OfEfficiencyIsAtMostAlphaWhateverTheReferencesError) {
+  EXPECT_TRUE(
+      keeps_alpha("{claim: efficiency(normal) == 1, cost: samples, reference: noisy, secondaries: "
+                  "1000}"));
 }
 
 TEST(MoreClaimsLevel, OfTotalVarianceIsAtMostAlpha) {

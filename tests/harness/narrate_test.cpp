@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "reports/effect.h"
 #include "running.h"
@@ -18,6 +19,7 @@ reports::Test told(const std::string& test) {
 estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
   other: {plugin: analytic/normal, mean: 2.01, primaries: 1}
+  averaged: {plugin: analytic/normal, mean: 2, primaries: 16}
   unit: {plugin: analytic/normal, mean: 2, deviation: 0.1, primaries: 1}
   ranged: {plugin: analytic/law, law: 'uniform(0, 4)', primaries: 1}
 tests:
@@ -54,6 +56,23 @@ TEST(Narrate, ClassicalPassSaysWhereNothingCouldHaveBeenFound) {
   expect_said(told(std::string(claim) + "4"), Verdict::pass,
               "nor could there be: in 4 observations no difference that the range allows is found");
   expect_said(told(std::string(claim) + "400"), Verdict::pass, "or more would have been found");
+}
+
+TEST(Narrate, HolmSaysWhichLookItsPIsOf) {
+  const std::vector<SingleLook> looks{
+      {100, .5, std::log(.01)}, {200, .25, std::log(.006)}, {400, .25, std::log(.3)}};
+  EXPECT_EQ(earlier_look(looks), 100) << ".02, .024 and 1.2";
+  EXPECT_EQ(earlier_look(std::vector<SingleLook>{looks[2], looks[0]}), 0) << "the last";
+  EXPECT_EQ(earlier_look({}), 0);
+  const reports::Effect effect{.quantity = "difference", .estimate = 1., .low = 0.};
+  const auto said = [&](std::uint64_t look) {
+    return narrate_holm(
+        {.effect = effect, .log_p = -4, .log_p_adjusted = -3, .earlier_look = look});
+  };
+  EXPECT_NE(said(100).find("(of the look at 100 observations, the estimate of all) and after Holm"),
+            std::string::npos)
+      << said(100);
+  EXPECT_EQ(said(0).find("look"), std::string::npos) << said(0);
 }
 
 TEST(Narrate, NeverSaysThatAClaimIsAccepted) {
@@ -93,6 +112,19 @@ TEST(Narrate, ProofShowsItsInterval) {
 TEST(Narrate, InconclusiveSaysHowManyMoreWouldDecide) {
   expect_said(told("claim: mean(normal) == 2, detect: 2%, secondaries: 1000"),
               Verdict::inconclusive, "secondaries would decide");
+}
+
+TEST(Narrate, InconclusiveSaysHowManyPrimariesThatWouldBe) {
+  const reports::Test test = told("claim: mean(averaged) == 2, detect: 0.5%, secondaries: 1000");
+  expect_said(test, Verdict::inconclusive, " primaries) would decide");
+  double secondaries = 0;
+  double primaries = 0;
+  const std::size_t at = test.message.find("about ");
+  ASSERT_NE(at, std::string::npos);
+  ASSERT_EQ(std::sscanf(test.message.c_str() + at, "about %lf secondaries (%lf primaries)",
+                        &secondaries, &primaries),
+            2);
+  EXPECT_NEAR(primaries / secondaries, 16, 1) << "two digits of each are shown";
 }
 
 TEST(Narrate, InconclusiveSaysWhenNoNumberWouldDecide) {

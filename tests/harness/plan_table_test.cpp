@@ -115,6 +115,21 @@ TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
   }
 }
 
+// Three observations in [0, 4] find no difference that the range allows: `detect` is no answer to
+// what the last look finds.
+TEST(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
+  const Workplace place;
+  const std::vector<Suite> suites = {load_suite(
+      place.write("poor.yaml",
+                  "suite: poor\nestimators:\n  d: {plugin: analytic/dart_throwing}\n"
+                  "tests:\n  - {claim: mean(d) == analytic, detect: 1%, budget: 200}\n"))};
+  const PlannedRun planned = planned_of(suites);
+  const std::string text = plan_text(planned, costs_of(planned));
+  const std::size_t row = text.find("bounded");
+  ASSERT_NE(row, std::string::npos) << text;
+  EXPECT_EQ(text.substr(row, text.find('\n', row) - row).find('%'), std::string::npos) << text;
+}
+
 // One may take minutes: no more are drawn.
 TEST(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
   const Workplace place;

@@ -39,6 +39,9 @@ estimators:
   corners: {plugin: virtual_lights/weighted, primaries: 2}
   same-samples: {plugin: correlated/area_same_samples, scene: rectangle, primaries: 16}
   multi: {plugin: direct_light/multi_sample, primaries: 1}
+  ratio: {plugin: analytic/ratio, primaries: 4096}
+  unseen: {plugin: analytic/rare_spike, probability: 1e-9, height: 1, primaries: 1}
+  far: {plugin: analytic/rare_spike, probability: 1e-12, height: 1e6, primaries: 1}
   spike: {plugin: analytic/rare_spike, probability: 0.0001, height: 10, noise: 0.1, primaries: 1}
 tests:
 )" + tests)};
@@ -191,6 +194,44 @@ TEST(Plan, MovesToLogVarianceWhereSecondariesAreNotNormal) {
   EXPECT_NE(skewed.plans[0].invalid.find("tail is too heavy"), std::string::npos);
 }
 
+// 8192 primaries see nothing of a spike of probability 1e-9: as many are planned as bound what it
+// may add, where that is within reach, and the classical number where it is not.
+TEST(Plan, OfAConstantInADeclaredRangeBoundsWhatWasNotSeen) {
+  const Planned planned = plan_text(
+      "  - {claim: mean(unseen) == 0.5, detect: 1%}\n"
+      "  - {name: classical, claim: mean(unseen) == 0.5}\n"
+      "  - {claim: mean(far) == 0.5, detect: 1%}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "bounded");
+  EXPECT_GT(planned.plans[0].most_secondaries(), usual_secondaries);
+  // To exclude a mean of .505 by values that are .5 but for 1.5 takes ln(1 / .01) / .005 at least.
+  EXPECT_LT(planned.plans[0].most_secondaries(), 10 * 921);
+  EXPECT_EQ(planned.plans[1].most_secondaries(), usual_secondaries);
+  EXPECT_EQ(planned.plans[2].most_secondaries(), usual_secondaries);
+}
+
+// A ratio of sums over 4096 has the shape of a normal law, of which a pilot of 512 shows a kurtosis
+// beyond the bound in one of four runs.
+TEST(Plan, OfFewNearNormalObservationsChiSquareStands) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Planned few = plan_text("  - {claim: variance(ratio) <= 1, secondaries: 500}\n", seed);
+    EXPECT_EQ(few.plans[0].method.name, "chi-square") << seed;
+    EXPECT_EQ(few.plans[0].invalid, "") << seed;
+  }
+  const Planned skewed = plan_text("  - {claim: variance(corners) <= 100, secondaries: 500}\n");
+  EXPECT_NE(skewed.plans[0].invalid, "");
+}
+
+// What is drawn decides nothing: no more of it than a test without `detect` takes.
+TEST(Plan, OfAClaimThatIsInvalidDrawsLittle) {
+  const Planned planned = plan_text(
+      "  - {claim: variance(heavier-single) <= 100, detect: 1%}\n"
+      "  - {name: as many as asked for, claim: variance(heavier-single) <= 100, secondaries: "
+      "2000}\n");
+  ASSERT_FALSE(planned.plans[0].invalid.empty());
+  EXPECT_EQ(planned.plans[0].looks.sizes, std::vector<std::uint64_t>{usual_secondaries});
+  EXPECT_EQ(planned.plans[1].looks.sizes, std::vector<std::uint64_t>{2000});
+}
+
 // Both show a heavy tail in the 512 values of their pilots, with kurtoses of some 500 and of 23; in
 // 400,000 values the second has one of 24.
 TEST(Plan, OfFewValuesATailIsHeavyWhereTheKurtosisIsToo) {
@@ -299,7 +340,7 @@ tests:
   EXPECT_EQ(pilot_of(run.tests[0].outcome.question, 0, run.pilots), &corners);
   EXPECT_EQ(pilot_of(run.tests[1].outcome.question, 0, run.pilots), corners.larger.get());
   ASSERT_NE(run.pilots.at("fewer").larger, nullptr);
-  EXPECT_EQ(run.pilots.at("fewer").larger->values[0].size(), 600);
+  EXPECT_EQ(run.pilots.at("fewer").larger->values[0].size(), 2048) << "the least that tells";
   EXPECT_EQ(run.pilots.at("ratio").larger, nullptr);
 
   const PlannedRun again = piloted(variances, {.threads = 4, .filter = "pilots/corners"});

@@ -138,6 +138,13 @@ TEST(Replay, PrintsTheValueThatWasDrawn) {
       << now.text;
 }
 
+TEST(Replay, OfADrawShowsItsPoint) {
+  const Workplace place;
+  const Said now = said({.record = recorded(place), .test = "cells", .observation = 5});
+  EXPECT_NE(now.text.find("\n  draw of `direction`: point ("), std::string::npos) << now.text;
+  EXPECT_EQ(now.code, 0) << now.text;
+}
+
 TEST(Replay, DrawsTheVeryObservationThatIsNotANumber) {
   const Workplace place;
   const std::string file = recorded(place);
@@ -268,6 +275,14 @@ tests:
 )")})));
   EXPECT_EQ(said({.record = file, .test = "all"}).code, 0);
   EXPECT_EQ(said({.record = file, .test = "one"}).code, 0);
+  place.write("data.txt", "# columns: a b\n1 2\n3 4\n");
+  for (const std::optional<std::uint64_t> observation : {std::optional<std::uint64_t>(), {2}}) {
+    const Said shorter = said({.record = file, .test = "all", .observation = observation});
+    EXPECT_EQ(shorter.code, 2);
+    EXPECT_NE(shorter.text.find("the test took 3 observations of `all`, of which there are now 2"),
+              std::string::npos)
+        << shorter.text;
+  }
 }
 
 TEST(Replay, SaysThatTheNumbersOfAnInvalidTestDecideNothing) {

@@ -49,6 +49,61 @@ reports::Test judged(const std::vector<double>& values, const std::string& test,
 
 double normal(Philox& random) { return random.normal(); }
 
+// The variance of one value between 0 and 1 is 64 times that of such a mean.
+TEST(Rows, OfAVarianceBesideAPrimarysSayWhatIsCompared) {
+  const Workplace place;
+  place.write("rows.txt", file_of(rows_of(300, 7, [](Philox& random) {
+                double sum = 0;
+                for (int i = 0; i < 64; ++i) sum += random.uniform() / 64;
+                return sum;
+              })));
+  const std::string text =
+      "suite: s\nestimators:\n  rows: {plugin: recorded, file: rows.txt}\n"
+      "  mine: {plugin: analytic/law, law: 'uniform(0, 1)'}\ntests:\n"
+      "  - {claim: variance(rows) == variance(mine), test: log-variance}\n";
+  const reports::Test test = run_files({place.write("suite.yaml", text)}).suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::fail);
+  EXPECT_THAT(test.message,
+              HasSubstr("a row of `rows` is held against a single primary of `mine`"));
+}
+
+// Ten chains that take turns: neighbours are of different chains and know nothing of each other.
+TEST(Rows, OfChainsThatTakeTurnsAreInvalid) {
+  Philox random(5);
+  std::vector<double> state(10);
+  std::vector<double> rows;
+  for (int step = 0; step < 400; ++step) {
+    for (double& x : state) rows.push_back(x = .9 * x + random.normal());
+  }
+  const reports::Test test = judged(rows, "claim: mean(rows) == 0");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("those 10 apart have a rank correlation of 0."));
+}
+
+// A column that never varies beside one that does: what is said is of the one that does, and where
+// the constant decides it is named.
+TEST(Rows, AConstantColumnSpeaksForItselfAlone) {
+  std::string text = "# columns: moving still\n";
+  for (const double value : rows_of(500, 3, normal)) text += fmt::format("{} 2\n", 2 + value);
+  const Workplace place;
+  place.write("rows.txt", text);
+  const auto judged_at = [&](const char* claim) {
+    return run_files({place.write("suite.yaml",
+                                  std::string("suite: s\nestimators:\n  r: {plugin: recorded, "
+                                              "file: rows.txt}\ntests:\n  - {claim: ") +
+                                      claim + "}\n")})
+        .suites[0]
+        .tests[0];
+  };
+  const reports::Test passed = judged_at("mean(r) == 2");
+  EXPECT_EQ(passed.verdict, Verdict::pass);
+  EXPECT_THAT(passed.message, HasSubstr("would have been found")) << passed.message;
+  EXPECT_THAT(passed.message, testing::Not(HasSubstr("every observation is the same")));
+  const reports::Test undecided = judged_at("mean(r) == 2.00001");
+  EXPECT_EQ(undecided.verdict, Verdict::invalid);
+  EXPECT_THAT(undecided.message, testing::StartsWith("still: every observation is 2"));
+}
+
 TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
   const std::vector<double> rows = rows_of(5, 1, normal);
   const reports::Test test = judged(rows, "claim: mean(rows) == 0");

@@ -37,7 +37,11 @@ CalibrationCell cell(const std::string& method) {
 }
 
 Calibration calibration(const std::vector<CalibrationCell>& cells) {
-  return {.seed = 7, .runs = 1000, .started = "2026-01-01T00:00:00Z", .cells = cells};
+  return {.seed = 7,
+          .runs = 1000,
+          .started = "2026-01-01T00:00:00Z",
+          .detect = "0.15 of <means>",
+          .cells = cells};
 }
 
 TEST(Calibration, ACellErrsWhereItsLowerLimitExceedsTheTolerance) {
@@ -102,6 +106,14 @@ TEST(Calibration, MarkdownHasARowACell) {
   EXPECT_THAT(text, HasSubstr("|    F | "));
   EXPECT_THAT(text, HasSubstr("|    t | "));
   EXPECT_THAT(text, Not(HasSubstr("<number>")));
+}
+
+TEST(Calibration, EveryFormatSaysWhatDetectIs) {
+  const Calibration measured = calibration({cell("F")});
+  EXPECT_THAT(console(measured), HasSubstr("detect    0.15 of <means>\n"));
+  EXPECT_THAT(markdown(measured), HasSubstr("detect    0.15 of <means>\n"));
+  EXPECT_THAT(html(measured), HasSubstr("0.15 of &lt;means&gt;"));
+  EXPECT_EQ(nlohmann::json::parse(json(measured))["detect"], "0.15 of <means>");
 }
 
 }  // namespace

@@ -205,6 +205,7 @@ Ledger nights() {
                            .last = "2026-11-20T02:00:00Z",
                            .score = 15625,
                            .information = 15625000,
+                           .reference_error = 0.0001,
                            .log_e = 9.5,
                            .limit = 6.5,
                            .alarm = true,

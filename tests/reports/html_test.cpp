@@ -310,7 +310,12 @@ TEST(Html, TheCellsOfASamplersDomainAreDrawn) {
   // Observed and expected on one scale, up to 60, and z beyond its own.
   EXPECT_EQ(occurrences(page, ">60</text>"), 2u);
   EXPECT_NE(page.find("&gt;= +15"), std::string::npos);
-  test.maps.pop_back();
+  EXPECT_EQ(page.find("cell by cell"), std::string::npos);
+  test.maps.push_back(cells_map("cells_z_close", {0, 0, 0, 0, 0, -22}));
+  EXPECT_NE(html(record_of(test))
+                .find("Where most is drawn, cell by cell, in standard deviations: theta"),
+            std::string::npos);
+  test.maps.resize(2);
   EXPECT_EQ(html(record_of(test)).find("Draws in each cell"), std::string::npos);
 }
 

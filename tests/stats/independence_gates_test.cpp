@@ -23,13 +23,58 @@ TEST(IndependenceGates, AreSilentOnIndependentValues) {
   Philox random(1);
   int lag = 0;
   int batch = 0;
+  int lagged = 0;
   for (int k = 0; k < 20000; ++k) {
     const auto x = sample_of(100, [&] { return random.normal(); });
+    lagged += lagged_gate(x).state == GateState::red ? 1 : 0;
     lag += lag_one_gate(x).state == GateState::red ? 1 : 0;
     batch += batch_gate(x).state == GateState::red ? 1 : 0;
   }
   EXPECT_LE(lag, 8);
   EXPECT_LE(batch, 8);
+  EXPECT_LE(lagged, 8);
+}
+
+// Whatever the law: of ranks two values far out are no correlation.
+TEST(IndependenceGates, OfLagsAreSilentOnHeavyTailsAndTies) {
+  Philox random(5);
+  int red = 0;
+  for (int k = 0; k < 2000; ++k) {
+    red += lagged_gate(sample_of(400, [&] { return std::exp(3 * random.normal()); })).state ==
+           GateState::red;
+    red += lagged_gate(sample_of(400, [&] { return random.uniform() < .05 ? 1.0 : 0.0; })).state ==
+           GateState::red;
+  }
+  EXPECT_LE(red, 4) << "of 4000; .2 are expected";
+}
+
+// Chains written step by step, one value of each in turn.
+std::vector<double> taking_turns(std::size_t chains, std::size_t steps, double phi,
+                                 Philox& random) {
+  std::vector<std::vector<double>> all;
+  for (std::size_t c = 0; c < chains; ++c) all.push_back(autoregressive(phi, steps, random));
+  std::vector<double> rows;
+  for (std::size_t step = 0; step < steps; ++step) {
+    for (const std::vector<double>& chain : all) rows.push_back(chain[step]);
+  }
+  return rows;
+}
+
+TEST(IndependenceGates, SeeChainsThatTakeTurns) {
+  Philox random(6);
+  for (const std::size_t chains : {2U, 10U, 50U, 300U}) {
+    const auto rows = taking_turns(chains, 6000 / chains, .8, random);
+    EXPECT_EQ(lagged_gate(rows).state, GateState::red) << chains;
+    EXPECT_GT(lagged_gate(rows).value, lagged_gate(rows).limit) << chains;
+    EXPECT_GE(sufficient_batch(rows), 5 * chains) << chains;
+  }
+}
+
+// A single chain needs no longer batches for it: ten of its times, 190, as before.
+TEST(IndependenceGates, OfLagsLeaveTheBatchesOfOneChain) {
+  Philox random(7);
+  const auto x = autoregressive(.9, 20000, random);
+  EXPECT_LT(static_cast<double>(sufficient_batch(x)), 12 * autocorrelation_time(x));
 }
 
 TEST(IndependenceGates, SeeAChainAndItsAlternation) {

@@ -109,6 +109,38 @@ TEST(PlaneCells, ACellThatMayHideACornerSaysSo) {
   EXPECT_EQ(cells.error[grid.index(.6, .6)], 0) << "far from the support";
 }
 
+// A block, and to its right a spike thinner than the panels, across several cells: each is found
+// beside the last, none by the nodes.
+TEST(PlaneCells, ASupportIsFollowedFromCellToCell) {
+  constexpr double y0 = .57412;
+  constexpr double half_width = .00274;
+  constexpr double length = .4256;
+  const auto density = [](double x, double y) {
+    const double along = (x - .25) / length;
+    const bool spike =
+        along >= 0 && along < 1 && std::abs(y - y0 + .00113 * (x - .25)) < half_width * (1 - along);
+    return x < .25 || spike ? 1.0 : 0.0;
+  };
+  const CellProbabilities cells = cell_probabilities(
+      unit_grid(8),
+      {.x = {0, 1}, .y = {0, 1}, .values = one_by_one(density), .x_panels = 8, .y_panels = 8},
+      {.tolerance = 1e-8});
+  EXPECT_NEAR(cells.total, .25 + half_width * length, cells.total_error);
+  EXPECT_LT(cells.total_error, 2e-4);
+}
+
+// 1500 exp(-1500 x) underflows halfway across: what the cells beyond may hide is no denser than
+// what ends before them, and not as dense as the peak.
+TEST(PlaneCells, WhatUnderflowsHidesNoPeak) {
+  const PlaneGrid grid = unit_grid(8);
+  const auto peak = [](double x, double) { return 1500 * std::exp(-1500 * x); };
+  const CellProbabilities cells = cell_probabilities(
+      grid, {.x = {0, 1}, .y = {0, 1}, .values = one_by_one(peak), .x_panels = 8});
+  ASSERT_EQ(cells.probability[grid.index(.7, .1)], 0);
+  EXPECT_NEAR(cells.total, 1, 1e-8);
+  EXPECT_LT(cells.total_error, 1e-7);
+}
+
 TEST(PlaneCells, AJumpAlongALineAnywhereIsFoundWithinItsError) {
   const PlaneGrid grid = unit_grid(8);
   for (int k = 1; k < 40; ++k) {

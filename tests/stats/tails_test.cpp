@@ -78,6 +78,25 @@ TEST(Tails, LogarithmsStayFiniteFarBeyondTheRangeOfProbabilities) {
   }
 }
 
+// A mixture of 3e5 Poisson terms up to here, a saddlepoint beyond: they join in both tails, in the
+// middle and where one is 1e-300.
+TEST(Tails, NoncentralChiSquareOfALargeNoncentralityJoinsTheMixture) {
+  constexpr double border = 1e8;
+  for (const double degrees : {1.0, 4.0, 300.0}) {
+    const double deviation = std::sqrt(2 * (degrees + 2 * border));
+    for (const double z : {-37.0, -6.0, -1.0, -1e-3, 0.0, 1e-3, 1.0, 6.0, 37.0}) {
+      const double x = border + degrees + z * deviation;
+      const LogTails below = noncentral_chi_square_tails(x, {degrees, border});
+      const LogTails above =
+          noncentral_chi_square_tails(x, {degrees, std::nextafter(border, 2 * border)});
+      EXPECT_NEAR(below.lower, above.lower, 1e-9 * (1 - below.lower)) << degrees << " " << z;
+      EXPECT_NEAR(below.upper, above.upper, 1e-9 * (1 - below.upper)) << degrees << " " << z;
+    }
+  }
+  const LogTails huge = noncentral_chi_square_tails(1e18 + 2e9, {2, 1e18});
+  EXPECT_NEAR(huge.upper, normal_tails(1).upper, 1e-8);
+}
+
 TEST(Tails, NoncentralTailsStayAccurateWhereTheirFactorsLeaveTheRangeOfDoubles) {
   // nu = 2: the density is e^(-(x + ncp) / 2) I0(sqrt(ncp x)) / 2, so the log tail's slope is
   // known: d ln P / dx -> -1/2 + sqrt(ncp / x) / 2 - 1 / (4 x) + …

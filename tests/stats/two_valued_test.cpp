@@ -142,13 +142,27 @@ TEST(TwoValuedContrast, CostsLittleWhereTheNormalApproximationHolds) {
               std::exp(log_p));
 }
 
+// E x + E y = 1 is E x - E (1 - y) = 0.
+TEST(TwoValuedContrast, OfANegativeScaleIsThatOfTheMirroredSample) {
+  const TestResult sum = two_valued_contrast(hits(30, 100), hits(45, 90), {-1, 1});
+  const TestResult difference = two_valued_contrast(hits(30, 100), hits(45, 90), {1, 0});
+  EXPECT_NEAR(sum.statistic, difference.statistic, 1e-15);
+  EXPECT_DOUBLE_EQ(sum.log_p_lower, difference.log_p_lower);
+  EXPECT_DOUBLE_EQ(sum.log_p_upper, difference.log_p_upper);
+}
+
+TEST(TwoValuedContrast, OfScaleZeroIsTheExactTestOfOneMean) {
+  const TestResult one = two_valued_contrast(hits(30, 100), hits(45, 90), {0, .4});
+  EXPECT_EQ(one.log_p_lower, two_valued_mean(hits(30, 100), .4).log_p_lower);
+}
+
 TEST(TwoValuedContrast, ImpossibleNullsAndBadArgumentsAreNamed) {
   const TwoValued x = hits(3, 10);
   EXPECT_EQ(two_valued_contrast(x, x, {1, 1.5}).log_p_lower, special::lowest_log());
   EXPECT_EQ(two_valued_contrast(x, x, {1, 1.5}).log_p_upper, 0);
   EXPECT_EQ(two_valued_contrast(x, x, {1, -1.5}).log_p_upper, special::lowest_log());
   EXPECT_EQ(two_valued_contrast(x, x, {1, -1.5}).log_p_lower, 0);
-  EXPECT_THROW(two_valued_contrast(x, x, {0, 0}), std::domain_error);
+  EXPECT_THROW(two_valued_contrast(x, x, {INFINITY, 0}), std::domain_error);
   EXPECT_THROW(two_valued_contrast(x, x, {1, NAN}), std::domain_error);
   EXPECT_THROW(two_valued_contrast(x, hits(4, 3), {}), std::domain_error);
   EXPECT_THROW(two_valued_mean(hits(0, 0), .5), std::domain_error);

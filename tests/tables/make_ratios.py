@@ -30,10 +30,10 @@ def costs(k, size):
     return 2 + np.fmod(0.37 * k * i, 1.5) + 0.2 * np.abs(sample(k, size))
 
 
-def efficiency(x, c, reference=None, u=0.0):
+def efficiency(x, c, truth=None):
     """ln efficiency and its standard error from the influence of every observation."""
     n = len(x)
-    if reference is None:
+    if truth is None:
         square = (x - x.mean()) ** 2
         error = np.var(x, ddof=1)
         psi = square / square.mean() + c / c.mean() - 2
@@ -43,12 +43,11 @@ def efficiency(x, c, reference=None, u=0.0):
                   + np.var(c, ddof=1) / c.mean() ** 2 + 2 * joint)
         assert abs(spread - np.mean(psi**2)) < 8 / n
         return -math.log(error * c.mean()), math.sqrt(spread / n)
-    square = (x - reference) ** 2
-    error = square.mean() - u * u
+    square = (x - truth) ** 2
+    error = square.mean()
     spread = (np.var(square, ddof=1) / error**2 + np.var(c, ddof=1) / c.mean() ** 2
               + 2 * np.cov(square, c, ddof=0)[0, 1] / error / c.mean())
-    slope = 2 * (x.mean() - reference) / error
-    return -math.log(error * c.mean()), math.hypot(math.sqrt(spread / n), slope * u)
+    return -math.log(error * c.mean()), math.sqrt(spread / n)
 
 
 def efficiency_rows():
@@ -56,7 +55,7 @@ def efficiency_rows():
         n = 40 * k
         x, c = sample(k, n), costs(k, n)
         value, se = efficiency(x, c)
-        biased, biased_se = efficiency(x, c, 0.1 * k, 0.05)
+        biased, biased_se = efficiency(x, c, 0.1 * k)
         y, d = sample(k + 3, n), costs(k + 3, n)
         other, other_se = efficiency(y, d)
         z = (value - other - math.log(1.5)) / math.hypot(se, other_se)

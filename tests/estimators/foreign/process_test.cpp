@@ -276,8 +276,9 @@ while read -r line; do set -- $line; i=0
 }
 
 /// A program whose observations, means of primaries, are all `value`, an expression of the shell.
-std::string of_means(const std::string& value) {
-  return "printf 'assay 1 text\\nchannel x\\naverages\\nready\\n'\n"
+std::string of_means(const std::string& value, const std::string& word = "averages") {
+  return "printf 'assay 1 text\\nchannel x\\n" + word +
+         "\\nready\\n'\n"
          "while read -r high low first count primaries; do i=$first\n"
          "  while [ $i -lt $((first + count)) ]; do echo " +
          value +
@@ -301,6 +302,13 @@ TEST_F(Process, TakesMeansThatAreConstantForWhatTheyAre) {
     const auto setup = run({"sh", write("program.sh", of_means(value))});
     EXPECT_THAT(failure(*setup, 4, 4), "nothing failed") << value;
   }
+}
+
+// A rare event at so many rays as primaries.
+TEST_F(Process, TakesNoRaysForMeans) {
+  const auto setup =
+      run({"sh", write("program.sh", of_means("\"0 $primaries\"", "averages\\nrays"))});
+  EXPECT_THAT(failure(*setup, 4, 4), "nothing failed");
 }
 
 TEST_F(Process, RefusesObservationsThatDependOnTheProcess) {

@@ -33,5 +33,12 @@ TEST(MapFile, NamesTheFileThatCannotBeWritten) {
   }
 }
 
+TEST(MapFile, RefusesALayerOfAnotherSize) {
+  const std::vector<float> z(8);
+  const std::string file = testing::TempDir() + "map_file_size_test.exr";
+  EXPECT_THROW(write_map_file(file, {3, 2}, {{"z", {"value"}, z}}), std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
 }  // namespace
 }  // namespace assay

@@ -1,0 +1,17 @@
+#pragma once
+
+// A sampler's draw in words, for whoever has to find out what is wrong with it.
+
+#include <cstdint>
+#include <string>
+
+#include "estimators/sampler.h"
+#include "estimators/stream.h"
+
+namespace assay::harness {
+
+/// The draw of observation `index` and what the sampler declares at its point: every number by
+/// which distribution and inconsistency judge it, with all digits.
+std::string draw_text(const Sampler& sampler, StreamKey key, std::uint64_t index);
+
+}  // namespace assay::harness

@@ -1,0 +1,106 @@
+#include "stats/uncertain_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "stats/log_efficiency.h"
+#include "stats/tails.h"
+#include "tests/stats/calibration.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::Philox;
+using tests::Shape;
+
+// Z test of a mean, one-sided: ln P(Z >= (10 - t) / 1).
+double log_p_of_mean(std::span<const double> truth) { return normal_tails(10 - truth[0]).upper; }
+
+TEST(UncertainReference, AnExactReferenceChangesNothing) {
+  const std::array exact{UncertainReference{.known = {7, 0}}};
+  const double truth = 7;
+  EXPECT_EQ(log_p_over_references(log_p_of_mean, exact), log_p_of_mean({&truth, 1}));
+}
+
+// By its definition: at level p the sample, given the worst reference of the interval that a tenth
+// of p leaves, rejects at 0.9 p.
+TEST(UncertainReference, PIsWhereTheWorstReferenceRejects) {
+  for (const double error : {.01, .3, 2.0}) {
+    const std::array reference{UncertainReference{.known = {7, error}}};
+    const double log_p = log_p_over_references(log_p_of_mean, reference);
+    const double worst = 7 + error * normal_quantile({Tail::upper, log_p + std::log(.05)});
+    EXPECT_NEAR(log_p_of_mean({&worst, 1}), log_p + std::log(.9), 1e-7) << error;
+  }
+}
+
+TEST(UncertainReference, TheTurnIsLookedAt) {
+  // p is 1 in a sliver about t = 7.05 alone, between two of the nine places.
+  const auto sliver = [](std::span<const double> truth) {
+    return std::abs(truth[0] - 7.05) < 1e-6 ? 0.0 : -50.0;
+  };
+  const std::array without{UncertainReference{.known = {7, 1}, .turn = 7}};
+  const std::array with{UncertainReference{.known = {7, 1}, .turn = 7.05}};
+  EXPECT_LT(log_p_over_references(sliver, without), -40);
+  EXPECT_EQ(log_p_over_references(sliver, with), 0);
+}
+
+TEST(UncertainReference, RefusesErrorsThatAreNone) {
+  const std::array negative{UncertainReference{.known = {7, -1}}};
+  EXPECT_THROW(log_p_over_references(log_p_of_mean, negative), std::domain_error);
+}
+
+// An estimator of variance 1 and of this bias against a reference of this error, n = 2000: the
+// true mean squared error, both sides. With errors far beyond the bias an expansion in the
+// reference is off: fails of the true claim in a tenth of the runs at .01, or no number at all.
+struct Case {
+  double bias;
+  double error;
+};
+
+JointMoments sample_of(Philox& random, double bias) {
+  JointMoments x;
+  for (int i = 0; i < 2000; ++i) x.add(bias + random.normal(), 1);
+  return x;
+}
+
+double log_p_of_truth(Philox& random, Case of, double claimed_error) {
+  const JointMoments x = sample_of(random, of.bias);
+  const std::array reference{
+      UncertainReference{.known = {of.error * random.normal(), claimed_error}, .turn = x.x.mean}};
+  const double efficiency = 1 / (1 + of.bias * of.bias);
+  const auto p = [&](bool upper) {
+    return log_p_over_references(
+        [&](std::span<const double> truth) {
+          const TestResult result = log_efficiency(log_efficiency_of(x, truth[0]), efficiency);
+          return upper ? result.log_p_upper : result.log_p_lower;
+        },
+        reference);
+  };
+  return std::min(0.0, std::numbers::ln2 + std::min(p(true), p(false)));
+}
+
+TEST(UncertainReference, OfAMeanSquaredErrorKeepsItsLevelWhateverItsSize) {
+  std::uint32_t test_case = 361;
+  for (const Case of : {Case{0, .003}, {0, .3}, {0, 10}, {.3, .03}, {1, .03}, {1, 1}, {10, 3}}) {
+    const auto calibration =
+        tests::calibrate({test_case++, 2000, Shape::at_most_uniform},
+                         [&](Philox& random) { return log_p_of_truth(random, of, of.error); });
+    std::printf("  bias %g, error %g: %s\n", of.bias, of.error, calibration.text().c_str());
+    EXPECT_TRUE(calibration.ok) << of.bias << " " << of.error;
+  }
+}
+
+TEST(UncertainReference, HalfTheErrorIsNoticed) {
+  const auto calibration =
+      tests::calibrate({368, 2000, Shape::at_most_uniform}, [&](Philox& random) {
+        return log_p_of_truth(random, {1, .3}, .15);
+      });
+  EXPECT_FALSE(calibration.ok) << calibration.text();
+}
+
+}  // namespace
+}  // namespace assay::stats
