@@ -48,6 +48,14 @@ build_project() {
     echo "the build failed; all of it is in $log" >&2
     return 1
   fi
+  tell_warnings "$log"
+}
+
+# Where CI is not set a warning does not end the build (a newer compiler has new ones), but it is said.
+tell_warnings() {
+  local warnings
+  warnings=$(grep -c 'warning:' "$1") || return 0
+  echo "$warnings warnings of the compiler, errors where CI is set: $1" >&2
 }
 
 # Writes what it reads to a file; on a terminal the last line stands on one line until the end. Needs
