@@ -4,6 +4,7 @@
 
 #include "harness/found_effect.h"
 #include "harness/narrate.h"
+#include "harness/record_of.h"
 #include "stats/holm.h"
 
 namespace assay::harness {
@@ -12,14 +13,16 @@ using reports::Verdict;
 
 namespace {
 
-std::uint64_t earlier_look(const TestOutcome& outcome, const ChannelOutcome& channel) {
+std::uint64_t look_of_p(const TestOutcome& outcome, const ChannelOutcome& channel) {
   // Of several channels the record has no look of its own.
   if (outcome.question.channel_count() > 1) return 0;
   const std::vector<double>& log_p = outcome.history[channel.index].log_p_claimed;
   const stats::LookSchedule& schedule = outcome.plan.looks;
-  std::vector<SingleLook> looks;
+  std::vector<reports::Look> looks;
   for (std::size_t k = 0; k < log_p.size(); ++k) {
-    looks.push_back({schedule.sizes[k], schedule.weights[k], log_p[k]});
+    looks.push_back({.secondaries = schedule.sizes[k],
+                     .weight = schedule.weights[k],
+                     .log10_p = log10_of(log_p[k])});
   }
   return earlier_look(looks);
 }
@@ -33,7 +36,7 @@ void refute(TestOutcome& outcome, std::size_t by) {
                     .channel = outcome.question.channel_count() > 1 ? channel.name : "",
                     .log_p = channel.decision.log_p_claimed,
                     .log_p_adjusted = channel.log_p_adjusted,
-                    .earlier_look = earlier_look(outcome, channel)});
+                    .earlier_look = look_of_p(outcome, channel)});
 }
 
 void take_over(const FamilyMember& member, TestOutcome& outcome, double alpha) {

@@ -39,14 +39,6 @@ std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t sui
   return parts;
 }
 
-std::uint64_t earlier_look(const reports::Test& test) {
-  std::vector<SingleLook> looks;
-  for (const reports::Look& look : test.looks) {
-    looks.push_back({look.secondaries, look.weight, look.log10_p.value_or(0) * std::log(10.0)});
-  }
-  return earlier_look(looks);
-}
-
 void refute(Part& part, const FamilyMember& member) {
   reports::Test& test = part.test;
   test.verdict = Verdict::fail;
@@ -60,7 +52,7 @@ void refute(Part& part, const FamilyMember& member) {
                                .channel = several ? test.channels[by].name : "",
                                .log_p = member.log_p[by],
                                .log_p_adjusted = member.log_p_adjusted[by],
-                               .earlier_look = several ? 0 : earlier_look(test)});
+                               .earlier_look = several ? 0 : earlier_look(test.looks)});
 }
 
 void apply_holm(std::vector<Part>& parts, double alpha) {

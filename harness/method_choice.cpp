@@ -93,12 +93,17 @@ bool are_two_valued(const Question& question, const std::vector<Known>& channels
          });
 }
 
+/// Whether a range, declared or of the law, ends at both sides and the reference has no error.
+bool in_known_bounds(const Question& question, std::size_t channel, const stats::Moments& seen) {
+  const stats::Range range = range_of(question, 0, channel, seen);
+  return std::isfinite(range.low) && std::isfinite(range.high) &&
+         question.references[channel].standard_error == 0;
+}
+
 bool are_bounded(const Question& question, const std::vector<Known>& channels) {
   if (question.of_two()) return false;
   return std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
-    const stats::Range range = range_of(question, 0, known.channel, known.pilot.moments);
-    return !known.rows && std::isfinite(range.low) && std::isfinite(range.high) &&
-           question.references[known.channel].standard_error == 0;
+    return !known.rows && in_known_bounds(question, known.channel, known.pilot.moments);
   });
 }
 
@@ -122,9 +127,8 @@ bool are_unseen_in_ranges(const Question& question, const Pilots& pilots) {
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const stats::Moments& seen = pilot_channel(question, 0, channel, pilots).moments;
     const stats::Range range = range_of(question, 0, channel, seen);
-    const bool finite = std::isfinite(range.low) && std::isfinite(range.high);
-    if (!is_constant(question, 0, channel, seen) || !finite || !(range.low < range.high) ||
-        question.references[channel].standard_error > 0) {
+    if (!is_constant(question, 0, channel, seen) || !(range.low < range.high) ||
+        !in_known_bounds(question, channel, seen)) {
       return false;
     }
   }

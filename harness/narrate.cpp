@@ -298,9 +298,11 @@ std::string left_over(const TestOutcome& outcome) {
 
 }  // namespace
 
-std::uint64_t earlier_look(std::span<const SingleLook> looks) {
+std::uint64_t earlier_look(std::span<const reports::Look> looks) {
   if (looks.empty()) return 0;
-  const auto share_of_p = [](const SingleLook& look) { return look.log_p - std::log(look.weight); };
+  const auto share_of_p = [](const reports::Look& look) {
+    return look.log10_p.value_or(0) - std::log10(look.weight);
+  };
   const auto least = std::ranges::min_element(looks, {}, share_of_p);
   const bool last = share_of_p(*least) == share_of_p(looks.back());
   return last ? 0 : least->secondaries;

@@ -12,14 +12,8 @@ namespace assay::harness {
 /// what could have been missed, or how many more samples would decide.
 std::string narrate(const TestOutcome& outcome);
 
-/// A look by itself.
-struct SingleLook {
-  std::uint64_t secondaries = 0;
-  double weight = 1;
-  double log_p = 0;
-};
 /// The observations of the look that the p of all looks is from; 0 where that is the last.
-std::uint64_t earlier_look(std::span<const SingleLook> looks);
+std::uint64_t earlier_look(std::span<const reports::Look> looks);
 
 /// What Holm's adjustment over the suite alone refutes a claim by.
 struct HolmFinding {

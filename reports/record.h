@@ -179,9 +179,8 @@ struct Test {
   Verdict verdict = Verdict::skipped;
   Verdict expected = Verdict::pass;
   bool ok = false;
-  std::string method;  ///< design: method names
-  bool forced =
-      false;  ///< the suite named it: red gates on the data are shown and do not invalidate
+  std::string method;   ///< design: method names
+  bool forced = false;  ///< by name: red gates on the data are shown and do not invalidate
   std::string null_hypothesis;
   std::string tail;  ///< "two-sided", "upper", "lower"
   Number alpha;      ///< this test's share of the suite's alpha

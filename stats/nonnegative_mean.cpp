@@ -45,9 +45,7 @@ double NonnegativeMean::log_e() const {
   if (null_mean_ < 0 || (null_mean_ == 0 && mean_ > 0)) return infinity;
   const double largest = *std::max_element(log_wealth_.begin(), log_wealth_.end());
   if (largest == infinity) return infinity;  // value / null_mean overflowed
-  double sum = 0;
-  for (const double log_wealth : log_wealth_) sum += std::exp(log_wealth - largest);
-  return largest + std::log(sum / scales);
+  return special::log_sum_of(log_wealth_) - std::log(static_cast<double>(scales));
 }
 
 TestResult NonnegativeMean::result() const {

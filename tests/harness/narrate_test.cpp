@@ -59,10 +59,11 @@ TEST(Narrate, ClassicalPassSaysWhereNothingCouldHaveBeenFound) {
 }
 
 TEST(Narrate, HolmSaysWhichLookItsPIsOf) {
-  const std::vector<SingleLook> looks{
-      {100, .5, std::log(.01)}, {200, .25, std::log(.006)}, {400, .25, std::log(.3)}};
+  const std::vector<reports::Look> looks{{.secondaries = 100, .weight = .5, .log10_p = -2},
+                                         {.secondaries = 200, .weight = .25, .log10_p = -2.22},
+                                         {.secondaries = 400, .weight = .25, .log10_p = -.52}};
   EXPECT_EQ(earlier_look(looks), 100) << ".02, .024 and 1.2";
-  EXPECT_EQ(earlier_look(std::vector<SingleLook>{looks[2], looks[0]}), 0) << "the last";
+  EXPECT_EQ(earlier_look(std::vector<reports::Look>{looks[2], looks[0]}), 0) << "the last";
   EXPECT_EQ(earlier_look({}), 0);
   const reports::Effect effect{.quantity = "difference", .estimate = 1., .low = 0.};
   const auto said = [&](std::uint64_t look) {
