@@ -82,6 +82,11 @@ class Parser {
     if (token.is(",")) {
       fail(token.where, fmt::format("{} is over before `,`; decimals stand after a point", what));
     }
+    if (token.is_word("within")) {
+      fail(token.where, fmt::format("{} is over before `within`, which stands in place of the "
+                                    "relation: `mean(a) within 1% of 0.5`",
+                                    what));
+    }
     if (token.kind != Kind::end) {
       fail(token.where, fmt::format("{} is over before {}", what, shown(token)));
     }
@@ -225,6 +230,7 @@ class Parser {
   }
 
   std::string side_advice(const Token& token) {
+    if (token.text == "pi") return "; write it as a number, 3.141592653589793";
     const std::string near = did_you_mean(token.text, side_words());
     if (!near.empty()) return near;
     // `mean(a) == b`: the name of an estimator where its quantity should be.

@@ -75,6 +75,38 @@ std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::siz
   return observed_channel(question, regions, channel, *data);
 }
 
+/// The least margin that a claim of that size shows itself to lie within with probability 1 - beta
+/// where theta is 0, by bisection to a thousandth; nullopt where no formula tells, or none is.
+std::optional<double> margin_shown(const Question& question, const TestSize& size, const Plan& plan,
+                                   PlannedChannel channel) {
+  constexpr double farthest = 0x1p100;
+  const auto shows = [&](double margin) {
+    channel.regions.within = margin;
+    return power_at(question, size, plan, channel, 0).value_or(0) >= 1 - size.share.beta;
+  };
+  double above = channel.regions.within;
+  if (!(above > 0)) return std::nullopt;
+  constexpr double factor = 2;
+  while (above > 1 / farthest && shows(above / factor)) above /= factor;
+  while (!shows(above)) {
+    if (above > farthest) return std::nullopt;
+    above *= factor;
+  }
+  double below = above / factor;
+  while (above > below * 1.001) {
+    const double middle = std::sqrt(below * above);
+    (shows(middle) ? above : below) = middle;
+  }
+  return above;
+}
+
+std::optional<double> shown_or_found(const Question& question, const TestSize& size,
+                                     const Plan& plan, const PlannedChannel& channel) {
+  const bool shows = channel.regions.relation == Relation::within;
+  return shows ? margin_shown(question, size, plan, channel)
+               : detectable_effect(question, size, plan, channel);
+}
+
 std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilots) {
   const Plan& plan = test.plan;
   const double weight = plan.looks.weights.back();
@@ -85,7 +117,7 @@ std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilot
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
     const auto planned = expected_channel(test, channel, pilots, size.secondaries);
     if (!planned) return std::nullopt;
-    const auto found = detectable_effect(test.question, size, plan, *planned);
+    const auto found = shown_or_found(test.question, size, plan, *planned);
     if (found) largest = std::max(*found, largest.value_or(0));
   }
   return largest;

@@ -9,8 +9,9 @@ namespace assay::harness {
 
 /// What a frozen plan is expected to do, from the pilots.
 struct Forecast {
-  /// The least theta that the last look finds with probability 1 - beta, the largest over the
-  /// channels; nullopt where nothing is planned for that (proofs by `within`, no pilot).
+  /// The least theta that the last look finds with probability 1 - beta, of `within` the least
+  /// margin that it shows with that probability where theta is 0; the largest over the channels.
+  /// nullopt where no formula tells.
   std::optional<double> detectable = {};
   /// Of the last look's secondaries, the share that is drawn on average if theta = 0: an upper
   /// bound. nullopt where a test cannot pass early there or has one look.

@@ -89,8 +89,7 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
   if (regions.relation == Relation::within) effect = regions.within;
   // Data that are given may find less than what was asked for.
   if (!effect || test.question.test->secondaries || test.question.test->budget) {
-    const bool within = regions.relation == Relation::within;
-    effect = forecast.detectable || !within ? forecast.detectable : effect;
+    effect = forecast.detectable;
   }
   if (!effect) return unknown;
   return plain(

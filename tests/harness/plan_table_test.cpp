@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "harness/forecast.h"
@@ -113,6 +114,27 @@ TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
     if (!foretold) continue;
     EXPECT_NEAR(*foretold / *test.detectable, 1, 0.1) << test.name;
   }
+}
+
+// 500 means of four normal values of deviation 1: with alpha and beta .05, both one-sided tests
+// reject where the margin is (1.645 + 1.960) .5 / sqrt 500. The deviation is a pilot's of 2048 of
+// them.
+TEST(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
+  const Workplace place;
+  const std::string text =
+      "suite: margins\nalpha: 0.05\nbeta: 0.05\nestimators:\n"
+      "  normal: {plugin: analytic/normal, mean: 2, primaries: 4}\n"
+      "  wide: {plugin: analytic/dart_throwing}\ntests:\n"
+      "  - {claim: mean(normal) within 0.001 of 2, secondaries: 500}\n"
+      "  - {claim: mean(normal) within 50% of 2, name: beyond, secondaries: 500}\n"
+      "  - {claim: mean(wide) within 1% of analytic, test: bounded, secondaries: 500}\n";
+  const PlannedRun planned = planned_of({load_suite(place.write("margins.yaml", text))});
+  const auto shown = [&](std::size_t i) {
+    return forecast(planned.suites[0]->tests[i].outcome, planned.suites[0]->pilots).detectable;
+  };
+  EXPECT_NEAR(shown(0).value(), 3.605 * .5 / std::sqrt(500), .004);
+  EXPECT_NEAR(shown(1).value(), shown(0).value() / 2, 1e-4) << "of 2";
+  EXPECT_FALSE(shown(2).has_value()) << "bounded, of which no formula tells";
 }
 
 // Three observations in [0, 4] find no difference that the range allows: `detect` is no answer to
