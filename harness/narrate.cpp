@@ -224,6 +224,15 @@ std::string as_many(const TestOutcome& outcome, double secondaries) {
   return fmt::format("{} ({} primaries)", text, reports::human(secondaries * each, 2));
 }
 
+/// How many standard errors half an interval is whose ends each err with `tail`. With few
+/// observations t is far wider than the normal law that more of them will have.
+double interval_errors(const ChannelOutcome& channel, double tail) {
+  const stats::LogTail beyond{stats::Tail::upper, std::log(tail)};
+  const stats::Distribution law = channel.evidence.at(channel.evidence.estimate).distribution;
+  return law.family == "student-t" ? stats::student_t_quantile(beyond, law.parameters.at(0))
+                                   : stats::normal_quantile(beyond);
+}
+
 /// n grows with the square of how much narrower the interval must become.
 std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
@@ -244,11 +253,10 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
     return "the estimate lies where the claim must not pass, yet not clearly so";
   }
-  const double z = stats::normal_quantile({stats::Tail::upper, std::log(beta)});
-  // Half the interval is z standard errors; those of the samples must shrink to what the
-  // reference's leaves of the room.
+  // The standard errors of the samples must shrink to what the reference's leaves of the room.
   const double fixed = reference_error(outcome, channel);
-  const double sampled = half * half / (z * z) - fixed * fixed;
+  const double error = half / interval_errors(channel, beta);
+  const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
   if (!(wanted > 0)) {
     return "no number of samples would decide: the reference's own error forbids it";

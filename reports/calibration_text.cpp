@@ -79,7 +79,8 @@ std::string heading_row() {
 constexpr const char* legend =
     R"(mistaken  runs in which the whole procedure fails a true claim (of tost: passes a false one)
 at least  the exact lower limit of that        open  inconclusive        n  mean observations
-power     right verdicts where the effect is `detect`        by  the method most runs are judged by
+power     right verdicts where the effect is `detect`; empty where no such runs are made
+by        the method that most runs are judged by
 alone     the method forced, in one look, gates without effect        red  with a red gate
 !!  mistaken too often for certain        !  alone mistaken too often for certain without a red gate
 )";

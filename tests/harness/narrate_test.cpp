@@ -128,6 +128,31 @@ TEST(Narrate, InconclusiveSaysHowManyPrimariesThatWouldBe) {
   EXPECT_NEAR(primaries / secondaries, 16, 1) << "two digits of each are shown";
 }
 
+// (2.576 + 2.326)^2 / .8^2 = 37.5 observations of deviation 1. From three the deviation is read off
+// a t interval with 2 degrees of freedom, nine times as wide as a normal one in the square. That
+// the mean of s^2 over 20 seeds exceeds 2 has the probability 2e-4.
+TEST(Narrate, AdviceFromFewObservationsIsNotThatOfTheirWideInterval) {
+  double sum = 0;
+  int told = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RunOptions options;
+    options.seed = seed;
+    const reports::Test test = test_named(
+        run_text("suite: few\nestimators:\n  normal: {plugin: analytic/normal, primaries: 1}\n"
+                 "tests:\n  - {claim: mean(normal) == 0, detect: 0.8, secondaries: 3}\n",
+                 options),
+        "mean(normal) == 0");
+    double advice = 0;
+    const std::size_t at = test.message.find("about ");
+    if (at == std::string::npos) continue;
+    ASSERT_EQ(std::sscanf(test.message.c_str() + at, "about %lf secondaries", &advice), 1);
+    sum += advice;
+    ++told;
+  }
+  ASSERT_GE(told, 15);
+  EXPECT_LT(sum / told, 2 * 37.5);
+}
+
 TEST(Narrate, InconclusiveSaysWhenNoNumberWouldDecide) {
   expect_said(told("claim: mean(normal) == 2 +- 0.05, detect: 2%, secondaries: 100000"),
               Verdict::inconclusive, "the reference's own error");
