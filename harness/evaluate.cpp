@@ -13,6 +13,7 @@
 #include "harness/image_judge.h"
 #include "harness/narrate.h"
 #include "harness/observation_faults.h"
+#include "harness/plan.h"
 #include "harness/rows.h"
 #include "harness/sampler_setup.h"
 
@@ -307,7 +308,7 @@ void take_look(TestWork& work, bool may_go_on) {
     take_sound_look(work, may_go_on);
   } catch (const NoDensity& failure) {
     outcome.channels.clear();
-    settle(outcome, Verdict::error, lack_of_density(outcome, failure.what()));
+    settle(outcome, Verdict::error, lack_of_density(outcome.question, failure));
   } catch (const std::domain_error& error) {
     // A defect of the program's own: what it says of this test is lost, and of no other.
     outcome.channels.clear();

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "estimators/ready_made.h"
 #include "harness/consistency_setup.h"
+#include "harness/declared_range.h"
 #include "harness/pool.h"
 #include "harness/shell.h"
 
@@ -32,34 +31,11 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Po
   return text + "; " + replay_line(outcome, summary.first_nonfinite);
 }
 
-/// A declared range chooses methods, and one of them rests on it. A sum may be rounded beyond it.
-std::string outside_of_range(const Subject& side, const Summary& drawn) {
-  // A mutant declares what its original does.
-  const bool mutant = !side.estimator->entry->information.original.empty();
-  if (mutant || side.image || side.setup->observations()) return "";
-  const std::vector<Channel> channels = side.setup->channels();
-  const auto finite = [](double end) { return std::isfinite(end) ? std::abs(end) : 0; };
-  for (const std::size_t i : side.channels) {
-    const Channel& channel = channels[i];
-    const double slack = 1e-9 * (finite(channel.low) + finite(channel.high));
-    const stats::Moments& seen = drawn.channels[i].moments;
-    if (seen.count == 0) continue;
-    const bool above = seen.maximum > channel.high + slack;
-    if (!above && !(seen.minimum < channel.low - slack)) continue;
-    return fmt::format(
-        "`{}` gave {:.17g} in its channel `{}`, {} {:.17g}, which it declares to be "
-        "its `{}`",
-        side.estimator->name, above ? seen.maximum : seen.minimum, channel.name,
-        above ? "above" : "below", above ? channel.high : channel.low, above ? "high" : "low");
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string undrawable(const TestWork& work) {
   const TestOutcome& outcome = work.outcome;
-  if (!outcome.plan.error.empty()) return lack_of_density(outcome, outcome.plan.error);
+  if (!outcome.plan.error.empty()) return outcome.plan.error;
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
     const Subject& side = outcome.question.subjects[subject];
     const Pool& pool = *work.pools[subject];
@@ -75,11 +51,6 @@ std::string undrawable(const TestWork& work) {
     if (std::string fault = outside_of_range(side, drawn); !fault.empty()) return fault;
   }
   return "";
-}
-
-std::string lack_of_density(const TestOutcome& outcome, const std::string& why) {
-  return fmt::format("the density that `{}` declares cannot be had: {}",
-                     outcome.question.subjects[0].estimator->name, why);
 }
 
 std::string first_contradiction(const TestWork& work) {

@@ -10,9 +10,6 @@ namespace assay::harness {
 /// there was no plan; empty where they can.
 std::string undrawable(const TestWork& work);
 
-/// That the density a test needs cannot be had.
-std::string lack_of_density(const TestOutcome& outcome, const std::string& why);
-
 /// Which draw was the first to contradict its sampler, as the end of a sentence; empty where none
 /// did.
 std::string first_contradiction(const TestWork& work);

@@ -8,13 +8,13 @@
 #include <stdexcept>
 
 #include "harness/critical.h"
+#include "harness/declared_range.h"
 #include "harness/gate_text.h"
 #include "harness/image_plan.h"
 #include "harness/method_choice.h"
 #include "harness/pool.h"
 #include "harness/rows.h"
 #include "harness/sample_size.h"
-#include "harness/sampler_setup.h"
 
 namespace assay::harness {
 namespace {
@@ -170,7 +170,23 @@ void require_density(const Question& question) {
   dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
 }
 
+/// Which estimator's pilot gave what its channel declares that it never gives: single primaries
+/// show what means may not. Empty where none did.
+std::string misdeclared(const Question& question, const Pilots& pilots) {
+  for (const Subject& subject : question.subjects) {
+    const Pilot* const pilot = pilot_of(subject, pilots);
+    if (pilot == nullptr || pilot->sums == nullptr) continue;
+    if (std::string fault = outside_of_range(subject, *pilot->sums); !fault.empty()) return fault;
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string lack_of_density(const Question& question, const NoDensity& why) {
+  return fmt::format("the density that `{}` declares cannot be had: {}",
+                     question.subjects[0].estimator->name, why.what());
+}
 
 std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
   std::uint64_t sum = 0;
@@ -192,6 +208,11 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     const bool single = question.of_laws() && !subject.estimator->primaries;
     plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
   }
+  plan.error = misdeclared(question, pilots);
+  if (!plan.error.empty()) {
+    plan.looks = one_look(2);
+    return plan;
+  }
   try {
     require_density(question);
     const std::uint64_t most = most_available(question, plan);
@@ -205,7 +226,7 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     plan.invalid = in_words(error);
   } catch (const NoDensity& failure) {
     plan.looks = one_look(2);
-    plan.error = failure.what();
+    plan.error = lack_of_density(question, failure);
   }
   return plan;
 }

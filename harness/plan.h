@@ -6,12 +6,16 @@
 #include "harness/outcome.h"
 #include "harness/pilot.h"
 #include "harness/primaries.h"
+#include "harness/sampler_setup.h"
 
 namespace assay::harness {
 
 /// The plan of one test. InputError at the test's place where its margin is beyond reach.
 Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                const Primaries& primaries);
+
+/// What a test says whose claim needs a density that cannot be had.
+std::string lack_of_density(const Question& question, const NoDensity& why);
 
 /// Primaries that a secondary of each subject costs together; of an image in all its elements.
 std::uint64_t primaries_of_each(const Question& question, const Plan& plan);

@@ -135,7 +135,7 @@ std::vector<std::string> gate_notes(const std::vector<reports::Gate>& gates) {
 /// Why the test will be an error: its density could not be had, or an estimator not be piloted; ""
 /// where nothing is known.
 std::string trouble_of(const TestOutcome& test, const Pilots& pilots) {
-  if (!test.plan.error.empty()) return lack_of_density(test, test.plan.error);
+  if (!test.plan.error.empty()) return test.plan.error;
   for (const Subject& side : test.question.subjects) {
     const auto found = pilots.find(side.estimator->name);
     if (found == pilots.end() || found->second.trouble.empty()) continue;

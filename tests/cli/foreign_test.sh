@@ -198,6 +198,24 @@ END
   tells out 'gave 3.5 in its channel `x`, above 3, which it declares to be its `high`'
 }
 
+test_of_means_single_primaries_show_a_value_outside_of_the_declared_range() {
+  # The mean of the hundred primaries that a secondary averages is 1.01 or 1.02.
+  cat >rare.sh <<'END'
+printf 'assay 1 text\nchannel x low 0 high 3\naverages\nready\n'
+while read -r high low first count primaries; do
+  i=$first
+  while [ "$i" -lt $((first + count)) ]; do
+    if [ "$primaries" -gt 1 ]; then echo "1.0$((1 + i % 2))"; else echo "$((i % 100 == 99 ? 4 : 1))"; fi
+    i=$((i + 1))
+  done
+  echo "$high $low $first $count $primaries"
+done
+END
+  suite rare.yaml 'rare: {plugin: process, command: [sh, rare.sh], primaries: 100}'
+  expect 1 run rare.yaml
+  tells out 'gave 4 in its channel `x`, above 3, which it declares to be its `high`'
+}
+
 test_a_renderer_that_no_test_names_is_asked_for_its_size_alone() {
   echo 'echo start >>starts; echo 1 >$2' >render.sh
   printf '%s\n' 'suite: idle' 'estimators:' '  sound: {plugin: analytic/normal}' \

@@ -17,7 +17,7 @@ import yaml
 # language, of plugins, and between keys.
 BEYOND_A_SCHEMA = """
 allow_above_detect allow_absolute allow_in_a_proof anchor claim_block claim_distribution claim_folded claim_law
-claim_mixed claim_quoted claim_two_lines cost_of_a_mean detect_within detect_zero duplicate_estimator
+claim_mixed claim_pi claim_quoted claim_two_lines claim_within_last cost_of_a_mean detect_within detect_zero duplicate_estimator
 duplicate_key duplicate_name duplicate_nested_key merge_key over_not_ascending
 over_unknown_parameter over_without_slope reference_of_a_mean reference_text reference_unknown
 slope_without_over statement_glob_of_nothing statement_of_an_invalid_test
