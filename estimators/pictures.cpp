@@ -295,6 +295,41 @@ MomentChannels usual_moments(const ExrFile& file, const PictureChannels& channel
   return {};
 }
 
+namespace {
+
+/// Samples from which on a pixel's own variance is known well enough.
+constexpr double many_samples = 1e5;
+
+/// The mean of a component's values in the pixels around one and in itself.
+double around(const std::vector<double>& values, const ImageShape& shape, std::size_t element) {
+  const std::size_t components = shape.components.size();
+  const std::size_t pixel = element / components;
+  const std::size_t x = pixel % shape.width;
+  const std::size_t y = pixel / shape.width;
+  double sum = 0;
+  double count = 0;
+  for (std::size_t v = y > 0 ? y - 1 : 0; v < std::min<std::size_t>(y + 2, shape.height); ++v) {
+    for (std::size_t u = x > 0 ? x - 1 : 0; u < std::min<std::size_t>(x + 2, shape.width); ++u) {
+      sum += values[(v * shape.width + u) * components + element % components];
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+/// Of few samples a variance is too small where their mean is, and zero where a light was missed:
+/// it is raised to that of the pixels around.
+void raise_where_few(const std::vector<double>& counts, const ImageShape& shape,
+                     std::vector<double>& squared_errors) {
+  const std::vector<double> own = squared_errors;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (counts[i / shape.components.size()] >= many_samples) continue;
+    squared_errors[i] = std::max(own[i], around(own, shape, i));
+  }
+}
+
+}  // namespace
+
 PictureMoments read_moments(const std::string& name, const std::string& patterns,
                             const MomentChannels& errors) {
   const ExrFile file(name);
@@ -316,8 +351,10 @@ PictureMoments read_moments(const std::string& name, const std::string& patterns
     const double count = counts[i / shape.components.size()];
     // A variance is taken about the mean of the same samples, and that of second moments is not yet
     // made up for it.
-    value = std::sqrt(value / (by_variance ? count : count - 1));
+    value /= by_variance ? count : count - 1;
   }
+  raise_where_few(counts, shape, moments.standard_error);
+  for (double& value : moments.standard_error) value = std::sqrt(value);
   return moments;
 }
 

@@ -12,10 +12,14 @@ double critical_value(double alpha, bool two_sided) {
   return stats::normal_quantile({stats::Tail::upper, std::log(two_sided ? alpha / 2 : alpha)});
 }
 
-double smallest_level(const Question& question, const FamilyPlace& place) {
+double smallest_share(const Question& question, double share) {
   const TestEntry& test = *question.test;
   const bool planned = test.detect || test.claim.relation == Relation::within;
-  return planned && !test.secondaries ? place.share.alpha / most_looks : place.share.alpha;
+  return planned && !test.secondaries ? share / most_looks : share;
+}
+
+double smallest_level(const Question& question, const FamilyPlace& place) {
+  return smallest_share(question, place.share.alpha);
 }
 
 bool two_sided(const Question& question) {

@@ -19,6 +19,9 @@ inline constexpr std::uint64_t least_secondaries = 100;
 // What a test without `detect` takes.
 inline constexpr std::uint64_t usual_secondaries = 1000;
 
+/// The smallest part of a share that a look of this test may have.
+double smallest_share(const Question& question, double share);
+
 /// The smallest level at which a look of this test may be taken.
 double smallest_level(const Question& question, const FamilyPlace& place);
 

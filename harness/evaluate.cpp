@@ -139,6 +139,9 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
       outcome.gates.push_back(std::move(gate));
     }
     outcome.channels.push_back(channel_outcome(work, channel, data));
+    if (const auto& images = outcome.channels.back().image) {
+      outcome.gates.push_back(own_skewness_gate(*images));
+    }
   }
   return constants;
 }

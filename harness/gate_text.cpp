@@ -38,8 +38,11 @@ constexpr Meaning meanings[] = {
      "the observations are not normal enough for this test of their variance: their excess "
      "kurtosis is {0}, limit {1}"},
     {"p of a power law",
-     "the points lie on no power law: p {0}, limit {1}; let `over` begin where one holds, often at "
-     "larger values"},
+     "the points lie on no power law: p {0} of the best one, limit {1}; let `over` begin where one "
+     "holds, often at larger values"},
+    {"skewness of the images, theirs alone",
+     "rare bright pixels (fireflies), of which the pilot saw too few, move the tails of the test "
+     "by a factor of {0} at least, limit {1}; take more samples a picture"},
     {"rounding",
      "the values are rounded too coarsely to be held against a continuous law: a step is {0} of "
      "the distance that is rejected, limit {1}; write more digits"},

@@ -181,6 +181,25 @@ void require_spread(const Question& question, bool any, const stats::ImageDistan
       all_alike(question)));
 }
 
+/// What ImageOutcome::level_factor says.
+template <class Real>
+double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
+  const auto replicates = static_cast<double>(pair.replicates());
+  std::vector<stats::CellPilot> sides{
+      {.stack = pair.first(), .factor = 1, .replicates = replicates}};
+  if (pair.of_two()) {
+    sides.push_back({.stack = pair.second(), .factor = -1, .replicates = replicates});
+  }
+  const std::vector<stats::CellTails> tails =
+      stats::cell_tails(sides, test.share.alpha, stats::WeightsFrom::pilot, on_all_threads);
+  if (!test.independent) return tails.back().common;
+  double largest = 1;
+  for (const stats::CellTails& cells : tails) {
+    if (cells.size >= test.smallest_cell) largest = std::max(largest, cells.common);
+  }
+  return largest;
+}
+
 /// What the pair shows, and how far it is apart.
 template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
@@ -200,6 +219,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(pair.extent(), outcome);
   outcome.uniform_error = uniform_error(pair, relative);
+  outcome.level_factor = level_factor(pair, test);
   return distance;
 }
 

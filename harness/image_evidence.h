@@ -37,6 +37,11 @@ struct ImageOutcome {
   bool by_sign_flips = false;  ///< whether the sum of squares was judged so
   double wanted = 0;           ///< replicates that would decide, as far as can be told; 0: none
   double uniform_error = 0;    ///< standard error of theta, were it the same everywhere
+  /// By which the tails of some cells that take part depart from nominal at least, by the skewness
+  /// that cells of a size have in common in the test's own images: what a pilot has not met (rare
+  /// lights). Of images whose pixels depend on each other the whole image's; 1 of streamed
+  /// pictures.
+  double level_factor = 1;
 };
 
 struct ImageEvidence {

@@ -58,6 +58,16 @@ ImageViews images_of(const TestWork& work, std::size_t subject) {
           work.outcome.question.subjects[subject].channels};
 }
 
+reports::Gate own_skewness_gate(const ImageOutcome& images) {
+  // What is beyond it in one normal test of some 1e5: common factors are lower limits.
+  constexpr double limit = 2;
+  const double factor = images.level_factor;
+  return {.name = "skewness of the images, theirs alone",
+          .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
+          .limit = limit,
+          .state = factor <= limit ? "green" : "red"};
+}
+
 std::string means_where_it_differs(const TestWork& work) {
   const TestOutcome& outcome = work.outcome;
   const Question& question = outcome.question;

@@ -17,6 +17,9 @@ ImageTest image_test(const TestWork& work);
 /// The observations of this look, the subject's elements of each.
 ImageViews images_of(const TestWork& work, std::size_t subject);
 
+/// Whether rare lights, met by the test and not by its pilot, move the level of what took part.
+reports::Gate own_skewness_gate(const ImageOutcome& images);
+
 /// "; the mean at that place is 1.03 against 1, +3 %": of a failed claim on images whose deciding
 /// sum is one over a window, what it shows. Else "".
 std::string means_where_it_differs(const TestWork& work);

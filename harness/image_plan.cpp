@@ -15,6 +15,7 @@
 #include "harness/sample_size.h"
 #include "stats/image_cell_skewness.h"
 #include "stats/image_equivalence.h"
+#include "stats/image_pyramid.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
@@ -132,6 +133,39 @@ std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const Im
   return tails[kept].size;
 }
 
+/// What shows that images are no farther apart than a margin is the unbiased squared bias, a sum of
+/// products of two replicates' differences over N elements of variance V of a mean. Its variance is
+/// 2 N V^2, its third cumulant N V^3 (8 + 4 g^2), g the skewness of a mean: rare lights leave it
+/// near zero until two fall on one element. What g adds to its skewness, 4 g^2 / sqrt(8 N), may
+/// raise the tail at the critical value by the level factor, exp(skewness x^3 / 3).
+bool keeps_margin(const stats::CellTails& elements, std::size_t count, double critical) {
+  const double skewness = elements.common_skewness;
+  const double added = 4 * skewness * skewness / std::sqrt(8 * static_cast<double>(count));
+  return added * critical * critical * critical / 3 <= std::log(level_factor);
+}
+
+/// The sum over all of the image is left where no smaller one keeps its level. It has a share of
+/// the level, and so much more of it that the family's false alarms are a quarter more is allowed.
+void require_whole_image(const stats::CellTails& whole, const stats::ImageExtent& extent,
+                         Plan& plan) {
+  const double limit = 1 + (level_factor - 1) / stats::whole_image_share(extent);
+  const bool kept = whole.common <= limit && whole.factor <= limit + whole.scatter;
+  if (kept || !plan.gates_invalidate || !plan.invalid.empty()) return;
+  plan.gates.back().state = "red";
+  plan.invalid =
+      "rare bright pixels (fireflies) carry so much of the images that not even their sums over "
+      "all "
+      "pixels keep their level: take more samples a picture, or more pictures";
+}
+
+void refuse_margin(Plan& plan) {
+  if (!plan.gates_invalidate || !plan.invalid.empty()) return;
+  plan.invalid =
+      "rare bright pixels (fireflies) carry so much of the images that these would seem to agree "
+      "until two of them fall on one pixel: take more samples a picture, or more pictures; without "
+      "`detect` or `within` differences alone are looked for";
+}
+
 stats::AnyImageStack stack_of(const ImageViews& views, const stats::ImageExtent& extent) {
   if (views.single_precision()) return stats::ImageStack<float>{extent, views.images<float>()};
   return stats::ImageStack<double>{extent, views.images<double>()};
@@ -178,19 +212,26 @@ std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, c
   const auto note = [&](const std::vector<stats::CellTails>& tails) {
     plan.smallest_cell = smallest_cell(tails, *question.subjects[0].image, plan);
     plan.symmetric = keeps_squares(tails.front(), question.subjects[0].channels.size());
+    require_whole_image(tails.back(), extent_of(*question.subjects[0].image), plan);
   };
   if (plan.look) {
     note(plan.look->tails);
     return replicates.first;
   }
   const double level = smallest_level(question, place);
+  const double critical = critical_value(smallest_share(question, place.share.beta), false);
+  const auto from = plan.method.frozen.weights.empty() ? stats::WeightsFrom::halves_of_the_test
+                                                       : stats::WeightsFrom::pilot;
   PilotSides pilot(question, plan, pilots);
   for (std::uint64_t count = replicates.first;; count *= 2) {
     pilot.set_replicates(count);
     const std::vector<stats::CellTails> tails =
-        stats::cell_tails(pilot.sides(), level, plan.method.frozen.weights, on_all_threads);
-    if (keeps_level(tails.back()) || 2 * count > replicates.most) {
+        stats::cell_tails(pilot.sides(), level, from, on_all_threads);
+    const bool shows = !plans_replicates(question) ||
+                       keeps_margin(tails.front(), question.subjects[0].channels.size(), critical);
+    if ((keeps_level(tails.back()) && shows) || 2 * count > replicates.most) {
       note(tails);
+      if (!shows) refuse_margin(plan);
       return count;
     }
   }

@@ -222,8 +222,8 @@ class Looking {
         question_.subjects, [](const Subject& side) { return side.image->independent; });
     pyramid_.emplace(pair, stats::PyramidOptions{
                                .energy = independent, .z = look_->z, .for_each = on_all_threads});
-    tails_.emplace(pilot_sides(), smallest_level(question_, place_), std::span<const double>(),
-                   on_all_threads);
+    tails_.emplace(pilot_sides(), smallest_level(question_, place_),
+                   stats::WeightsFrom::halves_of_the_test, on_all_threads);
     if (!independent && flip_size(place_.share, pictures_)) flips_.emplace();
   }
 

@@ -11,6 +11,7 @@
 #include "stats/image_moments.h"
 #include "stats/image_windows.h"
 #include "stats/level_factors.h"
+#include "stats/lost_lights.h"
 #include "stats/tails.h"
 #include "stats/vector_copies.h"
 
@@ -38,20 +39,22 @@ ASSAY_VECTOR_COPIES void add_part(std::vector<Cumulants>& cells, const SidePart&
   const std::size_t size = cells.size();
   const double count = side.count;
   for (std::size_t i = 0; i < size; ++i) {
-    const double m2 = moments[i].m2;
-    const double deviation = side.factor * std::sqrt(m2 / (count - 1));
-    const double skewness = std::sqrt(count / m2) * (moments[i].m3 / m2);
-    const double scale = deviation * deviation * deviation / (side.replicates * side.replicates);
-    const bool varied = m2 > 0;
-    sum[i].variance += varied ? deviation * deviation / side.replicates : 0.0;
-    sum[i].third += varied ? scale * skewness : 0.0;
-    sum[i].third_variance += varied ? 6 / count * scale * scale : 0.0;
+    const Cumulants part = cumulants_of_mean({.m2 = moments[i].m2,
+                                              .m3 = moments[i].m3,
+                                              .count = count,
+                                              .factor = side.factor,
+                                              .replicates = side.replicates});
+    const bool varied = moments[i].m2 > 0;
+    sum[i].variance += varied ? part.variance : 0.0;
+    sum[i].third += varied ? part.third : 0.0;
+    sum[i].third_variance += varied ? part.third_variance : 0.0;
   }
 }
 
-// Weights come from every `step`-th image of a side's pilot, from `first` on, the rest of it is
-// what they are given to: as a test's halves do.
-std::size_t step_of(const CellPilot& side) {
+// Weights come from every `step`-th image of a side's pilot, the rest of it is what they are given
+// to.
+std::size_t step_of(const CellPilot& side, WeightsFrom from) {
+  if (from == WeightsFrom::pilot) return halves;
   const double half = std::max(side.replicates / halves, 1.0);
   const double steps = static_cast<double>(replicates_of(side.stack)) / half;
   return static_cast<std::size_t>(std::max(steps, static_cast<double>(halves)));
@@ -98,12 +101,6 @@ std::vector<double> weights_of(std::span<const CellPilot> sides,
   return weight;
 }
 
-std::vector<EveryImage> images_of_choice(std::span<const CellPilot> sides, std::size_t first) {
-  std::vector<EveryImage> which;
-  for (const CellPilot& side : sides) which.push_back({first, step_of(side)});
-  return which;
-}
-
 Groups aligned_groups(const ImageExtent& extent) {
   Groups groups = window_groups(extent, 1 - energy_share, RowCellMoments::row_unit + 1);
   std::erase_if(groups, [](const WindowGroup& group) { return group.grid != Grid::aligned; });
@@ -131,28 +128,23 @@ void check_sides(const char* function, std::span<const CellPilot> sides) {
 
 }  // namespace
 
-RowCellTails::RowCellTails(std::span<const CellPilot> sides, double level,
-                           std::span<const double> weights, ForEach for_each)
+RowCellTails::RowCellTails(std::span<const CellPilot> sides, double level, WeightsFrom from,
+                           ForEach for_each)
     : extent_(extent_of(sides[0].stack)),
-      weights_(weights),
       for_each_(std::move(for_each)),
       groups_(aligned_groups(extent_)) {
   check::inside_unit({function_name, "level"}, level);
   check_sides(function_name, sides);
-  if (!weights.empty() && weights.size() != extent_.elements()) {
-    check::fail({function_name, "weights.size()"}, weights.size(), "that of the elements");
-  }
-  std::size_t choices = weights.empty() ? most_choices : 1;
+  std::size_t choices = most_choices;
   for (const CellPilot& side : sides) {
-    sides_.push_back({side.factor, side.replicates});
-    if (weights.empty()) choices = std::min(choices, step_of(side));
+    sides_.push_back({side.factor, side.replicates, step_of(side, from)});
+    choices = std::min(choices, sides_.back().step);
   }
   const std::vector<LevelFactors> factors = no_factors(groups_, extent_, level);
   const RowCellMoments cells(extent_, groups_);
   const std::vector<double> none(cells.tiles().elements());
   for (std::size_t i = 0; i < choices; ++i) {
-    choices_.push_back({weights.empty() ? std::optional(i) : std::nullopt,
-                        std::vector<RowCellMoments>(sides.size(), cells),
+    choices_.push_back({i, std::vector<RowCellMoments>(sides.size(), cells),
                         std::vector<std::vector<double>>(extent_.channels, none),
                         std::vector<std::vector<LevelFactors>>(extent_.channels, factors)});
   }
@@ -160,6 +152,12 @@ RowCellTails::RowCellTails(std::span<const CellPilot> sides, double level,
 
 void RowCellTails::take(std::span<const CellPilot> sides, RowRange rows) {
   for (Choice& choice : choices_) take(sides, rows, choice);
+}
+
+std::vector<EveryImage> RowCellTails::images_of(const Choice& choice) const {
+  std::vector<EveryImage> which;
+  for (const Side& side : sides_) which.push_back({choice.images, side.step});
+  return which;
 }
 
 void RowCellTails::add_side(const Side& side, double count, const ChannelMoments& moments,
@@ -172,26 +170,57 @@ void RowCellTails::add_side(const Side& side, double count, const ChannelMoments
 }
 
 void RowCellTails::take(std::span<const CellPilot> sides, RowRange rows, Choice& choice) {
-  std::vector<double> own;
-  std::span<const double> weights = weights_;
-  std::size_t first_weight = 0;
-  if (choice.images) {
-    own = weights_of(sides, images_of_choice(sides, *choice.images), rows, for_each_);
-    weights = own;
-    first_weight = with_neighbours(rows, extent_).elements(extent_).first;
-  }
-  count_weighted(weights.subspan(rows.elements(extent_).first - first_weight), rows, choice);
+  const std::vector<double> weights = weights_of(sides, images_of(choice), rows, for_each_);
+  const std::size_t first_weight = with_neighbours(rows, extent_).elements(extent_).first;
+  count_weighted(std::span(weights).subspan(rows.elements(extent_).first - first_weight), rows,
+                 choice);
+  const std::vector<EveryImage> weighing = images_of(choice);
+  std::vector<LostLight> lost;
   ChannelCumulants cells;
   for (std::size_t s = 0; s < sides.size(); ++s) {
+    const auto some = lost_lights(sides[s], weighing[s], weights, first_weight, rows);
+    lost.insert(lost.end(), some.begin(), some.end());
     const auto of_stack = [&](const auto& stack) {
       return choice.cells[s].take(
-          WeightedImages{stack, weights, first_weight, step_of(sides[s]), choice.images}, rows,
+          WeightedImages{stack, weights, first_weight, sides_[s].step, choice.images}, rows,
           for_each_);
     };
     const ChannelMoments moments = std::visit(of_stack, sides[s].stack);
     add_side(sides_[s], static_cast<double>(choice.cells[s].images()), moments, cells);
   }
+  add_lost(lost, rows, choice, cells);
   add_cells(cells, rows, choice);
+  choice.lost.insert(choice.lost.end(), lost.begin(), lost.end());
+}
+
+void RowCellTails::add_lost(std::span<const LostLight> lost, RowRange rows, const Choice& choice,
+                            ChannelCumulants& cells) const {
+  std::size_t done = 0;
+  for (const WindowGroup& group : groups_) {
+    if (choice.cells[0].is_larger(group)) continue;
+    const std::size_t in_a_row = (extent_.width + group.size - 1) / group.size;
+    for (const LostLight& light : lost) {
+      const std::size_t cell =
+          (light.y - rows.first) / group.size * in_a_row + light.x / group.size;
+      add_to(cells[light.channel][done + cell], light.cumulants);
+    }
+    done += choice.cells[0].cells_in(group, rows);
+  }
+}
+
+void RowCellTails::add_lost_to_larger(const Choice& choice, ChannelCumulants& cells) const {
+  std::size_t done = 0;
+  for (const WindowGroup& group : groups_) {
+    if (!choice.cells[0].is_larger(group)) continue;
+    for (std::size_t i = 0; i < group.windows.size(); ++i) {
+      const Rectangle& window = group.windows[i];
+      for (const LostLight& light : choice.lost) {
+        const bool inside = light.x - window.x < window.width && light.y - window.y < window.height;
+        if (inside) add_to(cells[light.channel][done + i], light.cumulants);
+      }
+    }
+    done += group.windows.size();
+  }
 }
 
 void RowCellTails::add_cells(const ChannelCumulants& cells, RowRange rows, Choice& choice) const {
@@ -233,6 +262,9 @@ void RowCellTails::add_larger(Choice& choice) const {
       // Nothing varied in it: what is left is the rounding of larger sums that it was taken from.
       if (weighted[i] == 0) cells[c][i] = {};
     }
+  }
+  add_lost_to_larger(choice, cells);
+  for (std::size_t c = 0; c < extent_.channels; ++c) {
     std::size_t done = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (!choice.cells[0].is_larger(groups_[g])) continue;
@@ -276,11 +308,11 @@ std::vector<double> cell_weights(std::span<const CellPilot> sides) {
   return weights_of(sides, std::vector<EveryImage>(sides.size()), all, one_by_one);
 }
 
-std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
-                                  std::span<const double> weights, const ForEach& for_each) {
+std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level, WeightsFrom from,
+                                  const ForEach& for_each) {
   // What is known of cells is not kept of all rows at a time.
   constexpr std::size_t rows_at_a_time = 256;
-  RowCellTails tails(sides, level, weights, for_each);
+  RowCellTails tails(sides, level, from, for_each);
   const std::size_t height = extent_of(sides[0].stack).height;
   for (std::size_t row = 0; row < height; row += rows_at_a_time) {
     tails.take(sides, {row, std::min(row + rows_at_a_time, height)});

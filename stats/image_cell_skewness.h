@@ -1,14 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "stats/for_each.h"
 #include "stats/image.h"
 #include "stats/image_cell_moments.h"
+#include "stats/image_moments.h"
 #include "stats/level_factors.h"
+#include "stats/lost_lights.h"
 
 namespace assay::stats {
 
@@ -36,30 +37,33 @@ struct CellTails {
 // must be to be found at `level`, by the share of its size (image_windows.h). Cells that never
 // varied do not count.
 //
-// A cell's sum is weighted as in the test: by `weights` (those of cell_weights, if the test has
-// them), or, where they are empty, as each half of the replicates weighs the other: as many images
-// of the pilot as half a test has give the rest their weights, up to eight such choices averaged.
+// A cell's sum is weighted as in the test, and never by weights from the images that it sums: what
+// an image of the pilot lit (a firefly) has no weight among its own, and all of it among those that
+// follow. Weights of a pilot are stood for by those that either half of it gives to the other.
+// Where halves of the test weigh each other, as many images of the pilot as half a test has give
+// the rest their weights, up to eight such choices averaged.
 //
 // The pilot's own scatter is divided out: a sample skewness has variance 6 / n at the normal law,
 // and E cosh(c (g + error)) = cosh(c g) exp(c^2 var / 2). What is left of it is `scatter`, for one
 // cell cosh(3.9 c sd) exp(-c^2 var / 2) - 1, a 1 / sqrt(cells) of it for their mean.
 //
 // Of few replicates that says little: skewness 2 in 16 of them is lost in the scatter of one cell.
-// What all cells have in common is not: `common` is cosh(c g) at the cells' mean skewness, with its
-// sign, less 3.9 of its standard errors (those of independent cells; of others it may be too
-// large).
+// What all cells have in common is not: `common` is cosh(c g) at the skewness of level_factors.h,
+// with its sign, less 3.9 of its standard errors (those of independent cells; of others it may be
+// too large).
 // Throws std::domain_error as image_stack does, for different extents, and for a level outside
-// (0, 1), or weights of another number than the elements.
+// (0, 1).
+enum class WeightsFrom { halves_of_the_test, pilot };
 std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level,
-                                  std::span<const double> weights = {},
+                                  WeightsFrom from = WeightsFrom::halves_of_the_test,
                                   const ForEach& for_each = one_by_one);
 
 // The same of pilots of which some rows are there at a time, with the same bits.
 class RowCellTails {
  public:
   // `sides` tell the extent, the number of images and what the rest of them says.
-  RowCellTails(std::span<const CellPilot> sides, double level, std::span<const double> weights = {},
-               ForEach for_each = one_by_one);
+  RowCellTails(std::span<const CellPilot> sides, double level,
+               WeightsFrom from = WeightsFrom::halves_of_the_test, ForEach for_each = one_by_one);
 
   // Rows that follow on those before: multiples of row_unit, but for the last. The stacks must have
   // `rows_beside` more at either side, as far as the image has.
@@ -73,18 +77,20 @@ class RowCellTails {
  private:
   // Of one choice of weights.
   struct Choice {
-    std::optional<std::size_t> images;  // that they come from; none: from elsewhere
+    std::size_t images;                 // the first of those that they come from
     std::vector<RowCellMoments> cells;  // of each side
     // How many of a tile's elements have a weight, of each channel: counted in integers, where sums
     // leave no rounding.
     std::vector<std::vector<double>> weighted;
     std::vector<std::vector<LevelFactors>> factors;  // of a channel's groups
+    std::vector<LostLight> lost;
   };
 
   // What one side of the comparison is beside its stack.
   struct Side {
     double factor;
     double replicates;
+    std::size_t step;  // of this many images one gives weights to the others
   };
   using ChannelCumulants = std::vector<std::vector<Cumulants>>;
 
@@ -93,11 +99,14 @@ class RowCellTails {
   void add_side(const Side& side, double count, const ChannelMoments& moments,
                 ChannelCumulants& cells) const;
   void add_cells(const ChannelCumulants& cells, RowRange rows, Choice& choice) const;
+  void add_lost(std::span<const LostLight> lost, RowRange rows, const Choice& choice,
+                ChannelCumulants& cells) const;
   void add_larger(Choice& choice) const;
+  void add_lost_to_larger(const Choice& choice, ChannelCumulants& cells) const;
   LevelFactors factors_of(std::size_t group) const;
+  std::vector<EveryImage> images_of(const Choice& choice) const;
 
   ImageExtent extent_;
-  std::span<const double> weights_;
   ForEach for_each_;
   std::vector<WindowGroup> groups_;
   std::vector<Side> sides_;

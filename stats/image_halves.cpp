@@ -72,19 +72,13 @@ std::vector<double> smoothed(const ImageExtent& extent, std::vector<double> valu
   return values;
 }
 
-// The reference leaves the difference, and its error joins the variance. It joins that of the
-// weight only where something varied: alone, an error of 1e-17 would weigh 1e17.
-void add_reference(const ImageReference& reference, const ImageExtent& rows, Half& half) {
-  std::vector<double> squared(half.difference.size());
-  for (std::size_t i = 0; i < squared.size(); ++i) {
+// The reference leaves the difference, and its error joins the variance. It joins no weight: where
+// the reference is bright by chance its error is large, and the sums would lean to the dark.
+void add_reference(const ImageReference& reference, Half& half) {
+  for (std::size_t i = 0; i < half.difference.size(); ++i) {
     const double error = check::reference_error("image_pyramid", reference, half.first + i);
-    squared[i] = error * error;
     half.difference[i] -= reference.value[half.first + i];
-    half.variance[i] += squared[i];
-  }
-  const std::vector<double> steady = steadied(rows, squared);
-  for (std::size_t i = 0; i < squared.size(); ++i) {
-    if (half.weight[i] > 0) half.weight[i] += steady[i];
+    half.variance[i] += error * error;
   }
 }
 
@@ -106,7 +100,7 @@ Half half_of(const ImagePair<Real>& pair, std::size_t half, RowRange rows,
   result.varied.reserve(range.size());
   for (const double variance : result.variance) result.varied.push_back(variance > 0);
   result.weight = steadied(part, result.variance);
-  if (pair.reference != nullptr) add_reference(*pair.reference, part, result);
+  if (pair.reference != nullptr) add_reference(*pair.reference, result);
   for (std::size_t i = 0; i < result.weight.size(); ++i) {
     result.weight[i] = result.varied[i] ? 1 / std::sqrt(result.weight[i]) : 0;
   }

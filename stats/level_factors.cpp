@@ -88,6 +88,7 @@ void LevelFactors::add(std::span<const Cumulants> cells) {
       excess_ += factors.excess[i];
       arguments_ += argument;
       scatters_ += factors.scatter[i];
+      add_to(cells_, some[i]);
     }
   }
 }
@@ -98,11 +99,15 @@ void LevelFactors::merge(const LevelFactors& other) {
   excess_ += other.excess_;
   arguments_ += other.arguments_;
   scatters_ += other.scatters_;
+  add_to(cells_, other.cells_);
 }
 
 double LevelFactors::common_skewness(double copies) const {
-  const double scatter = scatter_quantile * std::sqrt(scatters_ * copies) / count_;
-  return std::max(0.0, std::abs(arguments_) / count_ - scatter) / scale_;
+  const double mean = std::abs(arguments_) - scatter_quantile * std::sqrt(scatters_ * copies);
+  const double third =
+      std::abs(cells_.third) - scatter_quantile * std::sqrt(cells_.third_variance * copies);
+  const double pooled = third / count_ / std::pow(cells_.variance / count_, 1.5);
+  return std::max({0.0, mean / count_ / scale_, pooled});
 }
 
 double LevelFactors::factor_of(double skewness) const { return std::cosh(scale_ * skewness); }

@@ -127,15 +127,16 @@ def stack_rows(b):
     for h in (0, 1):
         difference = a[h::2].mean(axis=0)
         variance = a[h::2].var(axis=0, ddof=1) / len(a[h::2])
+        own = variance  # a reference's error joins no weight
         if b is None:
             difference = difference - planes(REFERENCE)
             variance = variance + planes(ERROR) ** 2
         else:
             difference = difference - b[h::2].mean(axis=0)
-            variance = variance + b[h::2].var(axis=0, ddof=1) / len(b[h::2])
+            variance = own = variance + b[h::2].var(axis=0, ddof=1) / len(b[h::2])
         d.append(difference)
         v.append(variance)
-        w.append(1 / np.sqrt((variance + smooth(variance)) / 2))
+        w.append(1 / np.sqrt((own + smooth(own)) / 2))
     name = "reference" if b is None else "stack"
     for size, grid, share, list_ in windows()[1:]:
         found = []
