@@ -11,6 +11,7 @@
 #include "harness/evidence_ratio.h"
 #include "harness/evidence_slope.h"
 #include "harness/exact_size.h"
+#include "harness/lost_to_rounding.h"
 #include "harness/rows.h"
 #include "stats/skewness_corrected_t.h"
 
@@ -84,6 +85,11 @@ std::vector<reports::Gate> cost_gates(const Question& question, std::span<const 
                             " of " + question.subjects[subject].estimator->name));
   }
   return gates;
+}
+
+/// At which the verdict rejects values of theta: a pass those beyond its margin, a fail the others.
+double largest_level(const ErrorShare& share, const Regions& regions) {
+  return regions.has_forbidden() ? std::max(share.alpha, share.beta) : share.alpha;
 }
 
 }  // namespace
@@ -163,7 +169,8 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
     for (const reports::Gate& gate : cost_gates(question, data, x)) gates.push_back(gate);
   }
   if (question.kind == QuestionKind::slope) {
-    gates.push_back(power_law_gate(question, channel, data));
+    gates.push_back(power_law_gate(question, channel, data,
+                                   largest_level(outcome.share(), outcome.plan.regions[channel])));
   }
   return gates;
 }
@@ -174,7 +181,11 @@ std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,
   if (outcome.question.of_variances() || kind == QuestionKind::efficiency) {
     return variance_without_spread(outcome.question, channel, data);
   }
-  return outcome.question.of_means() ? unseen_could_decide(outcome, channel, data) : "";
+  if (kind == QuestionKind::slope) return point_without_spread(outcome.question, channel, data);
+  if (!outcome.question.of_means()) return "";
+  std::string reason =
+      is_exact(outcome.plan.method) ? "" : lost_to_rounding(outcome.question, channel, data);
+  return reason.empty() ? unseen_could_decide(outcome, channel, data) : reason;
 }
 
 }  // namespace assay::harness

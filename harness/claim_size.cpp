@@ -42,6 +42,7 @@ double point_variance(const Question& question, std::size_t i, std::size_t chann
                       const Pilots& pilots, const Plan& plan) {
   const stats::Moments& pilot = moments_of(question, i, channel, pilots);
   const double n = question.subjects[i].averaged(plan.primaries[i]);
+  if (!(pilot.m2 > 0)) return 0;
   if (question.test->claim.left.name == QuantityName::variance) {
     return 2 + (pilot.kurtosis() - 3) / n;
   }
@@ -84,11 +85,14 @@ std::optional<stats::SlopeData> expected_points(const Question& question, std::s
   Fit fit{.constant = 1, .standard_error = 0};
   if (!logarithms) {
     fit = fit_constant(question, channel, pilots, question.references[channel].value);
-    if (std::abs(fit.constant) < least_visibility * fit.standard_error) return std::nullopt;
+    // No number where a point has no spread.
+    const bool seen = std::abs(fit.constant) >= least_visibility * fit.standard_error;
+    if (!seen) return std::nullopt;
   }
   for (std::size_t i = 0; i < question.compared(); ++i) {
     const double size = question.sizes[i];
     const double variance = point_variance(question, i, channel, pilots, plan);
+    if (!(variance > 0)) return std::nullopt;
     data.points.push_back({.size = size,
                            .estimate = logarithms ? exponent * std::log(size)
                                                   : fit.constant * std::pow(size, exponent),

@@ -27,6 +27,10 @@ struct Regions {
   bool two_sided() const;
   /// Whether there is a forbidden region that a pass must exclude.
   bool has_forbidden() const { return proof() || detect.has_value(); }
+  /// Whether the claim names a margin of its own.
+  bool has_margin() const {
+    return allow != 0 || detect.has_value() || relation == Relation::within;
+  }
 };
 
 /// Natural logarithm of the p-value of "theta in C".

@@ -178,6 +178,13 @@ Verdict verdict_of_channels(const TestOutcome& outcome) {
   return decide(decisions, outcome.plan.regions[0], outcome.place.share.beta);
 }
 
+/// Of points on no power law every slope is rejected, which shows nothing of any: whatever method
+/// is forced.
+bool shows_by_no_slope(const TestOutcome& outcome) {
+  return outcome.question.kind == QuestionKind::slope && outcome.verdict == Verdict::pass &&
+         outcome.plan.regions[0].has_forbidden() && !red_gates(outcome.gates).empty();
+}
+
 /// The verdict of everything known at this look, and why.
 void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constants) {
   const std::string red = outcome.plan.gates_invalidate ? red_gates(outcome.gates) : "";
@@ -188,6 +195,7 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
     return;
   }
   settle(outcome, verdict_of_channels(outcome), "");
+  if (shows_by_no_slope(outcome)) settle(outcome, Verdict::invalid, red_gates(outcome.gates));
   for (const ConstantVerdict& constant : constants) {
     const bool says_all = outcome.channels.empty() && outcome.message.empty();
     if (says_all || badness(constant.verdict) > badness(outcome.verdict)) {

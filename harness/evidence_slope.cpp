@@ -1,9 +1,12 @@
 #include "harness/evidence_slope.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "harness/constant.h"
 #include "harness/evidence_ratio.h"
 #include "stats/log_variance.h"
 #include "stats/slope.h"
@@ -15,8 +18,8 @@ using stats::Moments;
 using stats::SlopeData;
 using stats::SlopePoint;
 
-// A wrong alarm of the gate is one in a hundred thousand under a power law.
-constexpr double least_log_p_of_fit = -11.512925464970229;
+// However small the level of the test: a wrong alarm of the gate is then one in a hundred thousand.
+constexpr double least_p_of_fit = 1e-5;
 
 QuantityName name_of(const Question& question) { return question.test->claim.left.name; }
 
@@ -147,19 +150,34 @@ Evidence evidence_of_slope(const Question& question, std::size_t channel,
 }
 
 reports::Gate power_law_gate(const Question& question, std::size_t channel,
-                             std::span<const ChannelData> data) {
+                             std::span<const ChannelData> data, double level) {
   const SlopeData points = points_of(question, channel, data);
   double log_p = 0;
   if (is_exact(points)) {
     const Slopes slopes = exact_slopes(points);
     if (slopes.most - slopes.least > 2 * exact_tolerance) log_p = std::log(0.0);
-  } else if (points.points.size() > 2) {
-    log_p = stats::slope_estimate(points).log_p_fit;
+  } else {
+    log_p = stats::slope_estimate(points).log_p_best;
   }
+  const double limit = std::max(least_p_of_fit, level);
   return {.name = "p of a power law",
           .value = std::exp(log_p),
-          .limit = std::exp(least_log_p_of_fit),
-          .state = log_p < least_log_p_of_fit ? "red" : "green"};
+          .limit = limit,
+          .state = log_p <= std::log(limit) ? "red" : "green"};
+}
+
+std::string point_without_spread(const Question& question, std::size_t channel,
+                                 std::span<const ChannelData> data) {
+  if (name_of(question) == QuantityName::cost) return "";
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    if (!is_constant(question, i, channel, data[i].moments)) continue;
+    return fmt::format(
+        "every observation of `{}` is {:.10g} but for rounding: of a point without spread no error "
+        "is "
+        "known, and a rare value may be unseen, so that no exponent is fitted",
+        question.subjects[i].estimator->name, data[i].moments.mean);
+  }
+  return "";
 }
 
 }  // namespace assay::harness

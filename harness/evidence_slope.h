@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "harness/method.h"
 #include "reports/record.h"
@@ -12,8 +13,16 @@ namespace assay::harness {
 Evidence evidence_of_slope(const Question& question, std::size_t channel,
                            std::span<const ChannelData> data);
 
-/// Whether the points lie on a power law at all: ln p of the fit, red below 1e-5.
+/// Whether the points lie on a power law at all: p of the slope that fits best, red below 1e-5 and
+/// up to `level`, the largest that a verdict rejects a slope at. Where it is red no slope is left
+/// there, and a claim about one is neither shown nor refuted by rejecting all others. Under a power
+/// law it is red with probability `level` at most.
 reports::Gate power_law_gate(const Question& question, std::size_t channel,
-                             std::span<const ChannelData> data);
+                             std::span<const ChannelData> data, double level);
+
+/// Why the points of a sweep cannot be fitted: one of them has no spread, so that its error is
+/// unknown; "" where all have. Costs that never vary are exact.
+std::string point_without_spread(const Question& question, std::size_t channel,
+                                 std::span<const ChannelData> data);
 
 }  // namespace assay::harness

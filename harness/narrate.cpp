@@ -31,6 +31,13 @@ std::string plain(std::string text) {
 
 /// "difference from the reference is +0.31 % [+0.12 %, +0.5 %] (99 % interval)".
 std::string finding(const reports::Effect& effect) {
+  // Of an exponent where one point alone differs from zero.
+  if (!effect.estimate) {
+    const std::string interval = reports::interval_text(effect);
+    return fmt::format(
+        "{} is no finite number{}", reports::effect_name(effect),
+        interval.empty() ? "" : fmt::format(" {} ({})", interval, reports::interval_name(effect)));
+  }
   return fmt::format("{} is {}", reports::effect_name(effect), reports::named_effect_text(effect));
 }
 
@@ -115,6 +122,20 @@ std::string what_is_not_excluded(const Question& question, const ChannelOutcome&
   return high_counts && no_high ? "larger quantile" : "";
 }
 
+/// A distance has an end at 0 at least, unless even 0 is too large for these data.
+bool holds_no_effect(const ChannelOutcome& channel) {
+  return channel.evidence.distance && !channel.effect.low && !channel.effect.high;
+}
+
+std::string passed_by_empty_interval(const ChannelOutcome& channel) {
+  return fmt::format(
+      "no evidence against the claim; {} or more is excluded, {}; the data lie closer to the claim "
+      "than chance leads to expect, so that there is no {} interval",
+      reports::margin_text(*channel.regions.detect, channel.effect),
+      p_text(channel.decision.log_p_forbidden),
+      reports::confidence_text(channel.effect.confidence));
+}
+
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.evidence.exact) return "as claimed: what never varies is compared exactly";
   if (!channel.regions.has_forbidden()) {
@@ -143,6 +164,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     }
     return text;
   }
+  if (holds_no_effect(channel)) return passed_by_empty_interval(channel);
   const double excluded = excluded_beyond(channel);
   const std::string interval =
       fmt::format("the {}{}", reports::interval_name(channel.effect), in_channel(outcome, channel));

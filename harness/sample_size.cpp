@@ -119,6 +119,7 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   }
   planned.unit = unit_of_theta(question, channel, other_mean);
   if (planned.unit == 0) {
+    if (!planned.regions.has_margin()) return std::nullopt;
     throw std::domain_error(
         "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give the "
         "margin as a number");

@@ -46,7 +46,7 @@ Interval effect_interval(const std::function<LogTails(double)>& tails, double st
                          double confidence) {
   check::inside_unit({"effect_interval", "confidence"}, confidence);
   const double log_tail = std::log((1 - confidence) / 2);
-  // Both tails are monotone in w; an end is 0 when even w = 0 is not rejected from that side.
+  // Both tails are monotone in w; the low end is 0 when even w = 0 is not rejected from that side.
   const auto end = [&](auto excess) {
     if (excess(0.0) >= 0) return 0.0;
     double high = start;
@@ -57,6 +57,10 @@ Interval effect_interval(const std::function<LogTails(double)>& tails, double st
         excess, 0.0, high, boost::math::tools::eps_tolerance<double>(44), iterations);
     return std::midpoint(ends.first, ends.second);
   };
+  if (tails(0).lower < log_tail) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return {none, none, confidence};
+  }
   return {end([&](double w) { return tails(w).upper - log_tail; }),
           end([&](double w) { return log_tail - tails(w).lower; }), confidence};
 }

@@ -65,7 +65,8 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options = {});
 // observations.
 TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect);
 
-// Central interval of w, low end at least 0.
+// Central interval of w: effect_interval() of chi_square_effect.h, both ends NaN where no w is
+// left.
 Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence);
 
 }  // namespace assay::stats

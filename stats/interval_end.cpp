@@ -17,6 +17,8 @@ double interval_end(const std::function<double(double)>& excess, double centre, 
     step *= 2;
     if (std::abs(step) > 1e300) return std::copysign(std::numeric_limits<double>::infinity(), step);
   }
+  // Where rounding leaves no number between: the end is the centre to within its last digit.
+  if (inside == centre + step) return inside;
   std::uintmax_t iterations = 200;
   const auto [low, high] = std::minmax({inside, centre + step});  // values, not references
   const auto ends = boost::math::tools::toms748_solve(

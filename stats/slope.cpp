@@ -245,7 +245,9 @@ SlopeEstimate slope_estimate(const SlopeData& unordered) {
   const auto best = std::min_element(
       nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.misfit < b.misfit; });
   const double degrees = degrees_of(data) - 1;
-  SlopeEstimate estimate{best->slope, degrees > 0 ? log_p(best->misfit, degrees) : 0};
+  SlopeEstimate estimate{.slope = best->slope,
+                         .log_p_fit = degrees > 0 ? log_p(best->misfit, degrees) : 0,
+                         .log_p_best = log_p(best->misfit, degrees + 1)};
   if (best == nodes.begin()) estimate.slope = -infinity;
   if (best + 1 == nodes.end()) estimate.slope = infinity;
   return estimate;

@@ -69,6 +69,9 @@ SlopeSet slope_set(const SlopeData& data, double confidence);
 struct SlopeEstimate {
   double slope = 0;  // argmin Q; +-infinity when the best fit has but one point different from 0
   double log_p_fit = 0;  // ln P(chi-square, K - 2 degrees >= Q(slope)): is it a power law at all?
+  // ln P(chi-square, K - 1 degrees >= Q(slope)), the largest of any slope: below ln(1 - confidence)
+  // slope_set() is empty, which under a power law has probability 1 - confidence at most.
+  double log_p_best = 0;
 };
 SlopeEstimate slope_estimate(const SlopeData& data);
 

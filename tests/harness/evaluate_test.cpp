@@ -102,6 +102,21 @@ TEST(Evaluate, HolmIsNotForTestsOutsideTheFamily) {
             (std::vector{Verdict::fail, Verdict::pass}));
 }
 
+// Its per cent is of no use to a claim that names none.
+TEST(Evaluate, AnotherMeanOfZeroIsInvalidForItsMarginOnlyWhereThereIsOne) {
+  const auto said = [](const std::string& more) {
+    return run_test(R"(suite: nil
+estimators:
+  it: {plugin: analytic/normal}
+  nil: {plugin: analytic/normal, deviation: 0}
+tests: [{claim: mean(it) == mean(nil))" +
+                    more + "}]\n")
+        .message;
+  };
+  EXPECT_NE(said(", detect: 1%").find("a margin in per cent"), std::string::npos);
+  EXPECT_EQ(said("").find("margin"), std::string::npos) << said("");
+}
+
 std::string one_test(const std::string& estimator, const std::string& test) {
   return "suite: one\nestimators:\n  it: " + estimator +
          "\n  uniform: {plugin: analytic/exponential_uniform, primaries: 64}\ntests:\n  - {name: "

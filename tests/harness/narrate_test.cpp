@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "questions.h"
 #include "reports/effect.h"
 #include "running.h"
 
@@ -74,6 +75,38 @@ TEST(Narrate, HolmSaysWhichLookItsPIsOf) {
             std::string::npos)
       << said(100);
   EXPECT_EQ(said(0).find("look"), std::string::npos) << said(0);
+}
+
+// An exponent of points of which one alone is not zero is infinite.
+TEST(Narrate, WithoutANumberSaysThatThereIsNone) {
+  const auto said = [](const reports::Effect& effect) {
+    return narrate_holm({.effect = effect, .log_p = -14, .log_p_adjusted = -13});
+  };
+  EXPECT_TRUE(said({.quantity = "difference from the claimed slope"})
+                  .starts_with("difference from the claimed slope is no finite number, p = "));
+  EXPECT_TRUE(
+      said({.quantity = "difference from the claimed slope", .high = -3., .confidence = .98})
+          .starts_with("difference from the claimed slope is no finite number [to -3] "
+                       "(98 % interval), p = "));
+}
+
+// Of an interval that even no effect lies outside of, its end excludes nothing.
+TEST(Narrate, PassWithAnEmptyIntervalSaysWhatTheTestExcludes) {
+  const auto asked = ask_text(R"(suite: even
+estimators: {area: {plugin: luminaire/area}}
+tests: [{name: t, claim: distribution(area.point) == density, detect: 0.05}]
+)");
+  TestOutcome outcome{.question = asked->question("t")};
+  outcome.verdict = Verdict::pass;
+  outcome.plan.looks = {{1000}, {1}};
+  ChannelOutcome channel{.regions = {.detect = 0.05}};
+  channel.evidence.distance = true;
+  channel.decision.log_p_forbidden = std::log(0.0125);
+  channel.effect = {.quantity = "effect size w", .estimate = 0., .confidence = 0.92};
+  outcome.channels = {channel};
+  EXPECT_EQ(narrate(outcome),
+            "no evidence against the claim; 0.05 or more is excluded, p = 0.013; the data lie "
+            "closer to the claim than chance leads to expect, so that there is no 92 % interval");
 }
 
 TEST(Narrate, NeverSaysThatAClaimIsAccepted) {

@@ -127,6 +127,17 @@ TEST(ChiSquareFit, ErrorsOfTheProbabilitiesAreAllowedForBothWays) {
   EXPECT_LT(excluded, 14);
 }
 
+// Counts that are what is expected, to the last one: chance leaves more, even where w = 0.
+TEST(ChiSquareFit, DataTooCloseToTheLawHaveNoIntervalRatherThanOneOfNoWidth) {
+  const CellCounts even{.observed = std::vector<std::uint64_t>(100, 100),
+                        .probability = std::vector<double>(100, .01)};
+  const ChiSquareFit fit = chi_square_fit(even);
+  const Interval interval = chi_square_fit_interval(fit, .92);
+  EXPECT_TRUE(std::isnan(interval.low) && std::isnan(interval.high)) << interval.high;
+  // The test at an effect stands: a large one is excluded.
+  EXPECT_LT(chi_square_fit_effect(fit, .1).log_p_lower, std::log(.01));
+}
+
 TEST(ChiSquareFit, TheEffectMovesTheNullAndTheIntervalInvertsIt) {
   const CellCounts counts{{700, 300, 500, 500}, {.25, .25, .25, .25}};
   const ChiSquareFit fit = chi_square_fit(counts);
@@ -140,7 +151,7 @@ TEST(ChiSquareFit, TheEffectMovesTheNullAndTheIntervalInvertsIt) {
   EXPECT_GT(interval.high, fit.effect);
   EXPECT_NEAR(chi_square_fit_effect(fit, interval.low).log_p_upper, std::log(.01), 1e-6);
   EXPECT_NEAR(chi_square_fit_effect(fit, interval.high).log_p_lower, std::log(.01), 1e-6);
-  EXPECT_EQ(chi_square_fit_interval(chi_square_fit(golden(), {.minimum_expected = 5}), .9).low, 0);
+  EXPECT_EQ(chi_square_fit_interval(chi_square_fit(golden(), {.minimum_expected = 5}), .98).low, 0);
 }
 
 TEST(ChiSquareFit, BadCellsThrow) {

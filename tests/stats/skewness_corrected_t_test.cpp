@@ -276,5 +276,18 @@ TEST(SkewnessCorrectedT, HallsNormalReferenceIsNoticedOnFiftyNormalValues) {
   EXPECT_FALSE(levels(laws::normal, 25, 244, with_normal_law).kept_001());
 }
 
+// Near 1e15 a ratio of two means is known to less than the last digit of 1.
+TEST(SkewnessCorrectedRatio, OfAnIntervalNarrowerThanADoubleIsThatDouble) {
+  Moments x;
+  Moments y;
+  for (int i = 0; i < 1500; ++i) {
+    x.add(1e15 + (i * 37 % 8) * .125);
+    y.add(1e15 + 1 + (i * 11 % 8) * .125);
+  }
+  const Interval interval = skewness_corrected_ratio_interval(x, y, .99);
+  EXPECT_NEAR(interval.low, 0, 1e-14);
+  EXPECT_NEAR(interval.high, 0, 1e-14);
+}
+
 }  // namespace
 }  // namespace assay::stats

@@ -109,6 +109,29 @@ TEST(Slope, AlternatingSignsAreNoPowerLaw) {
   EXPECT_LT(slope_estimate(known(5)).log_p_fit, std::log(1e-20));
 }
 
+TEST(Slope, TheSetIsEmptyWhereEvenTheBestSlopeIsRejected) {
+  for (const int index : {0, 1, 3, 4}) {
+    const double p = std::exp(slope_estimate(known(index)).log_p_best);
+    EXPECT_FALSE(slope_set(known(index), 1 - p * .999).empty) << index;
+    EXPECT_TRUE(slope_set(known(index), 1 - p * 1.001).empty) << index;
+  }
+}
+
+// On a power law no more than .01 of the samples leave no slope at .01: of 4000 more than 75 have a
+// probability below 1e-6.
+TEST(Slope, OnAPowerLawTheSetIsSeldomEmpty) {
+  Philox random(1719);
+  int empty = 0;
+  for (int run = 0; run < 4000; ++run) {
+    SlopeData data;
+    for (const double size : {8.0, 16.0, 32.0, 64.0}) {
+      data.points.push_back({size, 1 / size + .004 * random.normal(), .004});
+    }
+    empty += slope_estimate(data).log_p_best <= std::log(.01);
+  }
+  EXPECT_LE(empty, 75);
+}
+
 TEST(Slope, TwoPointsGiveTheRatioOfTwoNumbers) {
   // (b1 M1^-s - b2 M2^-s)^2 over its variance, at s = -1: (.2 * 1 - .05 * 4)^2 = 0.
   const SlopeData data{{{1, .2, .01}, {4, .05, .01}}};
