@@ -45,6 +45,7 @@ class Pool {
   /// To keep every block by itself (some hundred bytes for each 16384 primaries); before anything
   /// is drawn.
   void keep_blocks() { keeps_blocks_ = true; }
+  bool keeps_blocks() const { return keeps_blocks_; }
   /// To store the first `count` observations whole; before anything is drawn.
   void keep_observations(std::uint64_t count) {
     kept_observations_ = std::max(kept_observations_, count);

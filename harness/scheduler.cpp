@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "harness/interrupt.h"
 #include "harness/parallel.h"
@@ -23,35 +24,54 @@ struct Drawn {
   std::shared_ptr<Pool::Block> block;  // shared: a pipeline's items are copied
 };
 
-/// The blocks still to draw, pool by pool. Of a pool that is in trouble no more are: what comes
+/// The blocks still to draw, pool by pool; at last those of pools that are compared by their
+/// seconds, of the one that is farthest behind: they are timed side by side, on a machine that
+/// slows down as well. (Of all pools that would leave workers idle: blocks are folded in their
+/// order, and a long one holds up short ones.) Of a pool that is in trouble no more are: what comes
 /// after counts for nothing, and may take a time-out each. Handing out and folding may go on at the
 /// same time, so that the pool itself cannot be asked.
 class TaskList {
  public:
   explicit TaskList(const std::vector<std::shared_ptr<Pool>>& pools)
       : pools_(pools), in_trouble_(pools.size()) {
-    for (std::size_t i = 0; i < pools.size(); ++i) in_trouble_[i] = !pools[i]->trouble().empty();
-    if (!pools_.empty()) next_ = pools_[0]->drawn();
+    for (std::size_t i = 0; i < pools.size(); ++i) {
+      in_trouble_[i] = !pools[i]->trouble().empty();
+      begun_.push_back(pools[i]->drawn());
+    }
+    next_ = begun_;
   }
 
   void note_trouble(std::size_t pool) { in_trouble_[pool] = true; }
 
   bool next(Task& task) {
-    while (pool_ < pools_.size() && (in_trouble_[pool_] || next_ >= pools_[pool_]->requested())) {
-      if (++pool_ < pools_.size()) next_ = pools_[pool_]->drawn();
-    }
-    if (pool_ == pools_.size()) return false;
-    const Pool& pool = *pools_[pool_];
-    task = {pool_, next_, pool.block_end(next_)};
-    next_ = task.last;
+    const std::optional<std::size_t> pool = next_pool();
+    if (!pool) return false;
+    task = {*pool, next_[*pool], pools_[*pool]->block_end(next_[*pool])};
+    next_[*pool] = task.last;
     return true;
   }
 
  private:
+  std::optional<std::size_t> next_pool() const {
+    std::optional<std::size_t> last;
+    for (std::size_t i = 0; i < pools_.size(); ++i) {
+      if (in_trouble_[i] || next_[i] >= pools_[i]->requested()) continue;
+      if (!pools_[i]->keeps_blocks()) return i;
+      if (!last || share_of(i) < share_of(*last)) last = i;
+    }
+    return last;
+  }
+
+  /// Of what is to be drawn of it, the part that was handed out.
+  double share_of(std::size_t pool) const {
+    return static_cast<double>(next_[pool] - begun_[pool]) /
+           static_cast<double>(pools_[pool]->requested() - begun_[pool]);
+  }
+
   const std::vector<std::shared_ptr<Pool>>& pools_;
   std::vector<std::atomic<bool>> in_trouble_;
-  std::size_t pool_ = 0;
-  std::uint64_t next_ = 0;
+  std::vector<std::uint64_t> begun_;
+  std::vector<std::uint64_t> next_;
 };
 
 /// A worker's estimators, made when it first needs one.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -83,6 +84,58 @@ void expect_same(const Summary& one, const Summary& other) {
               other.channels[c].details().histogram.counts);
     EXPECT_EQ(one.channels[c].nonfinite, other.channels[c].nonfinite);
   }
+}
+
+/// Notes in which order observations are drawn.
+class NotingSetup final : public Setup {
+ public:
+  NotingSetup(char name, std::string& order) : name_(name), order_(order) {}
+  std::vector<Channel> channels() const override { return {{.name = "x"}}; }
+  std::unique_ptr<Estimator> make() const override {
+    class Noting final : public Estimator {
+     public:
+      Noting(char name, std::string& order) : name_(name), order_(order) {}
+      void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost&) override {
+        out[0] = random.uniform();
+        order_ += name_;
+      }
+
+     private:
+      char name_;
+      std::string& order_;
+    };
+    return std::make_unique<Noting>(name_, order_);
+  }
+
+ private:
+  char name_;
+  std::string& order_;
+};
+
+// What is compared by its seconds is timed side by side: at any time as large a part of one pool is
+// drawn as of the other, but for a block, though one has four times as many observations.
+TEST(Pool, OfWhichSecondsAreComparedAreDrawnSideBySide) {
+  std::string order;
+  std::vector<std::shared_ptr<Pool>> pools;
+  for (const char name : {'a', 'b'}) {
+    pools.push_back(std::make_shared<Pool>(std::make_shared<NotingSetup>(name, order),
+                                           stream_key(1, std::string(1, name), "", 0), 1));
+    pools.back()->keep_blocks();
+    pools.back()->request(name == 'a' ? 200000 : 50000);
+  }
+  Silence silence;
+  draw_all(pools, {.threads = 1}, silence);
+  ASSERT_EQ(order.size(), 250000U);
+  double drawn_a = 0;
+  double drawn_b = 0;
+  double farthest = 0;
+  for (const char name : order) {
+    (name == 'a' ? drawn_a : drawn_b) += 1;
+    farthest = std::max(farthest, std::abs(drawn_a / 200000 - drawn_b / 50000));
+  }
+  const double block = static_cast<double>(pools[1]->block_end(0)) / 50000;
+  EXPECT_LE(farthest, 2 * block);
+  EXPECT_LT(block, 0.25);
 }
 
 TEST(Pool, OfEveryThreadCountHasTheSameBits) {
