@@ -317,14 +317,25 @@ double around(const std::vector<double>& values, const ImageShape& shape, std::s
   return sum / count;
 }
 
+std::vector<double> means_of_components(const std::vector<double>& values,
+                                        const ImageShape& shape) {
+  const std::size_t components = shape.components.size();
+  std::vector<double> means(components);
+  for (std::size_t i = 0; i < values.size(); ++i) means[i % components] += values[i];
+  for (double& mean : means) mean /= static_cast<double>(values.size() / components);
+  return means;
+}
+
 /// Of few samples a variance is too small where their mean is, and zero where a light was missed:
-/// it is raised to that of the pixels around.
+/// it is raised to that of the pixels around, and where these missed it too to that of the image.
 void raise_where_few(const std::vector<double>& counts, const ImageShape& shape,
                      std::vector<double>& squared_errors) {
   const std::vector<double> own = squared_errors;
+  const std::vector<double> anywhere = means_of_components(own, shape);
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (counts[i / shape.components.size()] >= many_samples) continue;
     squared_errors[i] = std::max(own[i], around(own, shape, i));
+    if (squared_errors[i] == 0) squared_errors[i] = anywhere[i % anywhere.size()];
   }
 }
 

@@ -78,10 +78,10 @@ MomentChannels usual_moments(const ExrFile& file, const PictureChannels& channel
 /// One file as a mean with its error sqrt(variance / samples), of second moments
 /// sqrt((second moment - mean^2) / (samples - 1)), where a difference below 0 is rounding and taken
 /// as 0. Where there are fewer than 1e5 samples the squared error is that of the 3 x 3 pixels
-/// around, on average, if that is larger: a few dark samples show a variance that is too small, and
-/// one of zero where they missed a light. InputError at the file for a channel that is not there, a
-/// texel that is not finite, a negative variance, and a count that is not given, below 1 or, of
-/// second moments, below 2.
+/// around, on average, if that is larger, and where all of these are zero that of the image: a few
+/// dark samples show a variance that is too small, and one of zero where they missed a light.
+/// InputError at the file for a channel that is not there, a texel that is not finite, a negative
+/// variance, and a count that is not given, below 1 or, of second moments, below 2.
 PictureMoments read_moments(const std::string& file, const std::string& patterns,
                             const MomentChannels& errors);
 

@@ -15,6 +15,7 @@
 #include "stats/image_equivalence.h"
 #include "stats/image_pyramid.h"
 #include "stats/image_reference_error.h"
+#include "stats/image_windows.h"
 #include "stats/moments.h"
 #include "stats/tails.h"
 
@@ -107,8 +108,8 @@ stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
   if (!relative) return stats::with_norm(distance, static_cast<double>(extent.elements()));
   if (!(distance.squared_norm > 0)) {
     throw std::domain_error(
-        "the image that it is held against is zero within its noise, and a margin in per cent of "
-        "it means nothing; give the margin as a number");
+        "the image that it is held against is zero within its noise, and nothing is a per cent of "
+        "it; with `detect` or `within` as a number differences are in its own unit");
   }
   return distance;
 }
@@ -192,10 +193,13 @@ double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
   }
   const std::vector<stats::CellTails> tails =
       stats::cell_tails(sides, test.share.alpha, stats::WeightsFrom::pilot, on_all_threads);
-  if (!test.independent) return tails.back().common;
   double largest = 1;
   for (const stats::CellTails& cells : tails) {
-    if (cells.size >= test.smallest_cell) largest = std::max(largest, cells.common);
+    if (cells.size < test.smallest_cell) continue;
+    // Cells that depend on each other scatter as one.
+    const auto count = static_cast<double>(stats::aligned_cells(pair.extent(), cells.size));
+    const double of_dependent = cells.factor - cells.scatter * std::sqrt(count);
+    largest = std::max(largest, test.independent ? cells.common : of_dependent);
   }
   return largest;
 }

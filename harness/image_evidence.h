@@ -39,8 +39,8 @@ struct ImageOutcome {
   double uniform_error = 0;    ///< standard error of theta, were it the same everywhere
   /// By which the tails of some cells that take part depart from nominal at least, by the skewness
   /// that cells of a size have in common in the test's own images: what a pilot has not met (rare
-  /// lights). Of images whose pixels depend on each other the whole image's; 1 of streamed
-  /// pictures.
+  /// lights). Of images whose pixels depend on each other by the mean of their own factors, less
+  /// what one normal cell scatters. 1 of streamed pictures.
   double level_factor = 1;
 };
 

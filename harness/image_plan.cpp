@@ -151,6 +151,7 @@ void require_whole_image(const stats::CellTails& whole, const stats::ImageExtent
   const double limit = 1 + (level_factor - 1) / stats::whole_image_share(extent);
   const bool kept = whole.common <= limit && whole.factor <= limit + whole.scatter;
   if (kept || !plan.gates_invalidate || !plan.invalid.empty()) return;
+  plan.gates.back().limit = limit + (whole.common > limit ? 0 : whole.scatter);
   plan.gates.back().state = "red";
   plan.invalid =
       "rare bright pixels (fireflies) carry so much of the images that not even their sums over "
