@@ -172,6 +172,30 @@ TEST_F(Pictures, WithTheirVarianceAreReferences) {
   EXPECT_DOUBLE_EQ(channel.mean_error, std::sqrt(1.5 / 16));
 }
 
+// Five pixels in a row, of which samples have seen the last vary: from few of them an error of zero
+// would make the others exact.
+TEST_F(Pictures, OfFewSamplesHaveErrorsNoSmallerThanAroundThem) {
+  draws::write_exr(file("a.exr"), {.width = 5,
+                                   .height = 1,
+                                   .channels = {"R", "Variance.R"},
+                                   .values = {1, 0, 1, 0, 1, 0, 1, 0, 1, 8}});
+  const auto squared_errors = [&](const std::string& samples) {
+    const draws::Prepared reference =
+        prepare("{file: a.exr, channels: R, variance: Variance.*, samples: " + samples + "}");
+    std::vector<double> squares;
+    for (const Channel& channel : reference.setup->channels()) {
+      squares.push_back(channel.mean_error * channel.mean_error);
+    }
+    return squares;
+  };
+  using testing::DoubleNear;
+  using testing::ElementsAre;
+  const auto near = [](double value) { return DoubleNear(value, 1e-12); };
+  EXPECT_THAT(squared_errors("4"),
+              ElementsAre(near(.4), near(.4), near(.4), near(2. / 3), near(2)));
+  EXPECT_THAT(squared_errors("200000"), ElementsAre(0, 0, 0, 0, near(4e-5)));
+}
+
 TEST_F(Pictures, WithSecondMomentsAreReferencesOfOneSampleLess) {
   write_texel("a.exr", {"path.R", "m2_path.R", "count"}, {3, 13, 5});
   const auto error = [&](const std::string& samples) {
