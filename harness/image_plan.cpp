@@ -102,8 +102,19 @@ std::string cells_text(std::uint32_t size, const ImageShape& shape) {
 }
 
 /// Of the cells of a size, as far as the pilot tells: its own scatter is not held against them.
-bool keeps_level(const stats::CellTails& tails) {
-  return tails.common <= level_factor && tails.factor <= level_factor + tails.scatter;
+bool keeps_level(const stats::CellTails& tails, double limit = level_factor) {
+  return tails.common <= limit && tails.factor <= limit + tails.scatter;
+}
+
+/// Of what says more against them.
+struct ShownFactor {
+  double value;
+  double limit;
+};
+
+ShownFactor shown_factor(const stats::CellTails& tails, double limit = level_factor) {
+  if (tails.common > limit) return {tails.common, limit};
+  return {tails.factor, limit + tails.scatter};
 }
 
 /// Skewness g of a mean adds some g^2 to the mean of its studentised square: to a sum of so many of
@@ -121,13 +132,11 @@ std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const Im
   std::size_t kept = tails.size() - 1;
   while (kept > 0 && keeps_level(tails[kept - 1])) --kept;
   for (std::size_t i = 0; i <= kept; ++i) {
-    // Of what says more against them.
-    const bool in_common = tails[i].common > level_factor;
-    const double factor = in_common ? tails[i].common : tails[i].factor;
+    const ShownFactor shown = shown_factor(tails[i]);
     plan.gates.push_back(
         {.name = fmt::format("skewness of {}, pilot", cells_text(tails[i].size, shape)),
-         .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
-         .limit = level_factor + (in_common ? 0 : tails[i].scatter),
+         .value = std::isfinite(shown.value) ? reports::Number(shown.value) : reports::Number(),
+         .limit = shown.limit,
          .state = keeps_level(tails[i]) ? "green" : "amber"});
   }
   return tails[kept].size;
@@ -149,14 +158,12 @@ bool keeps_margin(const stats::CellTails& elements, std::size_t count, double cr
 void require_whole_image(const stats::CellTails& whole, const stats::ImageExtent& extent,
                          Plan& plan) {
   const double limit = 1 + (level_factor - 1) / stats::whole_image_share(extent);
-  const bool kept = whole.common <= limit && whole.factor <= limit + whole.scatter;
-  if (kept || !plan.gates_invalidate || !plan.invalid.empty()) return;
-  plan.gates.back().limit = limit + (whole.common > limit ? 0 : whole.scatter);
+  if (keeps_level(whole, limit) || !plan.gates_invalidate || !plan.invalid.empty()) return;
+  plan.gates.back().limit = shown_factor(whole, limit).limit;
   plan.gates.back().state = "red";
   plan.invalid =
       "rare bright pixels (fireflies) carry so much of the images that not even their sums over "
-      "all "
-      "pixels keep their level: take more samples a picture, or more pictures";
+      "all pixels keep their level: take more samples a picture, or more pictures";
 }
 
 void refuse_margin(Plan& plan) {

@@ -170,11 +170,11 @@ void RowCellTails::add_side(const Side& side, double count, const ChannelMoments
 }
 
 void RowCellTails::take(std::span<const CellPilot> sides, RowRange rows, Choice& choice) {
-  const std::vector<double> weights = weights_of(sides, images_of(choice), rows, for_each_);
+  const std::vector<EveryImage> weighing = images_of(choice);
+  const std::vector<double> weights = weights_of(sides, weighing, rows, for_each_);
   const std::size_t first_weight = with_neighbours(rows, extent_).elements(extent_).first;
   count_weighted(std::span(weights).subspan(rows.elements(extent_).first - first_weight), rows,
                  choice);
-  const std::vector<EveryImage> weighing = images_of(choice);
   std::vector<LostLight> lost;
   ChannelCumulants cells;
   for (std::size_t s = 0; s < sides.size(); ++s) {

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "stats/image_cell_skewness.h"
+#include "stats/moments.h"
 
 namespace assay::stats {
 namespace {
@@ -31,26 +32,11 @@ Varied varied_of(const ImageStack<Real>& stack, EveryImage which, ElementRange r
   return varied;
 }
 
-// Second and third moments about the mean of one element's values, times their number.
-struct ElementMoments {
-  double count = 0;
-  double m2 = 0;
-  double m3 = 0;
-};
-
 template <class Real>
-ElementMoments moments_of(const ImageStack<Real>& stack, EveryImage which, std::size_t element) {
-  double sum = 0;
-  ElementMoments moments;
+Moments moments_of(const ImageStack<Real>& stack, EveryImage which, std::size_t element) {
+  Moments moments;
   for (std::size_t r = which.start; r < stack.images.size(); r += which.step) {
-    sum += static_cast<double>(*stack.at(r, element));
-    ++moments.count;
-  }
-  const double mean = sum / moments.count;
-  for (std::size_t r = which.start; r < stack.images.size(); r += which.step) {
-    const double d = static_cast<double>(*stack.at(r, element)) - mean;
-    moments.m2 += d * d;
-    moments.m3 += d * d * d;
+    moments.add(static_cast<double>(*stack.at(r, element)));
   }
   return moments;
 }
@@ -70,14 +56,14 @@ std::vector<LostLight> lost_lights(const CellPilot& side, EveryImage weighing,
           const std::size_t element = range.first + i;
           const double weight = weights[element - first_weight];
           if (!varied.weighing[i] || varied.others[i] || !(weight > 0)) continue;
-          const ElementMoments seen = moments_of(stack, weighing, element);
+          const Moments seen = moments_of(stack, weighing, element);
           const std::size_t place = element / extent.channels;
           lost.push_back({.x = place % extent.width,
                           .y = place / extent.width,
                           .channel = element % extent.channels,
                           .cumulants = cumulants_of_mean({.m2 = weight * weight * seen.m2,
                                                           .m3 = weight * weight * weight * seen.m3,
-                                                          .count = seen.count,
+                                                          .count = static_cast<double>(seen.count),
                                                           .factor = side.factor,
                                                           .replicates = side.replicates})});
         }
