@@ -15,6 +15,7 @@
 #include "stats/independence_gates.h"
 #include "stats/lagged_correlation.h"
 #include "stats/quantisation_gate.h"
+#include "stats/recurring_values.h"
 #include "stats/repeated_run.h"
 #include "stats/sorted.h"
 #include "stats/unpiloted_gates.h"
@@ -105,6 +106,22 @@ std::string repeated(const Rows& rows, const stats::RepeatedRun& again) {
       rows.label, from_to(again.second, again.length), from_to(again.first, again.length));
 }
 
+Gate recurrence_gate(const stats::RecurringValues& alike) {
+  const auto values = static_cast<double>(alike.values);
+  return {.name = "values that occur equally often",
+          .value = values,
+          .low = values,
+          .limit = static_cast<double>(alike.limit),
+          .state = GateState::red};
+}
+
+std::string recurring(const Rows& rows, const stats::RecurringValues& alike) {
+  return fmt::format(
+      "of the {} {} values occur exactly {} times each, bit for bit, where independent ones would "
+      "show {} such at most: they are no observations of their own; keep each row once",
+      rows.label, alike.values, alike.times, alike.limit);
+}
+
 /// Two samples that are held against each other.
 struct Pair {
   const Subject& first;
@@ -138,6 +155,11 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
            fmt::format("rows {} of `{}` are rows {} of `{}`", from_to(run->first, run->length),
                        first.setup->data_file(), from_to(run->second, run->length),
                        second.setup->data_file()));
+  }
+  if (const auto shared = stats::shared_values(one.values, two.values)) {
+    refuse(question, {first, second},
+           fmt::format("{} rows of `{}` are rows of `{}`, in another order", shared->values,
+                       first.setup->data_file(), second.setup->data_file()));
   }
 }
 
@@ -174,6 +196,9 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     if (const auto again = stats::repeated_run(rows.values)) {
       plan.gates.push_back(gate_of(repetition_gate(*again), ", " + rows.label));
       if (reason.empty()) reason = repeated(rows, *again);
+    } else if (const auto alike = stats::recurring_values(rows.values)) {
+      plan.gates.push_back(gate_of(recurrence_gate(*alike), ", " + rows.label));
+      if (reason.empty()) reason = recurring(rows, *alike);
     }
     std::vector<Gate> gates{stats::lag_one_gate(rows.values), stats::lagged_gate(rows.values),
                             stats::batch_gate(rows.values)};

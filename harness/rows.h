@@ -22,14 +22,16 @@ bool is_recorded(const Subject& subject);
 bool has_rows(const Question& question);
 
 /// InputError at the claim where two sides that are held against each other as independent have the
-/// same picture (recorded::shared_picture) or the same run of rows, as chance does not make them
-/// (stats/repeated_run.h), among the first `count`. Two sources of one file are another mistake.
+/// same picture (recorded::shared_picture), the same run of rows (stats/repeated_run.h) or the same
+/// rows in another order (stats/recurring_values.h), as chance does not make them, among the first
+/// `count`. Two sources of one file are another mistake.
 void require_independent_sides(const Question& question, const Pilots& pilots, std::uint64_t count);
 
 /// Notes in the plan what the first `count` rows of every recorded subject say of independence
 /// (stats/independence_gates.h). Dependent rows make a single mean a test of batch means, if the
-/// rows are enough for them, and everything else invalid; so does a run of rows that occurs again
-/// (stats/repeated_run.h). A forced method is kept.
+/// rows are enough for them, and everything else invalid; so do a run of rows that occurs again
+/// (stats/repeated_run.h) and values that occur equally often (stats/recurring_values.h). A forced
+/// method is kept.
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
                         Plan& plan);
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -78,6 +79,17 @@ TEST(Rows, OfChainsThatTakeTurnsAreInvalid) {
   const reports::Test test = judged(rows, "claim: mean(rows) == 0");
   EXPECT_EQ(test.verdict, Verdict::invalid);
   EXPECT_THAT(test.message, HasSubstr("those 10 apart have a rank correlation of 0."));
+}
+
+// 50 rows, each four times and in no order: their mean has half the standard error that is true.
+TEST(Rows, CopiedAndShuffledAreInvalid) {
+  Philox random(9);
+  std::vector<double> rows = rows_of(50, 8, normal);
+  for (int i = 0; i < 150; ++i) rows.push_back(rows[static_cast<std::size_t>(i) % 50]);
+  std::shuffle(rows.begin(), rows.end(), random);
+  const reports::Test test = judged(rows, "claim: mean(rows) == 0");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("values occur exactly 4 times each, bit for bit"));
 }
 
 // A column that never varies beside one that does: what is said is of the one that does, and where
@@ -245,6 +257,16 @@ std::string refusal_of_two(const std::vector<double>& left, const std::vector<do
                            "tests:\n  - {claim: " +
                                claim + "}\n")});
   });
+}
+
+TEST(Rows, OfTheOtherSideInAnotherOrderAreRefused) {
+  Philox random(10);
+  const std::vector<double> rows = rows_of(200, 11, normal);
+  std::vector<double> again = rows;
+  std::shuffle(again.begin(), again.end(), random);
+  EXPECT_THAT(refusal_of_two(rows, again, "mean(a) == mean(b)"),
+              AllOf(HasSubstr("7:13: "), HasSubstr("200 rows of"),
+                    HasSubstr("in another order, bit for bit; give the two sides")));
 }
 
 TEST(Rows, OfBothSidesMustNotBeTheSame) {

@@ -1,0 +1,172 @@
+#include "stats/recurring_values.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/philox.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::Philox;
+using tests::sample_of;
+
+std::vector<double> uniform_values(std::size_t n, Philox& random) {
+  return sample_of(n, [&] { return random.uniform(); });
+}
+
+std::vector<double> shuffled(std::vector<double> values, Philox& random) {
+  for (std::size_t i = values.size(); i > 1; --i) {
+    const auto other = static_cast<std::size_t>(random.uniform() * static_cast<double>(i));
+    std::swap(values[i - 1], values[other]);
+  }
+  return values;
+}
+
+std::vector<double> copies(const std::vector<double>& values, int times) {
+  std::vector<double> all;
+  for (int i = 0; i < times; ++i) all.insert(all.end(), values.begin(), values.end());
+  return all;
+}
+
+TEST(RecurringValues, FindsShuffledCopies) {
+  Philox random(1);
+  for (const int times : {2, 4, 10}) {
+    const auto values = shuffled(copies(uniform_values(50, random), times), random);
+    const auto found = recurring_values(values);
+    ASSERT_TRUE(found) << times;
+    // A stay of two equal neighbours counts once, which moves a few values to the count below.
+    EXPECT_NEAR(static_cast<double>(found->times), times, times / 5.0);
+    EXPECT_GT(found->values, 20u);
+    EXPECT_LT(found->limit, 20u);
+  }
+}
+
+TEST(RecurringValues, FindsCopiesOfAPartAndOnesWithRowsLeftOut) {
+  Philox random(2);
+  std::vector<double> part = uniform_values(500, random);
+  const auto twice = copies(uniform_values(200, random), 2);
+  part.insert(part.end(), twice.begin(), twice.end());
+  ASSERT_TRUE(recurring_values(shuffled(part, random)));
+  auto most = shuffled(copies(uniform_values(100, random), 4), random);
+  most.resize(360);
+  ASSERT_TRUE(recurring_values(most));
+}
+
+// Of values that occur twice beside none once or thrice the ratio is q^k with q = f / (2 + f), f^2
+// = 3 (n - 1) / (2 (n - 2)): .385^12 = 1.06e-5 and .3846^13 = 4.0e-6.
+TEST(RecurringValues, TakesThirteenPairs) {
+  for (const std::size_t pairs : {12u, 13u}) {
+    std::vector<double> once;
+    for (std::size_t i = 0; i < pairs; ++i) once.push_back(std::sqrt(2.0 + static_cast<double>(i)));
+    const auto found = recurring_values(copies(once, 2));
+    ASSERT_EQ(found.has_value(), pairs == 13) << pairs;
+    if (!found) continue;
+    EXPECT_EQ(found->times, 2u);
+    EXPECT_EQ(found->values, 13u);
+    EXPECT_EQ(found->limit, 12u);
+  }
+}
+
+struct Law {
+  std::string name;
+  std::function<double(Philox&)> draw;
+};
+
+std::vector<Law> laws_of_atoms() {
+  std::vector<Law> laws;
+  for (const double atoms : {2.0, 3.0, 10.0, 50.0, 256.0, 1e4, 1e6}) {
+    laws.push_back({"equal " + std::to_string(atoms),
+                    [atoms](Philox& random) { return std::floor(atoms * random.uniform()); }});
+  }
+  for (const double step : {1.0, 0.1, 0.001, 1e-6}) {
+    laws.push_back({"normal in steps of " + std::to_string(step),
+                    [step](Philox& random) { return std::round(random.normal() / step); }});
+  }
+  laws.push_back(
+      {"geometric", [](Philox& random) { return std::floor(random.exponential() * 5); }});
+  laws.push_back({"Pareto", [](Philox& random) { return std::floor(1 / random.uniform()); }});
+  laws.push_back({"half of 40 atoms", [](Philox& random) {
+                    const double u = random.uniform();
+                    return random.uniform() < 0.5 ? u : std::floor(40 * u);
+                  }});
+  return laws;
+}
+
+// At most 1e-5 each by the likelihood's bound: .17 of one among the 16,800 would be found here.
+TEST(RecurringValues, AreNotFoundInIndependentValues) {
+  Philox random(3);
+  for (const Law& law : laws_of_atoms()) {
+    for (const std::size_t n : {20u, 200u, 2000u}) {
+      for (int i = 0; i < 400; ++i) {
+        ASSERT_FALSE(recurring_values(sample_of(n, [&] { return law.draw(random); })))
+            << law.name << " " << n;
+      }
+    }
+  }
+}
+
+// As it is on the boundary of the bound where most laws meet it nearest: multiplicities about
+// Poisson's with one mean. Resampled with replacement is such a law.
+TEST(RecurringValues, AreNotFoundInResampledValues) {
+  Philox random(4);
+  for (int i = 0; i < 200; ++i) {
+    const auto from = uniform_values(1000, random);
+    const auto values = sample_of(2000, [&] {
+      return from[static_cast<std::size_t>(random.uniform() * static_cast<double>(from.size()))];
+    });
+    ASSERT_FALSE(recurring_values(values));
+  }
+}
+
+TEST(RecurringValues, AreNotFoundInChains) {
+  Philox random(5);
+  double place = 0;
+  const auto walk = [&] { return place += random.uniform() < 0.5 ? -1 : 1; };
+  double state = 0;
+  const auto metropolis = [&] {
+    const double proposed = state + 4 * random.normal();
+    if (random.uniform() < std::exp((state * state - proposed * proposed) / 2)) state = proposed;
+    return state;
+  };
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_FALSE(recurring_values(sample_of(4000, walk)));
+    ASSERT_FALSE(recurring_values(sample_of(4000, metropolis)));
+  }
+  EXPECT_FALSE(recurring_values({}));
+  EXPECT_FALSE(recurring_values(std::vector<double>(1000, 0.25)));
+}
+
+TEST(SharedValues, FindsTheSameInAnotherOrder) {
+  Philox random(6);
+  const auto values = uniform_values(100, random);
+  auto other = uniform_values(60, random);
+  EXPECT_FALSE(shared_values(values, other));
+  other.insert(other.end(), values.begin(), values.begin() + 40);
+  const auto found = shared_values(values, shuffled(other, random));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->values, 40u);
+  EXPECT_LT(found->limit, 20u);
+}
+
+TEST(SharedValues, AreNotFoundInIndependentSamples) {
+  Philox random(7);
+  for (const Law& law : laws_of_atoms()) {
+    for (const Law& other : laws_of_atoms()) {
+      for (int i = 0; i < 30; ++i) {
+        ASSERT_FALSE(shared_values(sample_of(200, [&] { return law.draw(random); }),
+                                   sample_of(500, [&] { return other.draw(random); })))
+            << law.name << ", " << other.name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace assay::stats
