@@ -89,7 +89,7 @@ void add_suites(CLI::App* sub, Given& given) {
 constexpr Running of_suites{
     .seed = "seed of all streams, or a fresh one; default the suite's, else 1",
     .alpha =
-        "probability that a suite whose claims hold fails, in (0, 0.5]; default the suite's, "
+        "probability that a suite whose claims hold fails, in [1e-9, 0.5]; default the suite's, "
         "else 0.01"};
 
 void define_plan(CLI::App& app, Given& given) {
@@ -132,7 +132,7 @@ void define_check(CLI::App& app, Given& given) {
                   .secondaries = "number of observations, 2 or more; default what --detect needs"});
   add_running(sub, given,
               {.seed = "seed of all streams, or a fresh one; default 1",
-               .alpha = "probability that a claim that holds fails, in (0, 0.5]; default 0.01"});
+               .alpha = "probability that a claim that holds fails, in [1e-9, 0.5]; default 0.01"});
 }
 
 void define_images(CLI::App& app, Given& given) {
@@ -159,7 +159,7 @@ void define_images(CLI::App& app, Given& given) {
   add_running(sub, given,
               {.seed = "seed of the signs that are flipped where pixels depend on each other; "
                        "default 1",
-               .alpha = "probability that equal pictures fail, in (0, 0.5]; default 0.01"});
+               .alpha = "probability that equal pictures fail, in [1e-9, 0.5]; default 0.01"});
 }
 
 void define_others(CLI::App& app, Given& given) {
@@ -175,7 +175,7 @@ void define_others(CLI::App& app, Given& given) {
   many(calibrate, "--law", given.laws, "LAW",
        "what is drawn, as exponential or 'student_t(3)'; repeatable; default eight laws");
   many(calibrate, "--alpha", given.alphas, "A",
-       "nominal level, in (0, 0.5]; repeatable; default 0.05, 0.01 and 0.001");
+       "nominal level, in [1e-9, 0.5]; repeatable; default 0.05, 0.01 and 0.001");
   one(calibrate, "--runs", given.runs, "N", "runs a cell; default 1000");
   one(calibrate, "--samples", given.samples, "N",
       "observations of every test, in one look, 2 or more; default planned, in looks, and 1000 or "

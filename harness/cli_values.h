@@ -11,7 +11,7 @@
 namespace assay::harness {
 
 std::uint64_t parse_count(const std::string& text, const char* option, std::uint64_t least);
-double parse_rate(const std::string& text, const char* option);  ///< in (0, 0.5]
+double parse_rate(const std::string& text, const char* option);  ///< is_error_rate
 double parse_positive(const std::string& text, const char* option);
 
 /// A count, or `random`: 64 bits from the operating system.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "harness/ledger_line.h"
+#include "harness/suite_keys.h"
 #include "harness/text_file.h"
 #include "harness/text_hash.h"
 #include "reports/number.h"
@@ -142,8 +143,8 @@ class LedgerReader {
     }
     LineFields fields(lines_[0].substr(std::string_view(version_words).size()));
     const std::optional<double> budget = fields.number();
-    if (!budget || !fields.at_end() || !(*budget > 0 && *budget <= 0.5)) {
-      refuse("the budget must be a number above 0 and at most 0.5");
+    if (!budget || !fields.at_end() || !is_error_rate(*budget)) {
+      refuse("the budget must be a number from 1e-9 to 0.5");
     }
     book_ = LedgerBook(*budget);
     book_.lines_ = {std::string(lines_[0])};

@@ -66,10 +66,12 @@ double positive_number(const Value& value, std::string_view what) {
       [](double number) { return number > 0 && std::isfinite(number); });
 }
 
+bool is_error_rate(double rate) { return rate >= 1e-9 && rate <= 0.5; }
+
 double error_rate(const Value& value, std::string_view what) {
   return read_within(
-      value, what, "a number above 0 and at most 0.5 (5 % is 0.05)",
-      [&] { return value.number(what); }, [](double rate) { return rate > 0 && rate <= 0.5; });
+      value, what, "a number from 1e-9 to 0.5 (5 % is 0.05)", [&] { return value.number(what); },
+      is_error_rate);
 }
 
 std::uint64_t count_from(const Value& value, std::string_view what, std::uint64_t least) {

@@ -31,9 +31,12 @@ class Keys {
 /// "; did you mean `x`?", or "; " and the candidates where none is near.
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
 
+/// In [1e-9, 0.5]: shares of less, of many tests or looks, would be lost beside 1 in a confidence.
+bool is_error_rate(double rate);
+
 /// Finite numbers in a range that `what` must have; InputError at the value.
 double positive_number(const Value& value, std::string_view what);
-double error_rate(const Value& value, std::string_view what);  ///< in (0, 0.5]
+double error_rate(const Value& value, std::string_view what);  ///< is_error_rate
 std::uint64_t count_from(const Value& value, std::string_view what, std::uint64_t least);
 
 /// Text that is not empty and has one line.

@@ -13,6 +13,7 @@
 #include "harness/plan.h"
 #include "harness/pools.h"
 #include "harness/record_of.h"
+#include "harness/suite_keys.h"
 #include "reports/describe.h"
 #include "reports/number.h"
 #include "reports/verdict.h"
@@ -179,9 +180,9 @@ testing::AssertionResult claim_holds(const std::string& claim, const std::vector
 }
 
 DeclaredClaims::DeclaredClaims(const ClaimBudget& budget) {
-  const auto rate = [](double value) { return value > 0 && value <= 0.5; };
-  if (budget.claims == 0 || !rate(budget.alpha) || !rate(budget.beta)) {
-    throw std::logic_error("DeclaredClaims: claims from 1 on, alpha and beta in (0, 0.5]");
+  if (budget.claims == 0 || !harness::is_error_rate(budget.alpha) ||
+      !harness::is_error_rate(budget.beta)) {
+    throw std::logic_error("DeclaredClaims: claims from 1 on, alpha and beta in [1e-9, 0.5]");
   }
   if (spent().budget) throw std::logic_error("DeclaredClaims: a binary has one budget");
   spent().budget = budget;

@@ -230,11 +230,11 @@ TEST(CommandLine, RefusesValuesOutOfRange) {
             "`18446744073709551616`");
   EXPECT_EQ(run("--threads", "0"), "--threads must be a whole number, 1 or more, but it is `0`");
   EXPECT_EQ(run("--alpha", "0.6"),
-            "--alpha must be a number above 0 and at most 0.5 (5 % is 0.05), but it is `0.6`");
+            "--alpha must be a number from 1e-9 to 0.5 (5 % is 0.05), but it is `0.6`");
   EXPECT_EQ(run("--alpha", "0"),
-            "--alpha must be a number above 0 and at most 0.5 (5 % is 0.05), but it is `0`");
+            "--alpha must be a number from 1e-9 to 0.5 (5 % is 0.05), but it is `0`");
   EXPECT_EQ(run("--alpha", "nan"),
-            "--alpha must be a number above 0 and at most 0.5 (5 % is 0.05), but it is `nan`");
+            "--alpha must be a number from 1e-9 to 0.5 (5 % is 0.05), but it is `nan`");
   EXPECT_EQ(run("--coarsen", "0"), "--coarsen must be a number above 0, but it is `0`");
   EXPECT_EQ(run("--coarsen", "inf"), "--coarsen must be a number above 0, but it is `inf`");
   EXPECT_EQ(run("--shard", "3"), "--shard must be I/N, as in 2/5, but it is `3`");
@@ -277,7 +277,7 @@ TEST(CommandLine, NamesTheOptionAndWhatItTakes) {
   EXPECT_EQ(run("--threads", "1.5"),
             "--threads must be a whole number, 1 or more, but it is `1.5`");
   EXPECT_EQ(run("--alpha", "1%"),
-            "--alpha must be a number above 0 and at most 0.5 (5 % is 0.05), but it is `1%`");
+            "--alpha must be a number from 1e-9 to 0.5 (5 % is 0.05), but it is `1%`");
   EXPECT_EQ(run("--coarsen", "much"), "--coarsen must be a number above 0, but it is `much`");
   EXPECT_EQ(run("--shard", "one/2"),
             "each number of --shard I/N must be a whole number, 1 or more, but it is `one`");

@@ -154,8 +154,8 @@ TEST(LedgerBook, FindsEveryFileCutShort) {
 
 TEST(LedgerBook, RefusesWhatIsNoLedger) {
   EXPECT_THAT(refused("suite: a\n"), HasSubstr("n.ledger:1:1"));
-  EXPECT_THAT(refused("assay-ledger 1 budget 0\nend 0\n"), HasSubstr("above 0"));
-  EXPECT_THAT(refused("assay-ledger 1 budget nan\nend 0\n"), HasSubstr("above 0"));
+  EXPECT_THAT(refused("assay-ledger 1 budget 0\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
+  EXPECT_THAT(refused("assay-ledger 1 budget nan\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
   std::vector<std::string> lines = lines_in(example().text());
   lines.push_back("begin \"suite/other\"");
   EXPECT_THAT(refused(joined(lines)), HasSubstr("has no test \"suite/other\""));
