@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "harness/pool.h"
-#include "harness/recorded_run.h"
 #include "stats/mean_rounding.h"
 
 namespace assay::harness {
@@ -23,11 +21,7 @@ struct Part {
 Part part_of(const Question& question, std::size_t subject, const ChannelData& data) {
   if (data.moments.count < 2) return {};
   const double factor = subject == 0 ? 1 : std::abs(question.factor);
-  // The moments of a run were summed elsewhere: their mean is rounded once.
-  const bool elsewhere = as_recorded_run(*question.subjects[subject].setup) != nullptr;
-  stats::Moments moments = data.moments;
-  if (elsewhere) moments.count = 1;
-  return {.rounding = factor * stats::rounding_of_mean(moments, block_size_of(data.primaries)),
+  return {.rounding = factor * stats::rounding_of_mean(data.moments),
           .standard_error = factor * data.moments.standard_error()};
 }
 

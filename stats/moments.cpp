@@ -16,14 +16,14 @@ void Moments::merge(const Moments& other) {
   const double a = static_cast<double>(count);
   const double b = static_cast<double>(other.count);
   const double n = a + b;
-  const double delta = other.mean - mean;
+  const double delta = other.mean - mean + (other.rest - rest);
   const double step = delta / n;
   const double step2 = step * step;
   m4 += other.m4 + delta * step * step2 * a * b * (a * a - a * b + b * b) +
         6 * step2 * (a * a * other.m2 + b * b * m2) + 4 * step * (a * other.m3 - b * m3);
   m3 += other.m3 + delta * step2 * a * b * (a - b) + 3 * step * (a * other.m2 - b * m2);
   m2 += other.m2 + delta * step * a * b;
-  mean += step * b;
+  move_mean(step * b);
   count += other.count;
   minimum = std::min(minimum, other.minimum);
   maximum = std::max(maximum, other.maximum);

@@ -9,7 +9,9 @@ namespace assay::stats {
 // One-pass moments up to order four, with range and count of non-zero values. `m2`, `m3` and `m4`
 // are sums (not means) of powers of deviations from `mean`. Updating and merging formulas: Pebay,
 // SAND2008-6212, equations 1.5 to 1.7 and 2.1 to 2.9; no raw sum of powers is ever formed.
-// Values must be finite: the caller counts the others and keeps them out.
+// What rounding takes from the mean is kept beside it (compensated summation, Kahan 1965): of
+// values of 1e14 that spread over 1 every step would be lost, and with the mean m2. Values must be
+// finite: the caller counts the others and keeps them out.
 struct Moments {
   std::uint64_t count = 0;
   double mean = 0;
@@ -19,6 +21,7 @@ struct Moments {
   double minimum = std::numeric_limits<double>::infinity();
   double maximum = -std::numeric_limits<double>::infinity();
   std::uint64_t nonzero = 0;
+  double rest = 0;  // by which the mean is more than `mean`, half its last digit at most
 
   void add(double value);
 
@@ -43,7 +46,15 @@ struct Moments {
   friend bool operator==(const Moments&, const Moments&) = default;
 
   void refuse_variance() const;  // of fewer than two values
+  void move_mean(double step);
 };
+
+inline void Moments::move_mean(double step) {
+  const double added = rest + step;
+  const double moved = mean + added;
+  rest = added - (moved - mean);
+  mean = moved;
+}
 
 inline void Moments::add(double value) {
   const double before = static_cast<double>(count);
@@ -52,14 +63,14 @@ inline void Moments::add(double value) {
   // The reciprocal does not wait for the mean: the chain from one value to the next has no
   // division.
   const double inverse = 1 / n;
-  const double delta = value - mean;
+  const double delta = value - mean - rest;
   const double step = delta * inverse;
   const double step2 = step * step;
   const double term = delta * step * before;
   m4 += term * step2 * (n * n - 3 * n + 3) + 6 * step2 * m2 - 4 * step * m3;
   m3 += term * step * (n - 2) - 3 * step * m2;
   m2 += term;
-  mean += step;
+  move_mean(step);
   minimum = std::min(minimum, value);
   maximum = std::max(maximum, value);
   nonzero += value != 0;

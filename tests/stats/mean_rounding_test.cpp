@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 
 #include "tests/philox.h"
 
@@ -38,30 +37,29 @@ Rounded sample(const Blocks& blocks, tests::Philox& random) {
   return {(all.mean - blocks.offset) - distances.mean, all};
 }
 
-// The root mean square of 200 has a standard deviation of 5 %: half of it and twice of it are ten
-// away, a false alarm of less than 1e-15 but for the formula's own error.
+// Of a uniform law the root mean square of 200 has a standard deviation of 3.2 %: a fifth more or
+// less is six away.
 TEST(MeanRounding, IsAsMeasured) {
   tests::Philox random(1717);
-  for (const Blocks& blocks : {Blocks{1e8, 256, 1}, Blocks{1e10, 256, 16}, Blocks{1e11, 1024, 1},
-                               Blocks{1e12, 64, 64}, Blocks{1e12, 256, 4}}) {
+  for (const Blocks& blocks : {Blocks{1e8, 256, 1}, Blocks{1e10, 256, 16}, Blocks{1e12, 1024, 1},
+                               Blocks{1e13, 64, 64}, Blocks{1e14, 1024, 32}}) {
     double squares = 0;
     double expected = 0;
     for (int run = 0; run < 200; ++run) {
       const Rounded rounded = sample(blocks, random);
       squares += rounded.off * rounded.off / 200;
-      expected = rounding_of_mean(rounded.moments, blocks.size);
+      expected = rounding_of_mean(rounded.moments);
     }
-    EXPECT_GT(std::sqrt(squares), expected / 2) << blocks.offset << " " << blocks.size;
-    EXPECT_LT(std::sqrt(squares), expected * 2) << blocks.offset << " " << blocks.size;
+    EXPECT_GT(std::sqrt(squares), expected * 0.8) << blocks.offset << " " << blocks.size;
+    EXPECT_LT(std::sqrt(squares), expected * 1.2) << blocks.offset << " " << blocks.size;
   }
 }
 
 TEST(MeanRounding, OfValuesThatDoNotVaryIsNone) {
   Moments constant;
   for (int i = 0; i < 10; ++i) constant.add(1e15);
-  EXPECT_EQ(rounding_of_mean(constant, 4), 0);
-  EXPECT_EQ(rounding_of_mean({}, 4), 0);
-  EXPECT_THROW(rounding_of_mean(constant, 0), std::domain_error);
+  EXPECT_EQ(rounding_of_mean(constant), 0);
+  EXPECT_EQ(rounding_of_mean({}), 0);
 }
 
 }  // namespace
