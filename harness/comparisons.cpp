@@ -55,10 +55,12 @@ ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t 
   if (!has_spread(x) || !has_spread(y)) return pair;
   const double null = second.averaged / first.averaged;
   pair.log_mean_p = stats::log_p_two_sided(stats::welch_t(x, y, {}));
-  pair.log_variance_p = stats::log_p_two_sided(stats::log_variance_ratio(x, y, null));
   pair.row.mean_p = std::exp(pair.log_mean_p);
-  pair.row.variance_p = std::exp(pair.log_variance_p);
   pair.row.log10_mean_p = pair.log_mean_p / std::log(10.0);
+  // The variance of a primary and that of a secondary are two quantities.
+  if (first.averages != second.averages) return pair;
+  pair.log_variance_p = stats::log_p_two_sided(stats::log_variance_ratio(x, y, null));
+  pair.row.variance_p = std::exp(pair.log_variance_p);
   pair.row.log10_variance_p = pair.log_variance_p / std::log(10.0);
   const double ratio = x.variance() / y.variance() / null;
   if (std::isfinite(ratio)) pair.row.variance_ratio = ratio;

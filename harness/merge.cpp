@@ -120,7 +120,8 @@ Pictured pictured(const View& view) {
   Pictured result{.name = view.row->name,
                   .drawn = view.picture->drawn,
                   .image = view.picture->image,
-                  .averaged = view.picture->averaged};
+                  .averaged = view.picture->averaged,
+                  .averages = view.row->variance_of == "primary"};
   for (const reports::ShardChannel& channel : view.picture->channels) {
     result.channels.push_back({channel.name, channel.reference, moments_of(channel.moments)});
   }

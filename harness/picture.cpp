@@ -129,7 +129,8 @@ Pictured pictured(const Picture& picture, const SuiteRun& run) {
   Pictured result{.name = picture.estimator->name,
                   .drawn = picture.pool->has(count),
                   .image = image,
-                  .averaged = per_primary(picture)};
+                  .averaged = per_primary(picture),
+                  .averages = picture.estimator->nature().averages};
   if (image || !result.drawn) return result;
   const Summary& summary = picture.pool->prefix(count);
   const std::vector<Channel> channels = picture.pool->setup()->channels();

@@ -134,12 +134,6 @@ void draw_panel(Svg& svg, const std::vector<Row>& rows, const Panel& panel) {
   if (!logarithmic) svg.line({scale(0), top}, {scale(0), bottom}, "axis");
 }
 
-double label_width(const std::vector<Row>& rows) {
-  double widest = 60;
-  for (const Row& row : rows) widest = std::max(widest, text_width(row.estimator->name));
-  return std::min(widest, 170.0);
-}
-
 std::string label_tooltip(const EstimatorSummary& estimator) {
   std::string text = fmt::format("{}: {} {}", estimator.name, estimator.plugin,
                                  parameters_text(estimator.parameters));
@@ -153,7 +147,7 @@ std::string variance_title(const std::vector<Row>& rows) {
   for (const Row& row : rows) kinds.insert(row.estimator->variance_of);
   if (kinds.size() == 1 && !kinds.begin()->empty())
     return fmt::format("variance of one {} estimate", one_line(*kinds.begin()));
-  return kinds.size() > 1 ? "variance of one primary (p) or secondary (s) estimate" : "variance";
+  return kinds.size() > 1 ? "variance of one primary (p) or secondary (s)" : "variance";
 }
 
 std::string row_label(const Row& row, const Panel& panel, bool mixed) {
@@ -163,12 +157,18 @@ std::string row_label(const Row& row, const Panel& panel, bool mixed) {
                 : row.estimator->name;
 }
 
+double label_width(const std::vector<Row>& rows, const Panel& panel, bool mixed) {
+  double widest = 60;
+  for (const Row& row : rows) widest = std::max(widest, text_width(row_label(row, panel, mixed)));
+  return std::min(widest, 170.0);
+}
+
 std::string bars(const Suite& suite, const std::string& channel, Panel panel) {
   const std::vector<Row> rows = rows_of(suite, channel);
   if (rows.empty()) return {};
-  const double labels = label_width(rows);
+  const bool mixed = panel.title.ends_with(" (s)");
+  const double labels = label_width(rows, panel, mixed);
   panel.left = labels + 12;
-  const bool mixed = panel.title.ends_with(" (s) estimate");
   const double height = top + row_height * static_cast<double>(rows.size()) + 2 * line_height + 8;
   Svg svg({panel.left + panel_width + value_width + 8, height},
           fmt::format("{} of {} of {}: {}", panel.title,

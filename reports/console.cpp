@@ -185,7 +185,7 @@ class Screen {
 
   // The table had no room for what each test cost.
   void cost_of(const Suite& suite) {
-    if (const std::string cost = cost_text(total_cost(suite)); !cost.empty()) {
+    if (const std::string cost = cost_text(costs_of_draws(suite)); !cost.empty()) {
       paragraph("All observations of the suite: " + cost + ".");
       blank();
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -34,6 +35,14 @@ const char* detect_words(const Test& test) {
   return is_proof(test) ? "planned for an advantage of" : "must be noticed from";
 }
 
+// A margin of a ratio is a factor up or down: 20 % up is 17 % down.
+std::string both_ends(const Test& test, const Effect& effect, double margin) {
+  const std::string relation = relation_of(test.claim);
+  if (!is_ratio(effect) || (relation != "within" && relation != "==")) return {};
+  const double factor = std::exp(std::abs(margin));
+  return fmt::format(" (×{} to ×{})", human(1 / factor, 3), human(factor, 3));
+}
+
 /// Digits of what is missing to 1 say nothing of a power beyond these.
 std::string power_text(double power) {
   constexpr double all = 0.9999;
@@ -46,7 +55,8 @@ std::string margins_fact(const Test& test) {
   const auto add = [&](const char* words, Number margin) {
     if (!margin) return;
     if (!text.empty()) text += "; ";
-    text += fmt::format("{} {}", words, margin_text(*margin, effect));
+    text += fmt::format("{} {}{}", words, margin_text(*margin, effect),
+                        both_ends(test, effect, *margin));
   };
   if (test.allow.value_or(0) != 0) add("allowed up to", test.allow);
   add(detect_words(test), test.detect);
@@ -159,6 +169,15 @@ std::uint64_t rays(const Cost& cost) {
 std::string cost_text(const Cost& cost) {
   if (rays(cost) > 0) return counted(rays(cost), "ray", "rays");
   return cost.samples > 0 ? counted(cost.samples, "sample", "samples") : std::string();
+}
+
+std::string cost_text(std::vector<Cost> costs) {
+  const auto traced =
+      std::partition(costs.begin(), costs.end(), [](const Cost& cost) { return rays(cost) == 0; });
+  const std::string with = cost_text(total_cost({traced, costs.end()}));
+  const std::string without = cost_text(total_cost({costs.begin(), traced}));
+  if (with.empty() || without.empty()) return with + without;
+  return fmt::format("{} and {} without rays", with, without);
 }
 
 std::string place(const Test& test) {

@@ -30,6 +30,9 @@ std::string key_number(const Test&);
 
 /// "1.05 M rays", or samples where no ray was traced.
 std::string cost_text(const Cost&);
+/// The same of many draws, with the samples of those that traced none: "64.0 k rays and 40.0 M
+/// samples without rays".
+std::string cost_text(std::vector<Cost>);
 std::uint64_t rays(const Cost&);
 
 /// "suites/triangle.yaml:14".

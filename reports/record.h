@@ -366,6 +366,7 @@ Record without_times(Record);
 Cost total_cost(const Test&);
 
 /// What the suite's tests and the rows of its estimators cost, without pilots: the same draws once.
-Cost total_cost(const Suite&);
+std::vector<Cost> costs_of_draws(const Suite&);
+Cost total_cost(const std::vector<Cost>&);
 
 }  // namespace assay::reports

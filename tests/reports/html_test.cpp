@@ -63,7 +63,7 @@ TEST(Html, RefersToNothingOutsideItself) {
 TEST(Html, HasAPictureOfEachKind) {
   const std::string page = html(example_record());
   for (const char* part :
-       {"mean of 7\u00A0estimators", "variance of one primary (p) or secondary (s) estimate of 7",
+       {"mean of 7\u00A0estimators", "variance of one primary (p) or secondary (s) of 7",
         "Pairs of estimators of triangle luminaire", "Histogram of observations",
         "Normal quantile plot of winners", "relative difference of means: mean(area)",
         "assay replay run.json"})
