@@ -74,15 +74,18 @@ stats::Gate residual_gate(const Question& question, std::size_t channel,
       data[0].moments, {reference.value + question.offset, reference.standard_error}, x);
 }
 
-/// Of counted costs, by whose logarithm the claim is tested.
-std::vector<reports::Gate> cost_gates(const Question& question, std::span<const ChannelData> data,
-                                      double x) {
+/// Of counted costs or of groups' variances, by the logarithm of whose mean the claim is tested.
+std::vector<reports::Gate> log_mean_gates(const Question& question,
+                                          std::span<const ChannelData> data, double x) {
+  const bool variances = question.kind == QuestionKind::total_variance;
   std::vector<reports::Gate> gates;
   for (std::size_t subject = 0; subject < question.compared(); ++subject) {
-    const stats::Moments& cost = by_its_cost(question, data[subject].with_cost).cost;
-    if (!(cost.m2 > 0 && cost.mean > 0)) continue;
-    gates.push_back(gate_of(stats::log_mean_gate(cost, x),
-                            " of " + question.subjects[subject].estimator->name));
+    const stats::Moments& values = variances ? data[subject].group_variances
+                                             : by_its_cost(question, data[subject].with_cost).cost;
+    if (!(values.m2 > 0 && values.mean > 0)) continue;
+    stats::Gate gate = stats::log_mean_gate(values, x);
+    gate.name += variances ? "variance" : "cost";
+    gates.push_back(gate_of(gate, " of " + question.subjects[subject].estimator->name));
   }
   return gates;
 }
@@ -165,8 +168,9 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
     }
   }
   // Channels share their costs.
-  if (outcome.plan.method.keeps == Keeps::costs && channel == 0) {
-    for (const reports::Gate& gate : cost_gates(question, data, x)) gates.push_back(gate);
+  const Keeps keeps = outcome.plan.method.keeps;
+  if ((keeps == Keeps::costs || keeps == Keeps::group_variances) && channel == 0) {
+    for (const reports::Gate& gate : log_mean_gates(question, data, x)) gates.push_back(gate);
   }
   if (question.kind == QuestionKind::slope) {
     gates.push_back(power_law_gate(question, channel, data,

@@ -28,6 +28,9 @@ constexpr Meaning meanings[] = {
      "{1}"},
     {"level factor of the mean cost",
      "the costs are so skewed that one tail of the test is off by a factor of {0}, limit {1}"},
+    {"level factor of the mean variance",
+     "the variances of groups of observations are so skewed that one tail of the test is off by a "
+     "factor of {0}, limit {1}"},
     {"level factor after correction",
      "the observations are so skewed that one tail of the test is off by a factor of {0} even "
      "after correction, limit {1}"},
@@ -74,7 +77,7 @@ bool is_red(const reports::Gate& gate, std::string_view name) {
 double wanted(const reports::Gate& gate) {
   if (!gate.value || !gate.limit) return 1;
   // The factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
-  if (is_red(gate, "level factor by skewness") || is_red(gate, "level factor of the mean cost")) {
+  if (is_red(gate, "level factor by skewness") || is_red(gate, "level factor of the mean ")) {
     return std::pow(std::log(*gate.value) / std::log(1.25), 2);
   }
   if (is_red(gate, "skewness of the mean")) return std::pow(*gate.value / *gate.limit, 2);

@@ -38,13 +38,15 @@ Evidence variance_against_number(const Method& method, const Question& question,
   const double null =
       question.references[channel].value / question.subjects[0].averaged(data.primaries);
   const bool chi_square = method.name == "chi-square";
+  const double excess = method.frozen.excess_kurtosis(channel).x;
   const auto at = [=](double theta) {
     const double variance = null * std::exp(theta);
-    return chi_square ? stats::chi_square_variance(x, variance) : stats::log_variance(x, variance);
+    return chi_square ? stats::chi_square_variance(x, variance, excess)
+                      : stats::log_variance(x, variance);
   };
   const auto interval = [=](double confidence) {
     if (!chi_square) return stats::log_variance_interval(x, null, confidence);
-    return map_ends(stats::chi_square_variance_interval(x, confidence),
+    return map_ends(stats::chi_square_variance_interval(x, confidence, excess),
                     [=](double variance) { return std::log(variance / null); });
   };
   return {.estimate = std::log(x.variance() / null),
@@ -56,19 +58,20 @@ Evidence variance_against_number(const Method& method, const Question& question,
 
 /// theta = ln(Var x / (c Var y)), each per primary.
 Evidence variance_against_variance(const Method& method, const Question& question,
-                                   std::span<const ChannelData> data) {
+                                   std::size_t channel, std::span<const ChannelData> data) {
   const Moments x = data[0].moments;
   const Moments y = data[1].moments;
   const double null = question.factor * question.subjects[1].averaged(data[1].primaries) /
                       question.subjects[0].averaged(data[0].primaries);
   const bool f = method.name == "F";
+  const stats::ExcessKurtoses excess = method.frozen.excess_kurtosis(channel);
   const auto at = [=](double theta) {
     const double ratio = null * std::exp(theta);
-    return f ? stats::f_ratio(x, y, ratio) : stats::log_variance_ratio(x, y, ratio);
+    return f ? stats::f_ratio(x, y, ratio, excess) : stats::log_variance_ratio(x, y, ratio);
   };
   const auto interval = [=](double confidence) {
     if (f) {
-      return map_ends(stats::f_ratio_interval(x, y, confidence),
+      return map_ends(stats::f_ratio_interval(x, y, confidence, excess),
                       [=](double ratio) { return std::log(ratio / null); });
     }
     return map_ends(stats::log_variance_ratio_interval(x, y, confidence),
@@ -326,7 +329,7 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
     case QuestionKind::variance_of_one:
       return variance_against_number(method, question, channel, data[0]);
     case QuestionKind::variance_of_two:
-      return variance_against_variance(method, question, data);
+      return variance_against_variance(method, question, channel, data);
     case QuestionKind::fit_to_density:
       if (method.name == "chi-square-fit") return cells_against_density(question, data[0]);
       return values_against_law(method, question, channel, data[0]);

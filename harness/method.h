@@ -13,6 +13,7 @@
 #include "harness/image_views.h"
 #include "harness/question.h"
 #include "harness/summary.h"
+#include "stats/f_ratio.h"
 #include "stats/sampled_cells.h"
 
 namespace assay::harness {
@@ -55,6 +56,12 @@ struct Frozen {
   std::vector<std::optional<Atom>> atoms = {};                 ///< of each channel: two-part-ks
   std::shared_ptr<const stats::SampledCells> cells = nullptr;  ///< chi-square-two-sample
   std::vector<double> weights = {};                            ///< of an image's elements
+  /// Of each channel, one or two subjects': what chi-square and F allow for, 0 where there is none.
+  std::vector<stats::ExcessKurtoses> excess_kurtoses = {};
+
+  stats::ExcessKurtoses excess_kurtosis(std::size_t channel) const {
+    return excess_kurtoses.empty() ? stats::ExcessKurtoses{} : excess_kurtoses[channel];
+  }
 };
 
 struct Method {

@@ -160,6 +160,7 @@ void note(Plan& plan, const Known& known, const stats::Gate& gate) {
 std::string too_heavy(const Question& question, const std::vector<Known>& channels,
                       stats::TailClaim claim, Plan& plan) {
   std::string reason;
+  const bool mean = claim == stats::TailClaim::mean;
   for (const Known& known : channels) {
     const std::optional<stats::Gate> gate = tail_gate(question, known, claim);
     if (!gate) continue;
@@ -167,10 +168,9 @@ std::string too_heavy(const Question& question, const std::vector<Known>& channe
     if (gate->state != GateState::red) continue;
     reason = fmt::format(
         "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the {} moment that the test rests "
-        "on may not exist; clamp the estimator, declare its range, or claim something of its "
-        "distribution",
-        gate->value, gate->limit, known.label,
-        claim == stats::TailClaim::mean ? "second" : "fourth");
+        "on may not exist; clamp the estimator{}, or claim something of its distribution",
+        gate->value, gate->limit, known.label, mean ? "second" : "fourth",
+        mean ? ", declare its range" : "");
   }
   return reason;
 }

@@ -171,10 +171,10 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
 }
 
 /// Chi-square and F take data that are flatter than normal for normal ones: they find as little as
-/// of those. 1 stays what it is, no second subject.
+/// of those. 1 is no second subject, or two values, whose kurtosis rounding takes below it.
 double kurtosis_for(const Method& method, double kurtosis) {
   const bool of_normal = method.name == "chi-square" || method.name == "F";
-  return of_normal && kurtosis > 1 ? std::max(3.0, kurtosis) : kurtosis;
+  return of_normal && kurtosis > 1 ? std::max(3.0, kurtosis) : std::max(1.0, kurtosis);
 }
 
 stats::LogVariancePlan variance_plan(const Method& method, const stats::ErrorRates& rates,

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <optional>
 
 #include "harness/critical.h"
 #include "harness/evidence_ratio.h"
+#include "harness/group_variance.h"
 #include "harness/intended_size.h"
 #include "harness/pilot_shape.h"
 #include "harness/rows.h"
@@ -95,6 +97,51 @@ std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, c
   return needed;
 }
 
+/// Of the variances of groups of secondaries, added over the channels, that the pilot's values
+/// make; nothing where they are too few, as of secondaries of many primaries, which are near
+/// normal.
+std::optional<stats::PositiveShape> group_shape(const Question& question, std::size_t subject,
+                                                const Pilots& pilots, const Plan& plan) {
+  constexpr std::uint64_t fewest_groups = 64;
+  const Subject& side = question.subjects[subject];
+  const std::uint64_t primaries = side.averages ? plan.primaries[subject] : 1;
+  std::vector<std::span<const double>> pilot;
+  std::vector<std::size_t> channels;
+  for (std::size_t i = 0; i < side.channels.size(); ++i) {
+    pilot.push_back(pilot_channel(question, subject, i, pilots).values);
+    channels.push_back(i);
+  }
+  GroupVariance groups(channels);
+  stats::Moments variances;
+  std::vector<double> secondary(channels.size());
+  for (std::size_t first = 0; first + primaries <= pilot[0].size(); first += primaries) {
+    for (const std::size_t channel : channels) {
+      if (pilot[channel].size() != pilot[0].size()) return {};
+      const auto values = pilot[channel].subspan(first, primaries);
+      secondary[channel] =
+          std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(primaries);
+    }
+    if (const auto variance = groups.add(secondary)) variances.add(*variance);
+  }
+  if (variances.count < fewest_groups || !(variances.m2 > 0)) return {};
+  return stats::PositiveShape{.variation = variances.standard_deviation() / variances.mean,
+                              .skewness = variances.skewness()};
+}
+
+/// From how many secondaries on the logarithm of the mean of groups' variances is near normal.
+std::uint64_t enough_for_groups(const Question& question, const Pilots& pilots, const Plan& plan,
+                                double critical) {
+  std::uint64_t needed = 2;
+  if (question.kind != QuestionKind::total_variance) return needed;
+  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
+    if (pilot_of(question, subject, pilots) == nullptr) continue;
+    if (const auto shape = group_shape(question, subject, pilots, plan)) {
+      needed = std::max(needed, variance_group * stats::values_for_log_mean(*shape, critical));
+    }
+  }
+  return needed;
+}
+
 std::string too_skewed_costs(std::uint64_t needed) {
   return fmt::format(
       "costs of this shape need about {} observations before any test of their mean keeps its "
@@ -150,6 +197,20 @@ bool may_be_near_normal(const Question& question, const std::vector<Known>& chan
          });
 }
 
+/// Chi-square and F allow for a kurtosis beyond the bound that the pilot cannot exclude: a few
+/// hundred values tell that of a normal law from .5 not always. A forced one is what it is.
+void allow_for_kurtosis(const Question& question, const std::vector<Known>& channels,
+                        double critical, Plan& plan) {
+  const double limit = shape_limits(critical).excess_kurtosis;
+  std::vector<stats::ExcessKurtoses> allowed(question.channel_count());
+  for (const Known& known : channels) {
+    const double upper = stats::kurtosis_upper_limit(known.pilot.moments) / known.averaged;
+    stats::ExcessKurtoses& mine = allowed[known.channel];
+    (known.subject == 0 ? mine.x : mine.y) = upper > limit ? upper : 0;
+  }
+  plan.method.frozen.excess_kurtoses = std::move(allowed);
+}
+
 }  // namespace
 
 std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
@@ -165,13 +226,19 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const bool normal = are_near_normal(question, channels, x, plan);
   if (forced) return least_secondaries;
   plan.invalid = heavy;
-  if (normal) return least_secondaries;
+  if (normal) {
+    allow_for_kurtosis(question, channels, x, plan);
+    return least_secondaries;
+  }
   const std::uint64_t needed = enough_for_log_variance(question, channels, x);
   const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
   // Of fewer than the other test takes a few hundred values of a pilot would turn away each fourth
   // normal law: the exact test stands where they do not contradict it, its gates amber.
   const bool too_few_for_others = plan.invalid.empty() && needed > affordable;
-  if (too_few_for_others && may_be_near_normal(question, channels, x)) return least_secondaries;
+  if (too_few_for_others && may_be_near_normal(question, channels, x)) {
+    allow_for_kurtosis(question, channels, x, plan);
+    return least_secondaries;
+  }
   plan.method = find_method(question, "log-variance");
   if (plan.invalid.empty() && needed > affordable) {
     note_too_few(plan, affordable, needed);
@@ -193,7 +260,7 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
     if (shape) needed = std::max(needed, stats::values_for_log_variance(*shape, x));
   }
   const std::uint64_t for_costs = enough_for_costs(question, pilots, plan, x);
-  needed = std::max(needed, for_costs);
+  needed = std::max({needed, for_costs, enough_for_groups(question, pilots, plan, x)});
   if (question.test->method) {
     return as_forced(question, place, pilots, most, needed, least_secondaries, plan);
   }

@@ -221,7 +221,7 @@ Gate log_mean_gate(const Moments& positive, double critical_value) {
   part.value = slope.value / std::sqrt(static_cast<double>(positive.count));
   part.allowance *= slope.share_of_skewness;
   Gate gate = skewness_gate_of(part, {}, cube);
-  gate.name = "level factor of the mean cost";
+  gate.name = "level factor of the mean ";
   return gate;
 }
 
@@ -246,6 +246,14 @@ Gate kurtosis_gate(const Moments& x) {
             GateState::green};
   gate.state = state_of(gate, kurtosis_limit);
   return gate;
+}
+
+double kurtosis_upper_limit(const Moments& x) {
+  check::at_least({"kurtosis_upper_limit", "count"}, x.count, 4);
+  constexpr double z = 1.6448536269514722;  // the normal law's upper quantile at .05
+  const double excess = x.kurtosis() - 3;
+  const double error = std::sqrt(24 / static_cast<double>(x.count));
+  return std::max(0.0, excess + z * error * kurtosis_widening(std::max(0.0, excess)));
 }
 
 }  // namespace assay::stats

@@ -61,9 +61,9 @@ Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, Planne
 Gate skewness_gate(const Moments& x, double critical_value);
 // The same of the contrast mean x - scale mean y: a = sum psi^3 / (6 (sum psi^2)^1.5).
 Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value);
-// The same of ln of a mean cost, with log_mean_slope (log_variance_level.h) for |g1| / 3; the
-// confidence limit takes the error of g1 alone. Of two sides each has its own, a bound.
-// std::domain_error where the mean is not positive.
+// The same of ln of a mean of positive values, which the caller adds to the name, with
+// log_mean_slope (log_variance_level.h) for |g1| / 3; the confidence limit takes the error of g1
+// alone. Of two sides each has its own, a bound. std::domain_error where the mean is not positive.
 Gate log_mean_gate(const Moments& positive, double critical_value);
 
 // The |g1| that normal samples of n exceed with this probability: D'Agostino (1970), n >= 8.
@@ -81,5 +81,10 @@ Gate dominance_gate(const Moments& x);
 // confidence limit takes off the 1e-4 quantile of b2, for normal data by Anscombe & Glynn (1983),
 // widened to a gamma law whose excess is the limit.
 Gate kurtosis_gate(const Moments& x);
+
+// Upper 95 % confidence limit of the excess kurtosis, 0 at least: k + 1.645 sqrt(Var b2), by the
+// delta method at the gamma law of excess k (normal where k < 0). std::domain_error for fewer than
+// 4 values, ZeroVariance.
+double kurtosis_upper_limit(const Moments& x);
 
 }  // namespace assay::stats

@@ -10,6 +10,7 @@
 #include "questions.h"
 #include "refusal.h"
 #include "running.h"
+#include "stats/assumption_gates.h"
 #include "stats/power.h"
 #include "stats/tails.h"
 
@@ -28,6 +29,7 @@ Planned plan_text(const std::string& tests, std::uint64_t seed = 1) {
   Planned planned{.asked = ask_text(R"(suite: plans
 estimators:
   normal: {plugin: analytic/normal, mean: 2}
+  coin: {plugin: analytic/law, law: bernoulli(0.5), primaries: 1}
   single: {plugin: analytic/normal, mean: 2, primaries: 1}
   uniform: {plugin: analytic/exponential_uniform}
   flat: {plugin: analytic/law, law: 'uniform(0, 1)', primaries: 1}
@@ -219,6 +221,39 @@ TEST(Plan, OfFewNearNormalObservationsChiSquareStands) {
   }
   const Planned skewed = plan_text("  - {claim: variance(corners) <= 100, secondaries: 500}\n");
   EXPECT_NE(skewed.plans[0].invalid, "");
+}
+
+// Each allows for the kurtosis that the pilot cannot exclude, where that is beyond what it bears:
+// of 512 values some .36, of 8192 primaries in means of 64 next to nothing. A forced one does not.
+TEST(Plan, OfFewNearNormalObservationsTheirKurtosisIsAllowedFor) {
+  const Planned planned = plan_text(
+      "  - {name: few, claim: variance(ratio) <= 1, secondaries: 500}\n"
+      "  - {name: forced, claim: variance(ratio) <= 1, secondaries: 500, test: chi-square}\n"
+      "  - {name: averaged, claim: variance(normal) <= 100, secondaries: 500}\n"
+      "  - {name: one of two, claim: variance(normal) < variance(ratio), secondaries: 500}\n");
+  const auto allowed = [&](std::size_t test) {
+    return planned.plans[test].method.frozen.excess_kurtosis(0);
+  };
+  const Pilot& pilot = *pilot_of(planned.asked->questions[0].subjects[0], planned.pilots);
+  const double limit = stats::kurtosis_upper_limit(pilot.sums->moments(0));
+  EXPECT_GT(limit, 0.2);
+  EXPECT_EQ(allowed(0).x, limit);
+  EXPECT_EQ(allowed(1).x, 0);
+  EXPECT_EQ(allowed(2).x, 0);
+  EXPECT_EQ(planned.plans[3].method.name, "F");
+  EXPECT_EQ(allowed(3).x, 0);
+  EXPECT_EQ(allowed(3).y, limit);
+}
+
+// Variances of eight fair coins are skewed to the left (-2.2), and so is their mean's logarithm: of
+// 1000 coins `<=` failed at .001 eight times too often. Of normal values they are not.
+TEST(Plan, OfTotalVariancesTheGroupsAreNearNormal) {
+  const Planned planned = plan_text(
+      "  - {name: coin, claim: total_variance(coin) <= 0.25}\n"
+      "  - {name: normal, claim: total_variance(single) <= 1}\n");
+  EXPECT_GT(planned.plans[0].most_secondaries(), 10000);
+  EXPECT_LT(planned.plans[1].most_secondaries(), 2 * usual_secondaries);
+  EXPECT_EQ(planned.plans[0].invalid, "");
 }
 
 // What is drawn decides nothing: no more of it than a test without `detect` takes.

@@ -12,6 +12,7 @@
 #include "refusal.h"
 #include "tests/philox.h"
 #include "tests/stats/laws.h"
+#include "tests/stats/samples.h"
 
 namespace assay::harness {
 namespace {
@@ -90,6 +91,25 @@ TEST(Rows, CopiedAndShuffledAreInvalid) {
   const reports::Test test = judged(rows, "claim: mean(rows) == 0");
   EXPECT_EQ(test.verdict, Verdict::invalid);
   EXPECT_THAT(test.message, HasSubstr("values occur exactly 4 times each, bit for bit"));
+}
+
+// 20 states of a chain of unit variance in equilibrium: exactly the law that is claimed, and failed
+// under a third of the seeds. A forced test takes them for independent.
+TEST(Rows, TooFewToShowThatTheyAreIndependentAreInvalid) {
+  Philox random(13);
+  const std::vector<double> chain = tests::autoregressive(.9, 20, random);
+  for (const char* claim :
+       {"claim: 'distribution(rows) == normal(0, 1)'", "claim: 'quantile(rows, 0.5) == 0'"}) {
+    const reports::Test test = judged(chain, claim);
+    EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
+    EXPECT_THAT(test.message, HasSubstr("20 rows of rows are too few for their order to show"));
+  }
+  const reports::Test forced =
+      judged(chain, "claim: 'distribution(rows) == normal(0, 1)', test: ks");
+  EXPECT_NE(forced.verdict, Verdict::invalid);
+  const reports::Test enough =
+      judged(rows_of(100, 14, normal), "claim: 'distribution(rows) == normal(0, 1)'", 1e-6);
+  EXPECT_EQ(enough.verdict, Verdict::pass) << enough.message;
 }
 
 // A column that never varies beside one that does: what is said is of the one that does, and where
