@@ -348,11 +348,16 @@ std::optional<std::uint64_t> image_secondaries(const Question& question, const E
 std::string too_few_replicates(const Question& question, const Plan& plan) {
   const std::uint64_t most = plan.most_secondaries();
   if (question.kind != QuestionKind::image || most >= stats::least_replicates) return "";
+  const std::string mend =
+      question.test->budget
+          ? "give a larger `budget`, of which every pixel and component takes its `primaries`, or "
+            "fewer of these"
+          : fmt::format("take {} `secondaries` or more, with fewer `primaries` if need be",
+                        stats::least_replicates);
   return fmt::format(
       "{} images are too few: each pixel's variance comes from them alone, and it takes {} of them "
-      "to tell any pixel among {} from its reference; take {} `secondaries` or more, with fewer "
-      "`primaries` if need be",
-      most, stats::least_replicates, question.subjects[0].channels.size(), stats::least_replicates);
+      "to tell any pixel among {} from its reference; {}",
+      most, stats::least_replicates, question.subjects[0].channels.size(), mend);
 }
 
 }  // namespace assay::harness

@@ -191,8 +191,7 @@ std::string lack_of_density(const Question& question, const NoDensity& why) {
 std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < plan.primaries.size(); ++i) {
-    const std::optional<ImageShape>& image = question.subjects[i].image;
-    sum += plan.primaries[i] * (image ? image->elements() : 1);
+    sum += primaries_of_observation(*question.subjects[i].setup, plan.primaries[i]);
   }
   return sum;
 }

@@ -54,7 +54,8 @@ struct Total {
   bool known = true;  ///< rays and seconds are of everything
 
   void add(const Pool& pool, double secondaries, const UnitCosts& costs) {
-    primaries += secondaries * static_cast<double>(pool.primaries());
+    primaries += secondaries *
+                 static_cast<double>(primaries_of_observation(*pool.setup(), pool.primaries()));
     const auto found = costs.find(&pool);
     if (found != costs.end()) {
       rays += secondaries * found->second.rays;
@@ -287,8 +288,9 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(
       "primaries: of one secondary estimate. first, last: secondaries of each source at these "
-      "looks. in all, rays, CPU time: primaries of all sources up to the last look, and what they "
-      "cost. "
+      "looks. in all, rays, CPU time: primaries of all sources up to the last look, of images "
+      "those "
+      "of every pixel and component, and what they cost. "
       "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
       "beta. if true: the share of the last look that is drawn on average if the claim holds "
       "exactly, at most.");

@@ -36,12 +36,6 @@ bool stays(const Setup& setup) {
   return as_recorded_run(setup) == nullptr && setup.image() && setup.observations();
 }
 
-/// Primaries that one observation is made of.
-std::uint64_t primaries_of(const Setup& setup, std::uint64_t primaries) {
-  const std::optional<ImageShape> image = setup.image();
-  return image ? primaries * image->elements() : primaries;
-}
-
 const Summary* ready_made(const Setup& setup) {
   const RecordedRun* run = as_recorded_run(setup);
   return run == nullptr ? nullptr : &run->summary();
@@ -118,6 +112,11 @@ std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
 
 }  // namespace
 
+std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries) {
+  const std::optional<ImageShape> image = setup.image();
+  return image ? primaries * image->elements() : primaries;
+}
+
 std::uint64_t block_size_of(std::uint64_t primaries) {
   return std::bit_floor(std::clamp(primaries_per_block / primaries, least_block, most_block));
 }
@@ -127,7 +126,7 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
       ready_made_(ready_made(*setup_)),
       key_(key),
       primaries_(primaries),
-      block_size_(block_size_of(primaries_of(*setup_, primaries))),
+      block_size_(block_size_of(primaries_of_observation(*setup_, primaries))),
       channels_(channels_of(*setup_)),
       sums_later_(stays(*setup_)),
       kept_observations_(sums_later_ ? *setup_->observations() : 0) {}

@@ -18,6 +18,9 @@
 
 namespace assay::harness {
 
+/// Primaries that an observation takes: of an image those of every pixel and component.
+std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries);
+
 /// Observations of a block, a power of two that depends on `primaries` alone; of an image they are
 /// those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);

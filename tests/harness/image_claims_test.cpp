@@ -150,6 +150,11 @@ TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
   EXPECT_EQ(test.verdict, Verdict::invalid);
   EXPECT_EQ(test.message.find("15 images are too few"), 0u) << test.message;
   EXPECT_NE(test.message.find("take 16 `secondaries` or more"), std::string::npos);
+  // 32 primaries of 16 x 16 pixels and 15 images.
+  const reports::Test paid = floor_test(std::string(floor_16) + ", primaries: 32",
+                                        "claim: mean(a) == analytic, budget: 122880");
+  EXPECT_EQ(paid.message.find("15 images are too few"), 0u) << paid.message;
+  EXPECT_NE(paid.message.find("give a larger `budget`"), std::string::npos);
 }
 
 // One exponential value a pixel has skewness 2: single pixels take no part. False alarm .01.
