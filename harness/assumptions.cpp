@@ -83,9 +83,8 @@ std::vector<reports::Gate> log_mean_gates(const Question& question,
     const stats::Moments& values = variances ? data[subject].group_variances
                                              : by_its_cost(question, data[subject].with_cost).cost;
     if (!(values.m2 > 0 && values.mean > 0)) continue;
-    stats::Gate gate = stats::log_mean_gate(values, x);
-    gate.name += variances ? "variance" : "cost";
-    gates.push_back(gate_of(gate, " of " + question.subjects[subject].estimator->name));
+    gates.push_back(gate_of(stats::log_mean_gate(values, x, variances ? "variance" : "cost"),
+                            " of " + question.subjects[subject].estimator->name));
   }
   return gates;
 }

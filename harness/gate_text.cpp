@@ -21,6 +21,8 @@ constexpr Meaning meanings[] = {
     {"count",
      "{0} rows are too few to show their own shape: this test at its level takes {1}; with "
      "`test: t` the rows are taken to be near normal"},
+    {"rows that show their independence",
+     "{0} rows are too few for their order to show that they are independent: that takes {1}"},
     {"skewness of the mean",
      "the rows are too skewed for how few they are: the skewness of their mean is {0}, limit {1}"},
     {"level factor by skewness",

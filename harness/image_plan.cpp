@@ -159,7 +159,10 @@ void require_whole_image(const stats::CellTails& whole, const stats::ImageExtent
                          Plan& plan) {
   const double limit = 1 + (level_factor - 1) / stats::whole_image_share(extent);
   if (keeps_level(whole, limit) || !plan.gates_invalidate || !plan.invalid.empty()) return;
-  plan.gates.back().limit = shown_factor(whole, limit).limit;
+  const ShownFactor shown = shown_factor(whole, limit);
+  plan.gates.back().value =
+      std::isfinite(shown.value) ? reports::Number(shown.value) : reports::Number();
+  plan.gates.back().limit = shown.limit;
   plan.gates.back().state = "red";
   plan.invalid =
       "rare bright pixels (fireflies) carry so much of the images that not even their sums over "

@@ -198,6 +198,14 @@ void require_margins(const Method& method, const Question& question) {
 
 }  // namespace
 
+stats::ExcessKurtoses Frozen::largest_excess_kurtosis() const {
+  stats::ExcessKurtoses largest;
+  for (const stats::ExcessKurtoses& each : excess_kurtoses) {
+    largest = {.x = std::max(largest.x, each.x), .y = std::max(largest.y, each.y)};
+  }
+  return largest;
+}
+
 std::vector<Method> methods_for(const Question& question) {
   const bool within = question.test->claim.relation == Relation::within;
   switch (question.kind) {

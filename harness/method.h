@@ -62,6 +62,8 @@ struct Frozen {
   stats::ExcessKurtoses excess_kurtosis(std::size_t channel) const {
     return excess_kurtoses.empty() ? stats::ExcessKurtoses{} : excess_kurtoses[channel];
   }
+  /// Of each subject over the channels, to plan with.
+  stats::ExcessKurtoses largest_excess_kurtosis() const;
 };
 
 struct Method {

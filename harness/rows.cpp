@@ -166,17 +166,17 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
   }
 }
 
-/// Why rows are too few to show that they are independent; those whose mean is tested must be so
-/// many for its own sake (unpiloted_gates.h).
+/// Why rows are too few to show that they are independent. "" where there are enough.
 std::string too_few_to_tell(const Question& question, const Pilots& pilots, std::uint64_t count,
                             Plan& plan) {
-  if (question.of_means() && !is_exact(plan.method)) return "";
   std::string reason;
   for (const Subject& side : question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
     if (!is_recorded(side) || side.setup->image() || pilot == nullptr || pilot->values.empty()) {
       continue;
     }
+    if (!(pilot_channel(side, *pilot, 0).moments.m2 > 0))
+      continue;  // constants have gates of their own
     const std::uint64_t rows =
         std::min<std::uint64_t>(pilot->values[side.channels[0]].size(), count);
     plan.gates.push_back({.name = "rows that show their independence of " + side.estimator->name,
@@ -186,7 +186,7 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
     if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
     reason = fmt::format(
         "{} rows of {} are too few for their order to show that they are independent of each "
-        "other: from {} on it does; `test: {}` takes them to be",
+        "other: that takes {}, and `test: {}` takes them to be",
         rows, side.estimator->name, fewest_in_order_to_tell, plan.method.name);
   }
   return reason;
@@ -219,7 +219,8 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   const bool forced = question.test->method.has_value();
   const bool batches = question.kind == QuestionKind::mean_of_one &&
                        question.test->claim.relation != Relation::within;
-  std::string reason = too_few_to_tell(question, pilots, count, plan);
+  std::string reason;
+  if (plan.invalid.empty()) reason = too_few_to_tell(question, pilots, count, plan);
   bool answered = false;
   for (const Rows& rows : rows_of(question, pilots, count)) {
     if (const auto again = stats::repeated_run(rows.values)) {

@@ -171,16 +171,17 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
 }
 
 /// Chi-square and F take data that are flatter than normal for normal ones: they find as little as
-/// of those. 1 is no second subject, or two values, whose kurtosis rounding takes below it.
-double kurtosis_for(const Method& method, double kurtosis) {
+/// of those, or of what they allow for. 1 is no second subject, or two values, within rounding.
+double kurtosis_for(const Method& method, double kurtosis, double allowed) {
   const bool of_normal = method.name == "chi-square" || method.name == "F";
-  return of_normal && kurtosis > 1 ? std::max(3.0, kurtosis) : std::max(1.0, kurtosis);
+  return of_normal && kurtosis > 1 ? std::max(3 + allowed, kurtosis) : std::max(1.0, kurtosis);
 }
 
 stats::LogVariancePlan variance_plan(const Method& method, const stats::ErrorRates& rates,
                                      double allow, const PlannedChannel& channel) {
-  return {.kurtosis_x = kurtosis_for(method, channel.kurtosis),
-          .kurtosis_y = kurtosis_for(method, channel.other_kurtosis),
+  const stats::ExcessKurtoses allowed = method.frozen.largest_excess_kurtosis();
+  return {.kurtosis_x = kurtosis_for(method, channel.kurtosis, allowed.x),
+          .kurtosis_y = kurtosis_for(method, channel.other_kurtosis, allowed.y),
           .allow = std::exp(allow),
           .rates = rates};
 }

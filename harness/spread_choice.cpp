@@ -98,17 +98,19 @@ std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, c
 }
 
 /// Of the variances of groups of secondaries, added over the channels, that the pilot's values
-/// make; nothing where they are too few, as of secondaries of many primaries, which are near
-/// normal.
+/// make; nothing where these are not kept, as of many channels, or too few, as for secondaries of
+/// many primaries, which are near normal.
 std::optional<stats::PositiveShape> group_shape(const Question& question, std::size_t subject,
                                                 const Pilots& pilots, const Plan& plan) {
   constexpr std::uint64_t fewest_groups = 64;
   const Subject& side = question.subjects[subject];
+  const Pilot* const drawn = pilot_of(question, subject, pilots);
+  if (drawn == nullptr || side.channels.size() > most_kept_channels) return {};
   const std::uint64_t primaries = side.averages ? plan.primaries[subject] : 1;
   std::vector<std::span<const double>> pilot;
   std::vector<std::size_t> channels;
   for (std::size_t i = 0; i < side.channels.size(); ++i) {
-    pilot.push_back(pilot_channel(question, subject, i, pilots).values);
+    pilot.push_back(pilot_channel(side, *drawn, i).values);
     channels.push_back(i);
   }
   GroupVariance groups(channels);
@@ -134,7 +136,6 @@ std::uint64_t enough_for_groups(const Question& question, const Pilots& pilots, 
   std::uint64_t needed = 2;
   if (question.kind != QuestionKind::total_variance) return needed;
   for (std::size_t subject = 0; subject < question.compared(); ++subject) {
-    if (pilot_of(question, subject, pilots) == nullptr) continue;
     if (const auto shape = group_shape(question, subject, pilots, plan)) {
       needed = std::max(needed, variance_group * stats::values_for_log_mean(*shape, critical));
     }
@@ -204,6 +205,8 @@ void allow_for_kurtosis(const Question& question, const std::vector<Known>& chan
   const double limit = shape_limits(critical).excess_kurtosis;
   std::vector<stats::ExcessKurtoses> allowed(question.channel_count());
   for (const Known& known : channels) {
+    constexpr std::uint64_t fewest_with_kurtosis = 4;
+    if (known.pilot.moments.count < fewest_with_kurtosis) continue;
     const double upper = stats::kurtosis_upper_limit(known.pilot.moments) / known.averaged;
     stats::ExcessKurtoses& mine = allowed[known.channel];
     (known.subject == 0 ? mine.x : mine.y) = upper > limit ? upper : 0;

@@ -38,7 +38,9 @@ const char* detect_words(const Test& test) {
 // A margin of a ratio is a factor up or down: 20 % up is 17 % down.
 std::string both_ends(const Test& test, const Effect& effect, double margin) {
   const std::string relation = relation_of(test.claim);
-  if (!is_ratio(effect) || (relation != "within" && relation != "==")) return {};
+  constexpr double small = 0.02;  // up is down but for the last digit shown
+  if (!is_ratio(effect) || std::abs(margin) < small || (relation != "within" && relation != "=="))
+    return {};
   const double factor = std::exp(std::abs(margin));
   return fmt::format(" (×{} to ×{})", human(1 / factor, 3), human(factor, 3));
 }

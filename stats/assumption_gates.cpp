@@ -208,7 +208,7 @@ Gate skewness_gate(const Moments& x, const Moments& y, double scale, double crit
   return skewness_gate_of(skewness_part(x, vx / (vx + vy), cube), of_y, cube);
 }
 
-Gate log_mean_gate(const Moments& positive, double critical_value) {
+Gate log_mean_gate(const Moments& positive, double critical_value, const std::string& of) {
   check::at_least({"log_mean_gate", "count"}, positive.count, 2);
   check::positive({"log_mean_gate", "mean"}, positive.mean);
   check::positive({"log_mean_gate", "critical_value"}, critical_value);
@@ -221,7 +221,7 @@ Gate log_mean_gate(const Moments& positive, double critical_value) {
   part.value = slope.value / std::sqrt(static_cast<double>(positive.count));
   part.allowance *= slope.share_of_skewness;
   Gate gate = skewness_gate_of(part, {}, cube);
-  gate.name = "level factor of the mean ";
+  gate.name = "level factor of the mean " + of;
   return gate;
 }
 

@@ -61,10 +61,10 @@ Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, Planne
 Gate skewness_gate(const Moments& x, double critical_value);
 // The same of the contrast mean x - scale mean y: a = sum psi^3 / (6 (sum psi^2)^1.5).
 Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value);
-// The same of ln of a mean of positive values, which the caller adds to the name, with
+// The same of ln of a mean of positive values (`of`: "cost"), with
 // log_mean_slope (log_variance_level.h) for |g1| / 3; the confidence limit takes the error of g1
 // alone. Of two sides each has its own, a bound. std::domain_error where the mean is not positive.
-Gate log_mean_gate(const Moments& positive, double critical_value);
+Gate log_mean_gate(const Moments& positive, double critical_value, const std::string& of);
 
 // The |g1| that normal samples of n exceed with this probability: D'Agostino (1970), n >= 8.
 // Smaller samples cannot tell, their g1 being capped at (n - 2) / sqrt(n - 1): infinite.

@@ -10,7 +10,7 @@ namespace assay::stats {
 // deviation by sqrt(1 + k/2) for every n (see assumption_gates.h). Where k > 0 is to be allowed
 // for, X / (1 + k/2) has nu = (n - 1) / (1 + k/2), the law with s2's mean and variance (Box 1953),
 // and is approximate: of gamma laws of excess .25 to 1, k theirs, the worse tail at .005 is 1.5
-// to 1.0 times nominal for n from 30 to 900 (README.md). Throws std::domain_error (count < 2,
+// to 1.0 times nominal for n = 30 and 300 (README.md). Throws std::domain_error (count < 2,
 // null_variance not positive and finite, k negative or not finite), ZeroVariance (s2 = 0).
 TestResult chi_square_variance(const Moments& x, double null_variance, double excess_kurtosis = 0);
 

@@ -31,6 +31,7 @@ tests: [{name: t, claim: )" + claim +
       joint.add(value, i % dear.every == 0 ? 1 + dear.more : 1);
   }
   data.with_cost = sums;
+  data.group_variances = sums[0].cost;
   return data_gates(outcome, 0, {&data, 1});
 }
 
@@ -46,6 +47,10 @@ TEST(Assumptions, RareCostsThatWeighAreRed) {
     EXPECT_TRUE(gates_of_costs(claim, {.every = 1, .more = 1}).empty())
         << "a cost that does not vary";
   }
+  const std::vector<reports::Gate> groups = gates_of_costs("total_variance(multi) == 1", rare_ones);
+  ASSERT_EQ(groups.size(), 1);
+  EXPECT_EQ(groups[0].name, "level factor of the mean variance of multi");
+  EXPECT_EQ(groups[0].state, "red");
   // A pool keeps costs for all its tests.
   for (const char* claim :
        {"mean(multi) == 1", "variance(multi) == 1", "cost(multi) == 1, cost: seconds"}) {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 #include <functional>
-#include <numeric>
+#include <vector>
 
 #include "questions.h"
 #include "tests/philox.h"

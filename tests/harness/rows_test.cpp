@@ -140,7 +140,7 @@ TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
   const std::vector<double> rows = rows_of(5, 1, normal);
   const reports::Test test = judged(rows, "claim: mean(rows) == 0");
   EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_THAT(test.message, HasSubstr("5 rows are too few"));
+  EXPECT_THAT(test.message, HasSubstr("5 rows of rows are too few for their order"));
   EXPECT_THAT(test.message, testing::Not(HasSubstr("primaries")));
   EXPECT_EQ(judged(rows, "claim: mean(rows) == 0, test: t").verdict, Verdict::pass);
 }
@@ -327,7 +327,7 @@ TEST(Rows, KeepTheLevelWhateverTheirLaw) {
   const tests::Law heavy{"lognormal(1.5)", std::exp(1.125),
                          [](Philox& r) { return std::exp(1.5 * r.normal()); }};
   for (const tests::Law& law : {laws::normal, laws::exponential, laws::lognormal_one, heavy}) {
-    const Rate rate = rate_of(law, 60, 400);
+    const Rate rate = rate_of(law, 100, 400);
     EXPECT_LE(rate.fail, 0.13) << law.name;
     if (law.name == laws::normal.name) {
       EXPECT_EQ(rate.invalid, 0);

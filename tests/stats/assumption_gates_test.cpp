@@ -54,13 +54,13 @@ TEST(AssumptionGates, OfALogMeanTheValueIsTheFactorOfItsSlope) {
   Moments even;
   for (int i = 0; i < 400; ++i) even.add(i % 2 == 0 ? 1 : 3);
   const double variation = even.standard_deviation() / 2;
-  EXPECT_NEAR(log_mean_gate(even, 3).value, std::exp(variation / 2 * 27 / 20), 1e-12);
+  EXPECT_NEAR(log_mean_gate(even, 3, "cost").value, std::exp(variation / 2 * 27 / 20), 1e-12);
   Moments rare;
   for (int i = 0; i < 1000; ++i) rare.add(i == 0 ? 1001 : 1);
   const double slope = (rare.skewness() / 3 + rare.standard_deviation() / 2 / 2) / 4;
-  EXPECT_NEAR(log_mean_gate(rare, 3).value, std::exp(slope * 27 / std::sqrt(1000)), 1e-9);
-  EXPECT_EQ(log_mean_gate(rare, 3).state, GateState::red);
-  EXPECT_EQ(log_mean_gate(rare, 1.96).state, GateState::red);
+  EXPECT_NEAR(log_mean_gate(rare, 3, "cost").value, std::exp(slope * 27 / std::sqrt(1000)), 1e-9);
+  EXPECT_EQ(log_mean_gate(rare, 3, "cost").state, GateState::red);
+  EXPECT_EQ(log_mean_gate(rare, 1.96, "cost").state, GateState::red);
 }
 
 // What each observation adds to a contrast's mean: (x - mean x) / n_x, or -scale (y - mean y) /
@@ -201,7 +201,7 @@ TEST(AssumptionGates, NormalDataAreRedLessThanOnceInTenThousand) {
         red_rate(study, normal, [](const Moments& x) { return skewness_gate(x, 4.42); });
     const double log_mean = red_rate(
         study, [](Philox& random) { return 10 + random.normal(); },
-        [](const Moments& x) { return log_mean_gate(x, 4.42); });
+        [](const Moments& x) { return log_mean_gate(x, 4.42, "cost"); });
     const double dominance = red_rate(study, normal, dominance_gate);
     const double kurtosis = red_rate(study, normal, kurtosis_gate);
     std::cout << "  n = " << n << ": red skewness " << skewness << ", dominance " << dominance
@@ -248,8 +248,9 @@ TEST(AssumptionGates, GrossViolationsAreRed) {
 TEST(AssumptionGates, BadSamplesThrow) {
   const Moments constant = moments_of(std::vector<double>{1, 1, 1, 1, 1});
   EXPECT_THROW(skewness_gate(constant, 3), ZeroVariance);
-  EXPECT_THROW(log_mean_gate(constant, 3), ZeroVariance);
-  EXPECT_THROW(log_mean_gate(moments_of(std::vector<double>{-1, -2, -3}), 3), std::domain_error);
+  EXPECT_THROW(log_mean_gate(constant, 3, "cost"), ZeroVariance);
+  EXPECT_THROW(log_mean_gate(moments_of(std::vector<double>{-1, -2, -3}), 3, "cost"),
+               std::domain_error);
   EXPECT_THROW(dominance_gate(constant), ZeroVariance);
   EXPECT_THROW(kurtosis_gate(constant), ZeroVariance);
   EXPECT_THROW(skewness_gate(moments_of(std::vector<double>{1, 2, 3}), -1), std::domain_error);

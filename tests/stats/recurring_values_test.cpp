@@ -99,7 +99,7 @@ std::vector<Law> laws_of_atoms() {
   return laws;
 }
 
-// At most 1e-5 each by the likelihood's bound: .17 of one among the 16,800 would be found here.
+// Such a ratio has a probability of some 1e-5 at most: .17 of one among the 16,800 would be found.
 TEST(RecurringValues, AreNotFoundInIndependentValues) {
   Philox random(3);
   for (const Law& law : laws_of_atoms()) {
