@@ -19,9 +19,9 @@ struct PicturedChannel {
 };
 struct Pictured {
   std::string name;
-  bool drawn = true;    ///< false: it threw
-  bool image = false;   ///< compared by claims, not pixel by pixel
-  double averaged = 1;  ///< primaries that an observation averages
+  bool drawn = true;     ///< false: it threw
+  bool image = false;    ///< compared by claims, not pixel by pixel
+  double averaged = 1;   ///< primaries that an observation averages
   bool averages = true;  ///< so that its variance is that of a primary
   std::vector<PicturedChannel> channels = {};
 };

@@ -8,6 +8,7 @@
 
 #include "harness/image_plan.h"
 #include "harness/law_evidence.h"
+#include "harness/pilot_shape.h"
 #include "harness/rows.h"
 
 namespace assay::harness {
@@ -24,24 +25,12 @@ bool may_choose(const Question& question, std::size_t subject) {
          std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded);
 }
 
-/// The pilot's values of one channel as secondaries of so many primaries.
-std::vector<double> as_secondaries(std::span<const double> values, std::uint64_t primaries) {
-  std::vector<double> means;
-  for (std::size_t i = 0; i + primaries <= values.size(); i += primaries) {
-    double sum = 0;
-    for (std::uint64_t k = 0; k < primaries; ++k) sum += values[i + k];
-    means.push_back(sum / static_cast<double>(primaries));
-  }
-  return means;
-}
-
 std::vector<double> pilot_values(const Question& question, std::size_t subject, std::size_t channel,
                                  const Pilots& pilots, const Plan& plan) {
   const Subject& side = question.subjects[subject];
   if (pilot_of(side, pilots) == nullptr || !may_choose(question, subject)) return {};
-  const bool averages = side.averages && !is_recorded(side);
-  return as_secondaries(pilot_channel(question, subject, channel, pilots).values,
-                        averages ? plan.primaries[subject] : 1);
+  return as_secondaries(side, pilot_channel(question, subject, channel, pilots).values,
+                        plan.primaries[subject]);
 }
 
 /// Leaves out values that come less often than this: those of a bucket that few fall into, so that

@@ -10,6 +10,7 @@
 #include "harness/constant.h"
 #include "harness/critical.h"
 #include "harness/mean_evidence.h"
+#include "harness/rows.h"
 
 namespace assay::harness {
 namespace {
@@ -145,6 +146,18 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
     }
   }
   return all;
+}
+
+std::vector<double> as_secondaries(const Subject& side, std::span<const double> values,
+                                   std::uint64_t primaries) {
+  const std::uint64_t each = side.averages && !is_recorded(side) ? primaries : 1;
+  std::vector<double> means;
+  for (std::size_t i = 0; i + each <= values.size(); i += each) {
+    double sum = 0;
+    for (std::uint64_t k = 0; k < each; ++k) sum += values[i + k];
+    means.push_back(sum / static_cast<double>(each));
+  }
+  return means;
 }
 
 void answer_red_gates(Plan& plan) {

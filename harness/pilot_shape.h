@@ -2,6 +2,8 @@
 
 // What the pilot, or the rows of a file, tell of the shapes that a method has to bear.
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,11 @@ struct Known {
   bool rows;        ///< the test's own data, not a pilot's
   std::string label;
 };
+
+/// The pilot's values of one channel as secondaries of so many primaries; as they are where the
+/// subject does not average, or has rows of a file.
+std::vector<double> as_secondaries(const Subject& side, std::span<const double> values,
+                                   std::uint64_t primaries);
 
 /// Why nothing can be chosen by the pilot: values whose powers are no numbers. "" where all is
 /// well.

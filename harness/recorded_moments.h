@@ -1,7 +1,7 @@
 #pragma once
 
-// Moments as a shard's record keeps them, there and back; what their mean lost
-// to rounding stays behind.
+// Moments as a shard's record keeps them, there and back; what their mean lost to rounding stays
+// behind.
 
 #include "reports/record.h"
 #include "stats/moments.h"

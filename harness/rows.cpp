@@ -88,13 +88,13 @@ std::string dependent(const Rows& rows) {
       rows.label, rows.values.size(), worth, std::ceil(10 * time), fewest_batches);
 }
 
-/// No run of chance is so long: any is too long.
-Gate repetition_gate(const stats::RepeatedRun& again) {
-  const auto length = static_cast<double>(again.length);
-  return {.name = "longest repetition",
-          .value = length,
-          .low = length,
-          .limit = 0,
+/// Of what chance does not make.
+Gate red_gate(const char* name, std::size_t value, std::size_t limit) {
+  const auto shown = static_cast<double>(value);
+  return {.name = name,
+          .value = shown,
+          .low = shown,
+          .limit = static_cast<double>(limit),
           .state = GateState::red};
 }
 
@@ -107,15 +107,6 @@ std::string repeated(const Rows& rows, const stats::RepeatedRun& again) {
       "of the {} those from {} are those from {} again, bit for bit: they are no observations of "
       "their own; give each run of the program that writes them a seed of its own",
       rows.label, from_to(again.second, again.length), from_to(again.first, again.length));
-}
-
-Gate recurrence_gate(const stats::RecurringValues& alike) {
-  const auto values = static_cast<double>(alike.values);
-  return {.name = "values that occur equally often",
-          .value = values,
-          .low = values,
-          .limit = static_cast<double>(alike.limit),
-          .state = GateState::red};
 }
 
 std::string recurring(const Rows& rows, const stats::RecurringValues& alike) {
@@ -172,13 +163,11 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
   std::string reason;
   for (const Subject& side : question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
-    if (!is_recorded(side) || side.setup->image() || pilot == nullptr || pilot->values.empty()) {
-      continue;
-    }
-    if (!(pilot_channel(side, *pilot, 0).moments.m2 > 0))
-      continue;  // constants have gates of their own
-    const std::uint64_t rows =
-        std::min<std::uint64_t>(pilot->values[side.channels[0]].size(), count);
+    if (!is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
+    const PilotChannel first = pilot_channel(side, *pilot, 0);
+    // Constants have gates of their own.
+    if (first.values.empty() || !(first.moments.m2 > 0)) continue;
+    const std::uint64_t rows = std::min<std::uint64_t>(first.values.size(), count);
     plan.gates.push_back({.name = "rows that show their independence of " + side.estimator->name,
                           .value = static_cast<double>(rows),
                           .limit = static_cast<double>(fewest_in_order_to_tell),
@@ -224,10 +213,13 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   bool answered = false;
   for (const Rows& rows : rows_of(question, pilots, count)) {
     if (const auto again = stats::repeated_run(rows.values)) {
-      plan.gates.push_back(gate_of(repetition_gate(*again), ", " + rows.label));
+      plan.gates.push_back(
+          gate_of(red_gate("longest repetition", again->length, 0), ", " + rows.label));
       if (reason.empty()) reason = repeated(rows, *again);
     } else if (const auto alike = stats::recurring_values(rows.values)) {
-      plan.gates.push_back(gate_of(recurrence_gate(*alike), ", " + rows.label));
+      plan.gates.push_back(
+          gate_of(red_gate("values that occur equally often", alike->values, alike->limit),
+                  ", " + rows.label));
       if (reason.empty()) reason = recurring(rows, *alike);
     }
     std::vector<Gate> gates{stats::lag_one_gate(rows.values), stats::lagged_gate(rows.values),

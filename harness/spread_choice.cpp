@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <optional>
 
 #include "harness/critical.h"
@@ -106,23 +105,19 @@ std::optional<stats::PositiveShape> group_shape(const Question& question, std::s
   const Subject& side = question.subjects[subject];
   const Pilot* const drawn = pilot_of(question, subject, pilots);
   if (drawn == nullptr || side.channels.size() > most_kept_channels) return {};
-  const std::uint64_t primaries = side.averages ? plan.primaries[subject] : 1;
-  std::vector<std::span<const double>> pilot;
+  std::vector<std::vector<double>> secondaries;
   std::vector<std::size_t> channels;
   for (std::size_t i = 0; i < side.channels.size(); ++i) {
-    pilot.push_back(pilot_channel(side, *drawn, i).values);
+    secondaries.push_back(
+        as_secondaries(side, pilot_channel(side, *drawn, i).values, plan.primaries[subject]));
+    if (secondaries[i].size() != secondaries[0].size()) return {};
     channels.push_back(i);
   }
   GroupVariance groups(channels);
   stats::Moments variances;
   std::vector<double> secondary(channels.size());
-  for (std::size_t first = 0; first + primaries <= pilot[0].size(); first += primaries) {
-    for (const std::size_t channel : channels) {
-      if (pilot[channel].size() != pilot[0].size()) return {};
-      const auto values = pilot[channel].subspan(first, primaries);
-      secondary[channel] =
-          std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(primaries);
-    }
+  for (std::size_t row = 0; row < secondaries[0].size(); ++row) {
+    for (const std::size_t channel : channels) secondary[channel] = secondaries[channel][row];
     if (const auto variance = groups.add(secondary)) variances.add(*variance);
   }
   if (variances.count < fewest_groups || !(variances.m2 > 0)) return {};

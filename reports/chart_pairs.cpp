@@ -48,7 +48,7 @@ Standing mean_standing(const Comparison& pair) {
 }
 
 Standing variance_standing(const Comparison& pair) {
-  if (!pair.variance_p) return {"cell", "", "not compared", "units differ"};
+  if (pair.mean_p && !pair.variance_p) return {"cell", "", "not compared", "units differ"};
   const Number ratio = pair.variance_ratio;
   const std::string times = ratio ? human(*ratio, 3) + "×" : std::string(no_number);
   if (!pair.variances_differ || !ratio) return {"cell unclear", "·", "no evidence", times};

@@ -5,61 +5,15 @@
 #include <cmath>
 
 #include "harness/critical.h"
-#include "harness/pilot_run.h"
 #include "harness/planned_run.h"
-#include "questions.h"
+#include "planned.h"
 #include "refusal.h"
 #include "running.h"
-#include "stats/assumption_gates.h"
 #include "stats/power.h"
 #include "stats/tails.h"
 
 namespace assay::harness {
 namespace {
-
-/// A suite piloted and planned as a run does it.
-struct Planned {
-  std::unique_ptr<Asked> asked;
-  std::vector<FamilyPlace> place;
-  Pilots pilots;
-  std::vector<Plan> plans;
-};
-
-Planned plan_text(const std::string& tests, std::uint64_t seed = 1) {
-  Planned planned{.asked = ask_text(R"(suite: plans
-estimators:
-  normal: {plugin: analytic/normal, mean: 2}
-  coin: {plugin: analytic/law, law: bernoulli(0.5), primaries: 1}
-  single: {plugin: analytic/normal, mean: 2, primaries: 1}
-  uniform: {plugin: analytic/exponential_uniform}
-  flat: {plugin: analytic/law, law: 'uniform(0, 1)', primaries: 1}
-  heavy: {plugin: analytic/heavy_tail, index: 3}
-  heavy-single: {plugin: analytic/heavy_tail, index: 3, primaries: 1}
-  heavier-single: {plugin: analytic/heavy_tail, index: 2.2, primaries: 1}
-  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
-  dart: {plugin: analytic/dart_throwing, primaries: 1}
-  corners: {plugin: virtual_lights/weighted, primaries: 2}
-  same-samples: {plugin: correlated/area_same_samples, scene: rectangle, primaries: 16}
-  multi: {plugin: direct_light/multi_sample, primaries: 1}
-  ratio: {plugin: analytic/ratio, primaries: 4096}
-  unseen: {plugin: analytic/rare_spike, probability: 1e-9, height: 1, primaries: 1}
-  far: {plugin: analytic/rare_spike, probability: 1e-12, height: 1e6, primaries: 1}
-  spike: {plugin: analytic/rare_spike, probability: 0.0001, height: 10, noise: 0.1, primaries: 1}
-tests:
-)" + tests)};
-  planned.place = places(planned.asked->suite, planned.asked->questions);
-  std::vector<const PreparedEstimator*> all;
-  for (const auto& [name, estimator] : planned.asked->estimators) all.push_back(&estimator);
-  Silence silence;
-  planned.pilots = run_pilots(all, pilot_run_of(planned.asked->questions, seed, 1), silence);
-  const Primaries primaries =
-      choose_primaries(planned.asked->questions, planned.place, planned.pilots);
-  for (std::size_t i = 0; i < planned.place.size(); ++i) {
-    planned.plans.push_back(
-        plan_test(planned.asked->questions[i], planned.place[i], planned.pilots, primaries));
-  }
-  return planned;
-}
 
 TEST(Plan, WithoutDetectIsClassical) {
   const Planned planned = plan_text("  - {claim: mean(normal) == 2}\n");
@@ -209,82 +163,6 @@ TEST(Plan, OfAConstantInADeclaredRangeBoundsWhatWasNotSeen) {
   EXPECT_LT(planned.plans[0].most_secondaries(), 10 * 921);
   EXPECT_EQ(planned.plans[1].most_secondaries(), usual_secondaries);
   EXPECT_EQ(planned.plans[2].most_secondaries(), usual_secondaries);
-}
-
-// A ratio of sums over 4096 has the shape of a normal law, of which a pilot of 512 shows a kurtosis
-// beyond the bound in one of four runs.
-TEST(Plan, OfFewNearNormalObservationsChiSquareStands) {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const Planned few = plan_text("  - {claim: variance(ratio) <= 1, secondaries: 500}\n", seed);
-    EXPECT_EQ(few.plans[0].method.name, "chi-square") << seed;
-    EXPECT_EQ(few.plans[0].invalid, "") << seed;
-  }
-  const Planned skewed = plan_text("  - {claim: variance(corners) <= 100, secondaries: 500}\n");
-  EXPECT_NE(skewed.plans[0].invalid, "");
-}
-
-// Each allows for the kurtosis that the pilot cannot exclude, where that is beyond what it bears:
-// of 512 values some .36, of 8192 primaries in means of 64 next to nothing. A forced one does not.
-TEST(Plan, OfFewNearNormalObservationsTheirKurtosisIsAllowedFor) {
-  const Planned planned = plan_text(
-      "  - {name: few, claim: variance(ratio) <= 1, secondaries: 500}\n"
-      "  - {name: forced, claim: variance(ratio) <= 1, secondaries: 500, test: chi-square}\n"
-      "  - {name: averaged, claim: variance(normal) <= 100, secondaries: 500}\n"
-      "  - {name: one of two, claim: variance(normal) < variance(ratio), secondaries: 500}\n");
-  const auto allowed = [&](std::size_t test) {
-    return planned.plans[test].method.frozen.excess_kurtosis(0);
-  };
-  const Pilot& pilot = *pilot_of(planned.asked->questions[0].subjects[0], planned.pilots);
-  const double limit = stats::kurtosis_upper_limit(pilot.sums->moments(0));
-  EXPECT_GT(limit, 0.2);
-  EXPECT_EQ(allowed(0).x, limit);
-  EXPECT_EQ(allowed(1).x, 0);
-  EXPECT_EQ(allowed(2).x, 0);
-  EXPECT_EQ(planned.plans[3].method.name, "F");
-  EXPECT_EQ(allowed(3).x, 0);
-  EXPECT_EQ(allowed(3).y, limit);
-}
-
-// Variances of eight fair coins are skewed to the left (-2.2), and so is their mean's logarithm: of
-// 1000 coins `<=` failed at .001 eight times too often. Of normal values they are not.
-TEST(Plan, OfTotalVariancesTheGroupsAreNearNormal) {
-  const Planned planned = plan_text(
-      "  - {name: coin, claim: total_variance(coin) <= 0.25}\n"
-      "  - {name: normal, claim: total_variance(single) <= 1}\n");
-  EXPECT_GT(planned.plans[0].most_secondaries(), 10000);
-  EXPECT_LT(planned.plans[1].most_secondaries(), 2 * usual_secondaries);
-  EXPECT_EQ(planned.plans[0].invalid, "");
-}
-
-// What is drawn decides nothing: no more of it than a test without `detect` takes.
-TEST(Plan, OfAClaimThatIsInvalidDrawsLittle) {
-  const Planned planned = plan_text(
-      "  - {claim: variance(heavier-single) <= 100, detect: 1%}\n"
-      "  - {name: as many as asked for, claim: variance(heavier-single) <= 100, secondaries: "
-      "2000}\n");
-  ASSERT_FALSE(planned.plans[0].invalid.empty());
-  EXPECT_EQ(planned.plans[0].looks.sizes, std::vector<std::uint64_t>{usual_secondaries});
-  EXPECT_EQ(planned.plans[1].looks.sizes, std::vector<std::uint64_t>{2000});
-}
-
-// Both show a heavy tail in the 512 values of their pilots, with kurtoses of some 500 and of 23; in
-// 400,000 values the second has one of 24.
-TEST(Plan, OfFewValuesATailIsHeavyWhereTheKurtosisIsToo) {
-  const Planned heavy = plan_text("  - {claim: variance(corners) <= 100}\n");
-  EXPECT_NE(heavy.plans[0].invalid.find("tail is too heavy"), std::string::npos);
-  const Planned light = plan_text("  - {claim: variance(same-samples) <= 100}\n");
-  EXPECT_EQ(light.plans[0].invalid, "");
-}
-
-// Two rays, and one where the first finds nothing: a skewness of -6.5.
-TEST(Plan, SkewedCostsTakeMoreObservations) {
-  const Planned open = plan_text("  - {claim: cost(multi) <= 2}\n");
-  EXPECT_GT(open.plans[0].most_secondaries(), 5000);
-  EXPECT_EQ(open.plans[0].invalid, "");
-  const Planned fixed = plan_text("  - {claim: cost(multi) <= 2, secondaries: 1000}\n");
-  EXPECT_NE(fixed.plans[0].invalid.find("costs of this shape"), std::string::npos);
-  const Planned constant = plan_text("  - {claim: cost(hemisphere) <= 2, secondaries: 100}\n");
-  EXPECT_EQ(constant.plans[0].invalid, "");
 }
 
 // A Pareto law of index 3 shows a skewness of some 5 in its pilot: the t test is right within a

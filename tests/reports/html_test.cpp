@@ -330,5 +330,16 @@ TEST(Charts, NothingIsDrawnFromNothing) {
   EXPECT_EQ(law_chart({.laws = {{.source = "one point", .points = {{}}}}}), "");
 }
 
+// Without a spread there is no evidence; a primary's variance and a secondary's are no pair.
+TEST(Charts, APairWithoutVariancesSaysWhy) {
+  Suite suite{.name = "pairs", .estimators = {{.name = "a"}, {.name = "b"}}};
+  suite.comparisons = {{.first = "a", .second = "b", .channel = "value"}};
+  const std::string constant = pair_matrix(suite, "value");
+  EXPECT_NE(constant.find("no evidence"), std::string::npos);
+  EXPECT_EQ(constant.find("units differ"), std::string::npos);
+  suite.comparisons[0].mean_p = 0.5;
+  EXPECT_NE(pair_matrix(suite, "value").find("not compared, units differ"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace assay::reports
