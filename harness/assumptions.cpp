@@ -182,7 +182,8 @@ std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,
                            std::span<const ChannelData> data) {
   const QuestionKind kind = outcome.question.kind;
   if (outcome.question.of_variances() || kind == QuestionKind::efficiency) {
-    return variance_without_spread(outcome.question, channel, data);
+    std::string reason = variance_without_spread(outcome.question, channel, data);
+    return reason.empty() ? variance_lost_to_rounding(outcome.question, data) : reason;
   }
   if (kind == QuestionKind::slope) return point_without_spread(outcome.question, channel, data);
   if (!outcome.question.of_means()) return "";

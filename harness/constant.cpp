@@ -211,4 +211,18 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                   seeds(question))};
 }
 
+std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
+                                                       std::size_t channel, const ChannelData& data,
+                                                       const Regions& regions) {
+  if (question.kind != QuestionKind::variance_of_one || regions.relation != Relation::at_most ||
+      regions.has_forbidden() || !is_constant(question, 0, channel, data.moments)) {
+    return {};
+  }
+  return ConstantVerdict{
+      Verdict::pass,
+      fmt::format("every observation is {:.10g}, so that no variance was seen that could be too "
+                  "large; values never seen are not ruled out",
+                  data.moments.mean)};
+}
+
 }  // namespace assay::harness

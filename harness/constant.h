@@ -3,6 +3,7 @@
 // Samples without spread: there is no standard error to test with, and what was never seen may
 // still be there.
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -29,6 +30,13 @@ struct ConstantVerdict {
 ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                                std::span<const ChannelData> data, const Regions& regions,
                                const ErrorShare& share);
+
+/// The verdict of a variance that is bounded from above and has no forbidden region, as each
+/// channel of `worst_variance`, of a constant sample: pass. Nothing of other claims, nor where the
+/// sample varies.
+std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
+                                                       std::size_t channel, const ChannelData& data,
+                                                       const Regions& regions);
 
 /// The most that values never seen could move the mean of a constant sample, at this level: q times
 /// the declared range, to the worse side.

@@ -130,6 +130,11 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
           judge_constant(question, channel, data, outcome.plan.regions[channel], outcome.share()));
       continue;
     }
+    if (auto bounded =
+            judge_constant_variance(question, channel, data[0], outcome.plan.regions[channel])) {
+      add(channel, *std::move(bounded));
+      continue;
+    }
     const std::string reason = lack_of_numbers(outcome, channel, data);
     if (!reason.empty()) {
       add(channel, {Verdict::invalid, reason});
@@ -259,12 +264,13 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
     const std::size_t index = work.outcome.question.subjects[subject].channels[channel];
     const Summary& summary = summary_of(work, subject);
-    data.push_back({.primaries = work.outcome.plan.primaries[subject],
-                    .moments = summary.moments(index),
-                    .values = work.pools[subject]->values(index, work.outcome.secondaries()),
-                    .cells = summary.details(index).cells,
-                    .with_cost = summary.details(index).with_cost,
-                    .group_variances = summary.group_variances});
+    data.push_back(
+        {.primaries = work.outcome.plan.primaries[subject],
+         .moments = allowed_for(work.outcome.plan, subject, channel, summary.moments(index)),
+         .values = work.pools[subject]->values(index, work.outcome.secondaries()),
+         .cells = summary.details(index).cells,
+         .with_cost = summary.details(index).with_cost,
+         .group_variances = summary.group_variances});
     if (work.outcome.plan.method.keeps == Keeps::points) {
       for (const std::size_t each : work.outcome.question.subjects[subject].channels) {
         data.back().all_values.push_back(

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "stats/mean_rounding.h"
 
@@ -23,6 +25,15 @@ Part part_of(const Question& question, std::size_t subject, const ChannelData& d
   const double factor = subject == 0 ? 1 : std::abs(question.factor);
   return {.rounding = factor * stats::rounding_of_mean(data.moments),
           .standard_error = factor * data.moments.standard_error()};
+}
+
+/// Standard deviation of what rounding adds to the mean of so many, of which the sum is formed one
+/// by one: each step a variance of spacing^2 / 12, the spacing of doubles in proportion to what is
+/// summed so far, so that its square is a third of the last one's on average.
+double rounding_of_sum(double mean, double primaries) {
+  const double sum = std::abs(mean) * primaries;
+  const double spacing = std::nextafter(sum, std::numeric_limits<double>::infinity()) - sum;
+  return spacing * std::sqrt(primaries / 36) / primaries;
 }
 
 }  // namespace
@@ -46,6 +57,27 @@ std::string lost_to_rounding(const Question& question, std::size_t channel,
       "off by about {:.2g} where the standard error is {:.2g}; take a constant near the mean off "
       "the observations",
       question.subjects[worst].estimator->name, data[worst].moments.mean, rounding, error);
+}
+
+std::string variance_lost_to_rounding(const Question& question, std::span<const ChannelData> data) {
+  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
+    const stats::Moments& moments = data[subject].moments;
+    if (moments.count < 2 || !(moments.m2 > 0)) continue;
+    const double primaries = question.subjects[subject].averaged(data[subject].primaries);
+    const double rounding = rounding_of_sum(moments.mean, primaries);
+    const double share = rounding * rounding / moments.variance();
+    // Of two values that come equally often the kurtosis is 1, and the error of second order.
+    const double count = static_cast<double>(moments.count);
+    const double error = std::sqrt(std::max(moments.kurtosis() - 1, 1 / count) / count);
+    if (!(share > tolerated * error)) continue;
+    return fmt::format(
+        "the mean of `{}` is {:.6g}: sums of {:g} numbers of that size are rounded so coarsely "
+        "that "
+        "their variance is larger by a part of {:.2g} where its standard error is {:.2g}; take a "
+        "constant near the mean off the observations",
+        question.subjects[subject].estimator->name, moments.mean, primaries, share, error);
+  }
+  return "";
 }
 
 }  // namespace assay::harness

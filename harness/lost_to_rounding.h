@@ -12,4 +12,9 @@ namespace assay::harness {
 std::string lost_to_rounding(const Question& question, std::size_t channel,
                              std::span<const ChannelData> data);
 
+/// Why variances cannot be tested: what rounding adds to the sum of an observation's primaries
+/// makes one larger by more than a tenth of the standard error of its logarithm. "" where it is
+/// less.
+std::string variance_lost_to_rounding(const Question& question, std::span<const ChannelData> data);
+
 }  // namespace assay::harness

@@ -51,6 +51,13 @@ struct Atom {
   double share;
 };
 
+/// By what the variance of the mean of a recorded channel's rows is multiplied.
+struct RowAllowance {
+  std::size_t subject;
+  std::size_t channel;
+  double factor;
+};
+
 /// What a method takes from the pilot, before the test's own data are seen.
 struct Frozen {
   std::vector<std::optional<Atom>> atoms = {};                 ///< of each channel: two-part-ks
@@ -58,6 +65,7 @@ struct Frozen {
   std::vector<double> weights = {};                            ///< of an image's elements
   /// Of each channel, one or two subjects': what chi-square and F allow for, 0 where there is none.
   std::vector<stats::ExcessKurtoses> excess_kurtoses = {};
+  std::vector<RowAllowance> row_allowances = {};  ///< of means
 
   stats::ExcessKurtoses excess_kurtosis(std::size_t channel) const {
     return excess_kurtoses.empty() ? stats::ExcessKurtoses{} : excess_kurtoses[channel];

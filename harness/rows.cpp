@@ -181,6 +181,20 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
   return reason;
 }
 
+/// Of rows that may depend on each other too weakly for a gate.
+void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
+  for (const Rows& rows : all) {
+    const double factor = stats::allowance_for_dependence(rows.values);
+    if (!(factor > 1)) continue;
+    plan.method.frozen.row_allowances.push_back(
+        {.subject = rows.subject, .channel = rows.channel, .factor = factor});
+    plan.gates.push_back({.name = "variance of the mean, allowed for dependence, " + rows.label,
+                          .value = factor,
+                          .limit = 1,
+                          .state = "amber"});
+  }
+}
+
 }  // namespace
 
 bool is_recorded(const Subject& subject) { return subject.setup->observations().has_value(); }
@@ -240,6 +254,8 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   } else if (answered) {
     plan.method = find_method(question, "batch-means");
     plan.invalid.clear();
+  } else if (question.of_means() && !is_exact(plan.method)) {
+    allow_for_dependence(rows_of(question, pilots, count), plan);
   }
 }
 
@@ -255,6 +271,17 @@ std::string rows_beside_primaries(const Question& question) {
         rows.estimator->name, other.estimator->name);
   }
   return "";
+}
+
+stats::Moments allowed_for(const Plan& plan, std::size_t subject, std::size_t channel,
+                           stats::Moments moments) {
+  for (const RowAllowance& each : plan.method.frozen.row_allowances) {
+    if (each.subject != subject || each.channel != channel) continue;
+    moments.m2 *= each.factor;
+    moments.m3 *= each.factor * std::sqrt(each.factor);
+    moments.m4 *= each.factor * each.factor;
+  }
+  return moments;
 }
 
 stats::Moments batched(const ChannelData& data) {

@@ -31,9 +31,15 @@ void require_independent_sides(const Question& question, const Pilots& pilots, s
 /// (stats/independence_gates.h). Dependent rows make a single mean a test of batch means, if the
 /// rows are enough for them, and everything else invalid; so do a run of rows that occurs again
 /// (stats/repeated_run.h) and values that occur equally often (stats/recurring_values.h). A forced
-/// method is kept.
+/// method is kept. Where the rows may depend on each other too weakly for a gate, a test of means
+/// allows for it (stats::allowance_for_dependence).
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
                         Plan& plan);
+
+/// `moments` as they would be of independent values whose mean is as uncertain as that of the
+/// subject's rows may be: with deviations so much larger.
+stats::Moments allowed_for(const Plan& plan, std::size_t subject, std::size_t channel,
+                           stats::Moments moments);
 
 /// The moments of batch means of dependent values, for the method `batch-means`.
 stats::Moments batched(const ChannelData& data);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double false_red = 5e-5;
 constexpr double false_amber = 0.01;
+constexpr double false_allowance = 0.05;
 // Correlations cost up to the square of their number.
 constexpr std::size_t most_correlated = 8192;
 
@@ -40,6 +41,32 @@ std::size_t farthest_correlated(std::span<const double> values, double time) {
   return farthest;
 }
 
+/// Between batches against within them.
+struct BatchRatio {
+  double value;
+  FDegrees degrees;
+
+  double quantile(double p) const { return f_quantile({Tail::upper, std::log(p)}, degrees); }
+};
+
+BatchRatio batch_ratio(std::span<const double> values) {
+  check::at_least({"batch_gate", "count"}, values.size(), 9);
+  const std::size_t length = default_batch(values.size());
+  const Moments means = batch_means(values, length);
+  const std::size_t used = length * means.count;
+  Moments all;
+  for (const double value : values.first(used)) all.add(value);
+  const double b = static_cast<double>(length);
+  const double within = all.m2 - b * means.m2;
+  const FDegrees degrees{.numerator = static_cast<double>(means.count - 1),
+                         .denominator = static_cast<double>(used - means.count)};
+  if (all.m2 == 0) throw ZeroVariance("batch_gate: zero variance");
+  // Batches that are constant within themselves leave nothing to divide by: as dependent as can be.
+  const double ratio = within > 0 ? b * means.variance() / (within / degrees.denominator)
+                                  : std::numeric_limits<double>::infinity();
+  return {.value = ratio, .degrees = degrees};
+}
+
 }  // namespace
 
 Gate lag_one_gate(std::span<const double> values) {
@@ -56,24 +83,10 @@ Gate lag_one_gate(std::span<const double> values) {
 }
 
 Gate batch_gate(std::span<const double> values) {
-  check::at_least({"batch_gate", "count"}, values.size(), 9);
-  const std::size_t length = default_batch(values.size());
-  const Moments means = batch_means(values, length);
-  const std::size_t used = length * means.count;
-  Moments all;
-  for (const double value : values.first(used)) all.add(value);
-  const double b = static_cast<double>(length);
-  const double within = all.m2 - b * means.m2;
-  const FDegrees degrees{.numerator = static_cast<double>(means.count - 1),
-                         .denominator = static_cast<double>(used - means.count)};
-  if (all.m2 == 0) throw ZeroVariance("batch_gate: zero variance");
-  // Batches that are constant within themselves leave nothing to divide by: as dependent as can be.
-  const double ratio = within > 0 ? b * means.variance() / (within / degrees.denominator)
-                                  : std::numeric_limits<double>::infinity();
-  const auto quantile = [&](double p) { return f_quantile({Tail::upper, std::log(p)}, degrees); };
-  Gate gate{.name = "variance of batch means", .value = ratio, .low = ratio};
-  gate.limit = quantile(false_red);
-  gate.state = state_of(ratio, quantile(false_amber), gate.limit);
+  const BatchRatio batches = batch_ratio(values);
+  Gate gate{.name = "variance of batch means", .value = batches.value, .low = batches.value};
+  gate.limit = batches.quantile(false_red);
+  gate.state = state_of(batches.value, batches.quantile(false_amber), gate.limit);
   return gate;
 }
 
@@ -108,6 +121,13 @@ double autocorrelation_time(std::span<const double> values) {
     all.merge(batch);
   }
   return time(averaged) * batch_variance(values, length) / all.variance();
+}
+
+double allowance_for_dependence(std::span<const double> values) {
+  const BatchRatio batches = batch_ratio(values);
+  const bool doubtful = lag_one_test(values).statistic > upper_z(false_allowance) ||
+                        batches.value > batches.quantile(false_allowance);
+  return doubtful ? std::max(1.0, autocorrelation_time(values)) : 1;
 }
 
 std::size_t sufficient_batch(std::span<const double> values) {

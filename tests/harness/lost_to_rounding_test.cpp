@@ -34,6 +34,23 @@ TEST(LostToRounding, AMeanThatIsFarLargerThanItsSpreadIsTested) {
   EXPECT_EQ(told.verdict, Verdict::pass) << told.message;
 }
 
+// Sums of 64 numbers of 1e14 are rounded to whole numbers: the variance of their means comes out a
+// twelfth larger. Of single numbers, which are rounded to 1/64, it does not.
+TEST(LostToRounding, AVarianceOfSumsThatAreRoundedIsInvalid) {
+  const auto of_sums = [](const std::string& primaries) {
+    return run_test(
+        "suite: s\nalpha: 1e-6\nestimators:\n  it: {plugin: analytic/normal, mean: 1e14, "
+        "primaries: " +
+        primaries +
+        "}\ntests: [{claim: variance(it) == 1, secondaries: "
+        "20000}]\n");
+  };
+  const reports::Test told = of_sums("64");
+  EXPECT_EQ(told.verdict, Verdict::invalid);
+  EXPECT_THAT(told.message, HasSubstr("sums of 64 numbers of that size are rounded so coarsely"));
+  EXPECT_EQ(of_sums("1").verdict, Verdict::pass);
+}
+
 // Doubles near 1e12 are 1/8192 apart. Of sums that drop what they lose this was invalid.
 TEST(LostToRounding, TheSumOfManyLosesNothing) {
   const reports::Test told = at_offset("1e12", "mean(it) == 1e12, secondaries: 500000");

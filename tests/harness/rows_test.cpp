@@ -136,6 +136,33 @@ TEST(Rows, AConstantColumnSpeaksForItselfAlone) {
   EXPECT_THAT(undecided.message, testing::StartsWith("still: every observation is 2"));
 }
 
+// Black in one channel: no variance was seen there that could be too large. With something to prove
+// or to find, or a variance that is to be met, what was never seen decides.
+TEST(Rows, OfAConstantColumnNoVarianceIsTooLarge) {
+  std::string text = "# columns: moving still\n";
+  for (const double value : rows_of(5000, 3, normal)) text += fmt::format("{} 0\n", 2 + value);
+  const Workplace place;
+  place.write("rows.txt", text);
+  const reports::Record record = run_files({place.write(
+      "suite.yaml",
+      "suite: s\nalpha: 0.01\nestimators:\n  r: {plugin: recorded, file: rows.txt}\ntests:\n"
+      "  - {claim: worst_variance(r) <= 1.2}\n"
+      "  - {claim: variance(r.still) <= 1.2}\n"
+      "  - {claim: worst_variance(r) <= 0.1}\n"
+      "  - {claim: variance(r.still) < 1.2}\n"
+      "  - {name: to find, claim: variance(r.still) <= 1.2, detect: 10%}\n"
+      "  - {claim: variance(r.still) == 1}\n")});
+  const std::vector<reports::Test>& tests = record.suites[0].tests;
+  EXPECT_EQ(tests[0].verdict, Verdict::pass) << tests[0].message;
+  EXPECT_EQ(tests[1].verdict, Verdict::pass) << tests[1].message;
+  EXPECT_THAT(tests[1].message, HasSubstr("no variance was seen that could be too large"));
+  EXPECT_EQ(tests[2].verdict, Verdict::fail);
+  for (std::size_t i = 3; i < 6; ++i) {
+    EXPECT_EQ(tests[i].verdict, Verdict::invalid) << tests[i].claim;
+    EXPECT_THAT(tests[i].message, HasSubstr("says nothing of a variance"));
+  }
+}
+
 TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
   const std::vector<double> rows = rows_of(5, 1, normal);
   const reports::Test test = judged(rows, "claim: mean(rows) == 0");
@@ -210,6 +237,29 @@ TEST(Rows, OfOneLongChainAreTestedByBatchMeans) {
     noted = noted || gate.name == "correlation of successive values, rows of rows";
   }
   EXPECT_TRUE(noted);
+}
+
+// Correlations that no gate calls beyond chance make the mean less certain than its spread says.
+TEST(Rows, ThatMayDependOnEachOtherAreAllowedFor) {
+  int allowed = 0;
+  for (std::uint32_t stream = 1; stream <= 12; ++stream) {
+    const std::vector<double> rows = chain(0.12, 400, stream);
+    const reports::Test test = judged(rows, "claim: mean(rows) == 0");
+    const reports::Test forced = judged(rows, "claim: mean(rows) == 0, test: t");
+    for (const reports::Gate& gate : test.gates) {
+      if (gate.name != "variance of the mean, allowed for dependence, rows of rows") continue;
+      if (test.verdict == Verdict::invalid) continue;
+      ++allowed;
+      EXPECT_GT(*gate.value, 1);
+      EXPECT_EQ(gate.state, "amber");
+      const auto width = [](const reports::Test& each) {
+        const reports::Effect& effect = each.channels.at(0).effect;
+        return *effect.high - *effect.low;
+      };
+      EXPECT_NEAR(width(test) / width(forced), std::sqrt(*gate.value), 1e-9);
+    }
+  }
+  EXPECT_GE(allowed, 4);
 }
 
 TEST(Rows, OfAShortChainAreInvalidAndSayWhatTheyAreWorth) {

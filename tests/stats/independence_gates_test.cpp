@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "stats/dependence.h"
 #include "stats/errors.h"
+#include "stats/welch_t.h"
 #include "tests/philox.h"
 #include "tests/stats/samples.h"
 
@@ -124,6 +126,68 @@ TEST(IndependenceGates, AutocorrelationTimeOfLongAndShortSequencesAgrees) {
   EXPECT_GE(length, default_batch(x.size()));
   EXPECT_GE(static_cast<double>(length), 10 * autocorrelation_time(x));
   EXPECT_GE(x.size() / length, 20U);
+}
+
+bool any_red(std::span<const double> x) {
+  return lag_one_gate(x).state == GateState::red || lagged_gate(x).state == GateState::red ||
+         batch_gate(x).state == GateState::red;
+}
+
+/// `x` with the variance of its mean allowed for.
+Moments allowed(std::span<const double> x) {
+  Moments moments = tests::moments_of(x);
+  moments.m2 *= allowance_for_dependence(x);
+  return moments;
+}
+
+/// Of pairs of samples of 100 that no gate turns away, how many Welch's test finds to differ at
+/// .01.
+struct Differing {
+  int allowing = 0;
+  int plainly = 0;
+};
+
+Differing differing(int pairs, const std::function<std::vector<double>()>& draw) {
+  Differing count;
+  for (int k = 0; k < pairs; ++k) {
+    const std::vector<double> x = draw();
+    const std::vector<double> y = draw();
+    if (any_red(x) || any_red(y)) continue;
+    const auto differ = [](const Moments& a, const Moments& b) {
+      return log_p_two_sided(welch_t(a, b, {})) < std::log(.01);
+    };
+    count.allowing += differ(allowed(x), allowed(y));
+    count.plainly += differ(tests::moments_of(x), tests::moments_of(y));
+  }
+  return count;
+}
+
+// The gates see dependence in one pair of four; plainly, true equalities of the others fail under
+// 170 of 4000. More than 80 where 60 are expected (.015) has probability .006, of 60 more than 80
+// where 40 are (.01 of independent values), 1e-8.
+TEST(IndependenceGates, WhatTheyDoNotSeeIsAllowedFor) {
+  Philox random(11);
+  const Differing chains = differing(4000, [&] { return autoregressive(.3, 100, random); });
+  EXPECT_LE(chains.allowing, 80);
+  EXPECT_GE(chains.plainly, 120);
+  const Differing independent =
+      differing(4000, [&] { return sample_of(100, [&] { return random.normal(); }); });
+  EXPECT_LE(independent.allowing, independent.plainly);
+  EXPECT_LE(independent.plainly, 80);
+}
+
+// Beyond 5 % in neighbours or batches: of independent normal values a tenth at most.
+TEST(IndependenceGates, LittleIsAllowedForInIndependentValues) {
+  Philox random(12);
+  int more = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double factor = allowance_for_dependence(sample_of(400, [&] { return random.normal(); }));
+    EXPECT_GE(factor, 1);
+    EXPECT_LT(factor, 3);
+    more += factor > 1;
+  }
+  EXPECT_LE(more, 260);
+  EXPECT_GE(more, 60);
 }
 
 }  // namespace
