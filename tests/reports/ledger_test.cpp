@@ -30,14 +30,16 @@ TEST(LedgerText, SaysWhatTheNightsSayTogether) {
   LedgerSeries series = example_record().ledger.series[0];
   EXPECT_EQ(series_sentence(series),
             "12 nights since 2026-11-09: relative difference from the reference +0.1 %, standard "
-            "error 0.0253 % of the nights and 0.01 % of the reference, E = 13360, alarm at 665");
+            "error 0.0253 % of the nights and 0.01 % of the reference, likelihood ratio E = 13360, "
+            "alarm at 665");
   EXPECT_EQ(alarm_sentence(series),
             "the nights together refute the claim since 2026-11-18T02:00:00Z; it moved most likely "
             "on the night of 2026-11-13T02:00:00Z, commit 14467a0bbe61 (90 %: 2026-11-11T02:00:00Z "
             "to 2026-11-15T02:00:00Z)");
   EXPECT_EQ(series_sentence(example_record().ledger.series[2]), "no night yet");
   series.reference_error = 0.;
-  EXPECT_NE(series_sentence(series).find("standard error 0.0253 %, E"), std::string::npos);
+  EXPECT_NE(series_sentence(series).find("standard error 0.0253 %, likelihood ratio E"),
+            std::string::npos);
 }
 
 TEST(LedgerText, NamesTheChannelWhereThereAreSeveral) {
