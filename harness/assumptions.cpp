@@ -24,8 +24,9 @@ std::string variance_without_spread(const Question& question, std::size_t channe
     if (is_constant(question, subject, channel, data[subject].moments)) {
       return fmt::format(
           "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
-          "nothing of a variance, and a rare value may be unseen; take more observations",
-          question.subjects[subject].estimator->name, data[subject].moments.mean);
+          "nothing of a variance, and a rare value may be unseen; take more observations{}",
+          question.subjects[subject].estimator->name, data[subject].moments.mean,
+          question.of_two() ? ", or compare the other with a number" : "");
     }
   }
   return "";

@@ -11,6 +11,7 @@
 #include "harness/found_effect.h"
 #include "harness/gate_text.h"
 #include "harness/image_judge.h"
+#include "harness/lost_to_rounding.h"
 #include "harness/narrate.h"
 #include "harness/observation_faults.h"
 #include "harness/plan.h"
@@ -111,6 +112,17 @@ std::string lack_of_numbers(const TestOutcome& outcome, std::size_t channel,
   return lack_of_spread(outcome, channel, data);
 }
 
+/// Of the channels whose variances a total is.
+std::string total_lost_to_rounding(const TestWork& work) {
+  const Question& question = work.outcome.question;
+  std::string reason;
+  if (question.kind != QuestionKind::total_variance) return reason;
+  for (std::size_t channel = 0; channel < question.subjects[0].channels.size(); ++channel) {
+    if (reason.empty()) reason = variance_lost_to_rounding(question, data_of(work, channel));
+  }
+  return reason;
+}
+
 /// Numbers and gates of every channel at the current look. Constant channels are judged by
 /// themselves: their verdicts are returned.
 std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
@@ -135,7 +147,8 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
       add(channel, *std::move(bounded));
       continue;
     }
-    const std::string reason = lack_of_numbers(outcome, channel, data);
+    std::string reason = lack_of_numbers(outcome, channel, data);
+    if (reason.empty()) reason = total_lost_to_rounding(work);
     if (!reason.empty()) {
       add(channel, {Verdict::invalid, reason});
       continue;
@@ -264,10 +277,12 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
     const std::size_t index = work.outcome.question.subjects[subject].channels[channel];
     const Summary& summary = summary_of(work, subject);
+    const std::span<const double> values =
+        work.pools[subject]->values(index, work.outcome.secondaries());
     data.push_back(
         {.primaries = work.outcome.plan.primaries[subject],
-         .moments = allowed_for(work.outcome.plan, subject, channel, summary.moments(index)),
-         .values = work.pools[subject]->values(index, work.outcome.secondaries()),
+         .moments = as_tested(work.outcome.plan, subject, channel, values, summary.moments(index)),
+         .values = values,
          .cells = summary.details(index).cells,
          .with_cost = summary.details(index).with_cost,
          .group_variances = summary.group_variances});

@@ -84,9 +84,13 @@ void note_sizes(TestWork& work) {
     PlannedChannel observed =
         observed_channel(outcome.question, channel.regions, channel.index, data);
     if (outcome.plan.method.name == "batch-means") {
-      // The deviation of independent values whose mean is as uncertain.
-      observed.standard_deviation =
-          batched(data[0]).standard_error() * std::sqrt(static_cast<double>(data[0].moments.count));
+      // The deviations of independent values whose means are as uncertain.
+      const double root = std::sqrt(static_cast<double>(outcome.secondaries()));
+      observed.standard_deviation = root * data[0].moments.standard_error();
+      if (outcome.question.of_two()) {
+        observed.other_deviation =
+            std::abs(outcome.question.factor) * root * data[1].moments.standard_error();
+      }
     }
     channel.detectable =
         detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);

@@ -163,7 +163,7 @@ bool about_draws(const Question& question) {
 
 [[noreturn]] void refuse(const Question& question, const std::string& method,
                          const std::string& why) {
-  const Location& where = question.test->where;
+  const Location& where = question.test->place_of("test");
   // A claim of the command line has its method from an option.
   if (where.file == "claim") throw InputError({"--test " + method, 0, 0}, why);
   throw InputError(where, fmt::format("`test: {}` {}", method, why));
@@ -191,7 +191,7 @@ void require_exact_data(const Method& method, const Question& question) {
 void require_margins(const Method& method, const Question& question) {
   const TestEntry& test = *question.test;
   if (method.name != "anderson-darling" || !test.allow || test.allow->value == 0) return;
-  throw InputError(test.where,
+  throw InputError(test.place_of("allow"),
                    "`anderson-darling` tests that two laws are the same and knows no distance to "
                    "`allow` between them; leave `allow` out, or test by `ks`");
 }
@@ -220,9 +220,15 @@ std::vector<Method> methods_for(const Question& question) {
               {"binomial", Keeps::moments},   {"bounded", Keeps::moments},
               {"batch-means", Keeps::values}, {"betting", Keeps::values}};
     case QuestionKind::mean_of_two:
-      return {{within ? "tost" : "welch", Keeps::moments},
+      if (within) {
+        return {{"tost", Keeps::moments},
+                {"skewness-corrected-t", Keeps::moments},
+                {"binomial", Keeps::moments}};
+      }
+      return {{"welch", Keeps::moments},
               {"skewness-corrected-t", Keeps::moments},
-              {"binomial", Keeps::moments}};
+              {"binomial", Keeps::moments},
+              {"batch-means", Keeps::values}};
     case QuestionKind::image:
       return {{"image", Keeps::images}};
     case QuestionKind::variance_of_one:
@@ -329,9 +335,7 @@ Evidence evidence_of(const Method& method, const Question& question, std::size_t
                      std::span<const ChannelData> data) {
   switch (question.kind) {
     case QuestionKind::mean_of_one:
-      return mean_against_number(method, question, channel,
-                                 method.name == "batch-means" ? batched(data[0]) : data[0].moments,
-                                 data[0].values);
+      return mean_against_number(method, question, channel, data[0].moments, data[0].values);
     case QuestionKind::mean_of_two:
       return mean_against_mean(method, question, channel, data);
     case QuestionKind::variance_of_one:

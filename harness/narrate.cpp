@@ -127,6 +127,19 @@ bool holds_no_effect(const ChannelOutcome& channel) {
   return channel.evidence.distance && !channel.effect.low && !channel.effect.high;
 }
 
+/// An interval that decides a pass is narrower than one at the test's share of alpha, and may leave
+/// out what is claimed.
+std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const double edge = edge_of_claimed(channel.regions);
+  const bool above = channel.regions.relation != Relation::at_least && channel.effect.low &&
+                     *channel.effect.low > edge;
+  const bool below = channel.regions.relation != Relation::at_most && channel.effect.high &&
+                     *channel.effect.high < -edge;
+  if (!above && !below) return "no evidence against the claim";
+  return fmt::format("not enough evidence against the claim, {} where its share of alpha is {:.2g}",
+                     p_text(channel.decision.log_p_claimed), outcome.share().alpha);
+}
+
 std::string passed_by_empty_interval(const ChannelOutcome& channel) {
   return fmt::format(
       "no evidence against the claim; {} or more is excluded, {}; the data lie closer to the claim "
@@ -174,7 +187,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
                        reports::size_text(excluded, channel.effect), interval);
   }
-  return fmt::format("no evidence against the claim; {} or more is excluded by {}{}",
+  return fmt::format("{}; {} or more is excluded by {}{}", evidence_against(outcome, channel),
                      reports::size_text(excluded, channel.effect), interval,
                      wide_margin(outcome, channel));
 }

@@ -30,7 +30,7 @@ constexpr std::uint64_t fewest_tested = 2;
 std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t budget) {
   const std::uint64_t each = primaries_of_each(question, plan);
   if (budget / each >= fewest_tested) return budget / each;
-  throw InputError(question.test->where,
+  throw InputError(question.test->place_of("budget"),
                    fmt::format("its budget (or its share of the suite's) of {} primaries does not "
                                "pay for two observations, the fewest that can be tested: these "
                                "take {}; give a larger budget, or fewer `primaries`",
@@ -50,7 +50,8 @@ std::uint64_t most_available(const Question& question, const Plan& plan) {
 
 /// Stops before hours are spent on what was hardly meant.
 void require_possible(const Question& question, const Plan& plan, std::uint64_t secondaries) {
-  const Location& where = question.test->where;
+  const TestEntry& test = *question.test;
+  const Location& where = test.place_of(test.detect ? "detect" : "claim");
   if (secondaries >= impossible_secondaries) {
     if (question.kind == QuestionKind::integral) {
       const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
@@ -103,9 +104,10 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   const std::uint64_t most = most_available(question, plan);
   if (plan.method.keeps == Keeps::blocks) {
     if (question.test->secondaries || question.test->budget) {
-      throw InputError(question.test->where,
-                       "a claim in seconds is timed on whole replicates: `secondaries` and "
-                       "`budget` cannot be chosen; leave them out");
+      throw InputError(
+          question.test->place_of(question.test->secondaries ? "secondaries" : "budget"),
+          "a claim in seconds is timed on whole replicates: `secondaries` and "
+          "`budget` cannot be chosen; leave them out");
     }
     const auto planned = planned_secondaries(question, place.share, pilots, plan);
     if (planned) require_possible(question, plan, *planned);

@@ -55,9 +55,10 @@ Suite adjusted(Suite suite, const RunOptions& options) {
     if (!test.detect) continue;
     test.detect->value *= options.coarsen;
     if (test.allow && test.detect->value <= test.allow->value) {
-      throw InputError(test.where, fmt::format("`--coarsen {:g}` brings `detect` down to `allow`; "
-                                               "`detect` must stay above it",
-                                               options.coarsen));
+      throw InputError(test.place_of("detect"),
+                       fmt::format("`--coarsen {:g}` brings `detect` down to `allow`; "
+                                   "`detect` must stay above it",
+                                   options.coarsen));
     }
   }
   return suite;

@@ -155,7 +155,7 @@ void require_plane(const Question& question) {
   const std::size_t first = question.subjects[0].channels.size();
   const std::size_t second = question.subjects[1].channels.size();
   if (first == second && first <= 2) return;
-  throw InputError(question.test->where,
+  throw InputError(question.test->place_of("test"),
                    fmt::format("`{}` counts in cells of one or two coordinates, the same of both "
                                "sides, which have {} and {}; name one channel of each",
                                two_sample_cells, first, second));
@@ -211,12 +211,17 @@ Question about_distribution(const TestEntry& test, const Estimators& estimators)
           .law = law};
 }
 
-void require_absolute(const std::optional<Margin>& margin, const TestEntry& test,
-                      const char* reason) {
-  if (margin && margin->relative) {
-    throw InputError(test.where, fmt::format("a margin in per cent has no meaning here: {}; give "
-                                             "an absolute number",
-                                             reason));
+/// A margin and where it stands.
+struct PlacedMargin {
+  std::optional<Margin> margin;
+  const Location& where;
+};
+
+void require_absolute(const PlacedMargin& placed, const char* reason) {
+  if (placed.margin && placed.margin->relative) {
+    throw InputError(placed.where, fmt::format("a margin in per cent has no meaning here: {}; give "
+                                               "an absolute number",
+                                               reason));
   }
 }
 
@@ -229,25 +234,28 @@ void check_margins(const Question& question) {
   const TestEntry& test = *question.test;
   std::optional<Margin> within;
   if (test.claim.relation == Relation::within) within = test.claim.margin;
-  for (const auto& margin : {test.detect, test.allow, within}) {
-    if (question.of_draws()) require_absolute(margin, test, "this is a probability");
+  for (const PlacedMargin& placed : {PlacedMargin{test.detect, test.place_of("detect")},
+                                     PlacedMargin{test.allow, test.place_of("allow")},
+                                     PlacedMargin{within, test.place_of("claim")}}) {
+    if (question.of_draws()) require_absolute(placed, "this is a probability");
     if (test.claim.left.name == QuantityName::distribution) {
-      require_absolute(margin, test, "a distance between laws is a probability");
+      require_absolute(placed, "a distance between laws is a probability");
     }
     for (const Constant& reference : question.references) {
       if (question.kind == QuestionKind::slope || question.kind == QuestionKind::image) break;
-      if (reference.value == 0) require_absolute(margin, test, "the reference is zero");
+      if (reference.value == 0) require_absolute(placed, "the reference is zero");
     }
+    const std::optional<Margin>& margin = placed.margin;
     if (margin && !margin->relative && question.on_log_scale() && question.of_two()) {
-      throw InputError(test.where,
+      throw InputError(placed.where,
                        fmt::format("a margin on a ratio of {} is relative; give it in per cent",
                                    ratio_of(test.claim.left.name)));
     }
     if (question.kind == QuestionKind::slope) {
-      require_absolute(margin, test, "a slope is an exponent");
+      require_absolute(placed, "a slope is an exponent");
     }
     if (question.kind == QuestionKind::quantile && question.of_two()) {
-      require_absolute(margin, test, "two quantiles differ by a number");
+      require_absolute(placed, "two quantiles differ by a number");
     }
   }
 }
@@ -258,9 +266,10 @@ void check_sizes(const Question& question) {
   for (const Subject& subject : question.subjects) {
     const auto rows = subject.setup->observations();
     if (rows && test.secondaries && *test.secondaries > *rows) {
-      throw InputError(test.where, fmt::format("`secondaries: {}` is more than the {} observations "
-                                               "that `{}` has",
-                                               *test.secondaries, *rows, subject.estimator->name));
+      throw InputError(test.place_of("secondaries"),
+                       fmt::format("`secondaries: {}` is more than the {} observations "
+                                   "that `{}` has",
+                                   *test.secondaries, *rows, subject.estimator->name));
     }
   }
 }

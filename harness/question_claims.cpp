@@ -78,12 +78,12 @@ void require_drawn(const Question& question) {
   if (question.test->cost != CostKind::seconds) return;
   for (const Subject& subject : question.subjects) {
     if (subject.setup->observations()) {
-      throw InputError(question.test->where,
+      throw InputError(question.test->place_of("cost"),
                        fmt::format("`{}` is not drawn but read: its seconds say nothing",
                                    subject.estimator->name));
     }
     if (recorded::keeps_files(*subject.setup)) {
-      throw InputError(question.test->where,
+      throw InputError(question.test->place_of("cost"),
                        fmt::format("`{}` keeps what it made: the seconds of a file that is there "
                                    "say nothing; let `process` answer, or write the seconds as a "
                                    "number of the observation",

@@ -291,7 +291,7 @@ void require_moments_suffice(const Question& question) {
                                    name));
     }
     if (question.test->secondaries && *question.test->secondaries != run->summary().count) {
-      throw InputError(question.test->where,
+      throw InputError(question.test->place_of("secondaries"),
                        fmt::format("`{}` has the moments of {} observations together; leave "
                                    "`secondaries` out",
                                    name, run->summary().count));
@@ -299,9 +299,10 @@ void require_moments_suffice(const Question& question) {
     const auto& method = question.test->method;
     if (method && (method == "binomial" || method == "bounded" || method == "betting" ||
                    method == "batch-means")) {
-      throw InputError(question.test->where, fmt::format("`test: {}` needs observations, and `{}` "
-                                                         "has the moments of a run",
-                                                         *method, name));
+      throw InputError(question.test->place_of("test"),
+                       fmt::format("`test: {}` needs observations, and `{}` "
+                                   "has the moments of a run",
+                                   *method, name));
     }
   }
 }

@@ -71,10 +71,25 @@ bool enough_batches(std::span<const double> values) {
   return values.size() / stats::sufficient_batch(values) >= fewest_batches;
 }
 
-std::string dependent(const Rows& rows) {
+/// What of a chain with this autocorrelation time the question could be asked of.
+std::string enough_of_a_chain(const Question& question, double time) {
+  const auto apart = static_cast<std::size_t>(std::ceil(10 * time));
+  if (!question.of_means()) {
+    return fmt::format("keep one row in {}, {} of them at least", apart, fewest_in_order_to_tell);
+  }
+  if (question.test->claim.relation == Relation::within) {
+    return fmt::format("means of {} successive rows each, {} of them at least", apart,
+                       fewest_in_order_to_tell);
+  }
+  return fmt::format("{} rows at least, of which batches are then averaged",
+                     fewest_batches * std::max(apart, fewest_batches));
+}
+
+/// `at_a_lag`: it is values some steps apart that show it, not neighbours.
+std::string dependent(const Question& question, const Rows& rows, bool at_a_lag) {
   const double time = std::max(1.0, stats::autocorrelation_time(rows.values));
   const stats::LaggedCorrelation worst = stats::worst_of(stats::lagged_correlations(rows.values));
-  if (static_cast<double>(worst.lag) > time) {
+  if (at_a_lag && worst.correlation > 0 && static_cast<double>(worst.lag) > time) {
     return fmt::format(
         "the {} are not independent: those {} apart have a rank correlation of {:.2g}, as where so "
         "many chains take turns; give one row a chain",
@@ -83,9 +98,8 @@ std::string dependent(const Rows& rows) {
   const double worth = static_cast<double>(rows.values.size()) / time;
   return fmt::format(
       "the {} are not independent: {} of them are worth about {:.0f} independent ones; give one "
-      "row "
-      "a chain, or means of {:.0f} successive rows each, {} of them at least",
-      rows.label, rows.values.size(), worth, std::ceil(10 * time), fewest_batches);
+      "row a chain, or {}",
+      rows.label, rows.values.size(), worth, enough_of_a_chain(question, time));
 }
 
 /// Of what chance does not make.
@@ -220,12 +234,14 @@ void require_independent_sides(const Question& question, const Pilots& pilots,
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
                         Plan& plan) {
   const bool forced = question.test->method.has_value();
-  const bool batches = question.kind == QuestionKind::mean_of_one &&
-                       question.test->claim.relation != Relation::within;
   std::string reason;
   if (plan.invalid.empty()) reason = too_few_to_tell(question, pilots, count, plan);
+  const std::vector<Rows> all = rows_of(question, pilots, count);
+  const bool batches = question.of_means() && question.test->claim.relation != Relation::within &&
+                       std::all_of(all.begin(), all.end(),
+                                   [](const Rows& each) { return enough_batches(each.values); });
   bool answered = false;
-  for (const Rows& rows : rows_of(question, pilots, count)) {
+  for (const Rows& rows : all) {
     if (const auto again = stats::repeated_run(rows.values)) {
       plan.gates.push_back(
           gate_of(red_gate("longest repetition", again->length, 0), ", " + rows.label));
@@ -240,9 +256,12 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
                             stats::batch_gate(rows.values)};
     const bool red = std::any_of(gates.begin(), gates.end(),
                                  [](const Gate& gate) { return gate.state == GateState::red; });
-    const bool averaged = red && batches && !forced && enough_batches(rows.values);
+    const bool averaged = red && batches && !forced;
     answered = answered || averaged;
-    if (red && !averaged && reason.empty()) reason = dependent(rows);
+    if (red && !averaged && reason.empty()) {
+      reason = dependent(question, rows,
+                         gates[1].state == GateState::red && gates[0].state != GateState::red);
+    }
     for (Gate& gate : gates) {
       if (averaged && gate.state == GateState::red) gate.state = GateState::amber;
       plan.gates.push_back(gate_of(gate, ", " + rows.label));
@@ -255,7 +274,7 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     plan.method = find_method(question, "batch-means");
     plan.invalid.clear();
   } else if (question.of_means() && !is_exact(plan.method)) {
-    allow_for_dependence(rows_of(question, pilots, count), plan);
+    allow_for_dependence(all, plan);
   }
 }
 
@@ -273,8 +292,11 @@ std::string rows_beside_primaries(const Question& question) {
   return "";
 }
 
-stats::Moments allowed_for(const Plan& plan, std::size_t subject, std::size_t channel,
-                           stats::Moments moments) {
+stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
+                         std::span<const double> values, stats::Moments moments) {
+  if (plan.method.name == "batch-means") {
+    return stats::batch_means(values, stats::sufficient_batch(values));
+  }
   for (const RowAllowance& each : plan.method.frozen.row_allowances) {
     if (each.subject != subject || each.channel != channel) continue;
     moments.m2 *= each.factor;
@@ -282,10 +304,6 @@ stats::Moments allowed_for(const Plan& plan, std::size_t subject, std::size_t ch
     moments.m4 *= each.factor * each.factor;
   }
   return moments;
-}
-
-stats::Moments batched(const ChannelData& data) {
-  return stats::batch_means(data.values, stats::sufficient_batch(data.values));
 }
 
 std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
@@ -302,11 +320,10 @@ std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelD
     gates.push_back(stats::quantisation_gate(sorted, outcome.share().alpha));
   }
   if (!question.of_means() || is_exact(outcome.plan.method)) return gates;
-  const stats::Moments first = method == "batch-means" ? batched(data[0]) : data[0].moments;
+  const bool batches = method == "batch-means";
+  const stats::Moments& first = data[0].moments;
   if (data.size() == 1) {
-    if (method != "batch-means") {
-      gates.push_back(stats::unpiloted_count_gate(first, critical_value));
-    }
+    if (!batches) gates.push_back(stats::unpiloted_count_gate(first, critical_value));
     gates.push_back(stats::unpiloted_skewness_gate(first, critical_value));
     return gates;
   }
@@ -316,7 +333,7 @@ std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelD
       factor * factor * data[1].moments.variance() / static_cast<double>(data[1].moments.count);
   const double shares[] = {x / (x + y), y / (x + y)};
   for (std::size_t i = 0; i < 2; ++i) {
-    if (!is_recorded(question.subjects[i])) continue;
+    if (batches || !is_recorded(question.subjects[i])) continue;
     gates.push_back(stats::unpiloted_count_gate(data[i].moments, critical_value, shares[i]));
   }
   gates.push_back(stats::unpiloted_skewness_gate(first, data[1].moments, factor, critical_value));

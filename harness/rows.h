@@ -28,7 +28,7 @@ bool has_rows(const Question& question);
 void require_independent_sides(const Question& question, const Pilots& pilots, std::uint64_t count);
 
 /// Notes in the plan what the first `count` rows of every recorded subject say of independence
-/// (stats/independence_gates.h). Dependent rows make a single mean a test of batch means, if the
+/// (stats/independence_gates.h). Dependent rows make a test of means one of batch means, if all the
 /// rows are enough for them, and everything else invalid; so do a run of rows that occurs again
 /// (stats/repeated_run.h) and values that occur equally often (stats/recurring_values.h). A forced
 /// method is kept. Where the rows may depend on each other too weakly for a gate, a test of means
@@ -36,13 +36,11 @@ void require_independent_sides(const Question& question, const Pilots& pilots, s
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
                         Plan& plan);
 
-/// `moments` as they would be of independent values whose mean is as uncertain as that of the
-/// subject's rows may be: with deviations so much larger.
-stats::Moments allowed_for(const Plan& plan, std::size_t subject, std::size_t channel,
-                           stats::Moments moments);
-
-/// The moments of batch means of dependent values, for the method `batch-means`.
-stats::Moments batched(const ChannelData& data);
+/// The moments that a test of means takes: of batch means where that is its method; of rows that
+/// may depend on each other those of independent values whose mean is as uncertain, with deviations
+/// so much larger; else `moments`.
+stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
+                         std::span<const double> values, stats::Moments moments);
 
 /// Gates on the shape of rows, of which no pilot spoke: on how many there are, how skewed their
 /// mean is at critical value x, and for Kolmogorov and Smirnov how coarsely they were rounded.

@@ -55,6 +55,8 @@ std::uint64_t enough_for_log_variance(const Question& question, const std::vecto
 
 std::string too_few(const Question& question, std::uint64_t needed) {
   const std::string need = reports::human(static_cast<double>(needed), 2);
+  // However near to normal, the logarithm of a variance takes as many.
+  const bool by_shape = needed > log_variance_secondaries;
   if (has_rows(question)) {
     const bool two = question.kind == QuestionKind::variance_of_two;
     const bool alone = question.kind == QuestionKind::variance_of_one;
@@ -63,9 +65,11 @@ std::string too_few(const Question& question, std::uint64_t needed) {
                                    two ? "F" : "chi-square")
                      : "";
     return fmt::format(
-        "a test of the variance of rows of this shape keeps its level from about {} rows on; rows "
-        "that each average several need fewer{}",
-        need, exact);
+        "a test of the variance of rows of this shape keeps its level from about {} rows on{}{}",
+        need, by_shape ? "; rows that each average several need fewer" : "", exact);
+  }
+  if (!by_shape) {
+    return fmt::format("a test of this variance keeps its level from {} observations on", need);
   }
   return fmt::format(
       "secondary estimates of this shape need about {} observations before any test of their "

@@ -3,8 +3,11 @@
 // A suite file, read and checked: data only, nothing is sampled or prepared here.
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "estimators/value.h"
@@ -55,6 +58,13 @@ struct TestEntry {
   Expectation expect = Expectation::pass;
   std::vector<std::string> tags = {};
   Location where = {};
+  std::map<std::string, Location, std::less<>> keys = {};  ///< where each that is given stands
+
+  /// Of a key, or of the test where it is not given.
+  const Location& place_of(std::string_view key) const {
+    const auto found = keys.find(key);
+    return found == keys.end() ? where : found->second;
+  }
 };
 
 /// An entry of `statements:`: what somebody claims, and the tests that answer it.

@@ -86,7 +86,8 @@ void check_margins(const TestEntry& test, const Refuse& refuse) {
   if (test.detect && test.detect->value == 0) refuse("detect", "`detect` must be above 0");
   if (test.detect && test.claim.relation == Relation::within) {
     refuse("detect",
-           "`within` says how far off the claim must not be: `detect` has no meaning beside it");
+           "`within` says how far off the claim must not be: `detect` has no meaning beside it; "
+           "leave it out");
   }
   if (test.allow && is_proof(test.claim.relation)) {
     refuse("allow",
@@ -295,6 +296,7 @@ TestEntry read_test(const Document& document, const Value& value) {
                   {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
                    "over", "reference", "cost", "expect", "tags"});
   TestEntry test{.claim = read_claim(document, keys.require("claim")), .where = value.where()};
+  for (const auto& [key, given] : value.members()) test.keys[key] = keys.where(given);
   const Value* name = keys.find("name");
   test.name = name ? one_line(*name, "`name`") : test.claim.text;
   if (const Value* v = keys.find("detect")) test.detect = read_margin(*v, "`detect`");
@@ -306,10 +308,7 @@ TestEntry read_test(const Document& document, const Value& value) {
   }
   if (const Value* v = keys.find("tags")) test.tags = read_tags(*v);
   read_sampling(document, keys, test);
-  check_test(test, [&](std::string_view key) {
-    const Value* v = keys.find(key);
-    return v ? keys.where(*v) : test.where;
-  });
+  check_test(test, [&](std::string_view key) { return test.place_of(key); });
   return test;
 }
 

@@ -49,9 +49,8 @@ struct BatchRatio {
   double quantile(double p) const { return f_quantile({Tail::upper, std::log(p)}, degrees); }
 };
 
-BatchRatio batch_ratio(std::span<const double> values) {
+BatchRatio batch_ratio(std::span<const double> values, std::size_t length) {
   check::at_least({"batch_gate", "count"}, values.size(), 9);
-  const std::size_t length = default_batch(values.size());
   const Moments means = batch_means(values, length);
   const std::size_t used = length * means.count;
   Moments all;
@@ -83,7 +82,7 @@ Gate lag_one_gate(std::span<const double> values) {
 }
 
 Gate batch_gate(std::span<const double> values) {
-  const BatchRatio batches = batch_ratio(values);
+  const BatchRatio batches = batch_ratio(values, default_batch(values.size()));
   Gate gate{.name = "variance of batch means", .value = batches.value, .low = batches.value};
   gate.limit = batches.quantile(false_red);
   gate.state = state_of(batches.value, batches.quantile(false_amber), gate.limit);
@@ -124,10 +123,17 @@ double autocorrelation_time(std::span<const double> values) {
 }
 
 double allowance_for_dependence(std::span<const double> values) {
-  const BatchRatio batches = batch_ratio(values);
-  const bool doubtful = lag_one_test(values).statistic > upper_z(false_allowance) ||
-                        batches.value > batches.quantile(false_allowance);
-  return doubtful ? std::max(1.0, autocorrelation_time(values)) : 1;
+  const std::size_t n = values.size();
+  bool doubtful = lag_one_test(values).statistic > upper_z(false_allowance);
+  double factor = 1;
+  for (const std::size_t length : {default_batch(n), n / 10}) {
+    if (length < default_batch(n)) continue;
+    const BatchRatio batches = batch_ratio(values, length);
+    if (batches.value <= batches.quantile(false_allowance)) continue;
+    doubtful = true;
+    factor = std::max(factor, batches.value);
+  }
+  return doubtful ? std::max(factor, autocorrelation_time(values)) : 1;
 }
 
 std::size_t sufficient_batch(std::span<const double> values) {

@@ -143,13 +143,13 @@ TEST(AndersonDarlingClaim, FailsForWrongTailsAndForABrokenSampler) {
 TEST(AndersonDarlingClaim, IsRefusedWhereItHasNoAnswer) {
   EXPECT_EQ(refused("{claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
                     "allow: 0.01}"),
-            "20:5: `anderson-darling` tests that two laws are the same and knows no distance to "
+            "20:77: `anderson-darling` tests that two laws are the same and knows no distance to "
             "`allow` between them; leave `allow` out, or test by `ks`");
   EXPECT_THAT(refused("{claim: distribution(normal) == distribution(again), test: "
                       "anderson-darling}"),
-              testing::StartsWith("20:5: `test: anderson-darling` does not answer this claim"));
+              testing::StartsWith("20:58: `test: anderson-darling` does not answer this claim"));
   EXPECT_EQ(refused("{claim: distribution(ward.direction) == density, test: anderson-darling}"),
-            "20:5: `test: anderson-darling` does not answer this claim; there is `chi-square-fit`");
+            "20:54: `test: anderson-darling` does not answer this claim; there is `chi-square-fit`");
   EXPECT_EQ(verdict_of("{claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
                        "secondaries: 4}"),
             Verdict::invalid)
@@ -193,7 +193,7 @@ TEST(TwoPartClaim, WithoutAnAtomIsInvalidOrRefused) {
   EXPECT_EQ(none.verdict, Verdict::invalid);
   EXPECT_THAT(none.message, testing::HasSubstr("the pilots show none"));
   EXPECT_EQ(refused("{claim: 'distribution(hits) == normal(0, 1)', test: two-part-ks}"),
-            "20:5: `test: two-part-ks` does not answer this claim; there is `ks`, "
+            "20:51: `test: two-part-ks` does not answer this claim; there is `ks`, "
             "`anderson-darling`");
 }
 
@@ -223,11 +223,11 @@ TEST(TwoSampleCellsClaim, ComparesSamplersAndEstimatorsAsAWhole) {
 TEST(TwoSampleCellsClaim, IsRefusedWhereItHasNoAnswer) {
   EXPECT_EQ(refused("{claim: distribution(ward.direction) == distribution(normal), test: "
                     "chi-square-two-sample}"),
-            "20:5: `chi-square-two-sample` counts in cells of one or two coordinates, the same of "
+            "20:67: `chi-square-two-sample` counts in cells of one or two coordinates, the same of "
             "both sides, which have 2 and 1; name one channel of each");
   EXPECT_EQ(refused("{claim: distribution(ward.direction) == density, test: "
                     "chi-square-two-sample}"),
-            "20:5: `test: chi-square-two-sample` does not answer this claim; there is "
+            "20:54: `test: chi-square-two-sample` does not answer this claim; there is "
             "`chi-square-fit`");
 }
 
@@ -251,7 +251,7 @@ TEST(IntegralClaim, IsRefusedWhereItMeansNothing) {
             "20:22: `integral` and `inconsistency` are about a whole sampler: name "
             "`ward.direction`");
   EXPECT_EQ(refused("{claim: integral(ward.direction) == 1, detect: 1%}"),
-            "20:5: a margin in per cent has no meaning here: this is a probability; give an "
+            "20:44: a margin in per cent has no meaning here: this is a probability; give an "
             "absolute number");
   EXPECT_EQ(refused("{claim: integral(ward.direction) == 1 +- 0.1}"),
             "20:13: `integral` is held against an exact number: `+-` has no method here");

@@ -1,14 +1,17 @@
 #include "harness/narrate.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 
 #include "questions.h"
+#include "recorded_rows.h"
 #include "reports/effect.h"
 #include "running.h"
+#include "tests/stats/samples.h"
 
 namespace assay::harness {
 namespace {
@@ -107,6 +110,32 @@ tests: [{name: t, claim: distribution(area.point) == density, detect: 0.05}]
   EXPECT_EQ(narrate(outcome),
             "no evidence against the claim; 0.05 or more is excluded, p = 0.013; the data lie "
             "closer to the claim than chance leads to expect, so that there is no 92 % interval");
+}
+
+// 2.9 standard errors off, which a share of .001 does not refute and an interval at 90 % leaves
+// out.
+TEST(Narrate, APassWhoseIntervalLeavesTheClaimOutSaysThatEvidenceIsTooLittle) {
+  std::vector<double> rows = rows_of(1000, 21, normal);
+  const stats::Moments moments = tests::moments_of(rows);
+  std::string text;
+  for (double& row : rows) {
+    row += 2.9 * moments.standard_error() - moments.mean;
+    text += fmt::format("{:.17g}\n", row);
+  }
+  const Workplace place;
+  place.write("rows.txt", text);
+  const reports::Test test =
+      run_files({place.write("suite.yaml",
+                             "suite: s\nalpha: 0.001\nbeta: 0.05\nestimators:\n"
+                             "  rows: {plugin: recorded, file: rows.txt}\n"
+                             "tests: [{claim: mean(rows) == 0, detect: 1}]\n")})
+          .suites[0]
+          .tests[0];
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_GT(*test.channels[0].effect.low, 0);
+  EXPECT_THAT(test.message, testing::StartsWith(
+                                "not enough evidence against the claim, p = 0.0038 where its share "
+                                "of alpha is 0.001; "));
 }
 
 TEST(Narrate, NeverSaysThatAClaimIsAccepted) {

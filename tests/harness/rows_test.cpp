@@ -1,4 +1,4 @@
-// Rows of a file: how many there must be, how skewed they may be, and whether they are independent.
+// Rows of a file: how many there must be, how skewed they may be, and that none is there twice.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "many_seeds.h"
+#include "recorded_rows.h"
 #include "refusal.h"
 #include "tests/philox.h"
 #include "tests/stats/laws.h"
@@ -20,36 +21,7 @@ namespace {
 using reports::Verdict;
 using testing::AllOf;
 using testing::HasSubstr;
-using tests::Philox;
 namespace laws = tests::laws;
-
-using Draw = std::function<double(Philox&)>;
-
-std::string file_of(const std::vector<double>& values) {
-  std::string text;
-  for (const double value : values) text += fmt::format("{}\n", value);
-  return text;
-}
-
-std::vector<double> rows_of(std::size_t count, std::uint32_t stream, const Draw& draw) {
-  Philox random(stream);
-  std::vector<double> values(count);
-  for (double& value : values) value = draw(random);
-  return values;
-}
-
-reports::Test judged(const std::vector<double>& values, const std::string& test,
-                     double alpha = 0.01) {
-  const Workplace place;
-  place.write("rows.txt", file_of(values));
-  const std::string text = fmt::format(
-      "suite: rows\nalpha: {}\nestimators:\n  rows: {{plugin: recorded, file: rows.txt}}\n"
-      "tests:\n  - {{{}}}\n",
-      alpha, test);
-  return run_files({place.write("suite.yaml", text)}).suites[0].tests[0];
-}
-
-double normal(Philox& random) { return random.normal(); }
 
 // The variance of one value between 0 and 1 is 64 times that of such a mean.
 TEST(Rows, OfAVarianceBesideAPrimarysSayWhatIsCompared) {
@@ -67,19 +39,6 @@ TEST(Rows, OfAVarianceBesideAPrimarysSayWhatIsCompared) {
   EXPECT_EQ(test.verdict, Verdict::fail);
   EXPECT_THAT(test.message,
               HasSubstr("a row of `rows` is held against a single primary of `mine`"));
-}
-
-// Ten chains that take turns: neighbours are of different chains and know nothing of each other.
-TEST(Rows, OfChainsThatTakeTurnsAreInvalid) {
-  Philox random(5);
-  std::vector<double> state(10);
-  std::vector<double> rows;
-  for (int step = 0; step < 400; ++step) {
-    for (double& x : state) rows.push_back(x = .9 * x + random.normal());
-  }
-  const reports::Test test = judged(rows, "claim: mean(rows) == 0");
-  EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_THAT(test.message, HasSubstr("those 10 apart have a rank correlation of 0."));
 }
 
 // 50 rows, each four times and in no order: their mean has half the standard error that is true.
@@ -217,64 +176,6 @@ TEST(Rows, OfASkewedLawAreCorrectedOrTurnedAway) {
   const reports::Test test = judged(rows_of(120, 4, lognormal), "claim: mean(rows) == 3.08");
   EXPECT_EQ(test.verdict, Verdict::invalid);
   EXPECT_THAT(test.message, HasSubstr("too skewed for how few they are"));
-}
-
-std::vector<double> chain(double phi, std::size_t count, std::uint32_t stream) {
-  Philox random(stream);
-  double x = random.normal();
-  return rows_of(count, stream + 1000, [&](Philox& next) {
-    x = phi * x + std::sqrt(1 - phi * phi) * next.normal();
-    return x;
-  });
-}
-
-TEST(Rows, OfOneLongChainAreTestedByBatchMeans) {
-  const reports::Test test = judged(chain(0.9, 8000, 5), "claim: mean(rows) == 0");
-  EXPECT_EQ(test.method, "batch-means");
-  EXPECT_EQ(test.verdict, Verdict::pass);
-  bool noted = false;
-  for (const reports::Gate& gate : test.gates) {
-    noted = noted || gate.name == "correlation of successive values, rows of rows";
-  }
-  EXPECT_TRUE(noted);
-}
-
-// Correlations that no gate calls beyond chance make the mean less certain than its spread says.
-TEST(Rows, ThatMayDependOnEachOtherAreAllowedFor) {
-  int allowed = 0;
-  for (std::uint32_t stream = 1; stream <= 12; ++stream) {
-    const std::vector<double> rows = chain(0.12, 400, stream);
-    const reports::Test test = judged(rows, "claim: mean(rows) == 0");
-    const reports::Test forced = judged(rows, "claim: mean(rows) == 0, test: t");
-    for (const reports::Gate& gate : test.gates) {
-      if (gate.name != "variance of the mean, allowed for dependence, rows of rows") continue;
-      if (test.verdict == Verdict::invalid) continue;
-      ++allowed;
-      EXPECT_GT(*gate.value, 1);
-      EXPECT_EQ(gate.state, "amber");
-      const auto width = [](const reports::Test& each) {
-        const reports::Effect& effect = each.channels.at(0).effect;
-        return *effect.high - *effect.low;
-      };
-      EXPECT_NEAR(width(test) / width(forced), std::sqrt(*gate.value), 1e-9);
-    }
-  }
-  EXPECT_GE(allowed, 4);
-}
-
-TEST(Rows, OfAShortChainAreInvalidAndSayWhatTheyAreWorth) {
-  for (const char* claim :
-       {"claim: mean(rows) == 0", "claim: 'distribution(rows) == normal(0, 1)'"}) {
-    const reports::Test test = judged(chain(0.9, 400, 6), claim);
-    EXPECT_EQ(test.verdict, Verdict::invalid);
-    EXPECT_THAT(test.message, HasSubstr("are not independent: 400 of them are worth about"));
-  }
-}
-
-TEST(Rows, OfDependentValuesHaveNoVarianceToTest) {
-  const reports::Test test = judged(chain(0.9, 4000, 7), "claim: variance(rows) <= 2");
-  EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_THAT(test.message, HasSubstr("are not independent"));
 }
 
 TEST(Rows, RoundedCoarselyAreNotHeldAgainstAContinuousLaw) {

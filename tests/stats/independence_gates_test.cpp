@@ -176,17 +176,18 @@ TEST(IndependenceGates, WhatTheyDoNotSeeIsAllowedFor) {
   EXPECT_LE(independent.plainly, 80);
 }
 
-// Beyond 5 % in neighbours or batches: of independent normal values a tenth at most.
+// Beyond 5 % in neighbours or in batches of two lengths: of 2000 independent samples some 260 are
+// expected, and more than 330 with probability 1e-5.
 TEST(IndependenceGates, LittleIsAllowedForInIndependentValues) {
   Philox random(12);
   int more = 0;
   for (int k = 0; k < 2000; ++k) {
     const double factor = allowance_for_dependence(sample_of(400, [&] { return random.normal(); }));
     EXPECT_GE(factor, 1);
-    EXPECT_LT(factor, 3);
+    EXPECT_LT(factor, 5);
     more += factor > 1;
   }
-  EXPECT_LE(more, 260);
+  EXPECT_LE(more, 330);
   EXPECT_GE(more, 60);
 }
 
