@@ -184,7 +184,11 @@ std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,
   const QuestionKind kind = outcome.question.kind;
   if (outcome.question.of_variances() || kind == QuestionKind::efficiency) {
     std::string reason = variance_without_spread(outcome.question, channel, data);
-    return reason.empty() ? variance_lost_to_rounding(outcome.question, data) : reason;
+    for (std::size_t i = 0; i < outcome.question.compared() && reason.empty(); ++i) {
+      reason = variances_lost_to_rounding(outcome.question.subjects[i], data[i].primaries,
+                                          {&data[i].moments, 1});
+    }
+    return reason;
   }
   if (kind == QuestionKind::slope) return point_without_spread(outcome.question, channel, data);
   if (!outcome.question.of_means()) return "";

@@ -117,8 +117,13 @@ std::string total_lost_to_rounding(const TestWork& work) {
   const Question& question = work.outcome.question;
   std::string reason;
   if (question.kind != QuestionKind::total_variance) return reason;
-  for (std::size_t channel = 0; channel < question.subjects[0].channels.size(); ++channel) {
-    if (reason.empty()) reason = variance_lost_to_rounding(question, data_of(work, channel));
+  for (std::size_t i = 0; i < question.compared() && reason.empty(); ++i) {
+    std::vector<stats::Moments> channels;
+    for (const std::size_t channel : question.subjects[i].channels) {
+      channels.push_back(summary_of(work, i).moments(channel));
+    }
+    reason =
+        variances_lost_to_rounding(question.subjects[i], work.outcome.plan.primaries[i], channels);
   }
   return reason;
 }

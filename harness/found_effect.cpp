@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "harness/image_judge.h"
-#include "harness/rows.h"
 #include "harness/sample_size.h"
 
 namespace assay::harness {

@@ -59,25 +59,28 @@ std::string lost_to_rounding(const Question& question, std::size_t channel,
       question.subjects[worst].estimator->name, data[worst].moments.mean, rounding, error);
 }
 
-std::string variance_lost_to_rounding(const Question& question, std::span<const ChannelData> data) {
-  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
-    const stats::Moments& moments = data[subject].moments;
-    if (moments.count < 2 || !(moments.m2 > 0)) continue;
-    const double primaries = question.subjects[subject].averaged(data[subject].primaries);
-    const double rounding = rounding_of_sum(moments.mean, primaries);
-    const double share = rounding * rounding / moments.variance();
+std::string variances_lost_to_rounding(const Subject& side, std::uint64_t primaries,
+                                       std::span<const stats::Moments> channels) {
+  const double averaged = side.averaged(primaries);
+  double added = 0;
+  double total = 0;
+  double squared_error = 0;
+  double mean = 0;
+  for (const stats::Moments& x : channels) {
+    if (averaged <= 1 || x.count < 2 || !(x.m2 > 0)) continue;  // a single number is no sum
+    const double count = static_cast<double>(x.count);
+    added += std::pow(rounding_of_sum(x.mean, averaged), 2);
+    total += x.variance();
     // Of two values that come equally often the kurtosis is 1, and the error of second order.
-    const double count = static_cast<double>(moments.count);
-    const double error = std::sqrt(std::max(moments.kurtosis() - 1, 1 / count) / count);
-    if (!(share > tolerated * error)) continue;
-    return fmt::format(
-        "the mean of `{}` is {:.6g}: sums of {:g} numbers of that size are rounded so coarsely "
-        "that "
-        "their variance is larger by a part of {:.2g} where its standard error is {:.2g}; take a "
-        "constant near the mean off the observations",
-        question.subjects[subject].estimator->name, moments.mean, primaries, share, error);
+    squared_error += std::pow(x.variance(), 2) * std::max(x.kurtosis() - 1, 1 / count) / count;
+    if (std::abs(x.mean) > std::abs(mean)) mean = x.mean;
   }
-  return "";
+  if (!(added > tolerated * std::sqrt(squared_error))) return "";
+  return fmt::format(
+      "the mean of `{}` is {:.6g}: sums of {:g} numbers of that size are rounded so coarsely that "
+      "their variance is larger by a part of {:.2g} where its standard error is {:.2g}; take a "
+      "constant near the mean off the observations",
+      side.estimator->name, mean, averaged, added / total, std::sqrt(squared_error) / total);
 }
 
 }  // namespace assay::harness

@@ -12,9 +12,10 @@ namespace assay::harness {
 std::string lost_to_rounding(const Question& question, std::size_t channel,
                              std::span<const ChannelData> data);
 
-/// Why variances cannot be tested: what rounding adds to the sum of an observation's primaries
-/// makes one larger by more than a tenth of the standard error of its logarithm. "" where it is
-/// less.
-std::string variance_lost_to_rounding(const Question& question, std::span<const ChannelData> data);
+/// Why the sum of these channels' variances cannot be tested: what rounding adds to the sums of an
+/// observation's primaries makes it larger by more than a tenth of its standard error, the
+/// channels' errors taken for independent. "" where it is less.
+std::string variances_lost_to_rounding(const Subject& side, std::uint64_t primaries,
+                                       std::span<const stats::Moments> channels);
 
 }  // namespace assay::harness

@@ -12,7 +12,6 @@
 #include "harness/evidence_slope.h"
 #include "harness/law_evidence.h"
 #include "harness/mean_evidence.h"
-#include "harness/rows.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_variance.h"
 #include "stats/f_ratio.h"

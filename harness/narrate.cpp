@@ -135,9 +135,10 @@ std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& c
                      *channel.effect.low > edge;
   const bool below = channel.regions.relation != Relation::at_most && channel.effect.high &&
                      *channel.effect.high < -edge;
-  if (!above && !below) return "no evidence against the claim";
+  // An image's interval is of the size of the difference, and no part of the verdict.
+  if (channel.image || (!above && !below)) return "no evidence against the claim";
   return fmt::format("not enough evidence against the claim, {} where its share of alpha is {:.2g}",
-                     p_text(channel.decision.log_p_claimed), outcome.share().alpha);
+                     p_text(channel.decision.log_p_claimed), outcome.place.share.alpha);
 }
 
 std::string passed_by_empty_interval(const ChannelOutcome& channel) {

@@ -272,7 +272,10 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     plan.invalid = reason;
   } else if (answered) {
     plan.method = find_method(question, "batch-means");
-    plan.invalid.clear();
+    // What stood against the rows one by one; of a side that is drawn it still does.
+    if (std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded)) {
+      plan.invalid.clear();
+    }
   } else if (question.of_means() && !is_exact(plan.method)) {
     allow_for_dependence(all, plan);
   }
@@ -294,6 +297,8 @@ std::string rows_beside_primaries(const Question& question) {
 
 stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
                          std::span<const double> values, stats::Moments moments) {
+  // Constants are judged by themselves, and have no order.
+  if (!(moments.m2 > 0) || values.size() < fewest_in_order) return moments;
   if (plan.method.name == "batch-means") {
     return stats::batch_means(values, stats::sufficient_batch(values));
   }

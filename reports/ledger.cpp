@@ -66,9 +66,9 @@ std::string e_text(const Number& log_e) {
 
 std::string series_sentence(const LedgerSeries& series) {
   if (series.nights == 0) return "no night yet";
-  return fmt::format("{} since {}: {}likelihood ratio E = {}, alarm at {}",
-                     plural(series.nights, "night"), day(series.first), theta_sentence(series),
-                     e_text(series.log_e), e_text(series.limit));
+  return fmt::format("{} since {}: {}e-value E = {}, alarm at {}", plural(series.nights, "night"),
+                     day(series.first), theta_sentence(series), e_text(series.log_e),
+                     e_text(series.limit));
 }
 
 std::string alarm_sentence(const LedgerSeries& series) {
@@ -95,7 +95,7 @@ std::string quiet_sentence(const Ledger& ledger) {
   }
   if (highest == nullptr) return {};
   return fmt::format(
-      "{} of up to {} without an alarm; nearest to one is {}, likelihood ratio "
+      "{} of up to {} without an alarm; nearest to one is {}, e-value "
       "E = {}, alarm at {}",
       plural(count, "series"), plural(nights, "night"), series_name(ledger, *highest),
       e_text(highest->log_e), e_text(highest->limit));

@@ -34,8 +34,8 @@ double autocorrelation_time(std::span<const double> values);
 // By what the variance of a mean of n independent values is to be multiplied where a dependence too
 // weak for the gates may be: 1, or where the z of r_1, or the F of batches of floor(sqrt n) or n / 10
 // is beyond what independent values exceed with probability .05, the larger of autocorrelation_time
-// and that F. Of 100 values of an AR(1) chain with phi = .3 that pass the gates two means differ at
-// .01 with probability .04 without it, .012 with it; a slow chain under noise it halves at best (.23
+// and that F. Of pairs of 100 values of AR(1) chains with phi = .3 some 4.3 % pass the gates and yet
+// have means that differ at .01, with it 1.2 %; a slow chain under noise it halves at best (.23
 // to .11 of 200 values with phi = .95 and nine parts of noise). Throws as batch_gate.
 double allowance_for_dependence(std::span<const double> values);
 // The length of a batch that is long enough for batch_means: the largest of default_batch, ten

@@ -117,6 +117,22 @@ TEST(DependentRows, OfTwoChainsThatDifferFail) {
             Verdict::fail);
 }
 
+// A column that never varies has no batches: it is judged by itself.
+TEST(DependentRows, BesideAConstantColumnAreTestedByBatches) {
+  std::string text = "# columns: moving still\n";
+  for (const double x : chain(0.9, 8000, 5)) text += fmt::format("{} 2\n", 2 + x);
+  const Workplace place;
+  place.write("rows.txt", text);
+  const reports::Test test =
+      run_files({place.write("suite.yaml",
+                             "suite: s\nestimators:\n  r: {plugin: recorded, file: rows.txt}\n"
+                             "tests: [{claim: mean(r) == 2}]\n")})
+          .suites[0]
+          .tests[0];
+  EXPECT_EQ(test.method, "batch-means");
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+}
+
 // Averages have another law, and another variance: rows can be left out only.
 TEST(DependentRows, SayWhatWouldDo) {
   const std::vector<double> rows = chain(0.9, 400, 6);

@@ -51,6 +51,33 @@ TEST(LostToRounding, AVarianceOfSumsThatAreRoundedIsInvalid) {
   EXPECT_EQ(of_sums("1").verdict, Verdict::pass);
 }
 
+// Against three channels of rows, of which the total is 3.
+TEST(LostToRounding, ATotalVarianceOfSumsThatAreRoundedIsInvalid) {
+  tests::Philox random(4);
+  std::string rows;
+  for (int i = 0; i < 20000; ++i) {
+    rows += fmt::format("{} {} {}\n", random.normal(), random.normal(), random.normal());
+  }
+  const Workplace place;
+  place.write("rows.txt", rows);
+  const auto of_mean = [&](const std::string& mean) {
+    return run_files({place.write("suite.yaml",
+                                  "suite: s\nalpha: 1e-6\nestimators:\n"
+                                  "  three: {plugin: recorded, file: rows.txt}\n"
+                                  "  one: {plugin: analytic/normal, primaries: 64, mean: " +
+                                      mean +
+                                      "}\ntests: [{claim: total_variance(one) <= "
+                                      "total_variance(three)}]\n")})
+        .suites[0]
+        .tests[0];
+  };
+  const reports::Test told = of_mean("1e14");
+  EXPECT_EQ(told.verdict, Verdict::invalid);
+  EXPECT_THAT(told.message, HasSubstr("sums of 64 numbers of that size are rounded so coarsely"));
+  const reports::Test small = of_mean("1");
+  EXPECT_EQ(small.verdict, Verdict::pass) << small.message;
+}
+
 // Doubles near 1e12 are 1/8192 apart. Of sums that drop what they lose this was invalid.
 TEST(LostToRounding, TheSumOfManyLosesNothing) {
   const reports::Test told = at_offset("1e12", "mean(it) == 1e12, secondaries: 500000");

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "many_seeds.h"
 #include "recorded_rows.h"

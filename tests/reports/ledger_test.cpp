@@ -30,7 +30,7 @@ TEST(LedgerText, SaysWhatTheNightsSayTogether) {
   LedgerSeries series = example_record().ledger.series[0];
   EXPECT_EQ(series_sentence(series),
             "12 nights since 2026-11-09: relative difference from the reference +0.1 %, standard "
-            "error 0.0253 % of the nights and 0.01 % of the reference, likelihood ratio E = 13360, "
+            "error 0.0253 % of the nights and 0.01 % of the reference, e-value E = 13360, "
             "alarm at 665");
   EXPECT_EQ(alarm_sentence(series),
             "the nights together refute the claim since 2026-11-18T02:00:00Z; it moved most likely "
@@ -38,8 +38,7 @@ TEST(LedgerText, SaysWhatTheNightsSayTogether) {
             "to 2026-11-15T02:00:00Z)");
   EXPECT_EQ(series_sentence(example_record().ledger.series[2]), "no night yet");
   series.reference_error = 0.;
-  EXPECT_NE(series_sentence(series).find("standard error 0.0253 %, likelihood ratio E"),
-            std::string::npos);
+  EXPECT_NE(series_sentence(series).find("standard error 0.0253 %, e-value E"), std::string::npos);
 }
 
 TEST(LedgerText, NamesTheChannelWhereThereAreSeveral) {

@@ -164,7 +164,7 @@ Differing differing(int pairs, const std::function<std::vector<double>()>& draw)
 
 // The gates see dependence in one pair of four; plainly, true equalities of the others fail under
 // 170 of 4000. More than 80 where 60 are expected (.015) has probability .006, of 60 more than 80
-// where 40 are (.01 of independent values), 1e-8.
+// where 40 are (.01 of independent values), 1e-8, and fewer than 15 with 1e-4.
 TEST(IndependenceGates, WhatTheyDoNotSeeIsAllowedFor) {
   Philox random(11);
   const Differing chains = differing(4000, [&] { return autoregressive(.3, 100, random); });
@@ -172,7 +172,7 @@ TEST(IndependenceGates, WhatTheyDoNotSeeIsAllowedFor) {
   EXPECT_GE(chains.plainly, 120);
   const Differing independent =
       differing(4000, [&] { return sample_of(100, [&] { return random.normal(); }); });
-  EXPECT_LE(independent.allowing, independent.plainly);
+  EXPECT_GE(independent.allowing, 15);
   EXPECT_LE(independent.plainly, 80);
 }
 
