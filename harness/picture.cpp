@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "harness/image_record.h"
+#include "harness/rows.h"
+#include "stats/independence_gates.h"
 #include "stats/log_variance.h"
 #include "stats/student_t.h"
 
@@ -55,6 +57,39 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
           number(primaries * std::exp(log.high))};
 }
 
+/// A sample's moments as those of so many fewer independent values, of the same mean and variance.
+stats::Moments of_fewer(stats::Moments x, double factor) {
+  const double before = static_cast<double>(x.count);
+  const double after = std::max(4.0, std::round(before / factor));
+  x.count = static_cast<std::uint64_t>(after);
+  x.m2 *= (after - 1) / (before - 1);
+  x.m3 *= after / before;
+  x.m4 *= after / before;
+  return x;
+}
+
+/// The first `count` rows of one channel; nothing where they are not kept.
+std::span<const double> rows_of(const Picture& picture, const SuiteRun& run, std::size_t channel,
+                                std::uint64_t count) {
+  const auto pilot = run.pilots.find(picture.estimator->name);
+  if (!picture.pool->setup()->observations() || pilot == run.pilots.end() ||
+      channel >= pilot->second.values.size() || count > pilot->second.values[channel].size()) {
+    return {};
+  }
+  return std::span(pilot->second.values[channel]).first(count);
+}
+
+/// Of rows that may depend on each other those of as many independent ones as they are worth.
+stats::Moments moments_of(const Picture& picture, const SuiteRun& run, std::size_t channel,
+                          std::uint64_t count) {
+  const stats::Moments& moments = picture.pool->prefix(count).channels[channel].moments;
+  const std::span<const double> rows = rows_of(picture, run, channel, count);
+  const bool all = moments.count == rows.size();  // the others were not finite
+  if (!has_spread(moments) || !all || rows.size() < fewest_in_order) return moments;
+  const double factor = stats::allowance_for_dependence(rows);
+  return factor > 1 ? of_fewer(moments, factor) : moments;
+}
+
 reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run) {
   const std::uint64_t count = shown_by(picture, run);
   const double confidence = 1 - run.suite.alpha;
@@ -85,7 +120,7 @@ reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run)
   const std::vector<Channel> channels = picture.pool->setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (channels[i].diagnostic) continue;
-    const stats::Moments& moments = summary.channels[i].moments;
+    const stats::Moments moments = moments_of(picture, run, i, count);
     reports::EstimatorChannel channel{
         .name = channels[i].name,
         .mean = mean_of(moments, confidence),
@@ -132,10 +167,10 @@ Pictured pictured(const Picture& picture, const SuiteRun& run) {
                   .averaged = per_primary(picture),
                   .averages = picture.estimator->nature().averages};
   if (image || !result.drawn) return result;
-  const Summary& summary = picture.pool->prefix(count);
   const std::vector<Channel> channels = picture.pool->setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    result.channels.push_back({channels[i].name, channels[i].mean, summary.channels[i].moments});
+    result.channels.push_back(
+        {channels[i].name, channels[i].mean, moments_of(picture, run, i, count)});
   }
   return result;
 }

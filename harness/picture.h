@@ -6,7 +6,8 @@
 namespace assay::harness {
 
 /// The suite's estimators side by side: mean and variance of each with intervals, and where each
-/// pair of estimators of one quantity stands (`comparisons`). Descriptive: outside the family.
+/// pair of estimators of one quantity stands (`comparisons`); rows that may depend on each other
+/// count as so many fewer (stats::allowance_for_dependence). Descriptive: outside the family.
 void add_pictures(const SuiteRun& run, reports::Suite& suite);
 
 /// What comparisons are made of.

@@ -26,8 +26,6 @@ namespace {
 using stats::Gate;
 using stats::GateState;
 
-// Below it batches of sqrt n are too few and too short to say anything.
-constexpr std::size_t fewest_in_order = 9;
 // In fewer the gates of independence see little: laws of 12 to 50 states of a chain failed under up
 // to half of the seeds with all of them green, and of 100 one in a thousand.
 constexpr std::size_t fewest_in_order_to_tell = 100;

@@ -16,6 +16,9 @@
 
 namespace assay::harness {
 
+/// Below it batches of sqrt n are too few and too short to say anything.
+inline constexpr std::size_t fewest_in_order = 9;
+
 /// Whether a subject's observations are ready-made.
 bool is_recorded(const Subject& subject);
 /// Whether any of the question's are.

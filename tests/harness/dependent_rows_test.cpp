@@ -117,6 +117,25 @@ TEST(DependentRows, OfTwoChainsThatDifferFail) {
             Verdict::fail);
 }
 
+// 8000 rows are worth 420: of the interval and of the pair's p-value as of the verdict.
+TEST(DependentRows, AreShownAsUncertainAsTheyAre) {
+  const Workplace place;
+  place.write("a.txt", file_of(chain(0.9, 8000, 31)));
+  place.write("b.txt", file_of(chain(0.9, 8000, 32)));
+  const reports::Suite suite =
+      run_files({place.write("suite.yaml",
+                             "suite: s\nestimators:\n  a: {plugin: recorded, file: a.txt}\n"
+                             "  b: {plugin: recorded, file: b.txt}\n"
+                             "tests: [{claim: mean(a) == mean(b)}]\n")})
+          .suites[0];
+  const reports::Estimate& mean = suite.estimators[0].channels[0].mean;
+  // 2.58 standard errors of .049 to either side.
+  EXPECT_NEAR(*mean.high - *mean.low, 0.25, 0.07);
+  const double p = *suite.tests[0].channels[0].p_value;
+  EXPECT_NEAR(std::log(*suite.comparisons[0].mean_p), std::log(p), 1 + 0.5 * std::abs(std::log(p)));
+  EXPECT_FALSE(suite.comparisons[0].variances_differ);
+}
+
 // A column that never varies has no batches: it is judged by itself.
 TEST(DependentRows, BesideAConstantColumnAreTestedByBatches) {
   std::string text = "# columns: moving still\n";
