@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "estimators/ready_made.h"
 #include "stats/tails.h"
@@ -211,6 +212,17 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                   seeds(question))};
 }
 
+namespace {
+
+/// The spread that values of this size, or as declared, may have lost to rounding.
+double hidden_deviation(const Question& question, std::size_t channel, const ChannelData& data) {
+  const double size = std::abs(data.moments.mean) * question.subjects[0].averaged(data.primaries);
+  const double spacing = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+  return std::max(spacing, 2 * channel_of(question, 0, channel).rounding);
+}
+
+}  // namespace
+
 std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
                                                        std::size_t channel, const ChannelData& data,
                                                        const Regions& regions) {
@@ -218,6 +230,8 @@ std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
       regions.has_forbidden() || !is_constant(question, 0, channel, data.moments)) {
     return {};
   }
+  const double hidden = hidden_deviation(question, channel, data);
+  if (hidden * hidden > question.references[channel].value) return {};
   return ConstantVerdict{
       Verdict::pass,
       fmt::format("every observation is {:.10g}, so that no variance was seen that could be too "

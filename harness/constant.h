@@ -32,8 +32,8 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                                const ErrorShare& share);
 
 /// The verdict of a variance that is bounded from above and has no forbidden region, as each
-/// channel of `worst_variance`, of a constant sample: pass. Nothing of other claims, nor where the
-/// sample varies.
+/// channel of `worst_variance`, of a constant sample: pass. Nothing of other claims, where the
+/// sample varies, or where rounding may have hidden a variance beyond the bound.
 std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
                                                        std::size_t channel, const ChannelData& data,
                                                        const Regions& regions);

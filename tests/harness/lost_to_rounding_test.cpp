@@ -51,6 +51,17 @@ TEST(LostToRounding, AVarianceOfSumsThatAreRoundedIsInvalid) {
   EXPECT_EQ(of_sums("1").verdict, Verdict::pass);
 }
 
+// Deviations of .01 vanish in numbers of 1e15, which are 1/8 apart; of zeros nothing is hidden.
+TEST(LostToRounding, AVarianceThatRoundingHidesIsNotWithinItsBound) {
+  const auto verdict = [](const std::string& parameters, const std::string& bound) {
+    return run_test("suite: s\nestimators:\n  it: {plugin: analytic/normal, primaries: 1, " +
+                    parameters + "}\ntests: [{claim: variance(it) <= " + bound + "}]\n")
+        .verdict;
+  };
+  EXPECT_EQ(verdict("mean: 1e15, deviation: 0.01", "1e-9"), Verdict::invalid);
+  EXPECT_EQ(verdict("mean: 0, deviation: 0", "1e-9"), Verdict::pass);
+}
+
 // Against three channels of rows, of which the total is 3.
 TEST(LostToRounding, ATotalVarianceOfSumsThatAreRoundedIsInvalid) {
   tests::Philox random(4);
