@@ -1,6 +1,8 @@
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -18,8 +20,9 @@ class Workplace {
  public:
   Workplace() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    // Two builds may be tested at once.
     path_ = std::filesystem::temp_directory_path() /
-            (std::string("assay_") + info->test_suite_name() + "_" + info->name());
+            fmt::format("assay_{}_{}_{}", info->test_suite_name(), info->name(), getpid());
     std::filesystem::create_directories(path_);
   }
   ~Workplace() { std::filesystem::remove_all(path_); }

@@ -1,6 +1,8 @@
 #include "harness/suite.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -21,7 +23,7 @@ class Folder {
   Folder() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
     path_ = fs::temp_directory_path() /
-            (std::string("assay_") + info->test_suite_name() + "_" + info->name());
+            fmt::format("assay_{}_{}_{}", info->test_suite_name(), info->name(), getpid());
     fs::create_directories(path_);
   }
   ~Folder() { fs::remove_all(path_); }
