@@ -26,4 +26,7 @@ int host_library(const std::vector<std::string>& arguments);
 /// with std::runtime_error.
 void set_stop_question(bool (*stop)());
 
+/// Told, by any thread, what a user should know before a program answers, in a sentence.
+void set_notice(void (*say)(const std::string& sentence));
+
 }  // namespace assay

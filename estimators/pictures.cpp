@@ -41,16 +41,6 @@ std::vector<std::string> names_of(const ExrFile& file) {
   return names;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 16;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
-    text += (i == 0 ? "`" : ", `") + names[i] + "`";
-  }
-  if (names.size() > most) text += ", … (" + std::to_string(names.size()) + " in all)";
-  return text.empty() ? "none" : text;
-}
-
 std::vector<std::string> split_at_commas(const std::string& text) {
   std::vector<std::string> pieces;
   std::size_t begin = 0;
@@ -98,7 +88,7 @@ std::vector<std::string> usual_channels(const ExrFile& file) {
   refuse(file.name(),
          "it is not plain which channels are meant; choose them with `channels`, as in "
          "`channels: \"" +
-             (names.empty() ? "R" : layer_of(names[0]) + ".*") + "\"`; it has " + listed(names));
+             (names.empty() ? "R" : layer_of(names[0]) + ".*") + "\"`; it has " + quoted(names));
 }
 
 std::vector<std::string> matching_channels(const ExrFile& file, const std::string& patterns) {
@@ -113,7 +103,7 @@ std::vector<std::string> matching_channels(const ExrFile& file, const std::strin
     }
     if (any) continue;
     refuse(file.name(), "no channel matches `" + pattern + "`" +
-                            did_you_mean(pattern, names, "it has " + listed(names)));
+                            did_you_mean(pattern, names, "it has " + quoted(names)));
   }
   return {chosen.begin(), chosen.end()};
 }
@@ -165,7 +155,7 @@ std::vector<double> read_doubles(const ExrFile& file, const std::vector<std::str
   file.read(names, texels);
   const auto bad = std::ranges::find_if(texels, [](float x) { return !(x - x == 0); });
   if (bad != texels.end()) {
-    refuse(file.name(), "the channels " + listed(names) + " are not finite " +
+    refuse(file.name(), "the channels " + quoted(names) + " are not finite " +
                             at_texel(shape, static_cast<std::size_t>(bad - texels.begin())));
   }
   return {texels.begin(), texels.end()};
@@ -219,8 +209,10 @@ std::vector<double> read_counts(const ExrFile& file, const MomentChannels& error
 
 bool names_pictures(const std::string& file) {
   std::error_code ignored;
-  const bool there = std::filesystem::exists(file, ignored);
-  return (!there && is_pattern(file)) || file.ends_with(".exr") || is_exr(file);
+  const auto status = std::filesystem::status(file, ignored);
+  if (!std::filesystem::exists(status) && is_pattern(file)) return true;
+  // What is taken from a pipe to look at it is gone.
+  return file.ends_with(".exr") || (std::filesystem::is_regular_file(status) && is_exr(file));
 }
 
 std::vector<std::string> files_of(const std::string& pattern) {

@@ -42,6 +42,10 @@ std::unique_ptr<PictureRows> picture_rows(const Setup& setup);
 /// The average of texels that follows them in an observation.
 double average_of(std::span<const float> texels);
 
+/// Whether what a file name of the plugin `recorded` stands for is gone once it has been read:
+/// standard input, a pipe, a device; also a name below /dev or /proc that is gone already.
+bool is_read_once(const std::string& file);
+
 /// Which observation, of a set-up that may be drawn by streams.
 struct WhichObservation {
   std::uint64_t index = 0;
@@ -54,11 +58,17 @@ class InFiles {
  public:
   virtual ~InFiles() = default;
   virtual std::string place_of(const WhichObservation& which) const = 0;
+  /// Tells what was read from what was read elsewhere, where that is known.
+  virtual std::optional<std::uint64_t> digest() const { return {}; }
 };
 
 /// Where an observation of a set-up stands: "b.exr" that holds it alone, "rows.txt:17"; "" where it
 /// is in no file.
 std::string observation_place(const Setup& setup, const WhichObservation& which);
+
+/// The digest of a set-up whose observations stand in files; nullopt of others and where none is
+/// known.
+std::optional<std::uint64_t> observations_digest(const Setup& setup);
 
 /// Whether observations are drawn into files that stay from one run to the next, so that drawing
 /// one may cost nothing.

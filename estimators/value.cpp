@@ -230,8 +230,13 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 std::string quoted(const std::vector<std::string>& names) {
+  // A file may have thousands of columns.
+  constexpr std::size_t most = 16;
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "`" : ", `") + name + "`";
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+    text += (i == 0 ? "`" : ", `") + names[i] + "`";
+  }
+  if (names.size() > most) text += ", … (" + std::to_string(names.size()) + " in all)";
   return text;
 }
 

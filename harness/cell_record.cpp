@@ -130,10 +130,10 @@ Cells of_two(const Question& question, const stats::SampledCells& sampled,
   return cells;
 }
 
-Cells cells_of(const TestWork& work) {
-  const TestOutcome& outcome = work.outcome;
+Cells cells_of(const DrawnTest& test) {
+  const TestOutcome& outcome = test.outcome;
   const Question& question = outcome.question;
-  const std::vector<ChannelData> data = data_of(work, outcome.channels[0].index);
+  const std::vector<ChannelData> data = data_of(test, outcome.channels[0].index);
   if (question.kind == QuestionKind::fit_to_density && outcome.plan.method.keeps == Keeps::cells) {
     const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
     if (draws.sampler().domain() != Domain::interval) return of_density(draws, data[0]);
@@ -148,9 +148,9 @@ Cells cells_of(const TestWork& work) {
 
 }  // namespace
 
-void add_cells(const TestWork& work, reports::Test& test) {
-  if (work.outcome.channels.empty()) return;
-  const Cells cells = cells_of(work);
+void add_cells(const DrawnTest& drawn, reports::Test& test) {
+  if (drawn.outcome.channels.empty()) return;
+  const Cells cells = cells_of(drawn);
   if (cells.observed.empty()) return;
   const auto add = [&](const char* name, const std::string& axes, std::size_t width,
                        std::span<const double> values) {

@@ -12,6 +12,6 @@ namespace assay::harness {
 /// expected is the first one's part of both together and the difference is divided by its standard
 /// deviation, sqrt(expected m / (n + m)). Nothing of other claims, of one coordinate, of bands with
 /// different numbers of cells, and of a test without numbers.
-void add_cells(const TestWork& work, reports::Test& test);
+void add_cells(const DrawnTest& drawn, reports::Test& test);
 
 }  // namespace assay::harness

@@ -69,7 +69,7 @@ class Parser {
   Margin margin() {
     const Token token = lexer_.next();
     if (token.kind != Kind::number) unexpected(token, "a margin, as `0.5%` or `0.002`");
-    Margin margin{.value = token.number, .relative = lexer_.peek().is("%")};
+    Margin margin{.value = token.number, .relative = lexer_.peek().is("%"), .where = token.where};
     if (margin.relative) margin.value = percent(token);
     if (margin.relative) lexer_.next();
     if (margin.value < 0) fail(token.where, "a margin cannot be negative");
@@ -148,6 +148,9 @@ class Parser {
         return;
       }
     }
+    if (token.kind == Kind::end) {
+      fail(token.where, "the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …");
+    }
     if (!token.is_word("within")) {
       const std::string hint = token.kind == Kind::word ? did_you_mean(token.text, {"within"}) : "";
       unexpected(token, "`==`, `<=`, `>=`, `<`, `>` or `within … of`", hint);
@@ -181,7 +184,11 @@ class Parser {
       }
       return ScaledQuantity{number, quantity()};
     }
-    if (token.is("%")) fail(token.where, "a per cent needs a margin: `within 0.5% of …`");
+    if (token.is("%")) {
+      fail(token.where, fmt::format("a value has no per cent: write `{:g}`, or a margin, as in "
+                                    "`mean(a) within {:g}% of 0.5`",
+                                    number / 100, number));
+    }
     if (!token.is("+-")) return Constant{number, 0};
     lexer_.next();
     const Location where = lexer_.peek().where;
@@ -231,6 +238,7 @@ class Parser {
 
   std::string side_advice(const Token& token) {
     if (token.text == "pi") return "; write it as a number, 3.141592653589793";
+    if (token.text == "gaussian") return "; did you mean `normal(0, 1)`?";
     const std::string near = did_you_mean(token.text, side_words());
     if (!near.empty()) return near;
     // `mean(a) == b`: the name of an estimator where its quantity should be.

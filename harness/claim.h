@@ -65,6 +65,7 @@ const char* to_string(Relation);  ///< "==", "<=", …, "within"
 struct Margin {
   double value = 0;
   bool relative = false;
+  Location where = {};
 };
 
 struct ScaledQuantity {

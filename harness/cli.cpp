@@ -50,6 +50,8 @@ Output output(const Given& given) {
   return output;
 }
 
+Selection selection(const Given& given) { return {.filters = given.filters, .tags = given.tags}; }
+
 RunOptions options(const Given& given) {
   constexpr std::uint64_t most_threads = 4096;
   RunOptions options;
@@ -61,7 +63,7 @@ RunOptions options(const Given& given) {
   if (!given.alpha.empty()) options.alpha = parse_rate(given.alpha, "--alpha");
   if (!given.coarsen.empty()) options.coarsen = parse_positive(given.coarsen, "--coarsen");
   if (!given.shard.empty()) options.shard = parse_shard(given.shard);
-  options.filter = given.filter;
+  options.selection = selection(given);
   return options;
 }
 
@@ -227,7 +229,10 @@ Command list_command(const Given& given, const std::string& name) {
   const bool tests = choice(Value::scalar(given.what), "what is listed", {"plugins", "tests"}) == 1;
   if (tests) require(given.suites.empty() ? "" : given.suites[0], "a suite file", name);
   if (!tests && !given.suites.empty()) usage_error("`assay list plugins` takes no suite");
-  return ListCommand{tests, given.suites};
+  if (!tests && !selection(given).empty()) {
+    usage_error("`assay list plugins` takes no --filter and no --tag; they select tests");
+  }
+  return ListCommand{tests, given.suites, selection(given)};
 }
 
 Command replay_command(const Given& given, const std::string& name) {

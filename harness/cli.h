@@ -48,6 +48,7 @@ struct CalibrateCommand {
 struct ListCommand {
   bool tests = false;  ///< else plugins
   std::vector<std::string> suites;
+  Selection selection;
 };
 
 struct DescribeCommand {

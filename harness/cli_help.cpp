@@ -36,7 +36,7 @@ Exit codes:
   1    at least one did not: it failed, was invalid or could not be tested; or the ledger alarms
   2    a mistake in what was asked for, or trouble
   3    none of these, but at least one is inconclusive
-  4    no test ran: --filter or --shard selected none (0 where the environment asked for a shard)
+  4    no test ran: --filter, --tag or --shard selected none (0 where the environment asked for a shard)
   77   all tests were skipped
   130  interrupted
 )";
@@ -49,7 +49,8 @@ std::string help_of(const std::string& subcommand) {
 Examples:
   assay run suites/luminaire.yaml
   assay run suites/*.yaml --filter '*/variance*' --threads 4
-  assay run suites/luminaire.yaml --report json=run.json --report html=run.html
+  assay run suites/*.yaml --tag bias --filter '-*slope*'      tests with a tag, but for some
+  assay run suites/luminaire.yaml --report json=run.json html=run.html
   assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
   assay run suites/luminaire.yaml --coarsen 4      a quick look: four times coarser effects
   assay run suites/luminaire.yaml --seed random --ledger nightly.ledger      every night
@@ -122,7 +123,7 @@ adjustment over each suite, and reports it. Nothing is sampled.
 Examples:
   assay run suites/luminaire.yaml --shard 1/2 --report json=1.json
   assay run suites/luminaire.yaml --shard 2/2 --report json=2.json
-  assay merge 1.json 2.json --report json=run.json --report html=run.html
+  assay merge 1.json 2.json --report json=run.json html=run.html
 )"},
       {"report", R"(Makes reports from a saved run; nothing is sampled.
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "harness/cli_help.h"
+#include "harness/shell.h"
 #include "harness/suite_entries.h"
 #include "harness/suite_keys.h"
 
@@ -31,7 +32,7 @@ void one(CLI::App* sub, const char* name, std::string& value, const char* kind,
 void add_output(CLI::App* sub, Given& given) {
   many(sub, "--report", given.reports, "KIND=PATH",
        "console, json, junit, markdown, html or metrics (OpenMetrics) to a file, - is standard "
-       "output; repeatable; default console=-, which goes to standard error where another report "
+       "output; one or more; default console=-, which goes to standard error where another report "
        "has standard output; console=/dev/null silences it");
   one(sub, "--color", given.colour, "WHEN",
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
@@ -77,10 +78,17 @@ void add_estimators(CLI::App* sub, Given& given, const Sizes& about) {
   one(sub, "--secondaries", given.secondaries, "M", about.secondaries);
 }
 
+void add_selection(CLI::App* sub, Given& given) {
+  many(sub, "--filter", given.filters, "GLOB",
+       "only tests whose id, suite/name, matches, or with '-GLOB' all but these; * and ? are wild; "
+       "repeatable; default all");
+  many(sub, "--tag", given.tags, "TAG",
+       "only tests that have this tag; repeatable, any of them; default all");
+}
+
 void add_suites(CLI::App* sub, Given& given) {
   sub->add_option("SUITE", given.suites, "suite files")->type_name("");
-  one(sub, "--filter", given.filter, "GLOB",
-      "only tests whose id, suite/name, matches; * and ? are wild; default all");
+  add_selection(sub, given);
   one(sub, "--coarsen", given.coarsen, "F", "multiply every `detect` by F, above 0; default 1");
   many(sub, "--set", given.sets, "estimator.key=value",
        "set a parameter; repeatable; default as in the suite");
@@ -114,7 +122,8 @@ void define_check(CLI::App& app, Given& given) {
   CLI::App* sub = subcommand(app, "check");
   sub->add_option("CLAIM", given.claim, "the claim, in quotes")->type_name("");
   one(sub, "--detect", given.detect, "X",
-      "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations");
+      "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations; of laws "
+      "0.05");
   one(sub, "--allow", given.allow, "X",
       "the effect that may be there, as 0.5% or 0.002; default 0");
   one(sub, "--test", given.method, "METHOD",
@@ -185,7 +194,7 @@ void define_others(CLI::App& app, Given& given) {
   one(calibrate, "--threads", given.threads, "N", "worker threads; default one for each core");
   calibrate->add_flag("--quiet", given.quiet, "no progress on standard error; default shown");
   many(calibrate, "--report", given.reports, "KIND=PATH",
-       "console, json, markdown or html to a file, - is standard output; repeatable; default "
+       "console, json, markdown or html to a file, - is standard output; one or more; default "
        "console=-, which goes to standard error where another report has standard output; "
        "console=/dev/null silences it");
 
@@ -193,6 +202,7 @@ void define_others(CLI::App& app, Given& given) {
   list->add_option("WHAT", given.what, "plugins or tests")->type_name("");
   list->add_option("SUITE", given.suites, "suite files, of which the tests are listed")
       ->type_name("");
+  add_selection(list, given);
 
   CLI::App* describe = subcommand(app, "describe");
   describe->add_option("PLUGIN", given.plugin, "a name from `assay list plugins`")->type_name("");
@@ -238,20 +248,44 @@ Texts subcommand_names(const CLI::App& app) {
   return names;
 }
 
+/// The key of a suite that says what an option of `check` does.
+std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
+  if (sub.get_name() != "run" && sub.get_name() != "plan") return "";
+  for (const char* key : {"detect", "allow", "test", "over", "reference", "cost", "budget",
+                          "primaries", "secondaries"}) {
+    if (option == std::string("--") + key) return key;
+  }
+  return "";
+}
+
 void refuse_extras(const CLI::App& sub) {
   for (const std::string& extra : sub.remaining()) {
     const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
     if (!extra.starts_with("-")) {
-      const bool picture = extra.ends_with(".exr");
-      usage_error(
-          fmt::format("`{}` is one argument too many; {}", extra,
-                      picture ? "quote a pattern, so that the shell leaves it alone" : help));
+      std::string mend = help;
+      if (extra.ends_with(".exr")) mend = "quote a pattern, so that the shell leaves it alone";
+      if (sub.get_name() == "check") mend = "quote the claim: `assay check 'mean(a) == 3'`";
+      usage_error(fmt::format("`{}` is one argument too many; {}", extra, mend));
     }
     const std::string name = extra.substr(0, extra.find('='));
     const std::string near = nearest(name, option_names(sub));
-    usage_error(fmt::format("`assay {}` has no option `{}`; {}", sub.get_name(), name,
-                            near.empty() ? help : fmt::format("did you mean `{}`?", near)));
+    std::string mend = near.empty() ? help : fmt::format("did you mean `{}`?", near);
+    if (const std::string key = key_of_a_suite(sub, name); !key.empty()) {
+      mend = fmt::format("write it into the suite, as the key `{}`", key);
+    }
+    usage_error(fmt::format("`assay {}` has no option `{}`; {}", sub.get_name(), name, mend));
   }
+}
+
+/// A suite, a saved run or a claim says which command it is for.
+std::string command_meant(const std::string& word, const CLI::App& app) {
+  const auto meant = [&](const char* command) {
+    return fmt::format("; did you mean `assay {} {}`?", command, shell_quoted(word));
+  };
+  if (word.ends_with(".yaml") || word.ends_with(".yml")) return meant("run");
+  if (word.ends_with(".json")) return meant("report");
+  if (word.find('(') != std::string::npos) return meant("check");
+  return suggestion(word, subcommand_names(app));
 }
 
 const CLI::App& chosen(const CLI::App& app) {
@@ -263,8 +297,7 @@ const CLI::App& chosen(const CLI::App& app) {
                       "--help`",
                       extra));
     }
-    usage_error(
-        fmt::format("unknown command `{}`{}", extra, suggestion(extra, subcommand_names(app))));
+    usage_error(fmt::format("unknown command `{}`{}", extra, command_meant(extra, app)));
   }
   if (parsed.empty()) usage_error("no command; see `assay --help`");
   return *parsed.front();
@@ -299,10 +332,42 @@ Texts without_help_command(const Texts& arguments, const CLI::App& app) {
   return asked;
 }
 
-/// What CLI11 refuses, with the methods where one was to be named.
+/// Whether the word is KIND=PATH, as nothing else is that may follow a report.
+bool is_report(const std::string& word) {
+  const std::size_t kind = word.find_first_not_of("abcdefghijklmnopqrstuvwxyz");
+  return kind != std::string::npos && kind > 0 && word[kind] == '=';
+}
+
+/// `--report json=a html=b` is `--report json=a --report html=b`.
+Texts with_an_option_each(const Texts& words) {
+  Texts all;
+  bool after_report = false;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (after_report && is_report(words[i])) {
+      all.insert(all.end(), {"--report", words[i]});
+      continue;
+    }
+    all.push_back(words[i]);
+    after_report = words[i].starts_with("--report=");
+    if (words[i] != "--report" || i + 1 == words.size()) continue;
+    all.push_back(words[++i]);
+    after_report = true;
+  }
+  return all;
+}
+
+/// What CLI11 refuses, with the methods where one was to be named. Of a value that is missing it
+/// says "--detect: 1 required X missing".
 std::string in_words(const CLI::ParseError& error) {
   std::string text = error.what();
-  if (text.starts_with("--test:")) text += "; METHOD is one of " + listed(method_names());
+  const std::size_t colon = text.find(": 1 required ");
+  if (colon != std::string::npos && text.ends_with(" missing")) {
+    const std::size_t kind = colon + std::string_view(": 1 required ").size();
+    const std::string option = text.substr(0, colon);
+    text = fmt::format("{0} needs a value: `{0} {1}`", option,
+                       text.substr(kind, text.rfind(' ') - kind));
+    if (option == "--test") text += "; METHOD is one of " + listed(method_names());
+  }
   return text;
 }
 
@@ -318,7 +383,7 @@ SortedWords sorted_words(const Texts& arguments) {
   app.add_flag("--version", sorted.version);
   define_options(app, sorted.given);
   try {
-    const Texts words = without_help_command(arguments, app);
+    const Texts words = with_an_option_each(without_help_command(arguments, app));
     // CLI11 takes the words from the back.
     app.parse(Texts(words.rbegin(), words.rend()));
   } catch (const CLI::CallForHelp&) {

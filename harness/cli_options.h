@@ -15,8 +15,8 @@ using Texts = std::vector<std::string>;
 /// values, so that messages are alike everywhere.
 struct Given {
   std::string claim, source, what, plugin, record, test, observation, runs, samples;
-  Texts suites, estimators, sets, reports, methods, laws, alphas, records;
-  std::string filter, seed, threads, alpha, coarsen, shard, ledger, inconclusive, colour, github;
+  Texts suites, estimators, sets, reports, methods, laws, alphas, records, filters, tags;
+  std::string seed, threads, alpha, coarsen, shard, ledger, inconclusive, colour, github;
   std::string candidate, pictures, channels, pixels, picture_samples, within;
   std::string detect, allow, method, primaries, secondaries, over, reference, cost, budget;
   bool quiet = false;

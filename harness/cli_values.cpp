@@ -23,6 +23,19 @@ std::uint64_t random_seed() {
   return seed;
 }
 
+/// A kind by itself, or a path by its ending, completed.
+std::string meant_report(std::string text) {
+  while (text.ends_with('=')) text.pop_back();
+  const std::string ending = text.substr(std::min(text.rfind('.') + 1, text.size()));
+  for (const auto& [kind, usual] :
+       {std::pair("html", "html"), std::pair("json", "json"), std::pair("junit", "xml"),
+        std::pair("markdown", "md"), std::pair("metrics", "txt"), std::pair("console", "log")}) {
+    if (text == kind) return fmt::format("{}=run.{}", kind, usual);
+    if (ending == usual) return fmt::format("{}={}", kind, text);
+  }
+  return "html=run.html";
+}
+
 unsigned shard_number(const std::string& text) {
   const std::uint64_t number = parse_count(text, "each number of --shard I/N", 1);
   if (number > std::numeric_limits<unsigned>::max()) throw InputError({}, "--shard is too large");
@@ -72,9 +85,9 @@ ReportRequest parse_report(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (text == "console") return {text, "-"};  // the kind that is for reading at once
   if (equals == std::string::npos || equals + 1 == text.size()) {
-    throw InputError({}, fmt::format("--report must be KIND=PATH, as in html=run.html, where the "
-                                     "path - is standard output, but it is `{}`",
-                                     text));
+    throw InputError({}, fmt::format("--report must be KIND=PATH, but it is `{}`; write "
+                                     "`--report {}`, where the path - is standard output",
+                                     text, meant_report(text)));
   }
   const std::string kind = text.substr(0, equals);
   choice(given(kind), "the kind of --report",

@@ -8,13 +8,14 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "estimators/text_pattern.h"
+#include "estimators/catalogue.h"
 #include "harness/files_read.h"
 #include "harness/github.h"
 #include "harness/image_record.h"
 #include "harness/plan_table.h"
 #include "harness/progress_terminal.h"
 #include "harness/replay.h"
+#include "harness/shell.h"
 #include "reports/console.h"
 #include "reports/file.h"
 #include "reports/html.h"
@@ -66,7 +67,9 @@ void require_writable(const Output& output, const std::vector<std::string>& kept
     const std::filesystem::path path(request.path);
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     if (!std::filesystem::is_directory(folder)) {
-      throw InputError({.file = request.path}, "its folder does not exist; make it first");
+      throw InputError({.file = request.path},
+                       fmt::format("its folder does not exist; make it by `mkdir -p {}`",
+                                   shell_quoted(folder.string())));
     }
     if (std::filesystem::is_directory(path)) {
       throw InputError({.file = request.path}, "is a folder; name the file to write");
@@ -76,16 +79,21 @@ void require_writable(const Output& output, const std::vector<std::string>& kept
 
 void write_reports(const Output& output, const ReportWriter& written) {
   std::string to_stdout;
+  std::string failures;
   bool console_placed = false;
   for (const ReportRequest& request : output.reports) {
     console_placed = console_placed || request.kind == "console";
     const bool standard = request.path == "-";
     const bool colour = standard && use_colour(output.colour, stdout);
-    const std::string text = written(request, colour);
-    if (standard) {
-      to_stdout += text;
-    } else {
-      reports::write_whole(request.path, text);
+    try {
+      const std::string text = written(request, colour);
+      if (standard) {
+        to_stdout += text;
+      } else {
+        reports::write_whole(request.path, text);
+      }
+    } catch (const std::runtime_error& error) {  // a full disk takes no other report with it
+      failures += (failures.empty() ? "" : "\n") + std::string(error.what());
     }
   }
   if (!console_placed) {
@@ -94,6 +102,7 @@ void write_reports(const Output& output, const ReportWriter& written) {
                written({.kind = "console", .path = "-"}, use_colour(output.colour, stream)));
   }
   fmt::print("{}", to_stdout);
+  if (!failures.empty()) throw std::runtime_error(failures);
 }
 
 void write_reports(reports::Record& record, const Output& output) {
@@ -105,42 +114,14 @@ void write_reports(reports::Record& record, const Output& output) {
 
 namespace {
 
-/// Says so where the filter matches no test.
-bool selects_nothing(const std::vector<Suite>& suites, const RunOptions& options) {
-  if (options.filter.empty()) return false;
-  const std::string unmatched = unmatched_filter(suites, options.filter);
-  if (!unmatched.empty()) fmt::print(stderr, "assay: {}", unmatched);
-  return !unmatched.empty();
+/// Says so where a part of the selection selects no test.
+bool selects_nothing(const std::vector<Suite>& suites, const Selection& selection) {
+  const std::string why = unmatched(suites, selection);
+  if (!why.empty()) fmt::print(stderr, "assay: {}", why);
+  return !why.empty();
 }
 
 }  // namespace
-
-std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter) {
-  std::vector<std::string> ids;
-  for (const Suite& suite : suites) {
-    for (const TestEntry& test : suite.tests) ids.push_back(test.id);
-  }
-  const auto matched = [&](const std::string& glob) {
-    std::vector<std::string> found;
-    for (const std::string& id : ids) {
-      if (matches(glob, id)) found.push_back(id);
-    }
-    return found;
-  };
-  if (!matched(filter).empty()) return "";
-  std::string text = fmt::format("--filter '{}' matches no test\n", filter);
-  std::vector<std::string> near = matched("*" + filter + "*");
-  if (near.empty() && !nearest(filter, ids).empty()) near = {nearest(filter, ids)};
-  text += "  it is held against the whole id, suite/name, where * and ? are wild; ";
-  text += near.empty() ? "ids here are:\n" : "near it:\n";
-  const std::vector<std::string>& shown = near.empty() ? ids : near;
-  constexpr std::size_t most = 5;
-  for (std::size_t i = 0; i < std::min(most, shown.size()); ++i) text += "    " + shown[i] + "\n";
-  if (shown.size() > most) {
-    text += fmt::format("    … {} more; `assay list tests` has all\n", shown.size() - most);
-  }
-  return text;
-}
 
 void report_run(reports::Record& record, const Output& output) {
   write_reports(record, output);
@@ -152,20 +133,38 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   std::vector<std::string> kept = files_read(suites);
   if (!options.ledger.empty()) kept.push_back(options.ledger);
   require_writable(output, kept);
-  if (selects_nothing(suites, options)) return nothing_ran;
+  if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
-  reports::Record record = run(suites, options, *progress);
+  std::string ledger_fault;
+  reports::Record record = run(suites, options, *progress, &ledger_fault);
   report_run(record, output);
+  if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);
   const int code = exit_code(record, output.inconclusive);
   return code == nothing_ran && options.shard_of_runner ? 0 : code;
 }
 
 int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet) {
-  if (selects_nothing(suites, options)) return nothing_ran;
+  if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(quiet);
   const PlannedRun planned = plan_run(suites, options, *progress);
-  fmt::print("{}", plan_text(planned, measure_costs(planned, options.threads, *progress)));
-  return plan_exit_code(planned);
+  const UnitCosts costs = measure_costs(planned, options.threads, *progress);
+  fmt::print("{}", plan_text(planned, costs));
+  return plan_exit_code(planned, costs);
+}
+
+int list_plugins() {
+  for (const Entry& entry : catalogue()) fmt::print("{}\n", entry.information.name);
+  return 0;
+}
+
+int list_tests(const std::vector<Suite>& suites, const Selection& selection) {
+  if (selects_nothing(suites, selection)) return nothing_ran;
+  for (const Suite& suite : suites) {
+    for (const TestEntry& test : suite.tests) {
+      if (selects(selection, test)) fmt::print("{}\n", test.id);
+    }
+  }
+  return 0;
 }
 
 int report_saved_run(const std::string& file, const Output& output) {

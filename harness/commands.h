@@ -33,7 +33,7 @@ using ReportWriter = std::function<std::string(const ReportRequest& request, boo
 /// or keeps (files_read.h): better known before the hours of sampling than after.
 void require_writable(const Output& output, const std::vector<std::string>& kept);
 /// Every report asked for, the console's in any case. Files first: what standard output shows has
-/// then been written.
+/// then been written. std::runtime_error at the end where some could not be; the others were.
 void write_reports(const Output& output, const ReportWriter& written);
 /// The same of a record. Maps are written beside the JSON report, which names them: the record then
 /// has these names.
@@ -42,14 +42,10 @@ void write_reports(reports::Record& record, const Output& output);
 /// Of a run: the reports, and what a job of GitHub Actions is told (github.h).
 void report_run(reports::Record& record, const Output& output);
 
-/// What is said of a filter that no test's id matches: what an id looks like and the nearest ones;
-/// "" when one does.
-std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter);
-
-/// Runs, writes the reports. 4 without a report when the filter matches no test.
+/// Runs, writes the reports. 4 without a report when no test is selected.
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
-/// Prints what a run of the suites would do; only pilots are drawn. 4 when the filter matches no
-/// test, 1 when a test cannot come out as expected by its plan.
+/// Prints what a run of the suites would do; only pilots are drawn. 4 when no test is
+/// selected, 1 when a test cannot come out as expected by its plan.
 int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
 int report_saved_run(const std::string& file, const Output& output);
 
@@ -70,7 +66,8 @@ struct SampleArguments {
 int sample(const SampleArguments&);
 
 int list_plugins();
-int list_tests(const std::vector<Suite>& suites);
+/// One id a line. 4 when no test is selected.
+int list_tests(const std::vector<Suite>& suites, const Selection& selection);
 int describe(const std::string& plugin);
 
 }  // namespace assay::harness

@@ -10,7 +10,7 @@ namespace assay::harness {
 std::string outside_of_range(const Subject& subject, const Summary& drawn) {
   // A mutant declares what its original does.
   const bool mutant = !subject.estimator->entry->information.original.empty();
-  if (mutant || subject.image || subject.setup->observations()) return "";
+  if (mutant || drawn.elements || subject.setup->observations()) return "";
   const std::vector<Channel> channels = subject.setup->channels();
   const auto finite = [](double end) { return std::isfinite(end) ? std::abs(end) : 0; };
   for (const std::size_t i : subject.channels) {

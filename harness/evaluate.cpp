@@ -28,10 +28,6 @@ void settle(TestOutcome& outcome, Verdict verdict, std::string message) {
   outcome.message = std::move(message);
 }
 
-const Summary& summary_of(const TestWork& work, std::size_t subject) {
-  return work.pools[subject]->prefix(work.outcome.secondaries());
-}
-
 /// A density whose integral exceeds 1 is none, whatever its samples do; nor is one that is negative
 /// somewhere.
 bool density_is_proper(TestOutcome& outcome) try {
@@ -50,15 +46,15 @@ bool density_is_proper(TestOutcome& outcome) try {
   return false;
 }
 
-ChannelOutcome channel_outcome(const TestWork& work, std::size_t channel,
+ChannelOutcome channel_outcome(const DrawnTest& test, std::size_t channel,
                                std::span<const ChannelData> data) {
-  const TestOutcome& outcome = work.outcome;
+  const TestOutcome& outcome = test.outcome;
   const Question& question = outcome.question;
   const Regions& regions = outcome.plan.regions[channel];
   std::optional<ImageOutcome> image;
   Evidence evidence;
   if (question.kind == QuestionKind::image) {
-    ImageEvidence found = evidence_of_images(question, image_test(work), data);
+    ImageEvidence found = evidence_of_images(question, image_test(test), data);
     evidence = std::move(found.evidence);
     image = std::move(found.outcome);
   } else {
@@ -113,25 +109,24 @@ std::string lack_of_numbers(const TestOutcome& outcome, std::size_t channel,
 }
 
 /// Of the channels whose variances a total is.
-std::string total_lost_to_rounding(const TestWork& work) {
-  const Question& question = work.outcome.question;
+std::string total_lost_to_rounding(const DrawnTest& test) {
+  const Question& question = test.outcome.question;
   std::string reason;
   if (question.kind != QuestionKind::total_variance) return reason;
   for (std::size_t i = 0; i < question.compared() && reason.empty(); ++i) {
     std::vector<stats::Moments> channels;
     for (const std::size_t channel : question.subjects[i].channels) {
-      channels.push_back(summary_of(work, i).moments(channel));
+      channels.push_back(test.samples[i].summary().moments(channel));
     }
     reason =
-        variances_lost_to_rounding(question.subjects[i], work.outcome.plan.primaries[i], channels);
+        variances_lost_to_rounding(question.subjects[i], test.outcome.plan.primaries[i], channels);
   }
   return reason;
 }
 
 /// Numbers and gates of every channel at the current look. Constant channels are judged by
 /// themselves: their verdicts are returned.
-std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
-  TestOutcome& outcome = work.outcome;
+std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const DrawnTest& test) {
   const Question& question = outcome.question;
   std::vector<ConstantVerdict> constants;
   const auto add = [&](std::size_t channel, ConstantVerdict constant) {
@@ -141,7 +136,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
     constants.push_back(std::move(constant));
   };
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
-    const std::vector<ChannelData> data = data_of(work, channel);
+    const std::vector<ChannelData> data = data_of(test, channel);
     if (question.of_means() && all_constant(question, channel, data)) {
       add(channel,
           judge_constant(question, channel, data, outcome.plan.regions[channel], outcome.share()));
@@ -153,7 +148,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
       continue;
     }
     std::string reason = lack_of_numbers(outcome, channel, data);
-    if (reason.empty()) reason = total_lost_to_rounding(work);
+    if (reason.empty()) reason = total_lost_to_rounding(test);
     if (!reason.empty()) {
       add(channel, {Verdict::invalid, reason});
       continue;
@@ -161,7 +156,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestWork& work) {
     for (reports::Gate& gate : data_gates(outcome, channel, data)) {
       outcome.gates.push_back(std::move(gate));
     }
-    outcome.channels.push_back(channel_outcome(work, channel, data));
+    outcome.channels.push_back(channel_outcome(test, channel, data));
     if (const auto& images = outcome.channels.back().image) {
       outcome.gates.push_back(own_skewness_gate(*images));
     }
@@ -227,29 +222,32 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
   }
 }
 
-void require_activation(TestWork& work) {
-  TestOutcome& outcome = work.outcome;
+void require_activation(TestOutcome& outcome, const DrawnTest& test) {
   // What is invalid by its plan draws little, and has its reason.
   if (outcome.question.test->expect != Expectation::fail || !outcome.plan.invalid.empty()) return;
-  for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
-    if (was_activated(outcome.question.subjects[subject], *work.pools[subject],
-                      outcome.secondaries())) {
+  for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
+    if (was_activated(outcome.question.subjects[subject], test.samples[subject].pool(),
+                      outcome.secondaries(subject))) {
       continue;
     }
     settle(outcome, Verdict::invalid,
            fmt::format("never activated: `{}` drew the same numbers as its original in all {} "
                        "observations",
-                       outcome.question.subjects[subject].estimator->name, outcome.secondaries()));
+                       outcome.question.subjects[subject].estimator->name,
+                       outcome.secondaries(subject)));
   }
 }
 
-void judge(TestWork& work) {
-  TestOutcome& outcome = work.outcome;
+/// Nothing of an earlier look.
+void clear_numbers(TestOutcome& outcome) {
   outcome.channels.clear();
   outcome.gates.clear();
   outcome.power.reset();
+}
+
+void judge(TestOutcome& outcome, const DrawnTest& test) {
   try {
-    conclude(outcome, evaluate_channels(work));
+    conclude(outcome, evaluate_channels(outcome, test));
   } catch (const std::domain_error& error) {
     // What stats cannot test: no spread where one is needed, too few cells.
     outcome.channels.clear();
@@ -260,11 +258,11 @@ void judge(TestWork& work) {
 }
 
 /// The observations of this look in equal runs of whole blocks.
-std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
+std::vector<Replicate> replicates_of(const DrawnTest& test, std::size_t subject,
                                      std::size_t channel) {
-  const std::uint64_t size = work.outcome.secondaries() / replicate_count;
+  const std::uint64_t size = test.outcome.secondaries(subject) / replicate_count;
   std::vector<Replicate> replicates(1);
-  for (const Pool::BlockSums& block : work.pools[subject]->blocks()) {
+  for (const BlockSums& block : test.samples[subject].blocks()) {
     if (replicates.back().count >= size) replicates.emplace_back();
     if (replicates.size() > replicate_count) break;
     replicates.back().count += block.count;
@@ -277,31 +275,44 @@ std::vector<Replicate> replicates_of(const TestWork& work, std::size_t subject,
 
 }  // namespace
 
-std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
+std::vector<Sample> TestWork::samples() const {
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < pools.size(); ++i) {
+    samples.push_back(pools[i]->sample(outcome.secondaries(i)));
+  }
+  return samples;
+}
+
+std::optional<DrawnTest> drawn(const TestWork& work) {
+  DrawnTest test{.outcome = work.outcome, .samples = {}};
+  for (const Sample& sample : work.samples()) {
+    if (sample.drawn() == nullptr) return std::nullopt;
+    test.samples.push_back(*sample.drawn());
+  }
+  return test;
+}
+
+std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
   std::vector<ChannelData> data;
-  for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
-    const std::size_t index = work.outcome.question.subjects[subject].channels[channel];
-    const Summary& summary = summary_of(work, subject);
-    const std::span<const double> values =
-        work.pools[subject]->values(index, work.outcome.secondaries());
-    data.push_back(
-        {.primaries = work.outcome.plan.primaries[subject],
-         .moments = as_tested(work.outcome.plan, subject, channel, values, summary.moments(index)),
-         .values = values,
-         .cells = summary.details(index).cells,
-         .with_cost = summary.details(index).with_cost,
-         .group_variances = summary.group_variances});
-    if (work.outcome.plan.method.keeps == Keeps::points) {
-      for (const std::size_t each : work.outcome.question.subjects[subject].channels) {
-        data.back().all_values.push_back(
-            work.pools[subject]->values(each, work.outcome.secondaries()));
-      }
+  const Plan& plan = test.outcome.plan;
+  for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
+    const Drawn& sample = test.samples[subject];
+    const std::vector<std::size_t>& channels = test.outcome.question.subjects[subject].channels;
+    const std::size_t index = channels[channel];
+    const Summary& summary = sample.summary();
+    const std::span<const double> values = sample.values(index);
+    data.push_back({.primaries = plan.primaries[subject],
+                    .moments = as_tested(plan, subject, channel, values, summary.moments(index)),
+                    .values = values,
+                    .cells = summary.details(index).cells,
+                    .with_cost = summary.details(index).with_cost,
+                    .group_variances = summary.group_variances});
+    if (plan.method.keeps == Keeps::points) {
+      for (const std::size_t each : channels) data.back().all_values.push_back(sample.values(each));
     }
-    if (work.outcome.plan.method.keeps == Keeps::images) {
-      data.back().images = images_of(work, subject);
-    }
-    if (work.outcome.plan.method.keeps == Keeps::blocks) {
-      data.back().replicates = replicates_of(work, subject, index);
+    if (plan.method.keeps == Keeps::images) data.back().images = images_of(test, subject);
+    if (plan.method.keeps == Keeps::blocks) {
+      data.back().replicates = replicates_of(test, subject, index);
     }
   }
   return data;
@@ -309,11 +320,11 @@ std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel) {
 
 namespace {
 
-/// Of a test whose numbers are all there.
-void take_sound_look(TestWork& work, bool may_go_on) {
+/// Judges a test whose numbers can all be used.
+void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   if (!density_is_proper(outcome)) return;
-  judge(work);
+  judge(outcome, test);
   const bool last = outcome.look + 1 == outcome.plan.looks.sizes.size();
   const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;
   if (may_go_on && !last && !settled && outcome.plan.invalid.empty()) {
@@ -321,15 +332,26 @@ void take_sound_look(TestWork& work, bool may_go_on) {
     return;
   }
   if (!work.verdict_only) {
-    note_sizes(work);
+    note_sizes(outcome, test);
     if (outcome.message.empty()) {
-      outcome.message = narrate(outcome) + means_where_it_differs(work) + first_contradiction(work);
+      outcome.message = narrate(outcome) + means_where_it_differs(test) + first_contradiction(test);
       if (outcome.verdict == Verdict::fail) {
         outcome.message += outcome.plan.hint + taken_as_exact(outcome.question);
       }
     }
   }
-  require_activation(work);
+  require_activation(outcome, test);
+}
+
+/// Why the look cannot be taken; "" where it was.
+std::string take_drawn_look(TestWork& work, bool may_go_on) {
+  if (!work.outcome.plan.error.empty()) return work.outcome.plan.error;
+  const std::optional<DrawnTest> test = drawn(work);
+  if (!test) return where_it_stopped(work);
+  if (std::string why = unusable(*test); !why.empty()) return why;
+  if (!work.outcome.plan.pilot_error.empty()) return work.outcome.plan.pilot_error;
+  take_sound_look(work, *test, may_go_on);
+  return "";
 }
 
 }  // namespace
@@ -337,20 +359,22 @@ void take_sound_look(TestWork& work, bool may_go_on) {
 void take_look(TestWork& work, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   outcome.decided = true;
-  if (std::string why = undrawable(work); !why.empty()) {
-    settle(outcome, Verdict::error, std::move(why));
-    return;
-  }
+  clear_numbers(outcome);
+  std::string why;
   try {
-    take_sound_look(work, may_go_on);
+    why = take_drawn_look(work, may_go_on);
   } catch (const NoDensity& failure) {
-    outcome.channels.clear();
-    settle(outcome, Verdict::error, lack_of_density(outcome.question, failure));
+    why = lack_of_density(outcome.question, failure);
   } catch (const std::domain_error& error) {
     // A defect of the program's own: what it says of this test is lost, and of no other.
-    outcome.channels.clear();
-    settle(outcome, Verdict::error, fmt::format("internal error: {}", error.what()));
+    why = fmt::format("internal error: {}", error.what());
+  } catch (...) {
+    // Judging asks some sources again: for densities, and for a mutant's original.
+    why = words_of(std::current_exception());
   }
+  if (why.empty()) return;
+  clear_numbers(outcome);
+  settle(outcome, Verdict::error, std::move(why));
 }
 
 }  // namespace assay::harness

@@ -3,6 +3,7 @@
 // From drawn observations to the numbers and the verdict of a test.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "harness/outcome.h"
@@ -17,7 +18,19 @@ struct TestWork {
   std::vector<std::shared_ptr<Pool>> pools = {};
   /// Whether the verdict is all that is wanted: no interval of the effect, no power, no sentence.
   bool verdict_only = false;
+
+  /// What each subject yields for the current look, once it is drawn.
+  std::vector<Sample> samples() const;
 };
+
+/// A test at its current look, for which every subject yielded its observations.
+struct DrawnTest {
+  const TestOutcome& outcome;
+  std::vector<Drawn> samples;  ///< one of each subject
+};
+
+/// The test where every subject yielded its observations; nullopt where one has a fault.
+std::optional<DrawnTest> drawn(const TestWork& work);
 
 /// Numbers, gates and the verdict on the test's fixed share at the current look, once its
 /// observations are drawn; `decided` is set where no further look can or need change it, or none
@@ -25,6 +38,6 @@ struct TestWork {
 void take_look(TestWork& work, bool may_go_on = true);
 
 /// The data a channel of the test is judged by.
-std::vector<ChannelData> data_of(const TestWork& work, std::size_t channel);
+std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel);
 
 }  // namespace assay::harness

@@ -138,7 +138,7 @@ double efficiency_spread(const Question& question, std::size_t subject, std::siz
   if (!side.truth) return known.spread;
   const stats::Moments& x = side.sample.x;
   const double error = side.truth->standard_error;
-  const double bias = x.mean - side.truth->value;
+  const double bias = x.mean_less(side.truth->value);
   const double squared = x.m2 / known.count + bias * bias;
   const double of_truth = error * std::sqrt(4 * bias * bias + 2 * error * error) / squared;
   return known.spread + known.count * of_truth * of_truth;

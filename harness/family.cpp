@@ -27,6 +27,13 @@ std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>&
     if (inside) inside_weight += question.test->weight;
     if (!inside) ++outside;
   }
+  for (const TestEntry& test : suite.tests) {
+    const auto asks = [&](const Question& question) { return question.test == &test; };
+    if (std::ranges::any_of(questions, asks)) continue;
+    all_weight += test.weight;
+    if (test.expect == Expectation::pass) inside_weight += test.weight;
+    if (test.expect != Expectation::pass) ++outside;
+  }
   const double total = inside_weight > 0 ? inside_weight : all_weight;
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < all.size(); ++i) {

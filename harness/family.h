@@ -16,10 +16,10 @@ struct FamilyPlace {
   ErrorShare share = {};  ///< of one channel: alpha * weight inside, the smallest such outside
 };
 
-/// Places of all tests of a suite, in order, from the numbers of channels they claim. Inside the
-/// family alpha is split by weight, then evenly over a claim's channels; a test outside has the
+/// Places of the questions of a suite, in order, from the numbers of channels they claim. Inside
+/// the family alpha is split by weight, then evenly over a claim's channels; a test outside has the
 /// smallest share in the suite and beta over the number of tests outside. A suite of mutants only
-/// shares out alpha among them.
+/// shares out alpha among them. A test that no question could be made of keeps its part.
 std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>& questions);
 
 }  // namespace assay::harness

@@ -71,24 +71,25 @@ reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutco
                    outcome.question.factor);
 }
 
-void note_sizes(TestWork& work) {
-  TestOutcome& outcome = work.outcome;
+void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
   for (ChannelOutcome& channel : outcome.channels) {
     channel.effect = effect_of(outcome, channel);
     if (channel.image) {
       channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
       continue;
     }
-    const std::vector<ChannelData> data = data_of(work, channel.index);
+    const std::vector<ChannelData> data = data_of(test, channel.index);
     PlannedChannel observed =
         observed_channel(outcome.question, channel.regions, channel.index, data);
     if (outcome.plan.method.name == "batch-means") {
       // The deviations of independent values whose means are as uncertain.
-      const double root = std::sqrt(static_cast<double>(outcome.secondaries()));
-      observed.standard_deviation = root * data[0].moments.standard_error();
+      const auto deviation = [&](std::size_t subject) {
+        return std::sqrt(static_cast<double>(outcome.secondaries(subject))) *
+               data[subject].moments.standard_error();
+      };
+      observed.standard_deviation = deviation(0);
       if (outcome.question.of_two()) {
-        observed.other_deviation =
-            std::abs(outcome.question.factor) * root * data[1].moments.standard_error();
+        observed.other_deviation = std::abs(outcome.question.factor) * deviation(1);
       }
     }
     channel.detectable =

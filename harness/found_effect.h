@@ -16,6 +16,6 @@ reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutco
 
 /// Of a decided test: the effect and the least detectable one of every channel, and the least power
 /// over them, at `detect` or, of `within`, of showing a theta of 0.
-void note_sizes(TestWork& work);
+void note_sizes(TestOutcome& outcome, const DrawnTest& test);
 
 }  // namespace assay::harness

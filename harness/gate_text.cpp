@@ -1,9 +1,11 @@
 #include "harness/gate_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "harness/rows.h"
 #include "reports/number.h"
@@ -19,12 +21,8 @@ struct Meaning {
 
 constexpr Meaning meanings[] = {
     {"count",
-     "{0} rows are too few to show their own shape: this test at its level takes {1}; with "
-     "`test: t` the rows are taken to be near normal"},
-    {"rows that show their independence",
-     "{0} rows are too few for their order to show that they are independent: that takes {1}"},
-    {"skewness of the mean",
-     "the rows are too skewed for how few they are: the skewness of their mean is {0}, limit {1}"},
+     "{0} rows are too few to show how skewed they are: at this level it takes {1}; give more"},
+    {"skewness of the mean", "the rows are too few for how skewed they are"},
     {"level factor by skewness",
      "the observations are so skewed that one tail of the test is off by a factor of {0}, limit "
      "{1}"},
@@ -75,6 +73,11 @@ bool is_red(const reports::Gate& gate, std::string_view name) {
   return gate.state == "red" && gate.name.starts_with(name);
 }
 
+/// A claim that does not rest on moments.
+std::string median_of(const Question& question) {
+  return fmt::format("quantile({}, 0.5) == …", to_string(question.test->claim.left.source));
+}
+
 /// By how much more observations the gate would be green.
 double wanted(const reports::Gate& gate) {
   if (!gate.value || !gate.limit) return 1;
@@ -89,14 +92,20 @@ double wanted(const reports::Gate& gate) {
 }  // namespace
 
 std::string red_gates(const std::vector<reports::Gate>& gates) {
-  std::string text;
-  // Too few rows say nothing more of themselves.
-  const bool few = std::any_of(gates.begin(), gates.end(),
-                               [](const reports::Gate& gate) { return is_red(gate, "count"); });
-  for (const reports::Gate& gate : gates) {
-    if (few && !is_red(gate, "count")) continue;
-    if (gate.state == "red") text += (text.empty() ? "" : "; ") + sentence(gate);
+  // Nothing else is worth saying of too few rows.
+  for (const char* name : {"count", "skewness of the mean"}) {
+    for (const reports::Gate& gate : gates) {
+      if (is_red(gate, name)) return sentence(gate);
+    }
   }
+  std::string text;
+  constexpr int most = 4;
+  int red = 0;
+  for (const reports::Gate& gate : gates) {
+    if (gate.state != "red" || ++red > most) continue;
+    text += (text.empty() ? "" : "; ") + sentence(gate);
+  }
+  if (red > most) text += fmt::format("; and so on, {} in all", red);
   return text;
 }
 
@@ -112,12 +121,26 @@ std::string in_words(const std::exception& error) {
   return "there is no test of these numbers: " + text.substr(colon + 2);
 }
 
+std::string sizes_text(const TestOutcome& outcome, double factor) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < outcome.question.compared(); ++i) {
+    texts.push_back(reports::human(factor * static_cast<double>(outcome.secondaries(i)), 2));
+  }
+  if (std::ranges::adjacent_find(texts, std::ranges::not_equal_to()) == texts.end()) {
+    return texts.front();
+  }
+  return fmt::format("{}", fmt::join(texts, " and "));
+}
+
 std::string what_would_help(const TestOutcome& outcome) {
   bool says_it_all = true;
   bool heavy = false;
   double factor = 1;
   for (const reports::Gate& gate : outcome.gates) {
-    if (is_red(gate, "count")) return "";
+    if (is_red(gate, "count")) {
+      return ", or, if they are near normal, add " +
+             written_key(*outcome.question.test, "test", "t");
+    }
     if (gate.state != "red") continue;
     says_it_all = says_it_all && (gate.name == "rounding" || gate.name == "p of a power law");
     heavy = heavy || is_red(gate, "excess kurtosis") || is_red(gate, "largest deviation");
@@ -129,15 +152,13 @@ std::string what_would_help(const TestOutcome& outcome) {
   if (heavy) {
     return fmt::format(
         "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim "
-        "something of "
-        "their distribution, such as a quantile",
-        rows ? "" : "clamp the estimator or take another, declare its range, or ");
+        "a quantile, as `{}`",
+        rows ? "" : "clamp the estimator or take another, declare its range, or ",
+        median_of(outcome.question));
   }
   const std::string more =
-      factor > 1 && std::isfinite(factor)
-          ? "about " + reports::human(factor * static_cast<double>(outcome.secondaries()), 2)
-          : "more";
-  if (rows) return fmt::format("; {} rows would help, or rows that each average several", more);
+      factor > 1 && std::isfinite(factor) ? "about " + sizes_text(outcome, factor) : "more";
+  if (rows) return fmt::format(": give {} rows, or rows that each average several", more);
   return fmt::format("; {} `secondaries` would help, or a larger `primaries`", more);
 }
 

@@ -181,7 +181,7 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
     const Constant expected{value_[i], error_.empty() ? 0 : error_[i]};
     const bool differs = std::abs(constant - expected.value) > channels[i].rounding;
     if (differs) {
-      const Missing missing{constant, channels[i].low, channels[i].high, pair.replicates()};
+      const Missing missing{constant, channels[i].low, channels[i].high, first_.images.size()};
       unseen_.push_back({i, missing.sign(expected), missing.log_p(expected)});
     }
     if (span.low < span.high) replacements.push_back({i, constant});

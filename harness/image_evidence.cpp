@@ -50,11 +50,10 @@ Stream signs_of(const ImageTest& test, std::size_t images) {
 
 /// The sum of squares of correlated elements.
 template <class Real>
-void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test,
+void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test, std::size_t images,
                         ImageOutcome& outcome) {
   // A reference's error does not flip with the replicates: cells alone are left.
   if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return;
-  const std::size_t images = varying.first().images.size();
   const std::optional<FlipSize> size = flip_size(test.share, images);
   if (!size) return;
   outcome.by_sign_flips = add_flipped_energy(
@@ -63,7 +62,7 @@ void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test,
 }
 
 template <class Real>
-void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test,
+void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test, std::size_t images,
                     ImageOutcome& outcome) {
   outcome.z.resize(varying.first().extent.elements());
   const stats::PyramidOptions options{
@@ -75,7 +74,7 @@ void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test,
       .for_each = on_all_threads};
   outcome.family = varying.in_sums(
       [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
-  if (!test.independent && test.symmetric) add_flipped_energy(varying, test, outcome);
+  if (!test.independent && test.symmetric) add_flipped_energy(varying, test, images, outcome);
 }
 
 stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageExtent& extent) {
@@ -185,12 +184,12 @@ void require_spread(const Question& question, bool any, const stats::ImageDistan
 /// What ImageOutcome::level_factor says.
 template <class Real>
 double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
-  const auto replicates = static_cast<double>(pair.replicates());
-  std::vector<stats::CellPilot> sides{
-      {.stack = pair.first(), .factor = 1, .replicates = replicates}};
-  if (pair.of_two()) {
-    sides.push_back({.stack = pair.second(), .factor = -1, .replicates = replicates});
-  }
+  const auto side = [](const stats::ImageStack<Real>& stack, double factor) -> stats::CellPilot {
+    return {
+        .stack = stack, .factor = factor, .replicates = static_cast<double>(stack.images.size())};
+  };
+  std::vector<stats::CellPilot> sides{side(pair.first(), 1)};
+  if (pair.of_two()) sides.push_back(side(pair.second(), -1));
   const std::vector<stats::CellTails> tails =
       stats::cell_tails(sides, test.share.alpha, stats::WeightsFrom::pilot, on_all_threads);
   double largest = 1;
@@ -208,7 +207,7 @@ double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
 template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                              const ImagePair<Real>& pair, ImageOutcome& outcome) {
-  stats::check::replicates("image", pair.replicates());
+  stats::check::replicates("image", pair.fewest_replicates());
   const bool relative = is_relative(question, 0);
   const auto errors =
       test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown;
@@ -216,10 +215,10 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   const VaryingPart varying(question, pair, test.weights);
   require_spread(question, varying.any(), distance);
   outcome.unseen = varying.unseen();
-  outcome.replicates = pair.replicates();
+  outcome.replicates = pair.most_replicates();
   outcome.smallest_cell = test.smallest_cell;
   outcome.symmetric = test.symmetric;
-  look_at_family(varying, test, outcome);
+  look_at_family(varying, test, pair.fewest_replicates(), outcome);
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(pair.extent(), outcome);
   outcome.uniform_error = uniform_error(pair, relative);

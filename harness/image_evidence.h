@@ -31,7 +31,7 @@ struct ImageOutcome {
   stats::ImageFamily family = {};
   std::vector<UnseenElement> unseen = {};
   std::vector<double> z = {};  ///< of every element: Welch's, or of the bound on what was unseen
-  std::size_t replicates = 0;
+  std::size_t replicates = 0;  ///< the most of a side
   std::uint32_t smallest_cell = 1;
   bool symmetric = true;       ///< else the sum of squares took no part, without a pilot's weights
   bool by_sign_flips = false;  ///< whether the sum of squares was judged so

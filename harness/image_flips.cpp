@@ -19,11 +19,11 @@ constexpr std::uint64_t enough_flips = 100;
 
 using Images = std::vector<std::vector<double>>;
 
-/// Means of the images r, r + count, r + 2 count, …: as good as the images themselves for flipping
-/// signs, and there are at most `count` of them.
+/// Means of the images r, r + groups, r + 2 groups, …: as good as the images themselves for
+/// flipping signs.
 template <class Real>
-Images grouped(const stats::ImageStack<Real>& stack, stats::ElementRange range) {
-  const std::size_t groups = std::min(most_flipped, stack.images.size());
+Images grouped(const stats::ImageStack<Real>& stack, stats::ElementRange range,
+               std::size_t groups) {
   Images means(groups, std::vector<double>(range.size()));
   on_all_threads(groups, [&](std::size_t g) {
     const std::size_t members = (stack.images.size() - g + groups - 1) / groups;
@@ -70,15 +70,18 @@ std::optional<FlipSize> flip_size(const ErrorShare& share, std::size_t images) {
 
 template <class Real>
 void GroupedFlips<Real>::take(const stats::ImagePair<Real>& pair, stats::RowRange rows) {
-  const std::size_t second = pair.b != nullptr ? pair.b->images.size() : 0;
-  is_grouped_ = std::max(pair.a.images.size(), second) > most_flipped;
+  const std::size_t first_count = pair.a.images.size();
+  const std::size_t second_count = pair.b != nullptr ? pair.b->images.size() : first_count;
+  // Each of one side goes with one of the other.
+  const std::size_t groups = std::min({most_flipped, first_count, second_count});
+  is_grouped_ = std::max(first_count, second_count) > groups;
   if (!is_grouped_) {
     single_.take(pair, rows, on_all_threads);
     return;
   }
   const stats::ElementRange range = rows.elements(pair.a.extent);
-  const Images first = grouped(pair.a, range);
-  const Images other = pair.b != nullptr ? grouped(*pair.b, range) : Images();
+  const Images first = grouped(pair.a, range, groups);
+  const Images other = pair.b != nullptr ? grouped(*pair.b, range, groups) : Images();
   const stats::ImageStack<double> a = stack_of(pair.a.extent, first, range);
   const stats::ImageStack<double> b = stack_of(pair.a.extent, other, range);
   grouped_.take({a, pair.b != nullptr ? &b : nullptr, pair.reference}, rows, on_all_threads);

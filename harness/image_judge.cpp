@@ -23,10 +23,10 @@ std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const I
   return elements;
 }
 
-double mean_over(const TestWork& work, std::size_t subject,
+double mean_over(const DrawnTest& test, std::size_t subject,
                  const std::vector<std::size_t>& elements) {
-  const Summary& summary = work.pools[subject]->prefix(work.outcome.secondaries());
-  const std::vector<std::size_t>& channels = work.outcome.question.subjects[subject].channels;
+  const Summary& summary = test.samples[subject].summary();
+  const std::vector<std::size_t>& channels = test.outcome.question.subjects[subject].channels;
   double sum = 0;
   for (const std::size_t i : elements) sum += summary.moments(channels[i]).mean;
   return sum / static_cast<double>(elements.size());
@@ -40,8 +40,8 @@ double reference_over(const Question& question, const std::vector<std::size_t>& 
 
 }  // namespace
 
-ImageTest image_test(const TestWork& work) {
-  const TestOutcome& outcome = work.outcome;
+ImageTest image_test(const DrawnTest& test) {
+  const TestOutcome& outcome = test.outcome;
   const std::vector<Subject>& subjects = outcome.question.subjects;
   return {.share = outcome.share(),
           .smallest_cell = outcome.plan.smallest_cell,
@@ -49,13 +49,12 @@ ImageTest image_test(const TestWork& work) {
           .symmetric = outcome.plan.symmetric,
           .independent = std::all_of(subjects.begin(), subjects.end(),
                                      [](const Subject& s) { return s.image->independent; }),
-          .flips = work.pools[0]->key(),
+          .flips = test.samples[0].pool().key(),
           .look = outcome.plan.look.get()};
 }
 
-ImageViews images_of(const TestWork& work, std::size_t subject) {
-  return {work.pools[subject]->observations(work.outcome.secondaries()),
-          work.outcome.question.subjects[subject].channels};
+ImageViews images_of(const DrawnTest& test, std::size_t subject) {
+  return {test.samples[subject].observations(), test.outcome.question.subjects[subject].channels};
 }
 
 reports::Gate own_skewness_gate(const ImageOutcome& images) {
@@ -68,16 +67,16 @@ reports::Gate own_skewness_gate(const ImageOutcome& images) {
           .state = factor <= limit ? "green" : "red"};
 }
 
-std::string means_where_it_differs(const TestWork& work) {
-  const TestOutcome& outcome = work.outcome;
+std::string means_where_it_differs(const DrawnTest& test) {
+  const TestOutcome& outcome = test.outcome;
   const Question& question = outcome.question;
   if (outcome.verdict != reports::Verdict::fail || !outcome.channels[0].image) return "";
   const stats::ImageFinding& winner = outcome.channels[0].image->family.winner;
   if (winner.statistic != stats::ImageStatistic::window || winner.window.width == 0) return "";
   const std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
-  const double mean = mean_over(work, 0, elements);
+  const double mean = mean_over(test, 0, elements);
   const double other = question.of_two()
-                           ? question.factor * mean_over(work, 1, elements) + question.offset
+                           ? question.factor * mean_over(test, 1, elements) + question.offset
                            : reference_over(question, elements);
   const std::string part =
       other == 0 ? "" : fmt::format(", {:+.3g} %", 100 * (mean - other) / std::abs(other));

@@ -2,6 +2,7 @@
 
 // The two sides of a claim on images as stats takes them.
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,7 +26,13 @@ class ImagePair {
 
   const stats::ImageExtent& extent() const { return extent_; }
   bool of_two() const { return second_.has_value(); }
-  std::size_t replicates() const { return first_.images.size(); }
+  /// The fewest replicates of a side, and the most.
+  std::size_t fewest_replicates() const {
+    return std::min(first_.images.size(), (second_ ? *second_ : first_).images.size());
+  }
+  std::size_t most_replicates() const {
+    return std::max(first_.images.size(), (second_ ? *second_ : first_).images.size());
+  }
   const stats::ImageStack<Real>& first() const { return first_; }
   const stats::ImageStack<Real>& second() const { return *second_; }
   stats::ImageReference reference() const { return {extent_, value_, error_}; }

@@ -9,6 +9,7 @@
 #include "harness/difference_skewness.h"
 #include "harness/frozen.h"
 #include "harness/image_views.h"
+#include "harness/intended_size.h"
 #include "harness/parallel.h"
 #include "harness/repeated_images.h"
 #include "harness/rows.h"
@@ -50,21 +51,25 @@ bool all_piloted(const Question& question, const Pilots& pilots) {
 
 // ---- Skewness
 
-/// Mean over the elements that vary of |skewness of one replicate's difference|.
-double mean_skewness(const Question& question, const Plan& plan, const Pilots& pilots) {
+/// Mean over the elements that vary of |skewness of one replicate's difference|, of a side with
+/// more replicates than the other that of the mean of so many more.
+double mean_skewness(const Question& question, const Plan& plan, const Pilots& pilots,
+                     std::uint64_t look) {
   if (plan.look) return plan.look->skewness;
   const std::size_t elements = question.subjects[0].channels.size();
   std::vector<const Pilot*> pilot;
+  std::vector<double> in_one;
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
     pilot.push_back(&pilot_at(question, s, pilots));
+    in_one.push_back(averaged(question, plan, s) * times_the_fewest(question, s, look));
   }
   double sum = 0;
   double varying = 0;
   for (std::size_t i = 0; i < elements; ++i) {
     std::vector<SkewedSide> sides;
     for (std::size_t s = 0; s < question.subjects.size(); ++s) {
-      sides.push_back({pilot[s]->moments(question.subjects[s].channels[i]),
-                       averaged(question, plan, s), factor_of(question, s)});
+      sides.push_back(
+          {pilot[s]->moments(question.subjects[s].channels[i]), in_one[s], factor_of(question, s)});
     }
     const std::optional<double> skewness = difference_skewness(sides);
     sum += skewness.value_or(0);
@@ -75,8 +80,9 @@ double mean_skewness(const Question& question, const Plan& plan, const Pilots& p
 
 /// Weights of a pilot keep the mean of every sum at zero, and which cells take part answers their
 /// skewness. Halves that weigh each other see too little of skewed pixels for either.
-void judge_skewness(const Question& question, const Pilots& pilots, Plan& plan) {
-  const double skewness = mean_skewness(question, plan, pilots);
+void judge_skewness(const Question& question, const Pilots& pilots, std::uint64_t look,
+                    Plan& plan) {
+  const double skewness = mean_skewness(question, plan, pilots, look);
   const bool too_skewed = skewness > most_skewed;
   const bool answered = !plan.method.frozen.weights.empty();
   plan.gates.push_back({.name = "skewness of an image's pixels, pilot",
@@ -198,9 +204,10 @@ class PilotSides {
   PilotSides(const PilotSides&) = delete;  // spans point inside
   PilotSides& operator=(const PilotSides&) = delete;
 
-  void set_replicates(std::uint64_t replicates) {
+  void set_replicates(const Question& question, std::uint64_t look) {
     for (std::size_t s = 0; s < sides_.size(); ++s) {
-      sides_[s].replicates = static_cast<double>(replicates) * averaged_[s];
+      sides_[s].replicates =
+          static_cast<double>(question.subjects[s].secondaries(look)) * averaged_[s];
     }
   }
   std::span<const stats::CellPilot> sides() const { return sides_; }
@@ -235,7 +242,7 @@ std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, c
                                                        : stats::WeightsFrom::pilot;
   PilotSides pilot(question, plan, pilots);
   for (std::uint64_t count = replicates.first;; count *= 2) {
-    pilot.set_replicates(count);
+    pilot.set_replicates(question, count);
     const std::vector<stats::CellTails> tails =
         stats::cell_tails(pilot.sides(), level, from, on_all_threads);
     const bool shows = !plans_replicates(question) ||
@@ -314,7 +321,7 @@ std::uint64_t choose_for_image(const Question& question, const FamilyPlace& plac
   const std::uint64_t size = usual_replicates(question, most);
   freeze(question, pilots, plan);
   note_repeated_images(question, pilots, plan);
-  judge_skewness(question, pilots, plan);
+  judge_skewness(question, pilots, largest_look(question, most), plan);
   const bool in_looks = plans_replicates(question) && !question.test->secondaries;
   const std::uint64_t largest = in_looks ? std::min(most, most_first_look) : size;
   const std::uint64_t first =
@@ -349,8 +356,8 @@ std::optional<std::uint64_t> image_secondaries(const Question& question, const E
 }
 
 std::string too_few_replicates(const Question& question, const Plan& plan) {
-  const std::uint64_t most = plan.most_secondaries();
-  if (question.kind != QuestionKind::image || most >= stats::least_replicates) return "";
+  const std::uint64_t fewest = fewest_secondaries(question, plan.most_secondaries());
+  if (question.kind != QuestionKind::image || fewest >= stats::least_replicates) return "";
   const std::string mend =
       question.test->budget
           ? "give a larger `budget`, of which every pixel and component takes its `primaries`, or "
@@ -360,7 +367,7 @@ std::string too_few_replicates(const Question& question, const Plan& plan) {
   return fmt::format(
       "{} images are too few: each pixel's variance comes from them alone, and it takes {} of them "
       "to tell any pixel among {} from its reference; {}",
-      most, stats::least_replicates, question.subjects[0].channels.size(), mend);
+      fewest, stats::least_replicates, question.subjects[0].channels.size(), mend);
 }
 
 }  // namespace assay::harness

@@ -122,9 +122,9 @@ reports::Map adjusted_map(const ImageShape& shape, const std::vector<double>& z,
 }
 
 /// Mean and variance of one source's elements.
-void add_moments(const TestWork& work, std::size_t subject, reports::Test& test) {
-  const Subject& side = work.outcome.question.subjects[subject];
-  const Summary& summary = work.pools[subject]->prefix(work.outcome.secondaries());
+void add_moments(const DrawnTest& drawn, std::size_t subject, reports::Test& test) {
+  const Subject& side = drawn.outcome.question.subjects[subject];
+  const Summary& summary = drawn.samples[subject].summary();
   const auto moments = [&](std::size_t i) { return summary.moments(side.channels[i]); };
   const char* const mean_names[] = {"mean", "other_mean"};
   const char* const variance_names[] = {"variance", "other_variance"};
@@ -136,14 +136,14 @@ void add_moments(const TestWork& work, std::size_t subject, reports::Test& test)
   test.maps.back().source = side.estimator->listed;
 }
 
-void add_maps(const TestWork& work, const ImageOutcome& outcome, reports::Test& test) {
-  const Question& question = work.outcome.question;
+void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test& test) {
+  const Question& question = drawn.outcome.question;
   const ImageShape& shape = *question.subjects[0].image;
   const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
   test.maps.push_back(map_of("z", shape, [&](std::size_t i) { return outcome.z[i]; }));
   test.maps.push_back(adjusted_map(shape, outcome.z, tested));
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
-    add_moments(work, subject, test);
+    add_moments(drawn, subject, test);
   }
   if (question.of_two()) return;
   test.maps.push_back(map_of("reference", shape, [&](std::size_t i) {
@@ -196,17 +196,16 @@ Extremes extremes_of(const Summary& summary, const std::vector<std::size_t>& cha
 
 }  // namespace
 
-reports::Sample image_sample(const TestWork& work, std::size_t subject) {
-  const TestOutcome& outcome = work.outcome;
+reports::Sample image_sample(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn) {
   const Subject& side = outcome.question.subjects[subject];
-  const Summary& summary = work.pools[subject]->prefix(outcome.secondaries());
+  const Summary& summary = drawn.summary();
   reports::Sample sample{.estimator = side.estimator->listed,
                          .plugin = side.estimator->entry->information.name,
                          .parameters = side.estimator->parameters,
                          .channel = image_name(*side.image),
-                         .stream = stream_text(*work.pools[subject]),
+                         .stream = stream_text(drawn.pool()),
                          .primaries = outcome.plan.primaries[subject],
-                         .secondaries = outcome.secondaries()};
+                         .secondaries = outcome.secondaries(subject)};
   const Extremes extremes = extremes_of(summary, side.channels);
   sample.nonfinite = extremes.nonfinite;
   sample.nonzero = extremes.nonzero;
@@ -228,12 +227,12 @@ reports::Sample image_sample(const TestWork& work, std::size_t subject) {
   return sample;
 }
 
-void add_image(const TestWork& work, reports::Test& test) {
-  const TestOutcome& outcome = work.outcome;
+void add_image(const DrawnTest& drawn, reports::Test& test) {
+  const TestOutcome& outcome = drawn.outcome;
   if (outcome.channels.empty() || !outcome.channels[0].image) return;
   const ImageOutcome& found = *outcome.channels[0].image;
   test.image = image_of(found, *outcome.question.subjects[0].image);
-  add_maps(work, found, test);
+  add_maps(drawn, found, test);
 }
 
 namespace {

@@ -9,10 +9,10 @@
 namespace assay::harness {
 
 /// One source of an image: moments over all its elements' means; counts over all elements.
-reports::Sample image_sample(const TestWork& work, std::size_t subject);
+reports::Sample image_sample(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn);
 
 /// Fills in what the test found in its images, and the maps; nothing where it could not be tested.
-void add_image(const TestWork& work, reports::Test& test);
+void add_image(const DrawnTest& drawn, reports::Test& test);
 
 struct ImagePicture {
   double averaged = 1;  ///< primaries that an observation averages

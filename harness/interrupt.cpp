@@ -37,6 +37,8 @@ void watch_interrupts() {
   // must not outlive it.
   watch(SIGTERM);
   if (!is_ignored(SIGHUP)) watch(SIGHUP);
+  // A file beyond its limit is an error of the write, as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool interrupted() { return asked.load(); }

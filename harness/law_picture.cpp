@@ -60,14 +60,14 @@ bool is_drawn(const TestOutcome& outcome) {
 
 }  // namespace
 
-std::vector<reports::EmpiricalLaw> empirical_laws(const TestWork& work, std::size_t channel) {
+std::vector<reports::EmpiricalLaw> empirical_laws(const DrawnTest& test, std::size_t channel) {
   std::vector<reports::EmpiricalLaw> laws;
-  const Question& question = work.outcome.question;
-  if (!is_drawn(work.outcome)) return laws;
+  const Question& question = test.outcome.question;
+  if (!is_drawn(test.outcome)) return laws;
   std::optional<DeclaredLaw> law;
   if (!question.of_two()) law = declared_law(question, channel);
-  const double confidence = 1 - work.outcome.share().alpha;
-  const std::vector<ChannelData> data = data_of(work, channel);
+  const double confidence = 1 - test.outcome.share().alpha;
+  const std::vector<ChannelData> data = data_of(test, channel);
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
     laws.push_back(empirical_law(points_of(question, subject, channel, data[subject].values),
                                  confidence, law));

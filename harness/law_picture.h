@@ -14,6 +14,6 @@ namespace assay::harness {
 /// distribution function at 63 places at most, equally spaced in rank, with the claimed law there.
 /// The band's error is the channel's share of alpha at the look. Draws without a point are left
 /// out. Empty for all other claims.
-std::vector<reports::EmpiricalLaw> empirical_laws(const TestWork& work, std::size_t channel);
+std::vector<reports::EmpiricalLaw> empirical_laws(const DrawnTest& test, std::size_t channel);
 
 }  // namespace assay::harness

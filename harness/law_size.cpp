@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "harness/claim_size.h"
+#include "harness/intended_size.h"
 #include "harness/sampler_setup.h"
 #include "stats/chi_square_fit.h"
 #include "stats/power.h"
@@ -16,8 +17,12 @@ stats::ErrorRates rates_of(const ErrorShare& share) {
   return {.alpha = share.alpha, .beta = share.beta, .two_sided = false};
 }
 
-stats::DistancePlan distance_plan(const Question& question, const ErrorShare& share, double allow) {
-  return {.two_samples = question.of_two(), .allow = allow, .rates = rates_of(share)};
+stats::DistancePlan distance_plan(const Question& question, const ErrorShare& share, double allow,
+                                  double allocation = 1) {
+  return {.two_samples = question.of_two(),
+          .allocation = allocation,
+          .allow = allow,
+          .rates = rates_of(share)};
 }
 
 /// Whether counts in cells are tested; a plan that froze none is invalid.
@@ -66,7 +71,8 @@ std::optional<std::uint64_t> fit_secondaries(const Question& question, const Err
 std::uint64_t sides(const Question& question) { return question.of_two() ? 2 : 1; }
 
 double worth(const Question& question, const TestSize& size) {
-  return static_cast<double>(size.secondaries) / static_cast<double>(sides(question));
+  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
+  return question.of_two() ? sizes.x / (1 + sizes.x / sizes.y) : sizes.x;
 }
 
 /// The largest share of an atom over the channels.
@@ -105,8 +111,9 @@ double detectable_between_laws(const Question& question, const TestSize& size, c
     return stats::chi_square_fit_detectable(fit_plan(question, plan, size.share, observations),
                                             observations);
   }
-  return stats::ks_detectable(distance_plan(question, size.share, plan.regions[0].allow),
-                              static_cast<double>(size.secondaries));
+  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
+  return stats::ks_detectable(
+      distance_plan(question, size.share, plan.regions[0].allow, sizes.y / sizes.x), sizes.x);
 }
 
 double power_between_laws(const Question& question, const TestSize& size, const Plan& plan,
@@ -116,8 +123,10 @@ double power_between_laws(const Question& question, const TestSize& size, const 
     return stats::chi_square_fit_power(fit_plan(question, plan, size.share, observations),
                                        observations, effect);
   }
-  return stats::ks_power_bound(distance_plan(question, size.share, plan.regions[0].allow),
-                               static_cast<double>(size.secondaries), effect);
+  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
+  return stats::ks_power_bound(
+      distance_plan(question, size.share, plan.regions[0].allow, sizes.y / sizes.x), sizes.x,
+      effect);
 }
 
 }  // namespace assay::harness

@@ -6,14 +6,23 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <cstdio>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
+#include <utility>
 
+#include "harness/interrupt.h"
 #include "reports/file.h"
 
 namespace assay::harness {
 namespace {
+
+constexpr std::chrono::milliseconds longest_pause(50);
+constexpr std::chrono::milliseconds told_after(3000);
 
 [[noreturn]] void fail(const std::string& path, int error) {
   throw std::runtime_error(
@@ -23,10 +32,22 @@ namespace {
 int locked(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor < 0) fail(path, errno);
-  while (::flock(descriptor, LOCK_EX) != 0) {
-    if (errno == EINTR) continue;
+  std::chrono::milliseconds waited(0);
+  bool told = false;
+  while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     const int error = errno;
+    if (error == EINTR) continue;
+    if (error == EWOULDBLOCK && !interrupted()) {
+      if (waited > told_after && !std::exchange(told, true)) {
+        fmt::print(stderr, "assay: waiting for {}, to which another run is adding\n", path);
+      }
+      const auto pause = std::clamp(waited, std::chrono::milliseconds(1), longest_pause);
+      std::this_thread::sleep_for(pause);
+      waited += pause;
+      continue;
+    }
     ::close(descriptor);
+    stop_if_interrupted();
     fail(path, error);
   }
   return descriptor;

@@ -39,11 +39,6 @@ std::uint64_t most_work(const std::vector<std::shared_ptr<Pool>>& pools) {
   return total;
 }
 
-double seconds_of(const Pool& pool) {
-  const std::uint64_t drawn = pool.largest_prefix();
-  return drawn == 0 ? 0 : pool.prefix(drawn).seconds;
-}
-
 /// CPU seconds of the suites that have a budget in seconds, each pool counted once.
 using Clocks = std::map<const Budget*, double>;
 
@@ -55,7 +50,7 @@ Clocks read_clocks(const std::vector<TestWork*>& tests) {
   }
   Clocks clocks;
   for (const auto& [budget, drawn] : pools) {
-    for (const Pool* pool : drawn) clocks[budget] += seconds_of(*pool);
+    for (const Pool* pool : drawn) clocks[budget] += pool->seconds();
   }
   return clocks;
 }
@@ -66,11 +61,10 @@ bool is_spent(const TestWork& work, const Clocks& clocks) {
   if (clock != clocks.end() && 2 * clock->second > *work.suite_budget->seconds) return true;
   const std::optional<Budget>& budget = work.outcome.question.test->budget;
   if (!budget || !budget->seconds) return false;
+  const std::optional<DrawnTest> test = drawn(work);
+  if (!test) return false;
   double seconds = 0;
-  for (const auto& pool : work.pools) {
-    if (!pool->has(work.outcome.secondaries())) return false;
-    seconds += pool->prefix(work.outcome.secondaries()).seconds;
-  }
+  for (const Drawn& sample : test->samples) seconds += sample.summary().seconds;
   return 2 * seconds > *budget->seconds;
 }
 
@@ -94,7 +88,9 @@ void sample_in_looks(const std::vector<TestWork*>& tests,
   std::vector<TestWork*> open = tests;
   do {
     for (TestWork* work : open) {
-      for (const auto& pool : work->pools) pool->request(work->outcome.secondaries());
+      for (std::size_t i = 0; i < work->pools.size(); ++i) {
+        work->pools[i]->request(work->outcome.secondaries(i));
+      }
     }
     draw_all(pools, {.threads = threads}, rounds);
     if (interrupted()) return;

@@ -83,17 +83,21 @@ Evidence difference_of_means(const Method& method, const Question& question, con
                              const Moments& y, const ContrastTest& test) {
   const double factor = question.factor;
   const double offset = question.offset;
-  const double estimate = x.mean - factor * y.mean - offset;
+  const double estimate = stats::contrast_of_means(x, y, {.scale = factor, .offset = offset});
   const auto at = [=](double theta) { return test({.scale = factor, .offset = offset + theta}); };
   const auto interval = [=](double confidence) {
     if (!has_closed_interval(method)) {
       const double step = std::hypot(spread_of(x, 1), spread_of(y, factor));
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
-    Moments scaled = y;  // of factor * y: only count, mean and m2 enter
-    scaled.mean = factor * y.mean + offset;
+    // Only count, mean and m2 enter: of factor * y, and the difference as if y's mean were 0.
+    Moments moved = x;
+    moved.mean = estimate;
+    Moments scaled = y;
+    scaled.mean = 0;
     scaled.m2 *= factor * factor;
-    return stats::welch_t_interval(x, scaled, confidence);
+    moved.rest = scaled.rest = 0;
+    return stats::welch_t_interval(moved, scaled, confidence);
   };
   return {.estimate = estimate, .at = at, .interval = interval, .quantity = "difference of means"};
 }
@@ -104,7 +108,8 @@ Evidence ratio_of_means(const Method& method, const Question& question, const Mo
   const double offset = question.offset;
   const double other = factor * y.mean;
   const double sign = std::copysign(1, other);
-  const double estimate = sign * ((x.mean - offset) / other - 1);
+  const double estimate =
+      stats::contrast_of_means(x, y, {.scale = factor, .offset = offset}) / std::abs(other);
   const auto contrast = [=](double theta) {
     return test({.scale = factor * (1 + sign * theta), .offset = offset});
   };
@@ -176,7 +181,7 @@ Evidence mean_against_number(const Method& method, const Question& question, std
   const double unit = relative ? std::abs(reference.value) : 1;
   const double slope = relative ? std::copysign(1, reference.value) : 0;
   const double null = reference.value + question.offset;
-  const double estimate = (x.mean - null) / unit;
+  const double estimate = x.mean_less(null) / unit;
   const OneMeanTest test = one_mean_test(method, x, range_of(question, 0, channel, x));
   const auto at = [=](double theta) {
     return test({.value = null + theta * unit,

@@ -163,8 +163,8 @@ bool about_draws(const Question& question) {
 [[noreturn]] void refuse(const Question& question, const std::string& method,
                          const std::string& why) {
   const Location& where = question.test->place_of("test");
-  // A claim of the command line has its method from an option.
-  if (where.file == "claim") throw InputError({"--test " + method, 0, 0}, why);
+  // An option says all of it.
+  if (where.line == 0) throw InputError(where, why);
   throw InputError(where, fmt::format("`test: {}` {}", method, why));
 }
 

@@ -29,13 +29,14 @@ using stats::GateState;
 constexpr std::uint64_t most_for_a_mean = 64 * usual_secondaries;
 constexpr double level_factor = 1.25;
 
-/// Secondaries at which the worse tail of Student's t is right within a quarter.
+/// Secondaries of the subject with fewest at which the worse tail of Student's t is right within a
+/// quarter.
 std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) {
   double needed = 2;
   for (const Known& known : channels) {
     const double skewness = stats::primary_shape(known.pilot.moments).skewness;
     const double root = std::abs(skewness) * std::pow(critical, 3) / (3 * std::log(level_factor));
-    const double wanted = root * root / known.averaged;
+    const double wanted = root * root / known.averaged / known.times;
     needed = wanted <= needed ? needed : wanted;  // also where it is no number
   }
   return whole_secondaries(needed);
@@ -141,7 +142,8 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
     plan.method = find_method(question, "bounded");
     return least_secondaries;
   }
-  const std::vector<Known> channels = known_channels(question, pilots, plan);
+  const std::vector<Known> channels =
+      known_channels(question, pilots, largest_look(question, most), plan);
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::mean, plan);
   const bool bounded = !channels.empty() && are_bounded(question, channels);
@@ -162,7 +164,8 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
     return least_secondaries;
   } else if (has_rows(question)) {
     // What more their own shape must be is the data's gates to say (rows.h).
-    if (for_t > size) plan.method = find_method(question, "skewness-corrected-t");
+    if (for_t > fewest_secondaries(question, size))
+      plan.method = find_method(question, "skewness-corrected-t");
     least = size;
   } else if (for_t > std::max(least_secondaries, early) && for_corrected < for_t &&
              for_corrected <= affordable) {
@@ -206,10 +209,10 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
 
 /// Of means and costs at the points of a slope.
 std::uint64_t choose_for_points(const Question& question, const FamilyPlace& place,
-                                const Pilots& pilots, Plan& plan) {
+                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
   const double x = critical_value(smallest_level(question, place), two_sided(question));
-  return std::clamp(enough_for_t(known_channels(question, pilots, plan), x), least_secondaries,
-                    most_for_a_mean);
+  const auto channels = known_channels(question, pilots, largest_look(question, most), plan);
+  return std::clamp(enough_for_t(channels, x), least_secondaries, most_for_a_mean);
 }
 
 std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place,
@@ -227,14 +230,14 @@ std::uint64_t choose_by_shape(const Question& question, const FamilyPlace& place
     return choose_for_costs(question, place, pilots, most, plan);
   }
   if (question.of_spread()) return choose_for_spread(question, place, pilots, most, plan);
-  return choose_for_points(question, place, pilots, plan);
+  return choose_for_points(question, place, pilots, most, plan);
 }
 
 }  // namespace
 
 std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
                             const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  const std::uint64_t used = std::min(most, question.test->secondaries.value_or(most));
+  const std::uint64_t used = largest_look(question, most);
   if (has_rows(question)) require_independent_sides(question, pilots, used);
   if (std::string reason = unusable_pilot(question, pilots); !reason.empty()) {
     plan.invalid = std::move(reason);

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/gate_text.h"
 #include "harness/plan.h"
-#include "harness/recorded_run.h"
 #include "reports/effect.h"
 #include "reports/number.h"
 #include "stats/tails.h"
@@ -93,20 +93,6 @@ std::optional<std::size_t> reference_index(const TestOutcome& outcome,
   return {};
 }
 
-/// `detect: 5` where 5 % was meant excludes next to nothing. An absolute margin beyond the
-/// reference may be meant all the same, of a reference near zero: it is said, and no mistake.
-std::string wide_margin(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const std::optional<Margin>& detect = outcome.question.test->detect;
-  const auto index = reference_index(outcome, channel);
-  if (!detect || detect->relative || !index) return "";
-  const double size = std::abs(outcome.question.references[*index].value);
-  if (!(size > 0) || detect->value <= size) return "";
-  return fmt::format(
-      "; `detect` is absolute, {:.3g} times the reference: {:g} per cent is written "
-      "`{:g}%`",
-      detect->value / size, detect->value, detect->value);
-}
-
 /// The exponents or quantiles that speak against the claim and of which the interval excludes none,
 /// however far off; "" where there are none such.
 std::string what_is_not_excluded(const Question& question, const ChannelOutcome& channel) {
@@ -188,9 +174,8 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
                        reports::size_text(excluded, channel.effect), interval);
   }
-  return fmt::format("{}; {} or more is excluded by {}{}", evidence_against(outcome, channel),
-                     reports::size_text(excluded, channel.effect), interval,
-                     wide_margin(outcome, channel));
+  return fmt::format("{}; {} or more is excluded by {}", evidence_against(outcome, channel),
+                     reports::size_text(excluded, channel.effect), interval);
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -252,12 +237,13 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   return reference.standard_error / (relative ? std::abs(reference.value) : 1);
 }
 
-/// So many secondaries, and what a `budget` counts.
-std::string as_many(const TestOutcome& outcome, double secondaries) {
-  const auto each = static_cast<double>(primaries_of_each(outcome.question, outcome.plan));
-  const std::string text = reports::human(secondaries, 2) + " secondaries";
-  if (each == 1) return text;
-  return fmt::format("{} ({} primaries)", text, reports::human(secondaries * each, 2));
+/// So many times the secondaries, and what a `budget` counts.
+std::string times_as_many(const TestOutcome& outcome, double factor) {
+  const std::string text = sizes_text(outcome, factor) + " secondaries";
+  if (primaries_of_each(outcome.question, outcome.plan) == 1) return text;
+  const auto primaries =
+      static_cast<double>(primaries_of_look(outcome.question, outcome.plan, outcome.secondaries()));
+  return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
 }
 
 /// How many standard errors half an interval is whose ends each err with `tail`. With few
@@ -298,8 +284,7 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
     return "no number of samples would decide: the reference's own error forbids it";
   }
   const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
-  return fmt::format("about {} would decide{}",
-                     as_many(outcome, factor * static_cast<double>(outcome.secondaries())),
+  return fmt::format("about {} would decide{}", times_as_many(outcome, factor),
                      channel.regions.proof() ? " if the estimate stands" : "");
 }
 
@@ -310,34 +295,20 @@ std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel)
 
 std::string told(const TestOutcome& outcome) {
   const ChannelOutcome& worst = outcome.channels.front();
+  const ChannelOutcome& least = least_excluded(outcome);
+  const std::string& doubt = outcome.plan.caution;
+  const std::string caution = doubt.empty() ? "" : "; " + doubt;
   switch (outcome.verdict) {
     case Verdict::fail:
       return failed(outcome, worst);
     case Verdict::inconclusive:
-      return undecided(outcome, least_excluded(outcome));
+      return undecided(outcome, least) + caution;
     case Verdict::pass:
-      break;
+      return (least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least)) +
+             caution;
     default:
       return "";
   }
-  const ChannelOutcome& least = least_excluded(outcome);
-  return least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least);
-}
-
-/// Rows of one side that the other has no partner for: a pair of samples has one size. Of the
-/// moments of a run all are used.
-std::string left_over(const TestOutcome& outcome) {
-  const std::uint64_t used = outcome.secondaries();
-  const auto rows = [](const Subject& subject) { return subject.setup->observations(); };
-  const std::vector<Subject>& all = outcome.question.subjects;
-  if (std::ranges::none_of(all, [&](const Subject& each) { return rows(each) == used; })) return {};
-  std::string text;
-  for (const Subject& each : all) {
-    if (rows(each).value_or(used) <= used || as_recorded_run(*each.setup) != nullptr) continue;
-    text += fmt::format("; of `{}` the first {} of {} are used", each.estimator->name, used,
-                        *rows(each));
-  }
-  return text;
 }
 
 }  // namespace
@@ -366,7 +337,7 @@ std::string narrate_holm(const HolmFinding& found) {
 }
 
 std::string narrate(const TestOutcome& outcome) {
-  return outcome.channels.empty() ? "" : plain(told(outcome)) + left_over(outcome);
+  return outcome.channels.empty() ? "" : plain(told(outcome));
 }
 
 }  // namespace assay::harness

@@ -69,11 +69,11 @@ std::optional<double> prior_effect(const TestOutcome& test, std::size_t channel,
   return std::sqrt(prior_variance) * error->drawn;
 }
 
-NightEvidence of_score(const TestWork& work, std::size_t channel, const Pilots& pilots) {
-  const TestOutcome& test = work.outcome;
+NightEvidence of_score(const DrawnTest& drawn, std::size_t channel, const Pilots& pilots) {
+  const TestOutcome& test = drawn.outcome;
   const std::optional<double> effect = prior_effect(test, channel, pilots);
   if (!effect) return {.missing = "its pilot has no spread to expect a night's error from"};
-  const std::vector<ChannelData> data = data_of(work, channel);
+  const std::vector<ChannelData> data = data_of(drawn, channel);
   const ThetaError error = theta_error(test.question, channel, data).value();
   if (!(error.drawn > 0)) return {.missing = "its observations have no spread"};
   const double total = std::hypot(error.drawn, error.fixed);
@@ -92,8 +92,9 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
   std::string text = fmt::format(
       "\n{} {} {} {}", estimator.entry->information.name, estimator.parameters,
       estimator.primaries ? fmt::format("{}", *estimator.primaries) : "auto", side.purpose);
-  if (is_recorded(side) && work.pools[subject]->has(work.outcome.secondaries())) {
-    const stats::Moments moments = data_of(work, channel)[subject].moments;
+  const std::optional<DrawnTest> test = drawn(work);
+  if (is_recorded(side) && test) {
+    const stats::Moments moments = data_of(*test, channel)[subject].moments;
     text += fmt::format(" {} {} {}", moments.count, moments.mean, moments.m2);
   }
   return text;
@@ -112,7 +113,9 @@ NightEvidence night_evidence(const TestWork& work, std::size_t channel, const Pi
     return {.missing = std::move(missing)};
   }
   const TestOutcome& test = work.outcome;
-  if (evidence_kind(test) == EvidenceKind::score) return of_score(work, channel, pilots);
+  const std::optional<DrawnTest> numbers = drawn(work);
+  if (!numbers) return {.missing = "it was not drawn"};
+  if (evidence_kind(test) == EvidenceKind::score) return of_score(*numbers, channel, pilots);
   // Without spread there is no test: p = 1, which weighs against an alarm.
   const ChannelOutcome* outcome = outcome_of(test, channel);
   const double log_p = outcome != nullptr ? outcome->decision.log_p_claimed : 0;

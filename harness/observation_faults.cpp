@@ -18,12 +18,14 @@ std::string replay_line(const TestOutcome& outcome, std::uint64_t observation) {
       shell_quoted(outcome.question.test->id), observation);
 }
 
-std::string not_finite(const TestOutcome& outcome, const Subject& side, const Pool& pool,
-                       std::size_t channel, const ChannelSummary& summary) {
+std::string not_finite(const TestOutcome& outcome, const Subject& side, const Drawn& drawn,
+                       std::size_t channel) {
+  const ChannelSummary& summary = drawn.summary().channels[channel];
+  const Pool& pool = drawn.pool();
   const auto at = side.image ? " at pixel " + element_name(*side.setup->image(), channel) : "";
   const std::string text = fmt::format(
       "{} of {} observations of `{}`{} are not finite, the first is observation {}",
-      summary.nonfinite, outcome.secondaries(), side.estimator->name, at, summary.first_nonfinite);
+      summary.nonfinite, drawn.summary().count, side.estimator->name, at, summary.first_nonfinite);
   const auto place = recorded::observation_place(
       *side.setup,
       {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
@@ -33,36 +35,43 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Po
 
 }  // namespace
 
-std::string undrawable(const TestWork& work) {
-  const TestOutcome& outcome = work.outcome;
-  if (!outcome.plan.error.empty()) return outcome.plan.error;
-  for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
-    const Subject& side = outcome.question.subjects[subject];
-    const Pool& pool = *work.pools[subject];
-    if (!pool.has(outcome.secondaries())) {
-      return fmt::format("`{}` stopped at {}", side.estimator->name, pool.trouble());
+std::string where_it_stopped(const TestWork& work) {
+  const std::vector<Sample> samples = work.samples();
+  for (std::size_t subject = 0; subject < samples.size(); ++subject) {
+    if (const Fault* fault = samples[subject].fault()) {
+      return fmt::format("`{}` stopped at {}",
+                         work.outcome.question.subjects[subject].estimator->name,
+                         to_string(*fault));
     }
-    const Summary& drawn = pool.prefix(outcome.secondaries());
+  }
+  return "";
+}
+
+std::string unusable(const DrawnTest& test) {
+  const TestOutcome& outcome = test.outcome;
+  for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
+    const Subject& side = outcome.question.subjects[subject];
+    const Summary& drawn = test.samples[subject].summary();
     if (drawn.elements) continue;  // all of them are finite
     for (const std::size_t channel : side.channels) {
-      const ChannelSummary& summary = drawn.channels[channel];
-      if (summary.nonfinite > 0) return not_finite(outcome, side, pool, channel, summary);
+      if (drawn.channels[channel].nonfinite == 0) continue;
+      return not_finite(outcome, side, test.samples[subject], channel);
     }
     if (std::string fault = outside_of_range(side, drawn); !fault.empty()) return fault;
   }
   return "";
 }
 
-std::string first_contradiction(const TestWork& work) {
-  const TestOutcome& outcome = work.outcome;
+std::string first_contradiction(const DrawnTest& test) {
+  const TestOutcome& outcome = test.outcome;
   if (outcome.question.kind != QuestionKind::inconsistency ||
       outcome.verdict != reports::Verdict::fail) {
     return "";
   }
   std::optional<std::uint64_t> first;
   try {
-    first = first_inconsistent(*work.pools[0], outcome.secondaries());
-  } catch (const std::runtime_error&) {
+    first = first_inconsistent(test.samples[0].pool(), outcome.secondaries());
+  } catch (...) {
     // Found again by drawing again: a program that ends meanwhile takes no verdict with it.
   }
   if (!first) return "";

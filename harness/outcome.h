@@ -22,19 +22,22 @@ namespace assay::harness {
 struct Plan {
   Method method;
   std::vector<std::uint64_t> primaries = {};  ///< of each subject
-  stats::LookSchedule looks = {};             ///< sizes are secondaries of each subject
+  stats::LookSchedule looks = {};             ///< sizes are the most that any subject takes
   std::vector<Regions> regions = {};          ///< of each channel
   std::vector<reports::Gate> gates = {};      ///< of the pilot
   std::uint32_t smallest_cell = 1;            ///< of an image: smaller ones do not keep their level
   /// Of an image: too little skewness that its elements' differences have in common for their
   /// squares to add up to a finding. The sum of squares takes part then.
   bool symmetric = true;
-  std::string hint = "";  ///< what the pilot saw of images that explains a fail, if anything
+  std::string hint = "";     ///< what the pilot saw of images that explains a fail, if anything
+  std::string caution = "";  ///< what the user may not have meant, of a claim that is not refuted
   /// Whether red gates on the test's own data make a look count for nothing. A forced method runs
   /// as asked: its gates are shown only.
   bool gates_invalidate = true;
   std::string invalid = "";  ///< why no method is valid, if none is
   std::string error = "";    ///< why nothing can be planned, if nothing can
+  /// Why the pilot makes an error of a test whose own numbers are sound, if it does.
+  std::string pilot_error = "";
   /// Of pictures that were looked at when they were read.
   std::shared_ptr<const PictureLook> look = {};
 
@@ -78,7 +81,11 @@ struct TestOutcome {
   reports::Verdict verdict = reports::Verdict::skipped;
   std::string message = "";
 
+  /// The size of this look, the most that any subject takes.
   std::uint64_t secondaries() const { return plan.looks.sizes[look]; }
+  std::uint64_t secondaries(std::size_t subject) const {
+    return question.subjects[subject].secondaries(secondaries());
+  }
   double weight() const { return plan.looks.weights[look]; }
   /// What one channel may spend at this look.
   ErrorShare share() const {

@@ -9,13 +9,12 @@
 #include <cstddef>
 #include <functional>
 
+#include "estimators/thread_seconds.h"
+
 namespace assay::harness {
 
 /// How many threads a number given stands for: of 0 one for each core.
 unsigned threads_of(unsigned given);
-
-/// Processor time of the calling thread.
-double thread_seconds();
 
 /// stats::ForEach on all threads of the caller's arena.
 void on_all_threads(std::size_t count, const std::function<void(std::size_t)>& work);

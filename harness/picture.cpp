@@ -71,19 +71,19 @@ stats::Moments of_fewer(stats::Moments x, double factor) {
 /// The first `count` rows of one channel; nothing where they are not kept.
 std::span<const double> rows_of(const Picture& picture, const SuiteRun& run, std::size_t channel,
                                 std::uint64_t count) {
-  const auto pilot = run.pilots.find(picture.estimator->name);
-  if (!picture.pool->setup()->observations() || pilot == run.pilots.end() ||
-      channel >= pilot->second.values.size() || count > pilot->second.values[channel].size()) {
+  const Pilot* const pilot = run.pilots.find(picture.estimator->name);
+  if (!picture.pool->setup()->observations() || pilot == nullptr ||
+      channel >= pilot->values.size() || count > pilot->values[channel].size()) {
     return {};
   }
-  return std::span(pilot->second.values[channel]).first(count);
+  return std::span(pilot->values[channel]).first(count);
 }
 
 /// Of rows that may depend on each other those of as many independent ones as they are worth.
-stats::Moments moments_of(const Picture& picture, const SuiteRun& run, std::size_t channel,
-                          std::uint64_t count) {
-  const stats::Moments& moments = picture.pool->prefix(count).channels[channel].moments;
-  const std::span<const double> rows = rows_of(picture, run, channel, count);
+stats::Moments moments_of(const Picture& picture, const SuiteRun& run, const Drawn& drawn,
+                          std::size_t channel) {
+  const stats::Moments& moments = drawn.summary().channels[channel].moments;
+  const std::span<const double> rows = rows_of(picture, run, channel, drawn.summary().count);
   const bool all = moments.count == rows.size();  // the others were not finite
   if (!has_spread(moments) || !all || rows.size() < fewest_in_order) return moments;
   const double factor = stats::allowance_for_dependence(rows);
@@ -108,8 +108,10 @@ reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run)
       .secondaries = count,
       .confidence = confidence,
       .variance_of = nature.averages ? "primary" : "secondary"};
-  if (!picture.pool->has(count)) return row;
-  const Summary& summary = picture.pool->prefix(count);
+  const Sample sample = picture.pool->sample(count);
+  const Drawn* const drawn = sample.drawn();
+  if (drawn == nullptr) return row;
+  const Summary& summary = drawn->summary();
   row.cost = cost_of(summary);
   if (picture.pool->setup()->image()) {
     row.channels.push_back(
@@ -120,7 +122,7 @@ reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run)
   const std::vector<Channel> channels = picture.pool->setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (channels[i].diagnostic) continue;
-    const stats::Moments moments = moments_of(picture, run, i, count);
+    const stats::Moments moments = moments_of(picture, run, *drawn, i);
     reports::EstimatorChannel channel{
         .name = channels[i].name,
         .mean = mean_of(moments, confidence),
@@ -152,7 +154,7 @@ std::uint64_t shown_by(const Picture& picture, const SuiteRun& run) {
     for (std::size_t i = 0; i < work.pools.size(); ++i) {
       const bool its =
           work.pools[i] == picture.pool && subjects[i].estimator->name == picture.estimator->name;
-      if (its) most = std::max(most, work.outcome.secondaries());
+      if (its) most = std::max(most, work.outcome.secondaries(i));
     }
   }
   return most;
@@ -160,17 +162,19 @@ std::uint64_t shown_by(const Picture& picture, const SuiteRun& run) {
 
 Pictured pictured(const Picture& picture, const SuiteRun& run) {
   const std::uint64_t count = shown_by(picture, run);
+  const Sample sample = picture.pool->sample(count);
+  const Drawn* const drawn = sample.drawn();
   const bool image = picture.pool->setup()->image().has_value();
   Pictured result{.name = picture.estimator->name,
-                  .drawn = picture.pool->has(count),
+                  .drawn = drawn != nullptr,
                   .image = image,
                   .averaged = per_primary(picture),
                   .averages = picture.estimator->nature().averages};
-  if (image || !result.drawn) return result;
+  if (image || drawn == nullptr) return result;
   const std::vector<Channel> channels = picture.pool->setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
     result.channels.push_back(
-        {channels[i].name, channels[i].mean, moments_of(picture, run, i, count)});
+        {channels[i].name, channels[i].mean, moments_of(picture, run, *drawn, i)});
   }
   return result;
 }

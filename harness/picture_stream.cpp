@@ -148,10 +148,20 @@ class Looking {
       return {.pilots = take_rows(progress) ? pilots() : Pilots()};
     } catch (const std::domain_error&) {  // of texels that are not finite, and of their sums
       return {.fault = fault()};
+    } catch (const Unread& unread) {
+      StreamedPictures found;
+      found.pilots.add(pilot_name(question_.subjects[unread.side]), unread.fault);
+      return found;
     }
   }
 
  private:
+  /// Thrown where a side's pictures cannot be read.
+  struct Unread {
+    std::size_t side;
+    Fault fault;
+  };
+
   /// False where the user interrupts.
   bool take_rows(Progress& progress) {
     const std::size_t step = rows_at_a_time(extent_, 2 * pictures_);
@@ -189,7 +199,7 @@ class Looking {
       kept->sums[pictures_] = summary;
       Pilot pilot{.sums = std::move(summary), .kept = std::move(kept)};
       pilot.look = look_;
-      pilots.emplace(pilot_name(question_.subjects[s]), std::move(pilot));
+      pilots.add(pilot_name(question_.subjects[s]), std::move(pilot));
     }
     return pilots;
   }
@@ -198,7 +208,13 @@ class Looking {
     const std::size_t ahead = rounded_up(rows.last + Pyramid::rows_ahead, read_unit);
     const stats::RowRange there{rows.first - std::min(rows.first, Pyramid::rows_before),
                                 std::min(ahead, extent_.height)};
-    for (Side& side : sides_) side.move_to(there);
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      try {
+        sides_[s].move_to(there);
+      } catch (...) {
+        throw Unread{s, {.words = words_of(std::current_exception())}};
+      }
+    }
   }
 
   void take(stats::RowRange rows) {

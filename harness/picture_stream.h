@@ -26,13 +26,14 @@ double streamed_bytes(const Subject& side);
 
 /// What reading two stacks rows after rows came to.
 struct StreamedPictures {
-  Pilots pilots = {};  ///< of the claim's estimators, with the look at their pictures, or none
+  /// The pilots of the claim's estimators, with the look at their pictures; or the fault of one
+  /// that could not be read; or none.
+  Pilots pilots = {};
   /// Why there are none: numbers that only pictures kept as a whole can be tested on. "" where the
   /// user interrupted.
   std::string fault = {};
 };
 
-/// InputError as reading pictures does.
 StreamedPictures stream_pictures(const Question& question, const FamilyPlace& place,
                                  Progress& progress);
 

@@ -97,26 +97,27 @@ stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
 }
 
 /// The sums of a pilot pool, as of single primaries where a recorded run has means of several.
-std::shared_ptr<const Summary> sums_of(const Pool& pool) {
-  const RecordedRun* run = as_recorded_run(*pool.setup());
-  if (run == nullptr || !run->entry().information.averages) return pool.shared(pool.requested());
-  auto sums = std::make_shared<Summary>(pool.prefix(pool.requested()));
+std::shared_ptr<const Summary> sums_of(const Drawn& drawn) {
+  const RecordedRun* run = as_recorded_run(*drawn.pool().setup());
+  if (run == nullptr || !run->entry().information.averages) return drawn.shared_summary();
+  auto sums = std::make_shared<Summary>(drawn.summary());
   for (ChannelSummary& channel : sums->channels) {
     channel.moments = of_primaries(channel.moments, run->primaries());
   }
   return sums;
 }
 
-Pilot read(const Pool& pool) {
-  Pilot pilot{.primaries = pool.primaries(), .trouble = pool.trouble()};
-  if (!pilot.trouble.empty()) return pilot;
-  pilot.sums = sums_of(pool);
+std::variant<Pilot, Fault> read(const Pool& pool) {
+  const Sample sample = pool.sample(pool.requested());
+  if (sample.fault() != nullptr) return *sample.fault();
+  const Drawn& drawn = *sample.drawn();
+  Pilot pilot{.sums = sums_of(drawn), .primaries = pool.primaries()};
   for (std::size_t i = 0; i < pool.plan().size() && pool.plan()[i].keep > 0; ++i) {
-    const std::span<const double> kept = pool.values(i, pool.requested());
+    const std::span<const double> kept = drawn.values(i);
     if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
   }
   pilot.kept = pool.kept();
-  pilot.images = pool.observations(usual_images(*pool.setup(), pool.primaries()).value_or(0));
+  pilot.images = drawn.observations(usual_images(*pool.setup(), pool.primaries()).value_or(0));
   return pilot;
 }
 
@@ -133,9 +134,55 @@ std::string pilot_name(const Subject& subject) {
   return subject.estimator->name + (subject.purpose.empty() ? "" : "." + subject.purpose);
 }
 
+const Pilot* Pilots::find(const std::string& name) const {
+  const auto found = drawn_.find(name);
+  return found != drawn_.end() ? &found->second : nullptr;
+}
+
+const Fault* Pilots::fault(const std::string& name) const {
+  const auto found = faults_.find(name);
+  return found != faults_.end() ? &found->second : nullptr;
+}
+
+void Pilots::add(const std::string& name, std::variant<Pilot, Fault> pilot) {
+  if (auto* const drawn = std::get_if<Pilot>(&pilot)) {
+    drawn_.emplace(name, std::move(*drawn));
+  } else {
+    faults_.emplace(name, std::get<Fault>(std::move(pilot)));
+  }
+}
+
+void Pilots::add_larger(const std::string& name, std::variant<Pilot, Fault> larger) {
+  Pilot& few = drawn_.at(name);
+  if (auto* const drawn = std::get_if<Pilot>(&larger)) {
+    few.larger = std::make_shared<const Pilot>(std::move(*drawn));
+  } else {
+    few.larger_fault = std::get<Fault>(std::move(larger));
+  }
+}
+
+void Pilots::merge(Pilots others) {
+  drawn_.merge(others.drawn_);
+  faults_.merge(others.faults_);
+}
+
+std::string where_pilots_stopped(const Question& question, const Pilots& pilots) {
+  for (const Subject& subject : question.subjects) {
+    const Fault* fault = pilots.fault(subject.estimator->name);
+    if (fault == nullptr) fault = pilots.fault(pilot_name(subject));
+    const Pilot* const pilot = pilot_of(subject, pilots);
+    if (fault == nullptr && pilot != nullptr && pilot->larger_fault && question.rests_on_tails()) {
+      fault = &*pilot->larger_fault;
+    }
+    if (fault == nullptr) continue;
+    return fmt::format("`{}` stopped in the pilot at {}", subject.estimator->name,
+                       to_string(*fault));
+  }
+  return "";
+}
+
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots) {
-  const auto found = pilots.find(pilot_name(subject));
-  return found != pilots.end() && found->second.trouble.empty() ? &found->second : nullptr;
+  return pilots.find(pilot_name(subject));
 }
 
 PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel) {
@@ -166,9 +213,9 @@ void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estima
   std::vector<std::shared_ptr<Pool>> enlarged;
   for (std::size_t i = 0; i < estimators.size(); ++i) {
     const std::uint64_t size = larger_size(*estimators[i], run);
-    const Pilot& few = pilots.at(estimators[i]->name);
-    if (size == few_observations || !few.trouble.empty()) continue;
-    if (!is_far_from_normal(*pools[i], *few.sums)) continue;
+    const Pilot* const few = pilots.find(estimators[i]->name);
+    if (size == few_observations || few == nullptr) continue;
+    if (!is_far_from_normal(*pools[i], *few->sums)) continue;
     names.push_back(estimators[i]->name);
     enlarged.push_back(pools[i]);
     pools[i]->request(size);
@@ -176,11 +223,8 @@ void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estima
   if (enlarged.empty()) return;
   draw_all(enlarged, {.threads = run.threads, .phase = "pilot"}, progress);
   if (interrupted()) return;
-  for (std::size_t i = 0; i < enlarged.size(); ++i) {
-    // Claims on means do without: an estimator that fails only here has not failed them.
-    auto more = std::make_shared<const Pilot>(read(*enlarged[i]));
-    if (more->trouble.empty()) pilots.at(names[i]).larger = std::move(more);
-  }
+  // Claims on means do without: an estimator that fails only here has not failed them.
+  for (std::size_t i = 0; i < enlarged.size(); ++i) pilots.add_larger(names[i], read(*enlarged[i]));
 }
 
 }  // namespace
@@ -201,8 +245,9 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   }
   draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
   Pilots pilots;
-  for (std::size_t i = 0; i < pools.size(); ++i) pilots.emplace(names[i], read(*pools[i]));
-  if (!interrupted()) enlarge(pilots, estimators, pools, run, progress);
+  if (interrupted()) return pilots;
+  for (std::size_t i = 0; i < pools.size(); ++i) pilots.add(names[i], read(*pools[i]));
+  enlarge(pilots, estimators, pools, run, progress);
   return pilots;
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "harness/picture_look.h"
@@ -19,18 +20,19 @@ namespace assay::harness {
 
 /// What a pilot tells of an estimator, by channel.
 struct Pilot {
-  /// Of secondaries of `primaries` primaries; null where there is trouble.
+  /// The sums of secondaries of `primaries` primaries.
   std::shared_ptr<const Summary> sums = {};
   std::vector<std::vector<double>> values = {};  ///< of the first channels, as drawn
   std::uint64_t primaries = 1;
   /// Of an image: whole observations, and whose they are.
   Observations images = {};
   std::shared_ptr<const KeptObservations> kept = {};
-  std::string trouble = "";  ///< why there are no numbers: the estimator threw
   /// At pictures, in place of `images`: they were looked at when they were read.
   std::shared_ptr<const PictureLook> look = {};
-  /// More observations, these among them, where claims on variances and costs need them.
+  /// More observations, these among them, where claims on variances and costs need them; or why
+  /// they could not be drawn.
   std::shared_ptr<const Pilot> larger = {};
+  std::optional<Fault> larger_fault = {};
 
   std::size_t image_count() const {
     if (look) return look->piloted;
@@ -47,9 +49,28 @@ std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t prim
 /// Of estimators of no more channels a pilot keeps their values.
 inline constexpr std::size_t most_kept_channels = 64;
 
-/// By pilot_name. Averaging estimators at one primary, others at the suite's `primaries`. Of
-/// ready-made data it is all rows, which are the test's own: only the method is chosen by them.
-using Pilots = std::map<std::string, Pilot>;
+/// By pilot_name, the pilots that were drawn and why others could not be. Averaging estimators are
+/// piloted at one primary, others at the suite's `primaries`. Of ready-made data a pilot is all
+/// rows, which are the test's own: only the method is chosen by them.
+class Pilots {
+ public:
+  /// Null where there is none, or a fault.
+  const Pilot* find(const std::string& name) const;
+  /// Throws std::out_of_range where find() gives null.
+  const Pilot& at(const std::string& name) const { return drawn_.at(name); }
+  /// Null where there is none, or a pilot.
+  const Fault* fault(const std::string& name) const;
+  bool contains(const std::string& name) const { return find(name) || fault(name); }
+  bool empty() const { return drawn_.empty() && faults_.empty(); }
+
+  void add(const std::string& name, std::variant<Pilot, Fault> pilot);
+  void add_larger(const std::string& name, std::variant<Pilot, Fault> larger);
+  void merge(Pilots others);
+
+ private:
+  std::map<std::string, Pilot> drawn_;
+  std::map<std::string, Fault> faults_;
+};
 
 struct PilotRun {
   std::uint64_t seed;
@@ -63,6 +84,10 @@ struct PilotRun {
 
 /// The estimator's name, and after a dot the sampler's of a subject that is its draws.
 std::string pilot_name(const Subject& subject);
+
+/// Which subject's pilot stopped, where, and why; empty where all went well that the question rests
+/// on.
+std::string where_pilots_stopped(const Question& question, const Pilots& pilots);
 
 /// The pilot of a subject, if it has one that went well.
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);

@@ -9,6 +9,7 @@
 #include "harness/assumptions.h"
 #include "harness/constant.h"
 #include "harness/critical.h"
+#include "harness/intended_size.h"
 #include "harness/mean_evidence.h"
 #include "harness/rows.h"
 
@@ -126,7 +127,7 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
 }
 
 std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
-                                  const Plan& plan) {
+                                  std::uint64_t look, const Plan& plan) {
   std::vector<Known> all;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
@@ -141,6 +142,7 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
                      .channel = channel,
                      .pilot = data,
                      .averaged = side.averaged(plan.primaries[subject]),
+                     .times = times_the_fewest(question, subject, look),
                      .rows = side.setup->observations().has_value(),
                      .label = fmt::format(", pilot of {}{}", side.estimator->name, part)});
     }
@@ -179,6 +181,13 @@ std::string too_heavy(const Question& question, const std::vector<Known>& channe
     if (!gate) continue;
     note(plan, known, *gate);
     if (gate->state != GateState::red) continue;
+    if (has_rows(question)) {
+      reason = fmt::format(
+          "the rows are too heavy-tailed for a {}: more of them may only show more of the tail; "
+          "claim a quantile, as `quantile({}, 0.5) == …`",
+          mean ? "mean" : "variance", to_string(question.test->claim.left.source));
+      continue;
+    }
     reason = fmt::format(
         "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the {} moment that the test rests "
         "on may not exist; clamp the estimator{}, or claim something of its distribution",

@@ -20,6 +20,7 @@ struct Known {
   std::size_t channel;
   PilotChannel pilot;
   double averaged;  ///< how many of the pilot's values make a secondary
+  double times;     ///< as many secondaries as the subject with fewest has
   bool rows;        ///< the test's own data, not a pilot's
   std::string label;
 };
@@ -33,7 +34,9 @@ std::vector<double> as_secondaries(const Subject& side, std::span<const double> 
 /// well.
 std::string unusable_pilot(const Question& question, const Pilots& pilots);
 
-std::vector<Known> known_channels(const Question& question, const Pilots& pilots, const Plan& plan);
+/// `look` is the largest there may be.
+std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
+                                  std::uint64_t look, const Plan& plan);
 
 /// The method chosen asks nothing of the shape that the pilot's gates complain of.
 void answer_red_gates(Plan& plan);

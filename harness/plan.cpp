@@ -26,10 +26,18 @@ constexpr std::uint64_t dearest_looks = 4;
 // Secondaries that have a spread.
 constexpr std::uint64_t fewest_tested = 2;
 
-/// Secondaries of each subject that a budget in primaries pays for: two at least, or it is refused.
+/// The look that a budget in primaries pays for: two secondaries of each subject at least, or it is
+/// refused.
 std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t budget) {
   const std::uint64_t each = primaries_of_each(question, plan);
-  if (budget / each >= fewest_tested) return budget / each;
+  std::uint64_t paid = budget / each;
+  // What subjects without more secondaries leave goes to the others.
+  while (paid >= fewest_tested) {
+    const std::uint64_t next = primaries_of_look(question, plan, paid + 1);
+    const std::uint64_t spent = primaries_of_look(question, plan, paid);
+    if (next == spent || next > budget) return paid;
+    paid += (budget - spent) / (next - spent);
+  }
   throw InputError(question.test->place_of("budget"),
                    fmt::format("its budget (or its share of the suite's) of {} primaries does not "
                                "pay for two observations, the fewest that can be tested: these "
@@ -37,12 +45,11 @@ std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t
                                budget, fewest_tested * each));
 }
 
-/// The most secondaries there are, or that a budget in primaries pays for, all subjects together.
+/// The largest look: all that there are of the subject with most, or what a budget in primaries
+/// pays for. One that is drawn beside rows of files takes as many as the longest file has.
 std::uint64_t most_available(const Question& question, const Plan& plan) {
-  std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
-  for (const Subject& subject : question.subjects) {
-    most = std::min(most, subject.setup->observations().value_or(most));
-  }
+  const std::uint64_t most =
+      question.most_rows().value_or(std::numeric_limits<std::uint64_t>::max());
   const std::optional<Budget>& budget = question.test->budget;
   if (!budget || !budget->primaries) return most;
   return std::min(most, paid_for(question, plan, *budget->primaries));
@@ -91,11 +98,6 @@ stats::LookSchedule timed_look(const Plan& plan, std::uint64_t secondaries) {
   return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit);
 }
 
-bool is_bounded(const Question& question) {
-  return std::any_of(question.subjects.begin(), question.subjects.end(),
-                     [](const Subject& s) { return s.setup->observations().has_value(); });
-}
-
 /// Looks that double from the fewest that mean anything up to what `detect` needs at the last
 /// look's share of the errors. One look where nothing asks for a number or the number is given: all
 /// rows of a file, `secondaries`, the classical 1000.
@@ -118,7 +120,7 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
     if (!question.test->budget) require_possible(question, plan, given);
     return one_look(given);
   }
-  if (is_bounded(question)) return one_look(most);
+  if (has_rows(question)) return one_look(most);
   const std::optional<std::uint64_t> alone =
       planned_secondaries(question, place.share, pilots, plan);
   const std::uint64_t classical =
@@ -144,7 +146,7 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
 /// Of a test that is invalid before it begins: what is drawn decides nothing, and only shows what
 /// its estimators yield.
 stats::LookSchedule look_for_its_picture(const Question& question, const Plan& plan) {
-  const bool given = question.test->secondaries || is_bounded(question);
+  const bool given = question.test->secondaries || has_rows(question);
   if (given || plan.method.keeps == Keeps::blocks) return plan.looks;
   return one_look(std::min(plan.looks.sizes.front(), usual_secondaries));
 }
@@ -172,13 +174,58 @@ void require_density(const Question& question) {
   dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
 }
 
+/// Which estimator's pilot gave what is not finite; empty where none did. Rows of files are the
+/// test's own.
+std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) {
+  for (const Subject& subject : question.subjects) {
+    const Pilot* const pilot = pilot_of(subject, pilots);
+    if (pilot == nullptr || pilot->sums->elements || subject.setup->observations()) continue;
+    for (const std::size_t channel : subject.channels) {
+      const ChannelSummary& seen = pilot->sums->channels[channel];
+      if (seen.nonfinite == 0) continue;
+      return fmt::format(
+          "{} of {} observations of `{}` in the pilot are not finite, the first is observation {}",
+          seen.nonfinite, pilot->sums->count, subject.estimator->name, seen.first_nonfinite);
+    }
+  }
+  return "";
+}
+
 /// Which estimator's pilot gave what its channel declares that it never gives: single primaries
 /// show what means may not. Empty where none did.
 std::string misdeclared(const Question& question, const Pilots& pilots) {
   for (const Subject& subject : question.subjects) {
     const Pilot* const pilot = pilot_of(subject, pilots);
-    if (pilot == nullptr || pilot->sums == nullptr) continue;
+    if (pilot == nullptr) continue;
     if (std::string fault = outside_of_range(subject, *pilot->sums); !fault.empty()) return fault;
+  }
+  return "";
+}
+
+/// What the user may not have meant: a `detect` by default, or a margin larger than the second of
+/// two means, which the pilot alone knows.
+std::string caution_of(const Question& question, const Pilots& pilots) {
+  if (question.test->detect_by_default) {
+    return fmt::format("`detect` is {}, the default of claims about laws",
+                       question.test->detect->value);
+  }
+  if (question.kind != QuestionKind::mean_of_two) return "";
+  const Subject& second = question.subjects[1];
+  const Pilot* const pilot = pilot_of(second, pilots);
+  if (pilot == nullptr) return "";
+  constexpr double certain = 8;  // standard errors: of a mean near zero margins are no part
+  double size = 0;
+  for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
+    const stats::Moments moments = pilot_channel(second, *pilot, channel).moments;
+    const double mean = std::abs(moments.mean);
+    if (moments.count > 1 && mean > certain * moments.standard_error()) {
+      size = std::max(size, std::abs(question.factor) * mean);
+    }
+  }
+  for (const Margin& margin : margins_of(*question.test)) {
+    if (std::string text = missing_per_cent(margin, size); !text.empty()) {
+      return "the margin " + text;
+    }
   }
   return "";
 }
@@ -191,9 +238,14 @@ std::string lack_of_density(const Question& question, const NoDensity& why) {
 }
 
 std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
+  return primaries_of_look(question, plan, 1);
+}
+
+std::uint64_t primaries_of_look(const Question& question, const Plan& plan, std::uint64_t look) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < plan.primaries.size(); ++i) {
-    sum += primaries_of_observation(*question.subjects[i].setup, plan.primaries[i]);
+    const Subject& side = question.subjects[i];
+    sum += primaries_of_observation(*side.setup, plan.primaries[i]) * side.secondaries(look);
   }
   return sum;
 }
@@ -209,7 +261,9 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     const bool single = question.of_laws() && !subject.estimator->primaries;
     plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
   }
-  plan.error = misdeclared(question, pilots);
+  plan.pilot_error = not_finite_in_pilot(question, pilots);
+  plan.error = where_pilots_stopped(question, pilots);
+  if (plan.error.empty()) plan.error = misdeclared(question, pilots);
   if (!plan.error.empty()) {
     plan.looks = one_look(2);
     return plan;
@@ -222,6 +276,7 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     if (plan.invalid.empty()) plan.invalid = too_few_replicates(question, plan);
     if (!plan.invalid.empty()) plan.looks = look_for_its_picture(question, plan);
     plan.hint += rows_beside_primaries(question);
+    plan.caution = caution_of(question, pilots);
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2);
     plan.invalid = in_words(error);

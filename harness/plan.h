@@ -20,4 +20,7 @@ std::string lack_of_density(const Question& question, const NoDensity& why);
 /// Primaries that a secondary of each subject costs together; of an image in all its elements.
 std::uint64_t primaries_of_each(const Question& question, const Plan& plan);
 
+/// Primaries that a look of this size takes, all subjects together.
+std::uint64_t primaries_of_look(const Question& question, const Plan& plan, std::uint64_t look);
+
 }  // namespace assay::harness

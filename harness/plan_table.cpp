@@ -57,19 +57,27 @@ struct Total {
     primaries += secondaries *
                  static_cast<double>(primaries_of_observation(*pool.setup(), pool.primaries()));
     const auto found = costs.find(&pool);
-    if (found != costs.end()) {
-      rays += secondaries * found->second.rays;
-      seconds += secondaries * found->second.seconds;
+    if (found != costs.end() && std::holds_alternative<UnitCost>(found->second)) {
+      const UnitCost& cost = std::get<UnitCost>(found->second);
+      rays += secondaries * cost.rays;
+      seconds += secondaries * cost.seconds;
     } else if (!pool.setup()->observations()) {
       known = false;
     }
   }
 };
 
+void add_last_look(const TestWork& work, const UnitCosts& costs, Total& total) {
+  const std::uint64_t last = work.outcome.plan.most_secondaries();
+  for (std::size_t i = 0; i < work.pools.size(); ++i) {
+    const std::uint64_t secondaries = work.outcome.question.subjects[i].secondaries(last);
+    total.add(*work.pools[i], static_cast<double>(secondaries), costs);
+  }
+}
+
 Total total_of(const TestWork& work, const UnitCosts& costs) {
   Total total;
-  const auto secondaries = static_cast<double>(work.outcome.plan.most_secondaries());
-  for (const auto& pool : work.pools) total.add(*pool, secondaries, costs);
+  add_last_look(work, costs, total);
   return total;
 }
 
@@ -133,15 +141,18 @@ std::vector<std::string> gate_notes(const std::vector<reports::Gate>& gates) {
   return notes;
 }
 
-/// Why the test will be an error: its density could not be had, or an estimator not be piloted; ""
-/// where nothing is known.
-std::string trouble_of(const TestOutcome& test, const Pilots& pilots) {
+/// Why the test will be an error: it has no plan, or an estimator stopped when its cost was
+/// measured; "" where nothing is known.
+std::string trouble_of(const TestWork& work, const UnitCosts& costs) {
+  const TestOutcome& test = work.outcome;
   if (!test.plan.error.empty()) return test.plan.error;
-  for (const Subject& side : test.question.subjects) {
-    const auto found = pilots.find(side.estimator->name);
-    if (found == pilots.end() || found->second.trouble.empty()) continue;
-    return fmt::format("`{}` stopped in the pilot at {}", side.estimator->name,
-                       found->second.trouble);
+  if (!test.plan.pilot_error.empty()) return test.plan.pilot_error;
+  for (std::size_t i = 0; i < work.pools.size(); ++i) {
+    const auto found = costs.find(work.pools[i].get());
+    if (found == costs.end() || !std::holds_alternative<Fault>(found->second)) continue;
+    return fmt::format("`{}` stopped at {}, when its cost was measured",
+                       test.question.subjects[i].estimator->name,
+                       to_string(std::get<Fault>(found->second)));
   }
   return "";
 }
@@ -162,8 +173,9 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
                total.known ? plain(reports::duration(total.seconds)) : unknown,
                effect_text(test, expected),
                expected.share ? fmt::format("{:.0f} %", 100 * *expected.share) : unknown};
+  if (!plan.caution.empty()) row.notes.push_back(plan.caution);
   if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid);
-  if (const std::string trouble = trouble_of(test, pilots); !trouble.empty()) {
+  if (const std::string trouble = trouble_of(work, costs); !trouble.empty()) {
     row.notes.push_back("error: " + trouble);
   }
   return row;
@@ -210,14 +222,26 @@ std::string line_of(const Cells& cells, const std::array<int, column_count>& wid
   return line;
 }
 
+/// Whether a program is missing that the suite needs.
+bool is_skipped(const SuiteRun& run) {
+  return !run.untested.empty() && run.untested.front().verdict == reports::Verdict::skipped;
+}
+
 void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
   const Suite& suite = run.suite;
   page.paragraph(suite.name + (suite.file.empty() ? "" : " (" + suite.file + ")"));
   page.paragraph(fmt::format("alpha {}, beta {}, seed {}", suite.alpha, suite.beta, run.seed));
   page.blank();
+  for (const Untested& each : run.untested) {
+    if (is_skipped(run)) break;
+    page.paragraph(each.test->name, "  ");
+    page.paragraph("error: " + each.message, "      ");
+  }
   if (run.tests.empty()) {
-    page.paragraph(run.skipped.empty() ? "No test of this suite is selected."
-                                       : "Its tests will be skipped: " + run.lack + ".");
+    if (run.untested.empty()) page.paragraph("No test of this suite is selected.");
+    if (is_skipped(run)) {
+      page.paragraph("Its tests will be skipped: " + run.untested.front().message + ".");
+    }
     page.blank();
     return;
   }
@@ -248,8 +272,9 @@ Total expected_total(const PlannedRun& planned, const UnitCosts& costs) {
   for (const auto& run : planned.suites) {
     for (const TestWork& work : run->tests) {
       const std::uint64_t expected = expected_secondaries(work.outcome, run->pilots);
-      for (const auto& pool : work.pools) {
-        most[pool.get()] = std::max(most[pool.get()], expected);
+      for (std::size_t i = 0; i < work.pools.size(); ++i) {
+        std::uint64_t& of_pool = most[work.pools[i].get()];
+        of_pool = std::max(of_pool, work.outcome.question.subjects[i].secondaries(expected));
       }
     }
     for (const Picture& picture : run->pictures) {
@@ -273,11 +298,7 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
   Total separate;
   for (const auto& run : planned.suites) {
     tests += run->tests.size();
-    for (const TestWork& work : run->tests) {
-      for (const auto& pool : work.pools) {
-        separate.add(*pool, static_cast<double>(work.outcome.plan.most_secondaries()), costs);
-      }
-    }
+    for (const TestWork& work : run->tests) add_last_look(work, costs, separate);
   }
   page.paragraph(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
                              tests == 1 ? "" : "s", total_text(separate)));
@@ -288,9 +309,9 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(
       "primaries: of one secondary estimate. first, last: secondaries of each source at these "
-      "looks. in all, rays, CPU time: primaries of all sources up to the last look, of images "
-      "those "
-      "of every pixel and component, and what they cost. "
+      "looks, of a file all its rows where these are fewer. in all, rays, CPU time: primaries of "
+      "all sources up to the last look, of images those of every pixel and component, and what "
+      "they cost. "
       "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
       "beta. if true: the share of the last look that is drawn on average if the claim holds "
       "exactly, at most.");
@@ -305,16 +326,21 @@ std::string plan_text(const PlannedRun& planned, const UnitCosts& costs) {
   return page.take();
 }
 
-int plan_exit_code(const PlannedRun& planned) {
+int plan_exit_code(const PlannedRun& planned, const UnitCosts& costs) {
   bool any = false;
   bool bad = false;
   bool skipped = false;
   for (const auto& run : planned.suites) {
-    skipped = skipped || !run->skipped.empty();
+    skipped = skipped || is_skipped(*run);
+    for (const Untested& each : run->untested) {
+      if (each.verdict != reports::Verdict::error) continue;
+      any = true;
+      bad = bad || each.test->expect != Expectation::error;
+    }
     for (const TestWork& work : run->tests) {
       const TestOutcome& test = work.outcome;
       any = true;
-      bad = bad || !trouble_of(test, run->pilots).empty() ||
+      bad = bad || !trouble_of(work, costs).empty() ||
             (!test.plan.invalid.empty() && test.question.test->expect != Expectation::invalid);
     }
   }

@@ -14,9 +14,8 @@ namespace assay::harness {
 /// totals. Plain text without colours.
 std::string plan_text(const PlannedRun& planned, const UnitCosts& costs);
 
-/// 1 where a selected test cannot come out as it expects because no method is valid or its
-/// estimator threw in the pilot, else 0; 77 where all that is selected will be skipped; 4 where
-/// nothing is selected.
-int plan_exit_code(const PlannedRun& planned);
+/// 1 where a selected test cannot come out as it expects because no method is valid or a source
+/// stopped, else 0; 77 where all that is selected will be skipped; 4 where nothing is selected.
+int plan_exit_code(const PlannedRun& planned, const UnitCosts& costs);
 
 }  // namespace assay::harness

@@ -7,7 +7,6 @@
 
 #include "estimators/program_path.h"
 #include "estimators/ready_made.h"
-#include "estimators/text_pattern.h"
 #include "harness/frozen.h"
 #include "harness/image_memory.h"
 #include "harness/interrupt.h"
@@ -23,13 +22,9 @@ namespace {
 constexpr std::uint64_t picture_secondaries = 1000;
 constexpr std::uint64_t picture_primaries = 64;
 
-bool passes_filter(const TestEntry& test, const RunOptions& options) {
-  return options.filter.empty() || matches(options.filter, test.id);
-}
-
 bool selected(const TestEntry& test, std::size_t index, const RunOptions& options) {
   if (options.shard && index % options.shard->second != options.shard->first - 1) return false;
-  return passes_filter(test, options);
+  return selects(options.selection, test);
 }
 
 /// The suite's primaries are split over its tests by weight, whichever of them run: what a test may
@@ -47,10 +42,14 @@ void share_budget(Suite& suite) {
   }
 }
 
-/// The suite as this run wants it.
+/// The suite as this run wants it, before `--coarsen`.
 Suite adjusted(Suite suite, const RunOptions& options) {
   if (options.alpha) suite.alpha = *options.alpha;
   share_budget(suite);
+  return suite;
+}
+
+void coarsen(Suite& suite, const RunOptions& options) {
   for (TestEntry& test : suite.tests) {
     if (!test.detect) continue;
     test.detect->value *= options.coarsen;
@@ -61,7 +60,6 @@ Suite adjusted(Suite suite, const RunOptions& options) {
                                    options.coarsen));
     }
   }
-  return suite;
 }
 
 bool is_about(const Question& question, const std::string& estimator) {
@@ -74,7 +72,7 @@ bool is_about(const Question& question, const std::string& estimator) {
 bool draws_idle(const std::vector<Question>& questions, const RunOptions& options) {
   if (options.shard && options.shard->first != 1) return false;
   return std::all_of(questions.begin(), questions.end(),
-                     [&](const Question& q) { return passes_filter(*q.test, options); });
+                     [&](const Question& q) { return selects(options.selection, *q.test); });
 }
 
 /// Estimators that a set of questions is about, in the suite's order.
@@ -84,7 +82,10 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
   std::vector<const PreparedEstimator*> used;
   const bool with_idle = draws_idle(questions, options);
   for (const EstimatorEntry& entry : run.suite.estimators) {
-    if (recorded::is_reference(*run.estimators.at(entry.name).setup)) continue;  // nothing to draw
+    const auto prepared = run.estimators.find(entry.name);
+    if (prepared == run.estimators.end()) continue;
+    const PreparedEstimator& estimator = prepared->second;
+    if (recorded::is_reference(*estimator.setup)) continue;  // nothing to draw
     bool idle = true;
     bool wanted = false;
     for (std::size_t i = 0; i < questions.size(); ++i) {
@@ -92,7 +93,6 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
       idle = false;
       wanted = wanted || chosen[i];
     }
-    const PreparedEstimator& estimator = run.estimators.at(entry.name);
     // Of a renderer that is started for each observation a picture is too dear a decoration.
     const bool dear = recorded::keeps_files(*estimator.setup);
     if (wanted || (idle && with_idle && !dear)) used.push_back(&estimator);
@@ -128,9 +128,12 @@ Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
     if (taken.pilots.empty()) {
       require_memory(run.estimators, {}, available_bytes(), taken.fault);
     }
-    pilots.merge(taken.pilots);
+    if (!taken.pilots.empty()) {
+      std::erase_if(
+          used, [&](const PreparedEstimator* each) { return is_about(*question, each->listed); });
+    }
+    pilots.merge(std::move(taken.pilots));
   }
-  std::erase_if(used, [&](const PreparedEstimator* each) { return pilots.contains(each->name); });
   if (used.empty()) return pilots;
   pilots.merge(run_pilots(with_sweeps(used, questions, chosen),
                           pilot_run_of(questions, chosen, run.seed, options.threads), progress));
@@ -173,19 +176,17 @@ void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
   }
 }
 
+/// Whether the test runs, by its place in the suite's file.
+bool selected(const TestEntry& test, const SuiteRun& run, const RunOptions& options) {
+  return selected(test, static_cast<std::size_t>(&test - run.suite.tests.data()), options);
+}
+
 void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress& progress) {
-  if (!run.lack.empty()) {
-    for (std::size_t i = 0; i < run.suite.tests.size(); ++i) {
-      if (selected(run.suite.tests[i], i, options)) run.skipped.push_back(&run.suite.tests[i]);
-    }
-    return;
-  }
-  std::vector<Question> questions;
+  std::erase_if(run.untested,
+                [&](const Untested& each) { return !selected(*each.test, run, options); });
+  const std::vector<Question>& questions = run.questions;
   std::vector<bool> chosen;
-  for (std::size_t i = 0; i < run.suite.tests.size(); ++i) {
-    questions.push_back(ask(run.suite.tests[i], run.estimators, run.seed));
-    chosen.push_back(selected(run.suite.tests[i], i, options));
-  }
+  for (const Question& each : questions) chosen.push_back(selected(*each.test, run, options));
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
   const std::vector<FamilyPlace> place = places(run.suite, questions);
   const auto used = used_by(questions, chosen, run, options);
@@ -214,22 +215,67 @@ std::string lack_of(const Suite& suite) {
   return "";
 }
 
+/// The estimators, and why others cannot be prepared. What an estimator refuses is the user's
+/// mistake; what else it throws is a fault of its own.
+std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
+  std::map<std::string, Fault> faults;
+  for (const EstimatorEntry& entry : run.suite.estimators) {
+    try {
+      run.estimators.emplace(entry.name, prepare(entry, run.suite.folder));
+    } catch (const InputError&) {
+      throw;
+    } catch (...) {
+      faults.emplace(entry.name, Fault{.words = words_of(std::current_exception())});
+    }
+  }
+  return faults;
+}
+
+/// Why a test has no question: a source that cannot be prepared; "" where all are.
+std::string unprepared(const TestEntry& test, const std::map<std::string, Fault>& faults) {
+  std::vector<Source> sources = sources_of(test.claim);
+  if (test.reference) sources.push_back(*test.reference);
+  for (const Source& source : sources) {
+    const auto fault = faults.find(source.estimator);
+    if (fault == faults.end()) continue;
+    return fmt::format("`{}` cannot be prepared: {}", source.estimator, to_string(fault->second));
+  }
+  return "";
+}
+
+void ask_test(SuiteRun& run, TestEntry& test, const std::map<std::string, Fault>& faults) {
+  std::string why = unprepared(test, faults);
+  try {
+    if (why.empty()) run.questions.push_back(ask_as_written(test, run.estimators, run.seed));
+  } catch (const InputError&) {
+    throw;
+  } catch (...) {  // at another value of a sweep
+    why = "an estimator cannot be prepared: " + words_of(std::current_exception());
+  }
+  if (!why.empty()) {
+    run.untested.push_back({&test, reports::Verdict::error, std::move(why)});
+  } else if (test.method) {
+    find_method(run.questions.back(), *test.method);
+  }
+}
+
 /// Everything a user may have got wrong is found here, before anything is sampled; but of a suite
 /// that is skipped nothing is prepared.
 std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options) {
   auto run = std::make_unique<SuiteRun>();
   run->suite = adjusted(suite, options);
   run->seed = options.seed.value_or(suite.seed.value_or(1));
-  run->lack = lack_of(suite);
-  if (!run->lack.empty()) return run;
-  run->estimators = prepare_all(run->suite);
-  std::vector<Question> questions;
-  for (const TestEntry& test : run->suite.tests) {
-    questions.push_back(ask(test, run->estimators, run->seed));
-    if (test.method) find_method(questions.back(), *test.method);
+  if (const std::string lack = lack_of(suite); !lack.empty()) {
+    for (const TestEntry& test : run->suite.tests) {
+      run->untested.push_back({&test, reports::Verdict::skipped, lack});
+    }
+    return run;
   }
-  require_memory(run->estimators, streamed(questions, std::vector<bool>(questions.size(), true)),
-                 available_bytes());
+  const std::map<std::string, Fault> faults = prepare_estimators(*run);
+  for (TestEntry& test : run->suite.tests) ask_test(*run, test, faults);
+  coarsen(run->suite, options);
+  const std::vector<bool> all(run->questions.size(), true);
+  require_memory(run->estimators, streamed(run->questions, all), available_bytes());
   return run;
 }
 

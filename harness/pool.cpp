@@ -148,17 +148,18 @@ void Pool::request(std::uint64_t count) {
   if (!is_ready_made()) requested_ = std::max(requested_, count);
 }
 
-std::shared_ptr<const Summary> Pool::shared(std::uint64_t count) const {
-  if (is_ready_made()) return {setup_, ready_made_};  // as long as its set-up
-  return prefixes_.at(count);
+Sample Pool::sample(std::uint64_t count) const {
+  // Moments of a run live as long as their set-up.
+  if (is_ready_made()) return Drawn(*this, count, {setup_, ready_made_});
+  if (count <= drawn()) return Drawn(*this, count, prefixes_.at(count));
+  if (fault_) return *fault_;
+  throw std::logic_error("observations were asked for before they were drawn");
 }
 
-const Summary& Pool::prefix(std::uint64_t count) const { return *shared(count); }
-
-std::uint64_t Pool::largest_prefix() const {
-  if (is_ready_made()) return ready_made_->count;
+double Pool::seconds() const {
+  if (is_ready_made()) return ready_made_->seconds;
   const auto beyond = prefixes_.upper_bound(drawn());
-  return beyond == prefixes_.begin() ? 0 : std::prev(beyond)->first;
+  return beyond == prefixes_.begin() ? 0 : std::prev(beyond)->second->seconds;
 }
 
 std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
@@ -212,19 +213,23 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
   return drawn;
 }
 
-Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const {
+Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
+                       std::uint64_t last) const {
   const std::uint64_t values_kept = sums_later_ ? 0 : most_kept(plan_);
   Block block{.whole = no_sums(),
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .observations = {},
               .partial = {},
-              .trouble = {},
+              .fault = {},
               .size = last - first};
   std::vector<double> unsummed(sums_later_ && !recorded::unknown_channels(*setup_) ? channels_ : 0);
   Intake intake(block.whole.channels);
   auto mark = prefixes_.upper_bound(first);
-  const auto seconds = [&estimator] { return thread_seconds() + estimator.seconds_elsewhere(); };
-  const double start = seconds();
+  Estimator* source = nullptr;
+  const auto seconds = [&source] {
+    return thread_seconds() + (source == nullptr ? 0 : source->seconds_elsewhere());
+  };
+  double start = seconds();
   std::uint64_t index = first;
   GroupVariance groups(sums_later_ ? std::vector<std::size_t>() : grouped_channels_);
   const bool counts_costs = !sums_later_ && std::ranges::any_of(plan_, [](const ChannelPlan& each) {
@@ -233,12 +238,14 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
   ObservationCost cost{};
   const FlushDenormals flush;
   try {
-    estimator.announce({.key = key_, .first = first, .last = last});
+    source = &estimator();
+    start = seconds();
+    source->announce({.key = key_, .first = first, .last = last});
     for (; index < last; ++index) {
       Cost before;
       if (counts_costs) before = block.whole.cost;
       const std::span<double> out = sums_later_ ? std::span(unsummed) : intake.row();
-      const std::span<const double> drawn = observe(estimator, index, out, block);
+      const std::span<const double> drawn = observe(*source, index, out, block);
       if (counts_costs) cost = counted(block.whole.cost - before);
       if (!sums_later_) intake.take(drawn, index, cost);
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
@@ -253,10 +260,8 @@ Pool::Block Pool::draw(Estimator& estimator, std::uint64_t first, std::uint64_t 
         ++mark;
       }
     }
-  } catch (const InputError&) {
-    throw;  // a file that cannot be read is a mistake of the user's and no verdict
-  } catch (const std::exception& error) {
-    block.trouble = fmt::format("observation {}: {}", index, error.what());
+  } catch (...) {
+    block.fault = {.observation = index, .words = words_of(std::current_exception())};
   }
   intake.take_waiting();
   block.whole.seconds = seconds() - start;
@@ -344,7 +349,7 @@ void Pool::fold(Block&& block) {
     if (most_kept(plan_) > 0 && !sums_later_) values_.resize(channels_);
     started_ = true;
   }
-  if (!trouble_.empty()) return;
+  if (fault_) return;
   for (auto& [count, partial] : block.partial) {
     auto prefix = std::make_shared<Summary>(running_);
     prefix->append(partial);
@@ -357,7 +362,7 @@ void Pool::fold(Block&& block) {
   }
   kept_->append(std::move(block.observations));
   if (keeps_blocks_) keep_block(block.whole, before);
-  trouble_ = std::move(block.trouble);
+  fault_ = std::move(block.fault);
 }
 
 std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -14,6 +15,7 @@
 #include "estimators/estimator.h"
 #include "harness/image_views.h"
 #include "harness/kept_observations.h"
+#include "harness/sample.h"
 #include "harness/summary.h"
 
 namespace assay::harness {
@@ -69,27 +71,15 @@ class Pool {
   /// The most that is requested.
   std::uint64_t requested() const { return requested_; }
 
-  /// The summary of the first `count` observations, once drawn; `count` as marked.
-  const Summary& prefix(std::uint64_t count) const;
-  std::shared_ptr<const Summary> shared(std::uint64_t count) const;
-  /// The largest marked count that is drawn; 0 where none is.
-  std::uint64_t largest_prefix() const;
-  /// The first values of a channel, at most `count` and as many as were to be kept.
-  std::span<const double> values(std::size_t channel, std::uint64_t count) const;
-  /// The first observations, all channels, at most `count` and as many as were to be kept.
-  Observations observations(std::uint64_t count) const;
-  /// A whole block by itself.
-  struct BlockSums {
-    std::uint64_t count = 0;
-    std::vector<stats::Moments> channels = {};
-    double seconds = 0;
-  };
-  /// Every block drawn so far, where they are kept.
-  std::span<const BlockSums> blocks() const { return blocks_; }
-  /// Why drawing ended early: an estimator threw. Empty when it did not.
-  const std::string& trouble() const { return trouble_; }
-  /// Whether the first `count` observations, once drawn, are there: no trouble came before.
-  bool has(std::uint64_t count) const { return trouble_.empty() || count <= drawn(); }
+  /// The first `count` observations, once drawn, or why they cannot be; `count` as marked.
+  /// std::logic_error before they are drawn.
+  Sample sample(std::uint64_t count) const;
+  /// Not to draw from a source that failed before.
+  void fail(const Fault& fault) { fault_ = fault; }
+  /// Why drawing ended early, if it did: nothing more will be drawn.
+  const std::optional<Fault>& fault() const { return fault_; }
+  /// CPU seconds of drawing up to the largest marked count that is drawn.
+  double seconds() const;
 
   // The scheduler's side. Observations per block are a function of `primaries` alone.
   std::uint64_t block_size() const { return block_size_; }
@@ -104,11 +94,13 @@ class Pool {
     std::vector<std::vector<double>> values;  ///< of each channel, where they are kept
     KeptObservations observations;            ///< where they are kept
     std::vector<std::pair<std::uint64_t, Summary>> partial;
-    std::string trouble;
+    std::optional<Fault> fault;
     std::uint64_t size = 0;  ///< observations that it is to have
   };
-  /// Draws observations [first, last) of one block with a worker's estimator. Thread-safe.
-  Block draw(Estimator& estimator, std::uint64_t first, std::uint64_t last) const;
+  /// Draws observations [first, last) of one block with a worker's estimator, which it may have to
+  /// make. Thread-safe. Whatever the source throws becomes the block's fault.
+  Block draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
+             std::uint64_t last) const;
   /// Takes the next block, in order.
   void fold(Block&& block);
   /// After the last block that is drawn for now, by one thread, on all of them: pictures of files
@@ -130,6 +122,11 @@ class Pool {
   /// Pictures of files, which stay and are summed when all are there.
   bool sums_later_;
   std::vector<ChannelPlan> plan_;
+  friend class Drawn;
+  std::span<const double> values(std::size_t channel, std::uint64_t count) const;
+  Observations observations(std::uint64_t count) const;
+  std::span<const BlockSums> blocks() const { return blocks_; }
+
   Summary no_sums() const;
   const KeptObservations& all_kept() const { return known_ ? *known_ : *kept_; }
   std::shared_ptr<const Summary> sums_of_first(std::uint64_t count, const Summary& drawn);
@@ -152,7 +149,7 @@ class Pool {
   bool keeps_blocks_ = false;
   std::vector<BlockSums> blocks_;
   bool started_ = false;
-  std::string trouble_;
+  std::optional<Fault> fault_;
 };
 
 /// One observation alone, all channels.

@@ -70,14 +70,13 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
     }
     return plan;
   }
-  const auto found = pilots.find(estimator.name);  // a replay has none
-  const Pilot pilot = found != pilots.end() ? found->second : Pilot{.trouble = "no pilot"};
+  const Pilot* const pilot = pilots.find(estimator.name);  // a replay has none
   const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!pilot.trouble.empty() || pilot.moments(i).count < 2) {
+    if (pilot == nullptr || pilot->moments(i).count < 2) {
       plan.push_back({.keep = plotted_values});
     } else {
-      plan.push_back(with_histogram(expected_range(channels[i], pilot.moments(i), averaged)));
+      plan.push_back(with_histogram(expected_range(channels[i], pilot->moments(i), averaged)));
     }
   }
   return plan;
@@ -119,12 +118,13 @@ std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t se
   std::shared_ptr<Pool>& pool = pools_[identity];
   if (pool) return pool;
   pool = std::make_shared<Pool>(wanted.setup, key, wanted.primaries);
-  const auto piloted = pilots.find(wanted.estimator.name);
+  const Pilot* const pilot = pilots.find(wanted.estimator.name);
   const auto rows = wanted.setup->observations();
-  if (rows && piloted != pilots.end() && piloted->second.kept &&
-      piloted->second.kept->size() == *rows) {
-    pool->take_known(piloted->second.kept);
+  if (rows && pilot != nullptr && pilot->kept && pilot->kept->size() == *rows) {
+    pool->take_known(pilot->kept);
   }
+  // It is not asked again, which may take another time-out.
+  if (const Fault* fault = pilots.fault(wanted.estimator.name)) pool->fail(*fault);
   const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());
   pool->plan(draws != nullptr ? sampler_plan(*draws)
                               : estimator_plan(*pool, wanted.estimator, pilots));
@@ -161,7 +161,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
   // A mutant's first, which was_activated holds against its original's.
   if (side.estimator->original && side.purpose.empty()) pool->keep_observations(1);
   keep_for(plan.method, side, *pool);
-  for (const std::uint64_t size : plan.looks.sizes) pool->mark(size);
+  for (const std::uint64_t size : plan.looks.sizes) pool->mark(side.secondaries(size));
   return pool;
 }
 

@@ -12,6 +12,7 @@
 #include "harness/cli.h"
 #include "harness/failure.h"
 #include "harness/interrupt.h"
+#include "harness/progress_terminal.h"
 #include "harness/shard_environment.h"
 
 namespace assay::harness {
@@ -55,7 +56,8 @@ int act(const CheckCommand& command) {
 }
 
 /// What is freed stays with the process. Moments, weights and maps of pictures come and go by tens
-/// of megabytes, and pages that the system has to give anew take longer than what is done with them.
+/// of megabytes, and pages that the system has to give anew take longer than what is done with
+/// them.
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, -1);
@@ -69,7 +71,7 @@ int act(const ImagesCommand& command) {
 int act(const SampleArguments& arguments) { return sample(arguments); }
 
 int act(const ListCommand& command) {
-  return command.tests ? list_tests(load(command.suites)) : list_plugins();
+  return command.tests ? list_tests(load(command.suites), command.selection) : list_plugins();
 }
 
 int act(const DescribeCommand& command) { return describe(command.plugin); }
@@ -104,6 +106,7 @@ int guarded(const std::vector<std::string>& arguments, Command& command) {
   command = parse_command_line(arguments);
   watch_interrupts();
   set_stop_question(interrupted);
+  set_notice([](const std::string& sentence) { say_beside_progress(sentence); });
   set_library_host("/proc/self/exe");
   const int code = std::visit([](const auto& c) { return act(c); }, command);
   return interrupted() ? stopped : flushed(code);
@@ -120,12 +123,14 @@ int program(const std::vector<std::string>& arguments) {
   try {
     return guarded(arguments, command);
   } catch (const InputError& e) {
-    fmt::print(stderr, "assay: {}", failure_text(e, claim_of(command)));
+    fmt::print(stderr, "{}", failure_text(e, claim_of(command)));
   } catch (const std::runtime_error& e) {
     // The world's fault: a full disk, a file that went away.
-    fmt::print(stderr, "assay: {}\n", e.what());
+    fmt::print(stderr, "{}", in_lines(e.what()));
   } catch (const std::exception& e) {
-    fmt::print(stderr, "assay: internal error: {}\n", e.what());
+    fmt::print(stderr, "{}", in_lines(fmt::format("internal error: {}", e.what())));
+  } catch (...) {
+    fmt::print(stderr, "assay: an estimator threw something that is no std::exception\n");
   }
   return interrupted() ? stopped : trouble;
 }

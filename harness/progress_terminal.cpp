@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <iostream>
+#include <mutex>
 
 namespace assay::harness {
 
@@ -13,9 +13,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr const char* wipe = "\r\033[K";
 constexpr std::size_t bar_width = 30;
 constexpr auto bar_period = 100ms;
 constexpr auto line_period = 30s;
+
+// All progress and all sentences beside it are written one by one.
+std::mutex terminal;
+const std::ostream* bar_on = nullptr;  // the stream that a bar stands on
 
 double fraction(std::uint64_t done, std::uint64_t total) {
   return total == 0 ? 0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
@@ -72,13 +77,19 @@ void ProgressBar::advance(std::uint64_t done) {
 }
 
 void ProgressBar::draw() {
+  const std::scoped_lock lock(terminal);
+  bar_on = &out_;
   drawn_ = now_();
   const double part = fraction(done_, total_);
-  out_ << "\r\033[K" << bar(part) << ' ' << progress_text(phase_, done_, total_)
+  out_ << wipe << bar(part) << ' ' << progress_text(phase_, done_, total_)
        << remaining(part, drawn_ - began_) << std::flush;
 }
 
-void ProgressBar::end() { out_ << "\r\033[K" << std::flush; }
+void ProgressBar::end() {
+  const std::scoped_lock lock(terminal);
+  bar_on = nullptr;
+  out_ << wipe << std::flush;
+}
 
 ProgressLines::ProgressLines(std::ostream& out, Clock now)
     : out_(out), now_(std::move(now)), said_(now_()) {}
@@ -91,7 +102,13 @@ void ProgressLines::begin(const std::string& phase, std::uint64_t total) {
 void ProgressLines::advance(std::uint64_t done) {
   if (now_() - said_ < line_period) return;
   said_ = now_();
+  const std::scoped_lock lock(terminal);
   out_ << "assay: " << progress_text(phase_, done, total_) << std::endl;
+}
+
+void say_beside_progress(const std::string& sentence, std::ostream& out) {
+  const std::scoped_lock lock(terminal);
+  out << (bar_on == &out ? wipe : "") << "assay: " << sentence << std::endl;
 }
 
 std::unique_ptr<Progress> make_progress(bool quiet) {

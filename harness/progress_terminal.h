@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <functional>
+#include <iostream>
 #include <memory>
 #include <ostream>
 
@@ -48,6 +49,10 @@ class ProgressLines final : public Progress {
   std::uint64_t total_ = 0;
   std::chrono::steady_clock::time_point said_;
 };
+
+/// A line "assay: …" of its own beside a bar that stands on the same stream, which is drawn again.
+/// Thread-safe.
+void say_beside_progress(const std::string& sentence, std::ostream& out = std::cerr);
 
 /// A bar when standard error is a terminal and CI is not set, lines otherwise, nothing when quiet.
 std::unique_ptr<Progress> make_progress(bool quiet);

@@ -211,18 +211,11 @@ Question about_distribution(const TestEntry& test, const Estimators& estimators)
           .law = law};
 }
 
-/// A margin and where it stands.
-struct PlacedMargin {
-  std::optional<Margin> margin;
-  const Location& where;
-};
-
-void require_absolute(const PlacedMargin& placed, const char* reason) {
-  if (placed.margin && placed.margin->relative) {
-    throw InputError(placed.where, fmt::format("a margin in per cent has no meaning here: {}; give "
-                                               "an absolute number",
-                                               reason));
-  }
+void require_absolute(const Margin& margin, const char* reason) {
+  if (!margin.relative) return;
+  throw InputError(margin.where, fmt::format("a margin in per cent has no meaning here: {}; give "
+                                             "an absolute number",
+                                             reason));
 }
 
 const char* ratio_of(QuantityName name) {
@@ -232,46 +225,71 @@ const char* ratio_of(QuantityName name) {
 
 void check_margins(const Question& question) {
   const TestEntry& test = *question.test;
-  std::optional<Margin> within;
-  if (test.claim.relation == Relation::within) within = test.claim.margin;
-  for (const PlacedMargin& placed : {PlacedMargin{test.detect, test.place_of("detect")},
-                                     PlacedMargin{test.allow, test.place_of("allow")},
-                                     PlacedMargin{within, test.place_of("claim")}}) {
-    if (question.of_draws()) require_absolute(placed, "this is a probability");
+  for (const Margin& margin : margins_of(test)) {
+    if (question.of_draws()) require_absolute(margin, "this is a probability");
     if (test.claim.left.name == QuantityName::distribution) {
-      require_absolute(placed, "a distance between laws is a probability");
+      require_absolute(margin, "a distance between laws is a probability");
     }
     for (const Constant& reference : question.references) {
       if (question.kind == QuestionKind::slope || question.kind == QuestionKind::image) break;
-      if (reference.value == 0) require_absolute(placed, "the reference is zero");
+      if (reference.value == 0) require_absolute(margin, "the reference is zero");
     }
-    const std::optional<Margin>& margin = placed.margin;
-    if (margin && !margin->relative && question.on_log_scale() && question.of_two()) {
-      throw InputError(placed.where,
+    if (!margin.relative && question.on_log_scale() && question.of_two()) {
+      throw InputError(margin.where,
                        fmt::format("a margin on a ratio of {} is relative; give it in per cent",
                                    ratio_of(test.claim.left.name)));
     }
     if (question.kind == QuestionKind::slope) {
-      require_absolute(placed, "a slope is an exponent");
+      require_absolute(margin, "a slope is an exponent");
     }
     if (question.kind == QuestionKind::quantile && question.of_two()) {
-      require_absolute(placed, "two quantiles differ by a number");
+      require_absolute(margin, "two quantiles differ by a number");
     }
+  }
+}
+
+/// The largest reference that is known before anything is drawn, that of a second mean too; nullopt
+/// where none is, or where margins are no part of one.
+std::optional<double> known_size(const Question& question) {
+  if (question.kind == QuestionKind::slope || question.of_draws()) return {};
+  std::vector<double> known;
+  for (const Constant& reference : question.references) known.push_back(reference.value);
+  if (question.of_means() && question.of_two()) {
+    const std::vector<Channel> channels = question.subjects[1].setup->channels();
+    for (const std::size_t channel : question.subjects[1].channels) {
+      known.push_back(question.factor * channels[channel].mean.value_or(0));
+    }
+  }
+  double largest = 0;
+  for (const double value : known) largest = std::max(largest, std::abs(value));
+  return largest > 0 ? std::optional(largest) : std::nullopt;
+}
+
+void refuse_missing_per_cent(const Question& question) {
+  const bool law = question.test->claim.left.name == QuantityName::distribution;
+  for (const Margin& margin : margins_of(*question.test)) {
+    if ((law || question.of_draws()) && margin.value > 1) {
+      throw InputError(margin.where,
+                       fmt::format("the margin {:g} is more than any difference of probabilities; "
+                                   "here {:g} per cent is written `{:g}`",
+                                   margin.value, margin.value, margin.value / 100));
+    }
+    const std::string per_cent = missing_per_cent(margin, known_size(question).value_or(0));
+    if (!per_cent.empty()) throw InputError(margin.where, "the margin " + per_cent);
   }
 }
 
 /// What the suite asks of a test that cannot be had from these sources.
 void check_sizes(const Question& question) {
   const TestEntry& test = *question.test;
-  for (const Subject& subject : question.subjects) {
-    const auto rows = subject.setup->observations();
-    if (rows && test.secondaries && *test.secondaries > *rows) {
-      throw InputError(test.place_of("secondaries"),
-                       fmt::format("`secondaries: {}` is more than the {} observations "
-                                   "that `{}` has",
-                                   *test.secondaries, *rows, subject.estimator->name));
-    }
-  }
+  const std::optional<std::uint64_t> most = question.most_rows();
+  if (!most || test.secondaries.value_or(0) <= *most) return;
+  const auto longest = std::ranges::find_if(question.subjects, [&](const Subject& subject) {
+    return subject.setup->observations() == most;
+  });
+  throw InputError(test.place_of("secondaries"),
+                   fmt::format("`secondaries: {}` is more than the {} observations that `{}` has",
+                               *test.secondaries, *most, longest->estimator->name));
 }
 
 /// A mean with its error has no observations to test anything else with.
@@ -320,6 +338,12 @@ bool Question::of_spread() const {
          (kind == QuestionKind::slope && test->claim.left.name == QuantityName::variance);
 }
 
+std::optional<std::uint64_t> Question::most_rows() const {
+  std::optional<std::uint64_t> most;
+  for (const Subject& subject : subjects) most = std::max(most, subject.setup->observations());
+  return most;
+}
+
 std::string Question::channel_name(std::size_t channel) const {
   if (kind == QuestionKind::cost) return "cost";
   if (kind == QuestionKind::same_cells) return "cells";
@@ -341,6 +365,53 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
   require_moments_suffice(question);
   check_margins(question);
   check_sizes(question);
+  return question;
+}
+
+std::string written_key(const TestEntry& test, const std::string& key, const std::string& value) {
+  const bool of_command_line = test.where.file == "claim";
+  return of_command_line ? fmt::format("`--{} {}`", key, value)
+                         : fmt::format("`{}: {}`", key, value);
+}
+
+std::vector<Margin> margins_of(const TestEntry& test) {
+  std::vector<Margin> margins;
+  if (test.detect) margins.push_back(*test.detect);
+  if (test.allow) margins.push_back(*test.allow);
+  if (test.claim.relation == Relation::within) margins.push_back(test.claim.margin);
+  return margins;
+}
+
+std::string missing_per_cent(const Margin& margin, double size) {
+  if (margin.relative || !(size > 0) || margin.value <= size) return "";
+  return fmt::format(
+      "{:g} is {:.3g} times what it is held against, {:.3g}: for {:g} per cent write `{:g}%`; if "
+      "so much is "
+      "meant, `{:.0f}%`",
+      margin.value, margin.value / size, size, margin.value, margin.value,
+      std::ceil(100 * margin.value / size));
+}
+
+Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
+  const bool law = test.claim.left.name == QuantityName::distribution;
+  if (law && !test.detect && !test.secondaries) {
+    const std::vector<Source> sources = sources_of(test.claim);
+    const bool given = std::ranges::any_of(sources, [&](const Source& source) {
+      return estimator_of(source, estimators).setup->observations().has_value();
+    });
+    test.detect_by_default = !given;
+  }
+  if (test.detect_by_default) {
+    test.detect = Margin{.value = default_law_effect};
+    if (test.allow && test.allow->value >= default_law_effect) {
+      throw InputError(test.allow->where,
+                       fmt::format("`allow` ({}) is not below `detect`, which is {} by default; "
+                                   "give a larger `detect`",
+                                   to_string(*test.allow), default_law_effect));
+    }
+  }
+  Question question = ask(test, estimators, seed);
+  refuse_missing_per_cent(question);
   return question;
 }
 

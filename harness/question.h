@@ -3,6 +3,7 @@
 // A claim about the estimators of a suite: which observations it is about and what they are held
 // against, channel by channel.
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -26,6 +27,11 @@ struct Subject {
   std::optional<ImageShape> image = {};  ///< what these channels are together
   /// Where `estimator` is this question's own: a point of a sweep.
   std::shared_ptr<const PreparedEstimator> own = nullptr;
+
+  /// Observations that it has in a look of this size: all rows of a file where these are fewer.
+  std::uint64_t secondaries(std::uint64_t look) const {
+    return std::min(look, setup->observations().value_or(look));
+  }
 
   /// Of how many primaries an observation is the average: its variance and cost times this are
   /// those of one primary.
@@ -81,6 +87,8 @@ struct Question {
   std::string channel_name(std::size_t channel) const;
   /// Subjects without a reference.
   std::size_t compared() const { return subjects.size() - (has_reference_subject ? 1 : 0); }
+  /// The most ready-made observations of a subject; nothing where all are drawn.
+  std::optional<std::uint64_t> most_rows() const;
   bool of_two() const { return kind != QuestionKind::slope && compared() == 2; }
   bool of_means() const {
     return kind == QuestionKind::mean_of_one || kind == QuestionKind::mean_of_two;
@@ -116,5 +124,24 @@ struct Question {
 /// Sources that would share a stream under this seed are told apart.
 Question ask(const TestEntry& test, const std::map<std::string, PreparedEstimator>& estimators,
              std::uint64_t seed);
+
+/// The `detect` of a claim about laws where nothing says how many observations to take.
+inline constexpr double default_law_effect = 0.05;
+
+/// `ask` of a test as its user wrote it. Gives a claim about laws its default `detect`, unless the
+/// test has `detect` or `secondaries` or its rows are given. InputError at a margin that is larger
+/// than its reference, or than any probability: nearly always a per cent sign is missing.
+Question ask_as_written(TestEntry& test, const std::map<std::string, PreparedEstimator>& estimators,
+                        std::uint64_t seed);
+
+/// A key of the test as its user writes it: "`test: t`", or "`--test t`" of the command line.
+std::string written_key(const TestEntry& test, const std::string& key, const std::string& value);
+
+/// The margins that a test has: `detect`, `allow` and that of `within`.
+std::vector<Margin> margins_of(const TestEntry& test);
+
+/// Says how an absolute margin larger than `size`, what it is held against, is written in per cent.
+/// "" for any other margin.
+std::string missing_per_cent(const Margin& margin, double size);
 
 }  // namespace assay::harness

@@ -20,7 +20,10 @@ std::string parts_of(const PreparedEstimator& estimator) {
     text += ", …";
     add(element_name(*image, image->elements() - 1));
   } else {
-    for (const Channel& channel : estimator.setup->channels()) add(channel.name);
+    constexpr std::size_t most = 16;
+    const std::vector<Channel> channels = estimator.setup->channels();
+    for (std::size_t i = 0; i < std::min(most, channels.size()); ++i) add(channels[i].name);
+    if (channels.size() > most) text += fmt::format(", … ({} in all)", channels.size());
   }
   for (const NamedSampler& named : estimator.setup->samplers()) {
     add(named.name);

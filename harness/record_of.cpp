@@ -45,11 +45,11 @@ reports::Histogram histogram_of(const Histogram& histogram) {
           .above = histogram.above};
 }
 
-reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t channel) {
-  const Subject& side = work.outcome.question.subjects[subject];
-  const std::uint64_t count = work.outcome.secondaries();
+reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn,
+                          std::size_t channel) {
+  const Subject& side = outcome.question.subjects[subject];
   const std::size_t index = side.channels[channel];
-  const Summary& summary = work.pools[subject]->prefix(count);
+  const Summary& summary = drawn.summary();
   const ChannelSummary& kept = summary.channels[index];
   const stats::Moments& moments = kept.moments;
   const ChannelDetails& details = kept.details();
@@ -58,14 +58,14 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
                          .plugin = side.estimator->entry->information.name,
                          .parameters = side.estimator->parameters,
                          .channel = side.setup->channels()[index].name,
-                         .stream = stream_text(*work.pools[subject]),
-                         .primaries = work.outcome.plan.primaries[subject],
+                         .stream = stream_text(drawn.pool()),
+                         .primaries = outcome.plan.primaries[subject],
                          .secondaries = summary.count};
   sample.nonzero = moments.nonzero;
   sample.nonfinite = kept.nonfinite;
   sample.cost = cost_of(summary);
   // Another test on the same observations may have kept them: a record must not tell.
-  const bool costs = work.outcome.plan.method.keeps == Keeps::costs;
+  const bool costs = outcome.plan.method.keeps == Keeps::costs;
   for (std::size_t i = 0; costs && i < details.with_cost.size(); ++i) {
     const stats::JointMoments& joint = details.with_cost[i];
     sample.with_cost.push_back({.kind = i == rays_cost ? "rays" : "samples",
@@ -75,7 +75,7 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
                                 .m21 = joint.m21});
   }
   // The number of a cell is a name: it has no mean.
-  if (work.outcome.plan.method.keeps == Keeps::cells) return sample;
+  if (outcome.plan.method.keeps == Keeps::cells) return sample;
   if (moments.count > 0) {
     sample.mean = number(moments.mean);
     sample.minimum = number(moments.minimum);
@@ -87,31 +87,35 @@ reports::Sample sample_of(const TestWork& work, std::size_t subject, std::size_t
     sample.kurtosis = number(moments.kurtosis());
   }
   sample.histogram = histogram_of(details.histogram);
-  if (spread && !work.pools[subject]->is_ready_made()) {
+  if (spread && !drawn.pool().is_ready_made()) {
+    const std::span<const double> values = drawn.values(index);
     sample.quantiles =
-        quantile_points(work.pools[subject]->values(index, std::min(count, plotted_values)));
+        quantile_points(values.first(std::min<std::size_t>(values.size(), plotted_values)));
   }
   return sample;
 }
 
+/// The samples of the subjects that yielded all of theirs.
 std::vector<reports::Sample> samples_of(const TestWork& work) {
   std::vector<reports::Sample> samples;
-  const std::vector<Subject>& subjects = work.outcome.question.subjects;
-  if (has_image(work.outcome.question)) {
-    for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
-      if (!work.pools[subject]->has(work.outcome.secondaries())) continue;
-      samples.push_back(subjects[subject].image ? image_sample(work, subject)
-                                                : sample_of(work, subject, 0));
+  const TestOutcome& outcome = work.outcome;
+  const std::vector<Subject>& subjects = outcome.question.subjects;
+  const std::vector<Sample> all = work.samples();
+  if (has_image(outcome.question)) {
+    for (std::size_t subject = 0; subject < all.size(); ++subject) {
+      const Drawn* const drawn = all[subject].drawn();
+      if (drawn == nullptr) continue;
+      samples.push_back(subjects[subject].image ? image_sample(outcome, subject, *drawn)
+                                                : sample_of(outcome, subject, *drawn, 0));
     }
     return samples;
   }
   // All channels, also where one number is made of them.
   for (std::size_t channel = 0; channel < subjects[0].channels.size(); ++channel) {
-    for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
+    for (std::size_t subject = 0; subject < all.size(); ++subject) {
       if (channel >= subjects[subject].channels.size()) continue;
-      if (work.pools[subject]->has(work.outcome.secondaries())) {
-        samples.push_back(sample_of(work, subject, channel));
-      }
+      const Drawn* const drawn = all[subject].drawn();
+      if (drawn != nullptr) samples.push_back(sample_of(outcome, subject, *drawn, channel));
     }
   }
   return samples;
@@ -232,10 +236,11 @@ reports::Test head_of(const TestEntry& entry, const std::string& file) {
           .expected = expected_verdict(entry.expect)};
 }
 
-reports::Test skipped_test(const TestEntry& entry, const SuiteRun& run) {
-  reports::Test test = head_of(entry, run.suite.file);
-  test.verdict = reports::Verdict::skipped;
-  test.message = run.lack;
+reports::Test record_of_untested(const Untested& untested, const std::string& file) {
+  reports::Test test = head_of(*untested.test, file);
+  test.verdict = untested.verdict;
+  test.ok = test.verdict == test.expected;
+  test.message = untested.message;
   return test;
 }
 
@@ -270,13 +275,15 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   test.gates = outcome.plan.gates;
   test.gates.insert(test.gates.end(), outcome.gates.begin(), outcome.gates.end());
   test.samples = samples_of(work);
-  for (const ChannelOutcome& channel : outcome.channels) {
-    test.channels.push_back(channel_of(channel, holm && outcome.place.inside, regions));
-    test.channels.back().laws = empirical_laws(work, channel.index);
+  if (const std::optional<DrawnTest> drawn = harness::drawn(work)) {
+    for (const ChannelOutcome& channel : outcome.channels) {
+      test.channels.push_back(channel_of(channel, holm && outcome.place.inside, regions));
+      test.channels.back().laws = empirical_laws(*drawn, channel.index);
+    }
+    if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
+    add_image(*drawn, test);
+    add_cells(*drawn, test);
   }
-  if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
-  add_image(work, test);
-  add_cells(work, test);
   test.looks = looks_of(outcome, regions);
   test.message = outcome.message;
   return test;
@@ -294,7 +301,15 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
                          .seed = run->seed,
                          .alpha = run->suite.alpha,
                          .beta = run->suite.beta};
+    // In the order of the suite's file, in which both are.
+    auto untested = run->untested.begin();
+    const auto add_untested_before = [&](const TestEntry* next) {
+      for (; untested != run->untested.end() && (!next || untested->test < next); ++untested) {
+        suite.tests.push_back(record_of_untested(*untested, run->suite.file));
+      }
+    };
     for (const TestWork& work : run->tests) {
+      add_untested_before(work.outcome.question.test);
       suite.tests.push_back(record_of_test(work, run->suite.file, run->holm));
       suite.tests.back().replay =
           options.command.empty()
@@ -302,12 +317,10 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
               : options.command + fmt::format(" --seed {}", run->seed) +
                     (run->suite.file.empty() ? "" : id_filter(suite.tests.back().id));
     }
-    for (const TestEntry* entry : run->skipped) {
-      suite.tests.push_back(skipped_test(*entry, *run));
-    }
+    add_untested_before(nullptr);
     suite.statements = statements_of(run->suite, suite.tests);
     suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
-    whole = whole && (run->holm || run->skipped.size() == run->suite.tests.size());
+    whole = whole && (run->holm);
     add_pictures(*run, suite);
     record.suites.push_back(std::move(suite));
   }

@@ -22,16 +22,23 @@ struct Picture {
   std::optional<std::uint64_t> own = {};
 };
 
+/// A test that no question can be made of: it is skipped where a program is missing that its suite
+/// needs, and an error where one of its sources cannot be prepared.
+struct Untested {
+  const TestEntry* test;
+  reports::Verdict verdict;
+  std::string message;
+};
+
 /// A suite in a run: what it says, what was prepared from it, what came out.
 struct SuiteRun {
   Suite suite;
   std::uint64_t seed = 1;
   std::map<std::string, PreparedEstimator> estimators;
-  Pilots pilots = {};  ///< of the estimators of the selected tests
-  std::vector<TestWork> tests = {};
-  /// Why none of its tests can run, "" where they can, and the selected ones if they cannot.
-  std::string lack = {};
-  std::vector<const TestEntry*> skipped = {};
+  std::vector<Question> questions = {};  ///< of its tests, but for those that cannot be tested
+  Pilots pilots = {};                    ///< of the estimators of the selected tests
+  std::vector<TestWork> tests = {};      ///< the selected ones
+  std::vector<Untested> untested = {};   ///< of the selected ones the others
   std::vector<Picture> pictures = {};
   bool holm = false;  ///< the whole family ran
 };

@@ -1,7 +1,6 @@
 #pragma once
 
-// Moments as a shard's record keeps them, there and back; what their mean lost to rounding stays
-// behind.
+// Moments as a shard's record keeps them, there and back.
 
 #include "reports/record.h"
 #include "stats/moments.h"
@@ -16,7 +15,8 @@ inline reports::Moments recorded(const stats::Moments& moments) {
           .m4 = moments.m4,
           .minimum = moments.minimum,
           .maximum = moments.maximum,
-          .nonzero = moments.nonzero};
+          .nonzero = moments.nonzero,
+          .rest = moments.rest};
 }
 
 inline stats::Moments moments_of(const reports::Moments& recorded) {
@@ -27,7 +27,8 @@ inline stats::Moments moments_of(const reports::Moments& recorded) {
           .m4 = recorded.m4,
           .minimum = recorded.minimum,
           .maximum = recorded.maximum,
-          .nonzero = recorded.nonzero};
+          .nonzero = recorded.nonzero,
+          .rest = recorded.rest};
 }
 
 }  // namespace assay::harness

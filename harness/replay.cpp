@@ -13,11 +13,13 @@
 #include "harness/commands.h"
 #include "harness/draw_text.h"
 #include "harness/frozen.h"
+#include "harness/interrupt.h"
 #include "harness/looks.h"
 #include "harness/pools.h"
 #include "harness/progress_terminal.h"
 #include "harness/record_of.h"
 #include "harness/recorded_test.h"
+#include "harness/rows.h"
 #include "harness/sampler_setup.h"
 #include "harness/shell.h"
 #include "harness/suite_entries.h"
@@ -47,8 +49,7 @@ Value parameters_of(const reports::Sample& sample, const Location& where) {
     const std::size_t equals = piece.find('=');
     const std::string name = piece.substr(0, equals);
     Value value = read_flow(piece.substr(equals + 1), where);
-    const auto known = std::find_if(declared.begin(), declared.end(),
-                                    [&](const auto& parameter) { return parameter.name == name; });
+    const auto known = std::ranges::find(declared, name, &ParameterInformation::name);
     if (known == declared.end() || value.kind() == Value::Kind::null) continue;
     if (known->type == ParameterType::string) value = Value::scalar(value.text().substr(1), where);
     const bool is_scalar = value.kind() == Value::Kind::scalar;
@@ -93,10 +94,8 @@ Suite suite_of(const Recorded& recorded, const std::string& record) {
               .alpha = recorded.suite.alpha,
               .beta = recorded.suite.beta};
   for (const reports::Sample& sample : recorded.test.samples) {
-    const bool known =
-        std::any_of(suite.estimators.begin(), suite.estimators.end(),
-                    [&](const EstimatorEntry& entry) { return entry.name == sample.estimator; });
-    if (known) continue;
+    const auto known = std::ranges::find(suite.estimators, sample.estimator, &EstimatorEntry::name);
+    if (known != suite.estimators.end()) continue;
     const Location where{.file = recorded.suite.file};
     suite.estimators.push_back({.name = sample.estimator,
                                 .plugin = sample.plugin,
@@ -129,8 +128,8 @@ stats::LookSchedule recorded_looks(const reports::Test& test) {
     looks.sizes.push_back(look.secondaries);
     looks.weights.push_back(look.weight);
   }
-  if (looks.sizes.empty()) return {{test.samples.front().secondaries}, {1}};
-  return looks;
+  if (!looks.sizes.empty()) return looks;
+  return {{std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries}, {1}};
 }
 
 /// The plan as it was: nothing is chosen anew, so no pilot is drawn.
@@ -173,35 +172,63 @@ struct Rebuilt {
 };
 
 /// The pilots of the run as far as methods take from them: they depend on the seed and the
-/// estimators alone. Larger ones, which a suite's claims may ask for, only choose methods and
-/// sizes.
+/// estimators alone. Larger ones only choose methods and sizes.
 Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t seed) {
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : rebuilt.estimators) all.push_back(&estimator);
   const std::unique_ptr<Progress> progress = make_progress(false);
-  return run_pilots(all, {.seed = seed, .threads = 0, .draws = piloted_draws(question)}, *progress);
+  Pilots pilots =
+      run_pilots(all, {.seed = seed, .threads = 0, .draws = piloted_draws(question)}, *progress);
+  stop_if_interrupted();
+  if (const std::string why = where_pilots_stopped(question, pilots); !why.empty()) {
+    throw std::runtime_error(why);
+  }
+  return pilots;
+}
+
+/// What the record holds of the observations of a subject's channel; null where it holds nothing.
+const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
+                                   std::size_t subject, std::size_t channel) {
+  const Subject& side = question.subjects[subject];
+  if (std::ranges::find(side.channels, channel) == side.channels.end()) return nullptr;
+  // Of two subjects that are one estimator the samples stand in the subjects' order.
+  auto earlier = std::ranges::count_if(
+      std::span(question.subjects).first(subject),
+      [&](const Subject& each) { return each.estimator->listed == side.estimator->listed; });
+  const std::string name = side.setup->channels()[channel].name;
+  for (const reports::Sample& sample : test.samples) {
+    const bool is_its = sample.estimator == side.estimator->listed &&
+                        (side.image.has_value() || sample.channel == name);
+    if (is_its && earlier-- == 0) return &sample;
+  }
+  return nullptr;
 }
 
 /// Data that were recorded elsewhere may have changed since.
-void require_all_rows(const Question& question, const Plan& plan, const std::string& record) {
-  for (const Subject& subject : question.subjects) {
-    const std::uint64_t rows = subject.setup->observations().value_or(plan.most_secondaries());
-    if (rows >= plan.most_secondaries()) continue;
-    throw InputError(
-        {.file = record},
-        fmt::format("the test took {} observations of `{}`, of which there are now {}: "
-                    "replay needs the data as they were",
-                    plan.most_secondaries(), subject.estimator->name, rows));
+void require_same_rows(const Question& question, const Plan& plan, const Recorded& recorded,
+                       const std::string& record) {
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    const Subject& side = question.subjects[i];
+    const reports::Sample* then = recorded_of(recorded.test, question, i, side.channels[0]);
+    const auto now = side.setup->observations();
+    // A run is taken whole.
+    if (!now || !then || then->secondaries == *now) continue;
+    if (then->secondaries == side.secondaries(plan.most_secondaries())) continue;
+    throw InputError({.file = record},
+                     fmt::format("the test took {} observations of `{}`, of which there are now "
+                                 "{}: replay needs the data as they were",
+                                 then->secondaries, side.estimator->name, *now));
   }
 }
 
 std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& record) {
   auto rebuilt = std::make_unique<Rebuilt>();
   rebuilt->suite = suite_of(recorded, record);
+  require_lasting_rows(rebuilt->suite, record);
   rebuilt->estimators = prepare_all(rebuilt->suite);
   Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
   Plan plan = recorded_plan(question, recorded.test);
-  require_all_rows(question, plan, record);
+  require_same_rows(question, plan, recorded, record);
   if (takes_from_pilot(plan.method)) {
     freeze(question, pilots_of(*rebuilt, question, recorded.seed), plan);
   }
@@ -215,26 +242,6 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
   work.pools =
       rebuilt->pools.for_question(work.outcome.question, work.outcome.plan, recorded.seed, {});
   return rebuilt;
-}
-
-/// What the record holds of the observations of a subject's channel; null where it holds nothing.
-const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
-                                   std::size_t subject, std::size_t channel) {
-  const Subject& side = question.subjects[subject];
-  const auto& tested = side.channels;
-  if (std::find(tested.begin(), tested.end(), channel) == tested.end()) return nullptr;
-  // Of two subjects that are one estimator the samples stand in the subjects' order.
-  std::size_t earlier = 0;
-  for (std::size_t i = 0; i < subject; ++i) {
-    earlier += question.subjects[i].estimator->listed == side.estimator->listed ? 1U : 0U;
-  }
-  const std::string name = side.setup->channels()[channel].name;
-  for (const reports::Sample& sample : test.samples) {
-    const bool is_its = sample.estimator == side.estimator->listed &&
-                        (side.image.has_value() || sample.channel == name);
-    if (is_its && earlier-- == 0) return &sample;
-  }
-  return nullptr;
 }
 
 /// Says whether the value can be one of those recorded: they lie in a known range, and so many of
@@ -266,18 +273,26 @@ bool print_observation(const TestWork& work, const reports::Test& recorded, std:
   bool same = true;
   for (std::size_t i = 0; i < work.pools.size(); ++i) {
     const Pool& pool = *work.pools[i];
-    if (pool.is_ready_made()) {
-      fmt::print("{}  has the moments of a run, not its observations\n",
-                 question.subjects[i].estimator->name);
+    const Subject& side = question.subjects[i];
+    const bool taken = index < side.secondaries(work.outcome.plan.most_secondaries());
+    if (pool.is_ready_made() || !taken) {
+      fmt::print("{}  has {}\n", side.estimator->name,
+                 taken ? "the moments of a run, not its observations" : "no such observation");
       continue;
     }
-    const std::vector<double> values =
-        draw_observation(*pool.setup(), pool.key(), pool.primaries(), index);
+    std::vector<double> values;
+    try {
+      values = draw_observation(*pool.setup(), pool.key(), pool.primaries(), index);
+    } catch (...) {
+      const Fault fault{.observation = index, .words = words_of(std::current_exception())};
+      throw std::runtime_error(fmt::format("`{}` stopped at {}",
+                                           question.subjects[i].estimator->name, to_string(fault)));
+    }
     const std::vector<Channel> channels = pool.setup()->channels();
     for (std::size_t c = 0; c < values.size(); ++c) {
       if (channels[c].name == cell_channel && values[c] == no_cell) continue;
-      fmt::print("{}.{}  observation {}: {}\n", question.subjects[i].estimator->name,
-                 channels[c].name, index, values[c]);
+      fmt::print("{}.{}  observation {}: {}\n", side.estimator->name, channels[c].name, index,
+                 values[c]);
       const reports::Sample* sample = recorded_of(recorded, question, i, c);
       if (sample == nullptr || index >= sample->secondaries) continue;
       same &= print_against(*sample, values[c]);
@@ -321,7 +336,6 @@ std::string as_probability(const reports::Number& log10_p) {
 /// was made of seconds.
 bool print_comparison(const reports::Test& now, const reports::Test& then, bool timed) {
   bool same = true;
-  fmt::print("{}\n{}\n", then.id, then.claim);
   if (then.verdict == reports::Verdict::invalid || then.verdict == reports::Verdict::error) {
     fmt::print("{}, so the numbers below decide nothing: {}\n", reports::to_string(then.verdict),
                then.message);
@@ -347,6 +361,30 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
   }
   same &= now.channels.size() == then.channels.size() && now.samples.size() == then.samples.size();
   return same;
+}
+
+/// Prints what is drawn now beside what was recorded; 0 where it is the same. std::runtime_error
+/// where a source can no longer be drawn.
+int replay(const Recorded& recorded, const ReplayArguments& arguments) {
+  const std::unique_ptr<Rebuilt> rebuilt = rebuild(recorded, arguments.record);
+  if (arguments.observation) {
+    return print_observation(rebuilt->work, recorded.test, *arguments.observation) ? 0 : 1;
+  }
+  const std::unique_ptr<Progress> progress = make_progress(false);
+  sample_in_looks({&rebuilt->work}, rebuilt->pools.all(), 0, *progress);
+  stop_if_interrupted();
+  const reports::Test now = record_of_test(rebuilt->work, recorded.suite.file, false);
+  fmt::print("{}\n{}\n", recorded.test.id, recorded.test.claim);
+  if (now.verdict == reports::Verdict::error && recorded.test.verdict != now.verdict) {
+    throw std::runtime_error(now.message);
+  }
+  const bool timed = rebuilt->work.outcome.plan.method.keeps == Keeps::blocks;
+  const bool same = print_comparison(now, recorded.test, timed);
+  fmt::print("{}\n", !same   ? "NOT the numbers recorded: another version, machine or input file?"
+                     : timed ? "the same observations as recorded; seconds do not repeat, and what "
+                               "is made of them differs"
+                             : "the same numbers as recorded");
+  return same ? 0 : 1;
 }
 
 }  // namespace
@@ -380,20 +418,15 @@ int replay(const ReplayArguments& arguments) {
         {.file = arguments.record},
         fmt::format("test `{}` recorded no samples: {}", recorded.test.id, recorded.test.message));
   }
-  const std::unique_ptr<Rebuilt> rebuilt = rebuild(recorded, arguments.record);
-  if (arguments.observation) {
-    return print_observation(rebuilt->work, recorded.test, *arguments.observation) ? 0 : 1;
+  try {
+    return replay(recorded, arguments);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& fault) {
+    stop_if_interrupted();
+    fmt::print("error: {}\n", fault.what());
+    return 1;
   }
-  const std::unique_ptr<Progress> progress = make_progress(false);
-  sample_in_looks({&rebuilt->work}, rebuilt->pools.all(), 0, *progress);
-  const reports::Test now = record_of_test(rebuilt->work, recorded.suite.file, false);
-  const bool timed = rebuilt->work.outcome.plan.method.keeps == Keeps::blocks;
-  const bool same = print_comparison(now, recorded.test, timed);
-  fmt::print("{}\n", !same   ? "NOT the numbers recorded: another version, machine or input file?"
-                     : timed ? "the same observations as recorded; seconds do not repeat, and what "
-                               "is made of them differs"
-                             : "the same numbers as recorded");
-  return same ? 0 : 1;
 }
 
 }  // namespace assay::harness

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -177,8 +178,9 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
     const Pilot* pilot = pilot_of(side, pilots);
     if (!is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
     const PilotChannel first = pilot_channel(side, *pilot, 0);
-    // Constants have gates of their own.
-    if (first.values.empty() || !(first.moments.m2 > 0)) continue;
+    // Constants have gates of their own, but a single row is none.
+    const bool constant = first.values.size() > 1 && !(first.moments.m2 > 0);
+    if (first.values.empty() || constant) continue;
     const std::uint64_t rows = std::min<std::uint64_t>(first.values.size(), count);
     plan.gates.push_back({.name = "rows that show their independence of " + side.estimator->name,
                           .value = static_cast<double>(rows),
@@ -186,9 +188,10 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
                           .state = rows < fewest_in_order_to_tell ? "red" : "green"});
     if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
     reason = fmt::format(
-        "{} rows of {} are too few for their order to show that they are independent of each "
-        "other: that takes {}, and `test: {}` takes them to be",
-        rows, side.estimator->name, fewest_in_order_to_tell, plan.method.name);
+        "`{}` has {} row{}, and it takes {} to see that they do not depend on each other; give "
+        "more, or, if they do not, add {}",
+        side.estimator->name, rows, rows == 1 ? "" : "s", fewest_in_order_to_tell,
+        written_key(*question.test, "test", plan.method.name));
   }
   return reason;
 }
@@ -341,6 +344,22 @@ std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelD
   }
   gates.push_back(stats::unpiloted_skewness_gate(first, data[1].moments, factor, critical_value));
   return gates;
+}
+
+void require_lasting_rows(const Suite& suite, const std::string& record) {
+  for (const EstimatorEntry& entry : suite.estimators) {
+    const Value* const file = entry.plugin == "recorded" ? entry.parameters.find("file") : nullptr;
+    if (file == nullptr) continue;
+    const std::string& name = file->text();
+    const std::string path = (std::filesystem::path(suite.folder) / name).string();
+    if (!recorded::is_read_once(name) && !recorded::is_read_once(path)) continue;
+    throw InputError(
+        {.file = record},
+        fmt::format("the data of `{}` came from {} and cannot be read\n  again; write "
+                    "them to a file and test that: its record can be replayed",
+                    entry.name,
+                    name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`"));
+  }
 }
 
 }  // namespace assay::harness

@@ -54,4 +54,8 @@ std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const C
 /// primary, as a part of a sentence; "" of all others.
 std::string rows_beside_primaries(const Question& question);
 
+/// InputError at the record where rows of the suite came from standard input, a pipe or a device:
+/// they are gone, and cannot be replayed.
+void require_lasting_rows(const Suite& suite, const std::string& record);
+
 }  // namespace assay::harness

@@ -18,7 +18,7 @@ namespace {
 void judge_family(SuiteRun& run, const RunOptions& options) {
   std::vector<TestWork*> tests;
   for (TestWork& work : run.tests) tests.push_back(&work);
-  if (run.tests.size() == run.suite.tests.size() && !options.shard) {
+  if (run.tests.size() + run.untested.size() == run.suite.tests.size() && !options.shard) {
     apply_holm(tests, run.suite.alpha);
     run.holm = true;
   }
@@ -48,7 +48,7 @@ void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<Suit
 }
 
 reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions& options,
-                             Progress& progress) {
+                             Progress& progress, std::string* ledger_fault) {
   const auto start = std::chrono::steady_clock::now();
   const std::string started = utc_now();
   if (!options.ledger.empty()) require_ledger(options.ledger, suites);
@@ -68,18 +68,24 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   reports::Record record = record_of(planned.suites, options);
   record.started = started;
   record.seconds = elapsed.count();
-  if (!options.ledger.empty()) {
+  if (options.ledger.empty()) return record;
+  try {
     record.ledger = add_to_ledger({options.ledger, started, record.tool.commit}, planned.suites);
     note_ledger(record, planned.suites, options);
+  } catch (const std::runtime_error& error) {
+    if (ledger_fault == nullptr) throw;
+    *ledger_fault = error.what();
+    add_note(record, fmt::format("nothing was added to the ledger: {}", error.what()));
   }
   return record;
 }
 
 }  // namespace
 
-reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
-                    Progress& progress) {
-  return with_threads(options.threads, [&] { return run_in_arena(suites, options, progress); });
+reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
+                    std::string* ledger_fault) {
+  return with_threads(options.threads,
+                      [&] { return run_in_arena(suites, options, progress, ledger_fault); });
 }
 
 int exit_code(const reports::Record& record, InconclusivePolicy policy) {

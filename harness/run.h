@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/progress.h"
+#include "harness/selection.h"
 #include "harness/suite.h"
 #include "reports/record.h"
 
@@ -18,16 +19,17 @@ struct RunOptions {
   unsigned threads = 0;                                     ///< 0: all cores
   std::optional<double> alpha = {};                         ///< instead of every suite's
   double coarsen = 1;                                       ///< multiplies every `detect`
-  std::string filter = "";                                  ///< glob on test ids; "" selects all
+  Selection selection = {};                                 ///< of tests; empty selects all
   std::optional<std::pair<unsigned, unsigned>> shard = {};  ///< I of N, I from 1
   bool shard_of_runner = false;  ///< a test runner's, for which a shard without tests is no mistake
   std::string ledger = "";       ///< file to add the evidence to; "": none
   std::string command = "";      ///< how to run the same again, for replay lines
 };
 
-/// Runs the selected tests of the suites. InputError for anything found wrong before sampling.
-reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
-                    Progress& progress);
+/// Runs the selected tests of the suites. InputError for anything found wrong before sampling. A
+/// ledger that cannot be written is a std::runtime_error, or is told in `ledger_fault`.
+reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
+                    std::string* ledger_fault = nullptr);
 
 enum class InconclusivePolicy { report, fail, pass };
 

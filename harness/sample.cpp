@@ -1,131 +1,42 @@
+#include "harness/sample.h"
+
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
+#include <new>
 
-#include "estimators/flush_denormals.h"
-#include "estimators/ready_made.h"
-#include "harness/commands.h"
-#include "harness/interrupt.h"
+#include "estimators/value.h"
 #include "harness/pool.h"
-#include "harness/prepare.h"
-#include "harness/recorded_run.h"
-#include "harness/sampler_setup.h"
 
 namespace assay::harness {
-namespace {
 
-constexpr std::uint64_t usual = 10;
-
-/// What a source names: an estimator's channels, or the marginals of one of its samplers.
-struct Sampled {
-  std::shared_ptr<const Setup> setup;
-  std::string purpose = "";
-  std::vector<std::size_t> columns = {};
-};
-
-void add_columns(Sampled& sampled, const std::string& name) {
-  const std::vector<Channel> channels = sampled.setup->channels();
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (name.empty() ? channels[i].name != cell_channel : channels[i].name == name) {
-      sampled.columns.push_back(i);
-    }
-  }
+std::string to_string(const Fault& fault) {
+  return fault.observation ? fmt::format("observation {}: {}", *fault.observation, fault.words)
+                           : fault.words;
 }
 
-bool has_marginal(const NamedSampler& named, const std::string& name) {
-  const std::vector<Marginal> all = marginals(named.sampler->domain());
-  return std::ranges::find(all, name, &Marginal::name) != all.end();
-}
-
-/// Where numbers of cells are to be printed.
-void ask_for_cells(const Sampled& sampled, const Source& source) {
-  const auto* draws = dynamic_cast<const SamplerSetup*>(sampled.setup.get());
-  if (draws == nullptr) return;
-  const std::vector<Channel> channels = draws->channels();
-  const auto is_cell = [&](std::size_t column) { return channels[column].name == cell_channel; };
-  if (std::ranges::none_of(sampled.columns, is_cell)) return;
+std::string words_of(const std::exception_ptr& thrown) {
   try {
-    draws->density_cells();
-  } catch (const std::domain_error& error) {
-    throw InputError(source.where, error.what());
+    std::rethrow_exception(thrown);
+  } catch (const InputError& error) {
+    const std::string place = assay::to_string(error.where());
+    return place.empty() ? error.message() : place + ": " + error.message();
+  } catch (const std::bad_alloc&) {
+    return "there is not enough memory (std::bad_alloc)";
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "it threw something that is no std::exception";
   }
 }
 
-Sampled sampled_by(const PreparedEstimator& estimator, const Source& source) {
-  Sampled sampled{.setup = estimator.setup};
-  add_columns(sampled, source.part);
-  if (!sampled.columns.empty()) return sampled;
-  const auto dot = source.part.find('.');
-  const std::vector<NamedSampler> samplers = estimator.setup->samplers();
-  for (const NamedSampler& named : samplers) {
-    const bool by_name = named.name == source.part.substr(0, dot);
-    // As in a claim: a marginal of the only sampler needs no sampler's name.
-    const bool by_marginal = samplers.size() == 1 && has_marginal(named, source.part);
-    if (!by_name && !by_marginal) continue;
-    sampled = Sampled{.setup = sampler_setup(named, source.where), .purpose = named.name};
-    const std::string rest = dot == std::string::npos ? "" : source.part.substr(dot + 1);
-    add_columns(sampled, by_name ? rest : source.part);
-  }
-  if (!sampled.columns.empty()) {
-    ask_for_cells(sampled, source);
-    return sampled;
-  }
-  throw InputError(source.where,
-                   fmt::format("`{}` has no part `{}`; `assay describe {}` lists them",
-                               source.estimator, source.part, estimator.entry->information.name));
+std::span<const double> Drawn::values(std::size_t channel) const {
+  return pool_->values(channel, count_);
 }
 
-}  // namespace
-
-int sample(const SampleArguments& arguments) {
-  const Source source = parse_source(arguments.source, {"claim", 1, 1});
-  const std::vector<EstimatorEntry> entries =
-      estimators_of({source}, arguments.estimators, arguments.primaries);
-  const PreparedEstimator estimator = prepare(entries.front(), ".");
-  const Sampled sampled = sampled_by(estimator, source);
-  const auto rows = sampled.setup->observations();
-  if (recorded::is_reference(*sampled.setup)) {
-    throw InputError(source.where, fmt::format("`{}` is a reference, a mean without observations",
-                                               source.estimator));
-  }
-  if (as_recorded_run(*sampled.setup) != nullptr) {
-    throw InputError(
-        {}, fmt::format("`{}` has the moments of a run, not its observations", source.estimator));
-  }
-  if (rows && arguments.secondaries.value_or(0) > *rows) {
-    throw InputError({}, fmt::format("--secondaries {}: `{}` has {} rows", *arguments.secondaries,
-                                     source.estimator, *rows));
-  }
-  const std::uint64_t count = arguments.secondaries.value_or(std::min(usual, rows.value_or(usual)));
-  const StreamKey key = key_of(estimator, arguments.seed, 0, sampled.purpose);
-
-  std::vector<std::string> names;
-  const std::vector<Channel> channels = sampled.setup->channels();
-  for (const std::size_t column : sampled.columns) names.push_back(channels[column].name);
-  fmt::print("# {} {} of {} primaries, seed {}\n", estimator.entry->information.name,
-             estimator.parameters, arguments.primaries, arguments.seed);
-  fmt::print("# stream: {:016x}\n# columns: {}\n", key.bits, fmt::join(names, " "));
-  if (const auto* draws = dynamic_cast<const SamplerSetup*>(sampled.setup.get())) {
-    std::vector<double> none;
-    for (const Marginal& marginal : draws->marginals()) none.push_back(no_point(marginal));
-    fmt::print("# a draw without a point: {}\n", fmt::join(none, " "));
-  }
-  const std::unique_ptr<Estimator> worker = sampled.setup->make();
-  const FlushDenormals flush;
-  std::vector<double> out(channels.size());
-  worker->announce({.key = key, .first = 0, .last = count});
-  for (std::uint64_t row = 0; row < count && !interrupted(); ++row) {
-    Stream random(key, row);
-    Cost unused;
-    worker->secondary(random, arguments.primaries, out, unused);
-    std::string line;
-    for (const std::size_t column : sampled.columns) {
-      line += fmt::format("{}{}", line.empty() ? "" : " ", out[column]);
-    }
-    fmt::print("{}\n", line);
-  }
-  return 0;
+Observations Drawn::observations(std::uint64_t most) const {
+  return pool_->observations(std::min(count_, most));
 }
+
+std::span<const BlockSums> Drawn::blocks() const { return pool_->blocks(); }
 
 }  // namespace assay::harness

@@ -10,6 +10,7 @@
 #include "harness/evidence_ratio.h"
 #include "harness/exact_size.h"
 #include "harness/image_plan.h"
+#include "harness/intended_size.h"
 #include "harness/law_size.h"
 #include "harness/mean_evidence.h"
 #include "harness/method.h"
@@ -133,6 +134,13 @@ bool both_spread(const Question& question, const PlannedChannel& channel) {
   return question.of_two() && channel.standard_deviation > 0 && channel.other_deviation > 0;
 }
 
+double allocation(const stats::SampleSizes& sizes) { return sizes.y / sizes.x; }
+
+/// The spread of the other mean, where one of two has none.
+double size_of_the_spread(const stats::SampleSizes& sizes, const PlannedChannel& channel) {
+  return channel.standard_deviation > 0 ? sizes.x : sizes.y;
+}
+
 stats::MeanPlan mean_plan(const stats::ErrorRates& rates, double allow,
                           const PlannedChannel& channel) {
   return {.standard_deviation = std::hypot(channel.standard_deviation, channel.other_deviation),
@@ -142,9 +150,10 @@ stats::MeanPlan mean_plan(const stats::ErrorRates& rates, double allow,
 }
 
 stats::TwoMeansPlan means_plan(const stats::ErrorRates& rates, double allow,
-                               const PlannedChannel& channel) {
+                               const PlannedChannel& channel, double allocation = 1) {
   return {.standard_deviation_x = channel.standard_deviation,
           .standard_deviation_y = channel.other_deviation,
+          .allocation = allocation,
           .allow = allow * channel.unit,
           .rates = rates};
 }
@@ -178,10 +187,12 @@ double kurtosis_for(const Method& method, double kurtosis, double allowed) {
 }
 
 stats::LogVariancePlan variance_plan(const Method& method, const stats::ErrorRates& rates,
-                                     double allow, const PlannedChannel& channel) {
+                                     double allow, const PlannedChannel& channel,
+                                     double allocation = 1) {
   const stats::ExcessKurtoses allowed = method.frozen.largest_excess_kurtosis();
   return {.kurtosis_x = kurtosis_for(method, channel.kurtosis, allowed.x),
           .kurtosis_y = kurtosis_for(method, channel.other_kurtosis, allowed.y),
+          .allocation = allocation,
           .allow = std::exp(allow),
           .rates = rates};
 }
@@ -224,15 +235,19 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
 /// The probability of showing `within` where theta is 0.
 double equivalence_power(const Question& question, const TestSize& size, const Plan& plan,
                          const PlannedChannel& channel) {
-  const double n = static_cast<double>(size.secondaries);
+  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
   if (question.on_log_scale()) {
     const double one_margin = stats::log_variance_power(
-        variance_plan(plan.method, planned_rates(size.share, channel.regions), 0, channel), n,
-        std::exp(channel.regions.within));
+        variance_plan(plan.method, planned_rates(size.share, channel.regions), 0, channel,
+                      allocation(sizes)),
+        sizes.x, std::exp(channel.regions.within));
     return std::max(0.0, 2 * one_margin - 1);
   }
-  // The reference's error does not shrink with n: as a deviation of the observations it grows.
-  const double spread = std::hypot(channel.standard_deviation, channel.other_deviation,
+  // Two samples are taken for one of the smaller size whose mean is as uncertain. The reference's
+  // error does not shrink with n: as a deviation of the observations it grows.
+  const double n = std::min(sizes.x, sizes.y);
+  const double spread = std::hypot(channel.standard_deviation * std::sqrt(n / sizes.x),
+                                   channel.other_deviation * std::sqrt(n / sizes.y),
                                    channel.reference_error * std::sqrt(n));
   return stats::equivalence_power({.standard_deviation = spread,
                                    .margin = channel.regions.within * channel.unit,
@@ -242,20 +257,16 @@ double equivalence_power(const Question& question, const TestSize& size, const P
 }
 
 /// Quantiles, slopes, images and counts of draws have none here; nor has a comparison of numbers
-/// without a spread, or of variances known from two observations, whose kurtosis is 1.
-bool has_power(const Question& question, const PlannedChannel& channel) {
+/// without a spread, or of variances known from two observations, whose kurtosis is 1. Nor have
+/// methods of which no formula says what they find.
+bool has_power(const Question& question, const Method& method, const PlannedChannel& channel) {
   using enum QuestionKind;
   if (question.kind == quantile || question.kind == slope || question.kind == image ||
-      question.of_draws()) {
+      question.of_draws() || method.name == "anderson-darling" || method.name == "two-part-ks") {
     return false;
   }
   const bool of_spread = has_log_spread(question) || question.of_variances();
   return !of_spread || channel.kurtosis + channel.other_kurtosis > 2;
-}
-
-/// Methods of which no formula says what they find: their power is not quoted.
-bool has_no_power(const Method& method) {
-  return method.name == "anderson-darling" || method.name == "two-part-ks";
 }
 
 bool all_piloted(const Question& question, const Pilots& pilots) {
@@ -301,22 +312,25 @@ std::optional<PlannedChannel> planned_log_channel(const Question& question, cons
 
 std::optional<double> detectable_effect(const Question& question, const TestSize& size,
                                         const Plan& plan, const PlannedChannel& channel) {
-  const double n = static_cast<double>(size.secondaries);
+  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
   const ErrorShare& share = size.share;
   const Regions& regions = channel.regions;
   if (regions.relation == Relation::within) return std::nullopt;  // it finds nothing, it shows
-  if (has_no_power(plan.method)) return std::nullopt;
-  if (!has_power(question, channel)) return std::nullopt;
+  if (!has_power(question, plan.method, channel)) return std::nullopt;
   const stats::ErrorRates rates = planned_rates(share, regions);
   if (is_exact(plan.method)) return exact_detectable_effect(question, size, plan, channel, rates);
   double found = 0;
   if (both_spread(question, channel) && question.of_means()) {
-    found = stats::welch_detectable(means_plan(rates, regions.allow, channel), n) / channel.unit;
+    found = stats::welch_detectable(means_plan(rates, regions.allow, channel, allocation(sizes)),
+                                    sizes.x) /
+            channel.unit;
   } else if (question.of_means()) {
-    found = stats::student_t_detectable(mean_plan(rates, regions.allow, channel), n) / channel.unit;
+    found = stats::student_t_detectable(mean_plan(rates, regions.allow, channel),
+                                        size_of_the_spread(sizes, channel)) /
+            channel.unit;
   } else if (question.on_log_scale()) {
     found = std::log(stats::log_variance_detectable(
-        variance_plan(plan.method, rates, regions.allow, channel), n));
+        variance_plan(plan.method, rates, regions.allow, channel, allocation(sizes)), sizes.x));
   } else {
     found = detectable_between_laws(question, size, plan);
   }
@@ -332,43 +346,27 @@ bool finds_nothing(const Question& question, const TestSize& size, const Plan& p
 
 std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,
                                const PlannedChannel& channel, double effect) {
-  const double n = static_cast<double>(size.secondaries);
+  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
   const ErrorShare& share = size.share;
   const Regions& regions = channel.regions;
   const stats::ErrorRates rates = planned_rates(share, regions);
-  if (!has_power(question, channel)) return std::nullopt;
-  if (has_no_power(plan.method)) return std::nullopt;
+  if (!has_power(question, plan.method, channel)) return std::nullopt;
   if (is_exact(plan.method)) return exact_power_at(question, size, plan, channel, rates, effect);
   if (regions.relation == Relation::within) return equivalence_power(question, size, plan, channel);
-  switch (question.kind) {
-    case QuestionKind::mean_of_one:
-    case QuestionKind::mean_of_two:
-      if (both_spread(question, channel)) {
-        return stats::welch_power(means_plan(rates, regions.allow, channel), n,
-                                  effect * channel.unit);
-      }
-      return stats::student_t_power(mean_plan(rates, regions.allow, channel), n,
-                                    effect * channel.unit);
-    case QuestionKind::variance_of_one:
-    case QuestionKind::variance_of_two:
-    case QuestionKind::cost:
-    case QuestionKind::efficiency:
-    case QuestionKind::total_variance:
-      return stats::log_variance_power(variance_plan(plan.method, rates, regions.allow, channel), n,
-                                       std::exp(effect));
-    case QuestionKind::fit_to_density:
-    case QuestionKind::fit_to_law:
-    case QuestionKind::same_law:
-    case QuestionKind::same_cells:
-      return power_between_laws(question, size, plan, effect);
-    case QuestionKind::image:
-    case QuestionKind::quantile:
-    case QuestionKind::integral:
-    case QuestionKind::inconsistency:
-    case QuestionKind::slope:
-      break;
+  if (question.of_means() && !both_spread(question, channel)) {
+    return stats::student_t_power(mean_plan(rates, regions.allow, channel),
+                                  size_of_the_spread(sizes, channel), effect * channel.unit);
   }
-  return std::nullopt;
+  if (question.of_means()) {
+    return stats::welch_power(means_plan(rates, regions.allow, channel, allocation(sizes)), sizes.x,
+                              effect * channel.unit);
+  }
+  if (question.on_log_scale()) {
+    return stats::log_variance_power(
+        variance_plan(plan.method, rates, regions.allow, channel, allocation(sizes)), sizes.x,
+        std::exp(effect));
+  }
+  return power_between_laws(question, size, plan, effect);
 }
 
 PlannedChannel observed_channel(const Question& question, const Regions& regions,

@@ -24,7 +24,7 @@ struct PlannedChannel {
   double null_value = 0;    ///< of one mean: where theta is 0
 };
 
-/// A test of n secondaries of each subject, at its levels.
+/// A look of a test, at its levels: secondaries of each subject, or all that it has.
 struct TestSize {
   ErrorShare share;
   std::uint64_t secondaries;

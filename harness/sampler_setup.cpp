@@ -8,6 +8,7 @@
 
 #include "harness/declared_density.h"
 #include "harness/fetched_ahead.h"
+#include "harness/sample.h"
 #include "harness/sound_draw.h"
 
 namespace assay::harness {
@@ -120,8 +121,10 @@ auto SamplerSetup::integrated(auto table) const {
   if (!no_density_.empty()) throw NoDensity(no_density_);
   try {
     return table();
-  } catch (const std::runtime_error& error) {
-    no_density_ = error.what();
+  } catch (const std::domain_error&) {
+    throw;  // the density is there, and no cells can be made of it
+  } catch (...) {
+    no_density_ = words_of(std::current_exception());
     throw NoDensity(no_density_);
   }
 }

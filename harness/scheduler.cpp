@@ -19,7 +19,7 @@ struct Task {
   std::uint64_t last;
 };
 
-struct Drawn {
+struct DrawnBlock {
   std::size_t pool;
   std::shared_ptr<Pool::Block> block;  // shared: a pipeline's items are copied
 };
@@ -35,7 +35,7 @@ class TaskList {
   explicit TaskList(const std::vector<std::shared_ptr<Pool>>& pools)
       : pools_(pools), in_trouble_(pools.size()) {
     for (std::size_t i = 0; i < pools.size(); ++i) {
-      in_trouble_[i] = !pools[i]->trouble().empty();
+      in_trouble_[i] = pools[i]->fault().has_value();
       begun_.push_back(pools[i]->drawn());
     }
     next_ = begun_;
@@ -122,21 +122,22 @@ void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& dr
     return task;
   };
   const auto draw = [&](const Task& task) {
-    return Drawn{task.pool, std::make_shared<Pool::Block>(pools[task.pool]->draw(
-                                workers.estimator(task.pool), task.first, task.last))};
+    const auto estimator = [&]() -> Estimator& { return workers.estimator(task.pool); };
+    return DrawnBlock{task.pool, std::make_shared<Pool::Block>(
+                                     pools[task.pool]->draw(estimator, task.first, task.last))};
   };
-  const auto fold = [&](const Drawn& drawn) {
+  const auto fold = [&](const DrawnBlock& drawn) {
     done += work(*pools[drawn.pool], drawn.block->whole.count);
     pools[drawn.pool]->fold(std::move(*drawn.block));
-    if (!pools[drawn.pool]->trouble().empty()) tasks.note_trouble(drawn.pool);
+    if (pools[drawn.pool]->fault()) tasks.note_trouble(drawn.pool);
     progress.advance(done);
   };
   with_threads(drawing.threads, [&] {
     tbb::parallel_pipeline(
         under_way(pools, count),
         tbb::make_filter<void, Task>(tbb::filter_mode::serial_in_order, hand_out) &
-            tbb::make_filter<Task, Drawn>(tbb::filter_mode::parallel, draw) &
-            tbb::make_filter<Drawn, void>(tbb::filter_mode::serial_in_order, fold));
+            tbb::make_filter<Task, DrawnBlock>(tbb::filter_mode::parallel, draw) &
+            tbb::make_filter<DrawnBlock, void>(tbb::filter_mode::serial_in_order, fold));
     for (const auto& pool : pools) pool->end_drawing();
   });
   progress.end();

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "estimators/ready_made.h"
 #include "harness/found_effect.h"
 #include "harness/holm_verdict.h"
 #include "harness/picture.h"
@@ -21,6 +22,10 @@ std::string digest_of(const SuiteRun& run) {
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const auto prepared = run.estimators.find(entry.name);
     if (prepared == run.estimators.end()) continue;  // of a suite that is skipped
+    if (const auto rows = recorded::observations_digest(*prepared->second.setup)) {
+      hash = text_hash(fmt::format("{:016x}", *rows), hash);
+      continue;
+    }
     const std::string file = prepared->second.setup->data_file();
     if (file.empty()) continue;
     std::ifstream stream(file, std::ios::binary);
@@ -74,8 +79,7 @@ reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
 }  // namespace
 
 std::string options_text(const RunOptions& options) {
-  if (options.filter.empty()) return options.command;
-  return options.command + " --filter " + shell_quoted(options.filter);
+  return options.command + options_text(options.selection);
 }
 
 void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOptions& options,
@@ -90,9 +94,11 @@ void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOpti
       suite.pictures.push_back(picture_of(picture, *run));
     }
     for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
-    for (const TestEntry* entry : run->skipped) {
-      suite.results.push_back({.position = position_of(*entry, run->suite)});
+    for (const Untested& each : run->untested) {
+      suite.results.push_back({.position = position_of(*each.test, run->suite)});
     }
+    // As the record has its tests.
+    std::ranges::sort(suite.results, {}, &reports::ShardTest::position);
     shard.suites.push_back(std::move(suite));
   }
   record.shard = std::move(shard);

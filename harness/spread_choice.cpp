@@ -23,17 +23,24 @@ namespace {
 
 // log-variance is asymptotic: on normal data its level at .001 is 1.3 times nominal here.
 constexpr std::uint64_t log_variance_secondaries = 1000;
+constexpr double level_factor = 1.25;
 // The most that a method may ask for to be valid.
 constexpr std::uint64_t most_for_a_variance = 1024 * usual_secondaries;
 
 /// The shape of a secondary by the pilot's finite values: of the others the test's own observations
-/// tell, whose verdict is `error`. Nothing of fewer than two.
+/// tell, whose verdict is `error`. Nothing of too few rows to have a shape.
 std::optional<stats::SixthOrderShape> secondary_shape(const Known& known) {
   std::vector<double> finite;
   std::copy_if(known.pilot.values.begin(), known.pilot.values.end(), std::back_inserter(finite),
                [](double value) { return std::isfinite(value); });
-  if (finite.size() < 2) return {};
+  if (finite.size() < fewest_in_order) return {};
   return stats::averaged(stats::sixth_order_shape(finite), whole_secondaries(known.averaged));
+}
+
+/// Observations of the subject with fewest, where one with so many times as many needs
+/// `secondaries`.
+std::uint64_t of_the_fewest(std::uint64_t secondaries, double times) {
+  return whole_secondaries(static_cast<double>(secondaries) / times);
 }
 
 std::uint64_t enough_for_log_variance(const Question& question, const std::vector<Known>& channels,
@@ -41,19 +48,26 @@ std::uint64_t enough_for_log_variance(const Question& question, const std::vecto
   std::uint64_t needed = log_variance_secondaries;
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     std::vector<stats::SixthOrderShape> shapes;
+    std::vector<double> times;
     for (const Known& known : channels) {
       if (known.channel != channel) continue;
-      if (const auto shape = secondary_shape(known)) shapes.push_back(*shape);
+      const auto shape = secondary_shape(known);
+      if (!shape) continue;
+      shapes.push_back(*shape);
+      times.push_back(known.times);
     }
     if (shapes.empty()) continue;
-    needed = std::max(needed, shapes.size() == 1
-                                  ? stats::values_for_log_variance(shapes[0], critical)
-                                  : stats::values_for_log_variance(shapes[0], shapes[1], critical));
+    const std::uint64_t of_first =
+        shapes.size() == 1 ? stats::values_for_log_variance(shapes[0], critical)
+                           : stats::values_for_log_variance(shapes[0], shapes[1], critical,
+                                                            level_factor, times[1] / times[0]);
+    needed = std::max(needed, of_the_fewest(of_first, times[0]));
   }
   return needed;
 }
 
-std::string too_few(const Question& question, std::uint64_t needed) {
+/// `given`: how many there are.
+std::string too_few(const Question& question, std::uint64_t given, std::uint64_t needed) {
   const std::string need = reports::human(static_cast<double>(needed), 2);
   // However near to normal, the logarithm of a variance takes as many.
   const bool by_shape = needed > log_variance_secondaries;
@@ -61,12 +75,14 @@ std::string too_few(const Question& question, std::uint64_t needed) {
     const bool two = question.kind == QuestionKind::variance_of_two;
     const bool alone = question.kind == QuestionKind::variance_of_one;
     const std::string exact =
-        two || alone ? fmt::format("; where the rows are known to be normal, `test: {}` is exact",
-                                   two ? "F" : "chi-square")
+        two || alone ? ", or, if they are normal, add " +
+                           written_key(*question.test, "test", two ? "F" : "chi-square")
                      : "";
     return fmt::format(
-        "a test of the variance of rows of this shape keeps its level from about {} rows on{}{}",
-        need, by_shape ? "; rows that each average several need fewer" : "", exact);
+        "{} row{} too few: a variance of values of this shape takes about {}; "
+        "give more{}{}",
+        given, given == 1 ? " is" : "s are", need,
+        by_shape ? ", or rows that each average several" : "", exact);
   }
   if (!by_shape) {
     return fmt::format("a test of this variance keeps its level from {} observations on", need);
@@ -80,8 +96,8 @@ std::string too_few(const Question& question, std::uint64_t needed) {
 
 /// From how many secondaries on the logarithm of every mean cost is near normal: costs may be as
 /// skewed as values, and what a pilot has seen of them says so.
-std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, const Plan& plan,
-                               double critical) {
+std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, std::uint64_t look,
+                               const Plan& plan, double critical) {
   std::uint64_t needed = 2;
   for (std::size_t i = 0; i < question.compared(); ++i) {
     const Subject& side = question.subjects[i];
@@ -94,8 +110,9 @@ std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, c
     const double primaries = side.averaged(plan.primaries[i]);
     const double variation = std::sqrt(cost.variance()) / cost.mean / std::sqrt(primaries);
     const double skewness = cost.skewness() / std::sqrt(primaries);
-    needed = std::max(needed, stats::values_for_log_mean(
-                                  {.variation = variation, .skewness = skewness}, critical));
+    const std::uint64_t values =
+        stats::values_for_log_mean({.variation = variation, .skewness = skewness}, critical);
+    needed = std::max(needed, of_the_fewest(values, times_the_fewest(question, i, look)));
   }
   return needed;
 }
@@ -130,13 +147,14 @@ std::optional<stats::PositiveShape> group_shape(const Question& question, std::s
 }
 
 /// From how many secondaries on the logarithm of the mean of groups' variances is near normal.
-std::uint64_t enough_for_groups(const Question& question, const Pilots& pilots, const Plan& plan,
-                                double critical) {
+std::uint64_t enough_for_groups(const Question& question, const Pilots& pilots, std::uint64_t look,
+                                const Plan& plan, double critical) {
   std::uint64_t needed = 2;
   if (question.kind != QuestionKind::total_variance) return needed;
   for (std::size_t subject = 0; subject < question.compared(); ++subject) {
     if (const auto shape = group_shape(question, subject, pilots, plan)) {
-      needed = std::max(needed, variance_group * stats::values_for_log_mean(*shape, critical));
+      const std::uint64_t values = variance_group * stats::values_for_log_mean(*shape, critical);
+      needed = std::max(needed, of_the_fewest(values, times_the_fewest(question, subject, look)));
     }
   }
   return needed;
@@ -149,13 +167,13 @@ std::string too_skewed_costs(std::uint64_t needed) {
       reports::human(static_cast<double>(needed), 2));
 }
 
-/// The most secondaries that a claim may come to: those that it asks for or all that there are,
-/// else what it is worth or such a method may ask for.
+/// The most secondaries of each subject that a claim may come to: those that it asks for or all
+/// that there are, else what it is worth or such a method may ask for.
 std::uint64_t affordable_secondaries(const Question& question, const FamilyPlace& place,
                                      const Pilots& pilots, std::uint64_t most, const Plan& plan) {
   const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
-  return fixed ? size : std::max(size, most_for_a_variance);
+  return fixed ? fewest_secondaries(question, size) : std::max(size, most_for_a_variance);
 }
 
 /// A forced method runs as asked, from the fewest secondaries on: where its level is off a red gate
@@ -163,7 +181,8 @@ std::uint64_t affordable_secondaries(const Question& question, const FamilyPlace
 std::uint64_t as_forced(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                         std::uint64_t most, std::uint64_t needed, std::uint64_t fewest,
                         Plan& plan) {
-  const std::uint64_t intended = intended_secondaries(question, place, pilots, most, plan);
+  const std::uint64_t intended =
+      fewest_secondaries(question, intended_secondaries(question, place, pilots, most, plan));
   const std::uint64_t size = question.test->secondaries ? intended : std::max(intended, fewest);
   if (needed > size) note_too_few(plan, size, needed);
   return fewest;
@@ -217,7 +236,8 @@ void allow_for_kurtosis(const Question& question, const std::vector<Known>& chan
 
 std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
                                   const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  const std::vector<Known> channels = known_channels(question, pilots, plan);
+  const std::vector<Known> channels =
+      known_channels(question, pilots, largest_look(question, most), plan);
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
   const bool forced = question.test->method.has_value();
@@ -244,14 +264,15 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   plan.method = find_method(question, "log-variance");
   if (plan.invalid.empty() && needed > affordable) {
     note_too_few(plan, affordable, needed);
-    plan.invalid = too_few(question, needed);
+    plan.invalid = too_few(question, affordable, needed);
   }
   return std::min(needed, affordable);
 }
 
 std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& place,
                                 const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  std::vector<Known> channels = known_channels(question, pilots, plan);
+  const std::uint64_t look = largest_look(question, most);
+  std::vector<Known> channels = known_channels(question, pilots, look, plan);
   // A reference comes last, and only its mean is used.
   while (!channels.empty() && channels.back().subject >= question.compared()) channels.pop_back();
   const double x = critical_value(smallest_level(question, place), two_sided(question));
@@ -259,10 +280,12 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   std::uint64_t needed = log_variance_secondaries;
   for (const Known& known : channels) {
     const auto shape = secondary_shape(known);
-    if (shape) needed = std::max(needed, stats::values_for_log_variance(*shape, x));
+    if (!shape) continue;
+    const std::uint64_t values = stats::values_for_log_variance(*shape, x);
+    needed = std::max(needed, of_the_fewest(values, known.times));
   }
-  const std::uint64_t for_costs = enough_for_costs(question, pilots, plan, x);
-  needed = std::max({needed, for_costs, enough_for_groups(question, pilots, plan, x)});
+  const std::uint64_t for_costs = enough_for_costs(question, pilots, look, plan, x);
+  needed = std::max({needed, for_costs, enough_for_groups(question, pilots, look, plan, x)});
   if (question.test->method) {
     return as_forced(question, place, pilots, most, needed, least_secondaries, plan);
   }
@@ -270,7 +293,8 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
   if (plan.invalid.empty() && needed > affordable) {
     note_too_few(plan, affordable, needed);
-    plan.invalid = needed == for_costs ? too_skewed_costs(needed) : too_few(question, needed);
+    plan.invalid =
+        needed == for_costs ? too_skewed_costs(needed) : too_few(question, affordable, needed);
   }
   return std::min(needed, affordable);
 }
@@ -278,7 +302,8 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
 std::uint64_t choose_for_costs(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
   const double x = critical_value(smallest_level(question, place), two_sided(question));
-  const std::uint64_t needed = enough_for_costs(question, pilots, plan, x);
+  const std::uint64_t needed =
+      enough_for_costs(question, pilots, largest_look(question, most), plan, x);
   if (question.test->method) {
     return as_forced(question, place, pilots, most, needed, log_variance_secondaries, plan);
   }

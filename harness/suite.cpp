@@ -16,6 +16,9 @@ namespace assay::harness {
 
 namespace {
 
+constexpr const char* estimators_example = "estimators: {area: {plugin: luminaire/area}}";
+constexpr const char* tests_example = "tests: [claim: mean(area) == analytic]";
+
 /// A suite's numbers repeat; a fresh seed is the command line's to ask for.
 std::uint64_t seed_of(const Value& value) {
   if (value.kind() == Value::Kind::scalar && value.text() == "random") {
@@ -41,7 +44,7 @@ std::vector<std::string> read_needs(const Value& value) {
 }
 
 void read_head(const Document& document, const Keys& keys, Suite& suite) {
-  suite.name = one_line(keys.require("suite"), "`suite`");
+  suite.name = one_line(keys.require("suite", "suite: my first suite"), "`suite`");
   if (const Value* v = keys.find("about")) suite.about = v->string("`about`");
   if (const Value* v = keys.find("alpha")) suite.alpha = error_rate(*v, "`alpha`");
   if (const Value* v = keys.find("beta")) {
@@ -72,6 +75,11 @@ Value read_scenes(const Keys& keys) {
 }
 
 void read_estimators(const Document& document, const Value& map, Suite& suite) {
+  if (map.kind() == Value::Kind::list) {
+    throw InputError(map.where(),
+                     "`estimators` is a map of names, not a list: leave the `- ` out, as in `area: "
+                     "{plugin: luminaire/area}`");
+  }
   if (map.kind() != Value::Kind::map || map.members().empty()) {
     throw InputError(map.where(),
                      "`estimators` must be a map of at least one name to its plugin, as in `area: "
@@ -159,8 +167,8 @@ Suite load_suite(const std::string& file) {
   suite.folder = folder_of(file);
   read_head(document, keys, suite);
   suite.scenes = read_scenes(keys);
-  read_estimators(document, keys.require("estimators"), suite);
-  read_tests(document, keys.require("tests"), suite);
+  read_estimators(document, keys.require("estimators", estimators_example), suite);
+  read_tests(document, keys.require("tests", tests_example), suite);
   if (const Value* v = keys.find("statements")) {
     suite.statements = read_statements(document, *v, suite.tests);
   }
@@ -168,7 +176,9 @@ Suite load_suite(const std::string& file) {
 }
 
 std::string excerpt(const Location& where) {
-  if (where.line < 1 || where.file.empty()) return "";
+  // A pipe would be waited for.
+  std::error_code ignored;
+  if (where.line < 1 || !std::filesystem::is_regular_file(where.file, ignored)) return "";
   try {
     const std::string text = read_text_file(where.file);
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) return "";  // nothing to point at

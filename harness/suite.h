@@ -46,6 +46,7 @@ struct TestEntry {
   std::string id = {};    ///< suite file's stem, slash, name
   Claim claim = {};
   std::optional<Margin> detect = {};
+  bool detect_by_default = false;  ///< nobody wrote it (ask_as_written)
   std::optional<Margin> allow = {};
   double weight = 1;
   std::optional<std::string> method = {};         ///< `test:`: forced

@@ -83,7 +83,9 @@ bool is_proof(Relation relation) {
 using Refuse = std::function<void(const char* key, const std::string& why)>;
 
 void check_margins(const TestEntry& test, const Refuse& refuse) {
-  if (test.detect && test.detect->value == 0) refuse("detect", "`detect` must be above 0");
+  if (test.detect && test.detect->value == 0) {
+    refuse("detect", "`detect` must be above 0: it is the effect that must not pass, as `1%`");
+  }
   if (test.detect && test.claim.relation == Relation::within) {
     refuse("detect",
            "`within` says how far off the claim must not be: `detect` has no meaning beside it; "
@@ -253,7 +255,11 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
         fmt::format("the estimator `{}` must be a map, as in `{{plugin: family/name}}`", name));
   }
   const Value* plugin = value.find("plugin");
-  if (!plugin) throw InputError(value.where(), fmt::format("`{}` needs the key `plugin`", name));
+  if (!plugin) {
+    throw InputError(value.where(), fmt::format("`{0}` needs the key `plugin`, as in `{0}: "
+                                                "{{plugin: luminaire/area}}`",
+                                                name));
+  }
   const Entry& entry = find_plugin(plugin->string("`plugin`"), plugin->where());
   const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()),
                   parameter_names(entry));
@@ -295,7 +301,9 @@ TestEntry read_test(const Document& document, const Value& value) {
   const Keys keys(document, value, "a test",
                   {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
                    "over", "reference", "cost", "expect", "tags"});
-  TestEntry test{.claim = read_claim(document, keys.require("claim")), .where = value.where()};
+  TestEntry test{
+      .claim = read_claim(document, keys.require("claim", "claim: mean(area) == analytic")),
+      .where = value.where()};
   for (const auto& [key, given] : value.members()) test.keys[key] = keys.where(given);
   const Value* name = keys.find("name");
   test.name = name ? one_line(*name, "`name`") : test.claim.text;
@@ -308,13 +316,13 @@ TestEntry read_test(const Document& document, const Value& value) {
   }
   if (const Value* v = keys.find("tags")) test.tags = read_tags(*v);
   read_sampling(document, keys, test);
-  check_test(test, [&](std::string_view key) { return test.place_of(key); });
+  check_test(test);
   return test;
 }
 
-void check_test(const TestEntry& test, const PlaceOf& place) {
+void check_test(const TestEntry& test) {
   const auto refuse = [&](const char* key, const std::string& why) {
-    throw InputError(place(key), why);
+    throw InputError(test.place_of(key), why);
   };
   check_margins(test, refuse);
   const Claim& claim = test.claim;

@@ -31,9 +31,6 @@ CostKind read_cost(const Value& value);
 /// `primaries:` of an estimator: a count from 1, or auto (nullopt).
 std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view what);
 
-/// Where a key of a test stands.
-using PlaceOf = std::function<Location(std::string_view key)>;
-
 /// `1e7` primaries or `30s`.
 Budget read_short_budget(const Value& value);
 /// `budget: 1e7`, `budget: 30s` or a map of both.
@@ -41,7 +38,7 @@ Budget read_budget(const Document& document, const Value& value);
 
 /// What a test must satisfy beyond the type of each key: `allow` below `detect`, and only keys that
 /// its claim gives a meaning to. InputError at the offending key.
-void check_test(const TestEntry& test, const PlaceOf& place);
+void check_test(const TestEntry& test);
 
 /// The value, or the scene that it names.
 const Value& scene_or(const Value& value, const Value& scenes);

@@ -100,7 +100,9 @@ EstimatorEntry reference_of(const ImagesArguments& arguments) {
 
 std::optional<Margin> margin(const std::optional<std::string>& text, const char* option) {
   if (!text) return {};
-  return parse_margin(*text, {}, option);
+  Margin margin = parse_margin(*text, {}, option);
+  margin.where = place(option, *text);
+  return margin;
 }
 
 std::string claim_of(const ImagesArguments& arguments) {
@@ -125,7 +127,10 @@ Suite suite_of_images(const ImagesArguments& arguments) {
   test.id = "images/" + test.name;
   test.detect = margin(arguments.detect, "--detect");
   test.allow = margin(arguments.allow, "--allow");
-  check_test(test, [&](std::string_view key) { return place("--", std::string(key)); });
+  if (test.detect) test.keys["detect"] = test.detect->where;
+  if (test.allow) test.keys["allow"] = test.allow->where;
+  if (arguments.within) test.claim.margin.where = place("--within", *arguments.within);
+  check_test(test);
   require_enough("--candidate", arguments.candidate,
                  files_given("--candidate", arguments.candidate).size());
   Suite suite;

@@ -34,9 +34,10 @@ Keys::Keys(const Document& document, const Value& map, std::string what,
   }
 }
 
-const Value& Keys::require(std::string_view key) const {
+const Value& Keys::require(std::string_view key, std::string_view example) const {
   if (const Value* value = find(key)) return *value;
-  throw InputError(map_.where(), fmt::format("{} needs the key `{}`", what_, key));
+  throw InputError(map_.where(),
+                   fmt::format("{} needs the key `{}`, as in `{}`", what_, key, example));
 }
 
 namespace {

@@ -18,8 +18,8 @@ class Keys {
        const std::vector<std::string>& known, const std::vector<std::string>& reserved = {});
 
   const Value* find(std::string_view key) const { return map_.find(key); }
-  /// InputError at the map when the key is not there.
-  const Value& require(std::string_view key) const;
+  /// InputError at the map when the key is not there, with a line to write instead.
+  const Value& require(std::string_view key, std::string_view example) const;
   Location where(const Value& member) const { return document_.key(member); }
 
  private:

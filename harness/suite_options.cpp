@@ -6,6 +6,7 @@
 
 #include "estimators/catalogue.h"
 #include "harness/claim_entry.h"
+#include "harness/shell.h"
 #include "harness/suite.h"
 #include "harness/suite_entries.h"
 #include "harness/suite_keys.h"
@@ -133,29 +134,66 @@ EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>
 
 void refuse_unused(const std::vector<EstimatorEntry>& given,
                    const std::vector<EstimatorEntry>& used) {
+  std::vector<std::string> names;
+  for (const EstimatorEntry& each : used) names.push_back("`" + each.name + "`");
   for (const EstimatorEntry& entry : given) {
     if (entry_named(used, entry.name)) continue;
-    throw InputError(entry.where, fmt::format("nothing names the estimator `{}`", entry.name));
+    throw InputError(entry.where,
+                     fmt::format("`{0}` is used nowhere, only {1}: write `{0}` in its place, or "
+                                 "leave the option out",
+                                 entry.name, listed(names)));
   }
-}
-
-std::optional<Margin> margin_option(const std::optional<std::string>& text, const char* option) {
-  if (!text) return {};
-  return parse_margin(*text, {}, option);
 }
 
 /// The keys of a test that stand beside its claim, from options of the same names.
-void read_keys(const CheckArguments& arguments, TestEntry& test) {
-  const auto flow = [](const std::string& text, const char* option) {
-    return read_flow(text, Location{std::string(option) + " " + text, 0, 0});
-  };
-  if (arguments.over) test.over = read_sweep(flow(*arguments.over, "--over"));
-  if (arguments.reference) {
-    read_reference(
-        Value::scalar(*arguments.reference, {"--reference " + *arguments.reference, 0, 0}), test);
+class TestOptions {
+ public:
+  explicit TestOptions(TestEntry& test) : test_(test) {}
+
+  void margin(const char* key, const std::optional<std::string>& text,
+              std::optional<Margin>& margin) {
+    if (!text) return;
+    margin = parse_margin(*text, {}, std::string("--") + key);
+    margin->where = place(key, *text);
   }
-  if (arguments.cost) test.cost = read_cost(Value::scalar(*arguments.cost));
-  if (arguments.budget) test.budget = read_short_budget(Value::scalar(*arguments.budget));
+
+  /// The text of the option with its place; nullopt where it is not given.
+  std::optional<Value> value(const char* key, const std::optional<std::string>& text) {
+    if (!text) return {};
+    return Value::scalar(*text, place(key, *text));
+  }
+
+  const Location& place(const char* key, const std::string& text) {
+    return test_.keys[key] = {fmt::format("--{} {}", key, text), 0, 0};
+  }
+
+ private:
+  TestEntry& test_;
+};
+
+void read_options(const CheckArguments& arguments, TestEntry& test) {
+  TestOptions options(test);
+  options.margin("detect", arguments.detect, test.detect);
+  options.margin("allow", arguments.allow, test.allow);
+  if (arguments.method) {
+    options.place("test", *arguments.method);
+    test.method =
+        method_names()[choice(Value::scalar(*arguments.method), "--test", method_names())];
+  }
+  if (arguments.secondaries) {
+    options.place("secondaries", fmt::format("{}", *arguments.secondaries));
+    test.secondaries = arguments.secondaries;
+  }
+  if (arguments.over) {
+    test.over = read_sweep(read_flow(*arguments.over, options.place("over", *arguments.over)));
+  }
+  if (const auto given = options.value("reference", arguments.reference)) {
+    read_reference(*given, test);
+  }
+  if (const auto given = options.value("cost", arguments.cost)) test.cost = read_cost(*given);
+  if (const auto given = options.value("budget", arguments.budget)) {
+    test.budget = read_short_budget(*given);
+  }
 }
 
 }  // namespace
@@ -170,7 +208,11 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   const Location where{"--estimator " + text, 0, 0};
   const std::vector<std::string> pieces = split_outside_brackets(text);
   const auto head = cut(pieces[0], '=');
-  if (!head) throw InputError(where, "expected NAME=PLUGIN[,key=value]…");
+  if (!head) {
+    throw InputError(where, fmt::format("the plugin needs a name, which the claim uses: "
+                                        "`--estimator {}`",
+                                        shell_quoted("x=" + text)));
+  }
   if (!is_estimator_name(head->first)) {
     throw InputError(where, fmt::format("`{}` cannot name an estimator: a letter, then letters, "
                                         "digits, `_`, `-` and `/`",
@@ -217,17 +259,8 @@ TestEntry test_of_claim(const CheckArguments& arguments) {
   TestEntry test{.claim = parse_claim(arguments.claim, where), .where = where};
   test.name = test.claim.text;
   test.id = "check/" + test.name;
-  test.detect = margin_option(arguments.detect, "--detect");
-  test.allow = margin_option(arguments.allow, "--allow");
-  test.secondaries = arguments.secondaries;
-  if (arguments.method) {
-    test.method =
-        method_names()[choice(Value::scalar(*arguments.method), "--test", method_names())];
-  }
-  read_keys(arguments, test);
-  check_test(test, [&](std::string_view key) {
-    return key == "claim" ? where : Location{"--" + std::string(key), 0, 0};
-  });
+  read_options(arguments, test);
+  check_test(test);
   return test;
 }
 

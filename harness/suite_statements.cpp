@@ -95,9 +95,10 @@ StatementEntry read_statement(const Document& document, const Value& value, cons
   }
   const Keys keys(document, value, "a statement",
                   {"text", "source", "holds", "fails", "condition"});
-  StatementEntry statement{.text = one_line(keys.require("text"), "`text`"),
-                           .source = one_line(keys.require("source"), "`source`"),
-                           .where = value.where()};
+  StatementEntry statement{
+      .text = one_line(keys.require("text", "text: the variance is reduced"), "`text`"),
+      .source = one_line(keys.require("source", "source: a talk"), "`source`"),
+      .where = value.where()};
   if (const Value* v = keys.find("condition")) statement.condition = one_line(*v, "`condition`");
   statement.holds = read_names(keys, "holds", tests);
   statement.fails = read_names(keys, "fails", tests);

@@ -9,12 +9,14 @@
 #include <filesystem>
 #include <fstream>
 
+#include "reports/text.h"
+
 namespace assay::harness {
 
 namespace {
 
 constexpr std::size_t largest_file = std::size_t{16} << 20;
-constexpr std::size_t shown_bytes = 100;
+constexpr std::size_t shown_bytes = 72;
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80; }
 
@@ -40,6 +42,21 @@ bool forbidden_control(char c) {
   return (byte < 0x20 && c != '\t' && c != '\n' && c != '\r') || byte == 0x7F;
 }
 
+/// "; did you mean …?" of a file beside it, or "".
+std::string near_file(const std::string& file) {
+  namespace fs = std::filesystem;
+  const fs::path path(file);
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const fs::directory_entry& each :
+       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", ignored)) {
+    if (each.is_regular_file(ignored)) names.push_back(each.path().filename().string());
+  }
+  const std::string near = nearest(path.filename().string(), names);
+  if (near.empty()) return "";
+  return fmt::format("; did you mean `{}`?", (path.parent_path() / near).string());
+}
+
 }  // namespace
 
 std::string read_text_file(const std::string& file) {
@@ -50,6 +67,7 @@ std::string read_text_file(const std::string& file) {
   if (std::filesystem::is_directory(file, ignored)) refuse("it is a folder; name the files in it");
   errno = 0;
   std::ifstream in(file, std::ios::binary);
+  if (!in && errno == ENOENT) refuse("there is no such file" + near_file(file));
   if (!in) refuse(errno ? std::strerror(errno) : "it cannot be opened");
   std::string text;
   std::array<char, 65536> chunk{};
@@ -93,16 +111,18 @@ void require_utf8(std::string_view text, const std::string& file) {
 }
 
 std::string caret_below(std::string_view line, int column) {
-  std::size_t at = std::min(static_cast<std::size_t>(std::max(column, 1)) - 1, line.size());
+  const std::size_t at = std::min(static_cast<std::size_t>(std::max(column, 1)) - 1, line.size());
   std::size_t begin = at > shown_bytes - 20 ? at - (shown_bytes - 20) : 0;
-  while (begin > 0 && continues(line[begin])) --begin;
+  while (begin > 0 && begin < at && continues(line[begin])) ++begin;
   std::size_t end = std::min(begin + shown_bytes, line.size());
-  while (end < line.size() && continues(line[end])) ++end;
+  while (end > at && end < line.size() && continues(line[end])) --end;
   const std::string head = begin > 0 ? "..." : "";
-  std::string out = "  " + head + std::string(line.substr(begin, end - begin));
+  // What a terminal must not meet is one character each, as everywhere.
+  const std::string before = reports::clean(line.substr(begin, at - begin));
+  std::string out = "  " + head + before + reports::clean(line.substr(at, end - at));
   if (end < line.size()) out += "...";
   out += "\n  " + std::string(head.size(), ' ');
-  for (const char c : line.substr(begin, at - begin)) {
+  for (const char c : before) {
     if (!continues(c)) out += c == '\t' ? '\t' : ' ';
   }
   return out + "^\n";

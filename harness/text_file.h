@@ -19,7 +19,7 @@ std::vector<std::string_view> lines_of(std::string_view text);
 void require_utf8(std::string_view text, const std::string& file);
 
 /// A line, and under it a caret below the given column (bytes, from 1). A long line is cut to the
-/// neighbourhood of the column.
+/// neighbourhood of the column; control characters are not shown (reports::clean).
 std::string caret_below(std::string_view line, int column);
 
 }  // namespace assay::harness

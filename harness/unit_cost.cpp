@@ -47,10 +47,9 @@ UnitCost unit_cost(const Summary& summary) {
 /// that average nothing may take minutes each.
 const Summary* piloted(const Pool& pool, const PreparedEstimator& estimator,
                        const std::string& purpose, const Pilots& pilots) {
-  const auto pilot = pilots.find(estimator.name);
-  if (!purpose.empty() || estimator.nature().averages || pilot == pilots.end()) return nullptr;
-  const bool same = pilot->second.sums && pilot->second.primaries == pool.primaries();
-  return same ? pilot->second.sums.get() : nullptr;
+  const Pilot* const pilot = pilots.find(estimator.name);
+  if (!purpose.empty() || estimator.nature().averages || pilot == nullptr) return nullptr;
+  return pilot->primaries == pool.primaries() ? pilot->sums.get() : nullptr;
 }
 
 }  // namespace
@@ -63,6 +62,8 @@ UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& p
                          const std::string& purpose) {
       if (const Summary* known = piloted(pool, estimator, purpose, run->pilots)) {
         costs.emplace(&pool, unit_cost(*known));
+      } else if (pool.fault()) {
+        costs.emplace(&pool, *pool.fault());
       } else {
         timings.add(pool, estimator, purpose, run->seed);
       }
@@ -80,8 +81,12 @@ UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& p
   draw_all(pools, {.threads = threads, .phase = "costs"}, progress);
   stop_if_interrupted();
   for (const Timed& timed : timings.all()) {
-    if (!timed.pool->has(timed.pool->requested())) continue;
-    costs.emplace(timed.of, unit_cost(timed.pool->prefix(timed.pool->requested())));
+    const Sample sample = timed.pool->sample(timed.pool->requested());
+    if (sample.drawn() != nullptr) {
+      costs.emplace(timed.of, unit_cost(sample.drawn()->summary()));
+    } else {
+      costs.emplace(timed.of, *sample.fault());
+    }
   }
   return costs;
 }

@@ -3,6 +3,7 @@
 // What one secondary estimate costs, measured on the pilot's or a few from streams of their own.
 
 #include <map>
+#include <variant>
 
 #include "harness/planned_run.h"
 
@@ -14,9 +15,9 @@ struct UnitCost {
   double seconds = 0;  ///< CPU seconds
 };
 
-/// By the pool that a test reads or a picture is drawn from. Missing are recorded data, which are
-/// only read, and estimators that threw.
-using UnitCosts = std::map<const Pool*, UnitCost>;
+/// By the pool that a test reads or a picture is drawn from: what its secondaries cost, or why they
+/// could not be drawn. Missing are recorded data, which are only read.
+using UnitCosts = std::map<const Pool*, std::variant<UnitCost, Fault>>;
 
 /// Draws about 16 thousand primaries, each element of an image counted, of each pool's estimator or
 /// sampler, at the pool's own primaries a secondary: one primary alone costs more than its share of

@@ -309,6 +309,8 @@ Value read_flow(std::string_view text, const Location& where) {
   if (text.find_first_not_of(' ') == std::string_view::npos) {
     throw InputError(where, "a value is missing after the `=`");
   }
+  // Standard input, not a list: nothing follows.
+  if (text == "-") return Value::scalar("-", where);
   try {
     return moved_to(read_yaml_text(text, "").root(), where);
   } catch (const InputError& e) {

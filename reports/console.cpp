@@ -20,6 +20,7 @@ namespace {
 
 constexpr int least_width = 60;
 constexpr int label_width = 17;
+constexpr std::size_t most_channels = 24;
 
 // A terminal renders a no-break space in its own way: copied text should hold plain ones.
 std::string plain_spaces(const std::string& text) {
@@ -205,13 +206,19 @@ class Screen {
                          cost_text(estimator.cost)));
       const std::string of =
           estimator.variance_of.empty() ? "" : " of one " + estimator.variance_of;
+      std::size_t shown = 0;
       for (const EstimatorChannel& channel : estimator.channels) {
+        if (++shown > most_channels) break;
         fact(one_line(shorten(clean(channel.name), label_width - 1)),
              fmt::format("mean {}, variance{} {}{}", interval(channel.mean), of,
                          interval(channel.variance),
                          channel.mean.low
                              ? fmt::format(" ({} intervals)", confidence_text(estimator.confidence))
                              : std::string()));
+      }
+      if (shown > most_channels) {
+        fact("…", fmt::format("{} more channels; a report (--report html=FILE) has all of them",
+                              estimator.channels.size() - most_channels));
       }
     }
     if (!suite.estimators.empty()) blank();

@@ -83,13 +83,16 @@ std::string channels_fact(const Test& test) {
 }
 
 std::string gates_fact(const Test& test) {
+  constexpr int most = 6;
   std::string text;
+  int named = 0;
   for (const Gate& gate : test.gates) {
-    if (gate.state == "green") continue;
+    if (gate.state == "green" || ++named > most) continue;
     if (!text.empty()) text += "; ";
     text += fmt::format("{} is {} ({}, limit {})", gate.name, gate.state, human(gate.value),
                         human(gate.limit));
   }
+  if (named > most) text += fmt::format("; {} more are not green", named - most);
   return text;
 }
 

@@ -306,6 +306,7 @@ void fields(Archive& a, T& moments) {
   a("min", moments.minimum);
   a("max", moments.maximum);
   a("nonzero", moments.nonzero);
+  a("rest", moments.rest);
 }
 
 template <class Archive, maybe_const<ShardChannel> T>

@@ -34,14 +34,22 @@ std::string left_out(const Image& image) {
   return text;
 }
 
+/// "24 images", or "24 and 32 images" where the sides have not as many.
+std::string counted_images(const Test& test) {
+  const std::vector<Sample>& sides = test.samples;
+  if (sides.size() == 2 && sides[0].secondaries != sides[1].secondaries) {
+    return fmt::format("{} and {} images", sides[0].secondaries, sides[1].secondaries);
+  }
+  return counted(test.image->replicates, "image", "images");
+}
+
 }  // namespace
 
 std::string image_fact(const Test& test) {
   if (!test.image) return {};
   const Image& image = *test.image;
-  std::string text =
-      fmt::format("{} of {} x {} pixels{}", counted(image.replicates, "image", "images"),
-                  image.width, image.height, components_text(image));
+  std::string text = fmt::format("{} of {} x {} pixels{}", counted_images(test), image.width,
+                                 image.height, components_text(image));
   if (!image.winner.place.empty()) {
     text += fmt::format("; differs most at {}, p = {} in all", image.winner.place,
                         p_text({}, image.winner.log10_p_adjusted));

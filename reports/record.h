@@ -268,12 +268,13 @@ struct Suite {
 };
 
 /// One-pass moments of the finite values of a channel: m2, m3 and m4 are sums of powers of
-/// deviations from the mean.
+/// deviations from the mean, and `rest` is what rounding took from the mean.
 struct Moments {
   std::uint64_t count = 0;
   double mean = 0, m2 = 0, m3 = 0, m4 = 0;
   double minimum = 0, maximum = 0;
   std::uint64_t nonzero = 0;
+  double rest = 0;
   bool operator==(const Moments&) const = default;
 };
 

@@ -48,7 +48,8 @@ UnitSample unit_sample(const char* function, const Moments& x, Range range) {
   if (!(x.minimum >= range.low)) check::fail({function, "minimum"}, x.minimum, "inside the range");
   if (!(x.maximum <= range.high)) check::fail({function, "maximum"}, x.maximum, "inside the range");
   // The mean of values at one end of the range may round past it.
-  const UnitMean mean = unit_mean(std::clamp(x.mean, range.low, range.high), range);
+  const UnitMean mean{std::clamp(x.mean_less(range.low), 0.0, width) / width,
+                      std::clamp(-x.mean_less(range.high), 0.0, width) / width};
   return {static_cast<double>(x.count), mean, x.variance() / width / width};
 }
 
@@ -131,7 +132,7 @@ TestResult bounded_mean(const Moments& x, Range range, double null_mean) {
   const UnitSample unit = unit_sample("bounded_mean", x, range);
   check::finite({"bounded_mean", "null_mean"}, null_mean);
   const UnitMean null = unit_mean(null_mean, range);
-  return {x.mean - null_mean,
+  return {x.mean_less(null_mean),
           {"bound", {}},
           log_p_below(unit, null),
           log_p_below(unit.mirrored(), null.mirrored()),

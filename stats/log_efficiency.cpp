@@ -51,7 +51,7 @@ LogEfficiency log_efficiency_of(const JointMoments& sample, double truth) {
   check::finite({"log_efficiency_of", "truth"}, truth);
   const Moments& x = sample.x;
   const double n = static_cast<double>(x.count);
-  const double bias = x.mean - truth;
+  const double bias = x.mean_less(truth);
   const double m2 = x.m2 / n;
   const double mse = m2 + bias * bias;
   if (!(mse > 0)) throw ZeroVariance("log_efficiency_of: the mean squared error is 0");

@@ -31,7 +31,7 @@ LogMeanSlope slope(PositiveShape psi, double least_share) {
   return difference > least ? LogMeanSlope{difference, 1} : LogMeanSlope{least, least_share};
 }
 
-// B sqrt n of one sample; `share` of the variance of the difference.
+// B sqrt n of one sample of n values; `share` of the variance of the difference.
 double slope(const SixthOrderShape& x, double share) {
   const double square = x.kurtosis - 1;
   if (!(square > 0)) return 0;
@@ -41,11 +41,12 @@ double slope(const SixthOrderShape& x, double share) {
          std::pow(share, 1.5);
 }
 
-double slope_of_both(const SixthOrderShape& x, const SixthOrderShape& y) {
+// B sqrt n with n the size of the first.
+double slope_of_both(const SixthOrderShape& x, const SixthOrderShape& y, double allocation) {
   const double of_x = std::max(0.0, x.kurtosis - 1);
-  const double of_y = std::max(0.0, y.kurtosis - 1);
+  const double of_y = std::max(0.0, y.kurtosis - 1) / allocation;
   if (of_x + of_y == 0) return 0;
-  return slope(x, of_x / (of_x + of_y)) + slope(y, of_y / (of_x + of_y));
+  return slope(x, of_x / (of_x + of_y)) + slope(y, of_y / (of_x + of_y)) / std::sqrt(allocation);
 }
 
 double factor(double slope, PlannedLogVariance plan) {
@@ -112,7 +113,8 @@ double log_variance_level_factor(const SixthOrderShape& x, PlannedLogVariance pl
 
 double log_variance_level_factor(const SixthOrderShape& x, const SixthOrderShape& y,
                                  PlannedLogVariance plan) {
-  return factor(slope_of_both(x, y), plan);
+  check::positive({"log_variance_level_factor", "allocation"}, plan.allocation);
+  return factor(slope_of_both(x, y, plan.allocation), plan);
 }
 
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, double critical_value,
@@ -121,8 +123,10 @@ std::uint64_t values_for_log_variance(const SixthOrderShape& x, double critical_
 }
 
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrderShape& y,
-                                      double critical_value, double level_factor) {
-  return needed(slope_of_both(x, y), critical_value, level_factor);
+                                      double critical_value, double level_factor,
+                                      double allocation) {
+  check::positive({"values_for_log_variance", "allocation"}, allocation);
+  return needed(slope_of_both(x, y, allocation), critical_value, level_factor);
 }
 
 std::uint64_t values_for_log_mean(PositiveShape x, double critical_value, double level_factor) {

@@ -21,10 +21,11 @@ SixthOrderShape sixth_order_shape(std::span<const double> values);
 // Of means of `count` such values, through their cumulants: kappa_r / count^(r / 2 - 1).
 SixthOrderShape averaged(const SixthOrderShape& shape, std::uint64_t count);
 
-// A planned test of one or of two samples of `count` values each.
+// A planned test of one sample of `count` values, or of two, the second of count * allocation.
 struct PlannedLogVariance {
   std::uint64_t count = 2;
   double critical_value = 0;
+  double allocation = 1;
 };
 
 // The factor by which the worse tail of the test of ln s2 departs from nominal,
@@ -45,7 +46,8 @@ double log_variance_level_factor(const SixthOrderShape& x, const SixthOrderShape
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, double critical_value,
                                       double level_factor = 1.25);
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrderShape& y,
-                                      double critical_value, double level_factor = 1.25);
+                                      double critical_value, double level_factor = 1.25,
+                                      double allocation = 1);
 
 // The same of ln of a mean of positive values with standard deviation over mean c and skewness g, a
 // cost: psi is then value / mean - 1, and a quarter stands for the seventh. Of costs that are rare

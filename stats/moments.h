@@ -25,6 +25,9 @@ struct Moments {
 
   void add(double value);
 
+  // The mean less this value, with what the mean's own rounding took.
+  double mean_less(double value) const { return (mean - value) + rest; }
+
   // As if the other sample's values had been added here. Merging in a fixed order gives fixed bits.
   void merge(const Moments& other);
 

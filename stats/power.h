@@ -91,11 +91,12 @@ double f_ratio_detectable(const VariancePlan& plan, SampleSizes sizes);
 // Of each of two samples of one size.
 std::optional<std::uint64_t> f_ratio_sample_size(const VariancePlan& plan, double detect);
 
-// Normal approximation with SE^2 = (kurtosis_x - 1) / n [+ (kurtosis_y - 1) / n]; kurtosis_y = 1
-// gives the one-sample test. n is the size of each sample.
+// Normal approximation with SE^2 = (kurtosis_x - 1) / n_x [+ (kurtosis_y - 1) / n_y]; kurtosis_y =
+// 1 gives the one-sample test. n is n_x, and n_y = n_x * allocation.
 struct LogVariancePlan {
   double kurtosis_x = 3;
   double kurtosis_y = 1;
+  double allocation = 1;
   double allow = 1;  // ratio
   ErrorRates rates;
 };
@@ -107,10 +108,11 @@ std::optional<std::uint64_t> log_variance_sample_size(const LogVariancePlan& pla
 // Lower bound of the power: P(D < d_alpha) <=
 // exp(-2 n (distance - allow - d_alpha)^2) (Hoeffding at the point of largest difference), d_alpha
 // from the exact law; the sample size of one sample takes Massart's bound of d_alpha, a few in a
-// thousand above it. Two samples of n each: `two_samples`. Always one-tailed: rates.two_sided is
-// ignored.
+// thousand above it. With two samples n is the size of the first, n * allocation that of the
+// second, and m n / (m + n) takes the place of n. Always one-tailed: rates.two_sided is ignored.
 struct DistancePlan {
   bool two_samples = false;
+  double allocation = 1;
   double allow = 0;
   ErrorRates rates;
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -19,21 +20,28 @@ void check_plan(const char* function, const DistancePlan& plan) {
   if (!(plan.allow >= 0 && plan.allow < 1)) {
     check::fail({function, "allow"}, plan.allow, "in [0, 1)");
   }
+  check::positive({function, "allocation"}, plan.allocation);
 }
 
-// Smallest lattice distance of two samples of n that the exact law rejects; 1 + 1/n when none.
-double two_sample_critical(double log_alpha, std::uint64_t n) {
+TwoSizes sizes_of(const DistancePlan& plan, double n) {
+  const auto second = static_cast<std::uint64_t>(std::max(1.0, std::round(n * plan.allocation)));
+  return {static_cast<std::uint64_t>(n), second};
+}
+
+// Smallest lattice distance of two samples that the law rejects, a step beyond 1 when none.
+double two_sample_critical(double log_alpha, TwoSizes sizes) {
+  const std::uint64_t steps = std::lcm(sizes.m, sizes.n);
   std::uint64_t low = 0;
-  std::uint64_t high = n + 1;
+  std::uint64_t high = steps + 1;
   while (high - low > 1) {
     const std::uint64_t middle = low + (high - low) / 2;
-    (smirnov_upper_tail({middle, n, n}).log_p <= log_alpha ? high : low) = middle;
+    (smirnov_upper_tail({middle, sizes.m, sizes.n}).log_p <= log_alpha ? high : low) = middle;
   }
-  return static_cast<double>(high) / static_cast<double>(n);
+  return static_cast<double>(high) / static_cast<double>(steps);
 }
 
-double two_sample_margin_critical(double log_alpha, std::uint64_t n) {
-  const auto excess = [&](double gap) { return log_alpha - log_two_suprema_bound(gap, {n, n}); };
+double two_sample_margin_critical(double log_alpha, TwoSizes sizes) {
+  const auto excess = [&](double gap) { return log_alpha - log_two_suprema_bound(gap, sizes); };
   double high = 1;
   while (excess(high) < 0) high *= 2;
   std::uintmax_t iterations = 100;
@@ -44,24 +52,27 @@ double two_sample_margin_critical(double log_alpha, std::uint64_t n) {
 
 // d_alpha: the distance above `allow` from which the test rejects.
 double found_critical_distance(const DistancePlan& plan, double n) {
-  const auto size = static_cast<std::uint64_t>(n);
+  const TwoSizes sizes = sizes_of(plan, n);
   const double log_alpha = std::log(plan.rates.alpha);
-  if (!plan.two_samples) return kolmogorov_upper_quantile(log_alpha, size);
-  return plan.allow == 0 ? two_sample_critical(log_alpha, size)
-                         : two_sample_margin_critical(log_alpha, size);
+  if (!plan.two_samples) return kolmogorov_upper_quantile(log_alpha, sizes.m);
+  return plan.allow == 0 ? two_sample_critical(log_alpha, sizes)
+                         : two_sample_margin_critical(log_alpha, sizes);
 }
 
 // The same, which takes up to milliseconds, and is asked for twice in a row: for the detectable
 // distance and for the power.
 double critical_distance(const DistancePlan& plan, double n) {
-  using Key = std::tuple<double, bool, bool, double>;
+  using Key = std::tuple<double, bool, bool, double, double>;
   thread_local std::optional<std::pair<Key, double>> last;
-  const Key key{plan.rates.alpha, plan.two_samples, plan.allow == 0, n};
+  const Key key{plan.rates.alpha, plan.two_samples, plan.allow == 0, n, plan.allocation};
   if (!last || last->first != key) last = {key, found_critical_distance(plan, n)};
   return last->second;
 }
 
-double effective(const DistancePlan& plan, double n) { return plan.two_samples ? n / 2 : n; }
+// The observations of one sample that are worth as many: m n / (m + n) of two.
+double effective(const DistancePlan& plan, double n) {
+  return plan.two_samples ? n * plan.allocation / (1 + plan.allocation) : n;
+}
 
 double check_distance_size(const char* function, double n) {
   if (!(n >= 1) || n > planning::most_samples) check::fail({function, "n"}, n, "in [1, 2^53]");
@@ -142,7 +153,7 @@ std::optional<std::uint64_t> ks_sample_size(const DistancePlan& plan, double det
   check_plan("ks_sample_size", plan);
   planning::check_effect("ks_sample_size", plan.allow, detect);
   check::unit({"ks_sample_size", "detect"}, detect);
-  const double scale = plan.two_samples ? 2 : 1;
+  const double scale = plan.two_samples ? (1 + plan.allocation) / plan.allocation : 1;
   const double root =
       std::sqrt(std::log(2 / plan.rates.alpha) / 2) + std::sqrt(-std::log(plan.rates.beta) / 2);
   const double gap = detect - plan.allow;

@@ -93,11 +93,14 @@ void check_plan(const char* function, const LogVariancePlan& plan) {
   if (!(plan.kurtosis_x + plan.kurtosis_y > 2)) {
     check::fail({function, "kurtosis_x"}, plan.kurtosis_x, "above 1 for one sample at least");
   }
+  check::positive({function, "allocation"}, plan.allocation);
   check::finite({function, "allow"}, plan.allow);
   if (!(plan.allow >= 1)) check::fail({function, "allow"}, plan.allow, "a ratio of at least 1");
 }
 
-double log_spread(const LogVariancePlan& plan) { return plan.kurtosis_x + plan.kurtosis_y - 2; }
+double log_spread(const LogVariancePlan& plan) {
+  return (plan.kurtosis_x - 1) + (plan.kurtosis_y - 1) / plan.allocation;
+}
 
 double log_power_of(const LogVariancePlan& plan, double n, double log_ratio) {
   const double error = std::sqrt(log_spread(plan) / n);

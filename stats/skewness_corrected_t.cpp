@@ -86,7 +86,7 @@ struct Excess {
 
   double operator()(double ratio) const {
     const Law law = law_of(x, y, ratio);
-    const double h = transformed((x.mean - ratio * y.mean) / law.standard_error, law.a);
+    const double h = transformed(contrast_of_means(x, y, {ratio, 0}) / law.standard_error, law.a);
     return std::abs(h) -
            student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, law.degrees);
   }
@@ -167,23 +167,22 @@ Gate gate_of(double value, double low) {
 }  // namespace
 
 TestResult skewness_corrected_t(const Moments& x, Reference null_mean) {
-  return result_of(x.mean - null_mean.value, law_of(x, null_mean));
+  return result_of(x.mean_less(null_mean.value), law_of(x, null_mean));
 }
 
 Interval skewness_corrected_t_interval(const Moments& x, Reference reference, double confidence) {
   check::inside_unit({"skewness_corrected_t_interval", "confidence"}, confidence);
-  return interval_of(x.mean - reference.value, law_of(x, reference), confidence);
+  return interval_of(x.mean_less(reference.value), law_of(x, reference), confidence);
 }
 
 TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value) {
   check::finite({"skewness_corrected_welch", "offset"}, null_value.offset);
-  return result_of(x.mean - null_value.scale * y.mean - null_value.offset,
-                   law_of(x, y, null_value.scale));
+  return result_of(contrast_of_means(x, y, null_value), law_of(x, y, null_value.scale));
 }
 
 Interval skewness_corrected_welch_interval(const Moments& x, const Moments& y, double confidence) {
   check::inside_unit({"skewness_corrected_welch_interval", "confidence"}, confidence);
-  return interval_of(x.mean - y.mean, law_of(x, y, 1), confidence);
+  return interval_of(contrast_of_means(x, y, {}), law_of(x, y, 1), confidence);
 }
 
 Interval skewness_corrected_ratio_interval(const Moments& x, const Moments& y, double confidence) {

@@ -31,7 +31,7 @@ Scale scale_of(const char* function, const Moments& x, Reference reference) {
 
 TestResult student_t(const Moments& x, Reference null_mean) {
   const Scale scale = scale_of("student_t", x, null_mean);
-  const double t = (x.mean - null_mean.value) / scale.standard_error;
+  const double t = x.mean_less(null_mean.value) / scale.standard_error;
   const LogTails tails = student_t_tails(t, scale.degrees);
   return {t,
           {"student-t", {scale.degrees}},
@@ -44,7 +44,7 @@ Interval student_t_interval(const Moments& x, Reference reference, double confid
   check::inside_unit({"student_t_interval", "confidence"}, confidence);
   const Scale scale = scale_of("student_t_interval", x, reference);
   const double t = student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, scale.degrees);
-  const double centre = x.mean - reference.value;
+  const double centre = x.mean_less(reference.value);
   return {centre - t * scale.standard_error, centre + t * scale.standard_error, confidence};
 }
 

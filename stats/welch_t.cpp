@@ -48,19 +48,30 @@ struct Excess {
 
   double operator()(double ratio) const {
     const Scale scale = scale_of("welch_ratio_interval", x, y, ratio);
-    const double t = (x.mean - ratio * y.mean) / scale.standard_error;
+    const double t = contrast_of_means(x, y, {ratio, 0}) / scale.standard_error;
     return std::abs(t) - critical_value(confidence, scale.degrees);
   }
 };
 
 }  // namespace
 
+double contrast_of_means(const Moments& x, const Moments& y, Contrast contrast) {
+  // What rounding takes from the product and from the difference (Dekker 1971, Knuth's two-sum).
+  const double product = contrast.scale * y.mean;
+  const double of_product = std::fma(contrast.scale, y.mean, -product);
+  const double difference = x.mean - product;
+  const double back = difference - x.mean;
+  const double of_difference = (x.mean - (difference - back)) - (product + back);
+  const double rest = x.rest - contrast.scale * y.rest;
+  return (difference - contrast.offset) + (of_difference - of_product + rest);
+}
+
 TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value) {
   check_samples("welch_t", x, y);
   check::finite({"welch_t", "scale"}, null_value.scale);
   check::finite({"welch_t", "offset"}, null_value.offset);
   const Scale scale = scale_of("welch_t", x, y, null_value.scale);
-  const double t = (x.mean - null_value.scale * y.mean - null_value.offset) / scale.standard_error;
+  const double t = contrast_of_means(x, y, null_value) / scale.standard_error;
   const LogTails tails = student_t_tails(t, scale.degrees);
   return {t, {"student-t", {scale.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
 }
@@ -70,7 +81,7 @@ Interval welch_t_interval(const Moments& x, const Moments& y, double confidence)
   check::inside_unit({"welch_t_interval", "confidence"}, confidence);
   const Scale scale = scale_of("welch_t_interval", x, y, 1);
   const double half = critical_value(confidence, scale.degrees) * scale.standard_error;
-  const double centre = x.mean - y.mean;
+  const double centre = contrast_of_means(x, y, {});
   return {centre - half, centre + half, confidence};
 }
 

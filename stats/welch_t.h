@@ -12,6 +12,9 @@ struct Contrast {
   double offset = 0;
 };
 
+// mean x - scale mean y - offset, as if no step of it were rounded but the last (Moments::rest).
+double contrast_of_means(const Moments& x, const Moments& y, Contrast contrast);
+
 // Null hypothesis: E x - scale E y = offset, variances free.
 //   T  = (mean x - scale mean y - offset) / sqrt(vx + vy),  vx = s2x / nx,  vy = scale^2 s2y / ny
 //   nu = (vx + vy)^2 / (vx^2 / (nx - 1) + vy^2 / (ny - 1))          (Welch 1947, Satterthwaite

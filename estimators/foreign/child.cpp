@@ -37,11 +37,7 @@ constexpr std::size_t kept_errors = 4096;
 constexpr int wanted_pipe = 1 << 20;
 
 std::atomic<bool (*)()> stop_question{nullptr};
-
-void stop_if_asked() {
-  bool (*const asked)() = stop_question.load();
-  if (asked != nullptr && asked()) throw std::runtime_error("interrupted");
-}
+std::atomic<void (*)(const std::string&)> say_notice{nullptr};
 
 [[noreturn]] void system_failure(int error, const std::string& what) {
   throw std::system_error(error, std::generic_category(), what);
@@ -109,7 +105,7 @@ void describe_files(posix_spawn_file_actions_t* actions, const Launch& launch,
 void describe_process(posix_spawnattr_t* attributes) {
   sigset_t defaults;
   sigemptyset(&defaults);
-  for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGPIPE, SIGCHLD, SIGHUP}) {
+  for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGPIPE, SIGCHLD, SIGHUP, SIGXFSZ}) {
     sigaddset(&defaults, signal);
   }
   sigset_t none;
@@ -206,6 +202,17 @@ int milliseconds_until(Deadline deadline) {
 
 void set_stop_question(bool (*stop)()) { stop_question.store(stop); }
 
+void stop_if_asked() {
+  bool (*const asked)() = stop_question.load();
+  if (asked != nullptr && asked()) throw std::runtime_error("interrupted");
+}
+
+void set_notice(void (*say)(const std::string& sentence)) { say_notice.store(say); }
+
+void notice(const std::string& sentence) {
+  if (auto* const say = say_notice.load(); say != nullptr) say(sentence);
+}
+
 Child::Child(const Launch& launch) {
   Pipe input;
   Pipe output;
@@ -240,7 +247,7 @@ bool Child::wait_for(int descriptor, short event, Deadline deadline) {
   }
 }
 
-void Child::send(std::string_view bytes, Deadline deadline) {
+bool Child::send(std::string_view bytes, Deadline deadline) {
   while (!bytes.empty() && input_ >= 0) {
     const ssize_t written = write_quietly(input_, bytes);
     if (written >= 0) {
@@ -248,9 +255,10 @@ void Child::send(std::string_view bytes, Deadline deadline) {
     } else if (!would_block(errno)) {
       close_descriptor(input_);
     } else if (!wait_for(input_, POLLOUT, deadline)) {
-      return;
+      return false;
     }
   }
+  return input_ >= 0;
 }
 
 std::size_t Child::receive(std::span<char> into, Deadline deadline) {

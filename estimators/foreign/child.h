@@ -32,6 +32,12 @@ class TimeOut : public std::runtime_error {
 /// What another thread or a signal handler sets to end all waiting; waits then throw
 /// std::runtime_error. Asked some times a second; nullptr for never.
 void set_stop_question(bool (*stop)());
+/// Throws that std::runtime_error where waiting is to end.
+void stop_if_asked();
+
+/// Where sentences go that no result depends on, of any thread; nullptr for nowhere.
+void set_notice(void (*say)(const std::string& sentence));
+void notice(const std::string& sentence);
 
 /// A running program at the head of a process group of its own. Whatever of the group still runs is
 /// killed when this object goes. The end of its standard error is kept. Descriptors of this process
@@ -44,9 +50,9 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Writes to its standard input. Once the program no longer reads, nothing is written and nothing
-  /// is thrown: that it ended shows when it is read from.
-  void send(std::string_view bytes, Deadline deadline);
+  /// Writes to its standard input, and tells whether the program still reads. Once it does not,
+  /// nothing is written and nothing is thrown: that it ended shows when it is read from.
+  bool send(std::string_view bytes, Deadline deadline);
   /// Waits for bytes of its standard output; how many came, 0 when it ended. Throws TimeOut.
   std::size_t receive(std::span<char> into, Deadline deadline);
   /// Whether bytes of its standard output can be read now.

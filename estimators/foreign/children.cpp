@@ -1,6 +1,6 @@
 #include "estimators/foreign/children.h"
 
-#include "estimators/foreign/examination.h"
+#include <span>
 
 namespace assay::foreign {
 
@@ -41,31 +41,98 @@ void Children::give_back(std::unique_ptr<Dialogue> dialogue) {
   idle_.push_back(std::move(dialogue));
 }
 
-void Children::witness(Dialogue& dialogue, const Question& question,
-                       const std::vector<double>& numbers) {
-  Witness mine{question, numbers};
-  bool first = false;
-  {
-    const std::scoped_lock lock(mutex_);
-    first = !witness_;
-    if (first) witness_ = mine;
-    mine = *witness_;
-  }
-  if (first) examine(dialogue, question);
-  if (same_bits(dialogue.ask(mine.question), mine.numbers)) return;
-  throw NoAnswer(other_numbers(terms_.name, mine.question));
+Children::Known Children::known_of(const Question& wanted) {
+  const std::size_t width = hello_.width();
+  const std::scoped_lock lock(mutex_);
+  Known known{.first = {.question = {.key = wanted.key,
+                                     .first = 0,
+                                     .count = asked_twice(width),
+                                     .primaries = wanted.primaries},
+                        .width = width}};
+  return known_.try_emplace(wanted.primaries, std::move(known)).first->second;
 }
 
-void Children::examine(Dialogue& dialogue, const Question& question) {
-  try {
-    const auto ask = [&](const Question& one) { return dialogue.ask(one); };
-    const std::string why = why_unfit(ask, question, terms_.name, hello_.means());
-    if (!why.empty()) throw NoAnswer(why);
-  } catch (const NoAnswer& unfit) {
-    const std::scoped_lock lock(mutex_);
-    unfit_ = unfit.what();
-    throw;
+/// Whether they are the first that a program has drawn.
+bool Children::keep(const FirstObservations& drawn) {
+  const std::scoped_lock lock(mutex_);
+  Known& known = known_.at(drawn.question.primaries);
+  if (known.complete) return false;
+  known = {.first = drawn, .complete = true, .usual = drawn.usual()};
+  return true;
+}
+
+void Children::refuse_unless_empty(const std::string& why) {
+  if (why.empty()) return;
+  const std::scoped_lock lock(mutex_);
+  unfit_ = why;
+  throw NoAnswer(why);
+}
+
+/// Draws the observations, as many at a time as are answered soon. Whether it answered for all.
+bool Children::draw_ahead(Dialogue& dialogue, FirstObservations& mine) {
+  Question question = mine.question;
+  while (mine.count() < mine.question.count) {
+    question.first = mine.count();
+    question.count = mine.question.count - mine.count();
+    question.count = dialogue.well_sized(question);
+    try {
+      const std::vector<double> more = dialogue.ask(question);
+      mine.numbers.insert(mine.numbers.end(), more.begin(), more.end());
+    } catch (const NoAnswer& failure) {
+      if (question.count == 1) note_failure(question, failure.what());
+      return false;
+    }
   }
+  return true;
+}
+
+bool Children::examine(Dialogue& dialogue, const Question& wanted) {
+  Known known = known_of(wanted);
+  FirstObservations mine{.question = known.first.question, .width = known.first.width};
+  if (!known.complete) {
+    const bool runs = draw_ahead(dialogue, mine);
+    if (keep(mine)) return runs && examine_first(dialogue, mine);
+    if (!runs) return false;
+    known = known_of(wanted);
+  }
+  const auto recall = [&](const Question& one) {
+    return one.first < mine.count() ? mine.row(one.first) : dialogue.ask(one);
+  };
+  refuse_unless_empty(why_not_repeated(recall, known.first, terms_.name));
+  return true;
+}
+
+bool Children::examine_first(Dialogue& dialogue, const FirstObservations& mine) {
+  const auto ask = [&](const Question& one) { return dialogue.ask(one); };
+  refuse_unless_empty(why_not_repeated(ask, mine, terms_.name));
+  std::string why;
+  try {
+    why = why_unfit(ask, mine, terms_.name, hello_.means());
+  } catch (const NoAnswer&) {
+    return false;
+  }
+  refuse_unless_empty(why);
+  return true;
+}
+
+void Children::examine_unusual(Dialogue& dialogue, const Question& question,
+                               const std::vector<double>& numbers) {
+  std::optional<std::vector<double>> usual;
+  {
+    const std::scoped_lock lock(mutex_);
+    usual = known_.at(question.primaries).usual;
+  }
+  const std::optional<std::size_t> found = usual ? first_unusual(numbers, *usual) : std::nullopt;
+  if (!found) return;
+  Question one = question;
+  one.first += *found;
+  one.count = 1;
+  const std::size_t width = usual->size();
+  const std::span<const double> unusual = std::span(numbers).subspan(*found * width, width);
+  const bool same = same_bits(dialogue.ask(one), {unusual.begin(), unusual.end()});
+  refuse_unless_empty(same ? "" : other_numbers(terms_.name, one));
+  const std::scoped_lock lock(mutex_);
+  known_.at(question.primaries).usual.reset();
 }
 
 void Children::note_failure(const Question& at, const std::string& why) {
@@ -78,7 +145,7 @@ void Children::refuse_after_failure(const Question& question) const {
   const std::scoped_lock lock(mutex_);
   if (!unfit_.empty() && !question.is_to_sampler()) throw NoAnswer(unfit_);
   const auto found = failures_.find({question.key, question.primaries});
-  if (found != failures_.end() && question.first > found->second.index) {
+  if (found != failures_.end() && question.first >= found->second.index) {
     throw NoAnswer(found->second.why);
   }
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "estimators/foreign/dialogue.h"
+#include "estimators/foreign/examination.h"
 
 namespace assay::foreign {
 
@@ -31,27 +32,39 @@ class Children {
   std::unique_ptr<Dialogue> take();
   void give_back(std::unique_ptr<Dialogue> dialogue);
 
-  /// Draws the numbers of one observation a second time, once for each program: first that which
-  /// the first program drew, asked of itself, then the same one asked of every other. Throws
-  /// NoAnswer where the bits differ: an observation is then no function of key and index. Of the
-  /// first program it also asks whether another key gives other numbers and, of means, whether
-  /// another index does, else NoAnswer. `numbers` are those of the question's only observation.
-  void witness(Dialogue& dialogue, const Question& question, const std::vector<double>& numbers);
+  /// Asks a program that is new to observations of so many primaries for the first ones
+  /// (examination.h). The set-up's first program is asked twice, every other is compared with it.
+  /// Throws NoAnswer where numbers are no function of key and index, and where a program ends at
+  /// what another has answered. False where the first one ended: the observation that ends it
+  /// tells.
+  bool examine(Dialogue& dialogue, const Question& wanted);
+  /// Where all first observations were the same, asks again for the first other one among these
+  /// numbers. Throws NoAnswer where it is then another.
+  void examine_unusual(Dialogue& dialogue, const Question& question,
+                       const std::vector<double>& numbers);
 
   /// That observation `index` of a stream could not be had. Those after it need not be tried.
   void note_failure(const Question& at, const std::string& why);
-  /// Throws NoAnswer where an earlier observation of the same stream could not be had, or where
-  /// witness() found that the program ignores key or index. A draw of a sampler is an observation
-  /// of no primaries.
+  /// Throws NoAnswer where it or an earlier observation of the same stream could not be had. So it
+  /// does where an examination found that no numbers are worth anything. A draw of a sampler is an
+  /// observation of no primaries.
   void refuse_after_failure(const Question& question) const;
 
  private:
-  void examine(Dialogue& dialogue, const Question& question);
-
-  struct Witness {
-    Question question;
-    std::vector<double> numbers;
+  /// First observations, incomplete until a program has drawn them.
+  struct Known {
+    FirstObservations first;
+    bool complete = false;
+    /// The only value so far; none once another was asked for again.
+    std::optional<std::vector<double>> usual = {};
   };
+
+  Known known_of(const Question& wanted);
+  bool draw_ahead(Dialogue& dialogue, FirstObservations& mine);
+  bool keep(const FirstObservations& drawn);
+  void refuse_unless_empty(const std::string& why);
+  bool examine_first(Dialogue& dialogue, const FirstObservations& mine);
+
   struct Failure {
     std::uint64_t index;
     std::string why;
@@ -62,7 +75,7 @@ class Children {
   Hello hello_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<Dialogue>> idle_;
-  std::optional<Witness> witness_;
+  std::map<std::uint64_t, Known> known_;  ///< by primaries
   std::map<StreamName, Failure> failures_;
   std::string unfit_ = "";  ///< why no observation of any stream is worth anything
 };

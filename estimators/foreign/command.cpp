@@ -11,6 +11,7 @@
 #include "estimators/foreign/render_seed.h"
 #include "estimators/foreign/renderings.h"
 #include "estimators/foreign/setup.h"
+#include "estimators/program_path.h"
 #include "recorded/picture_setup.h"
 #include "recorded/table.h"
 
@@ -26,6 +27,11 @@ struct Contents {
   std::size_t size() const { return shape ? shape->elements() : columns.size(); }
 };
 
+[[noreturn]] void throw_useless(const InputError& error) {
+  throw std::runtime_error("what the program wrote is of no use: " + to_string(error.where()) +
+                           ": " + error.message() + "; mend the program and delete the file");
+}
+
 /// One observation from its file. A file that cannot be read is the program's failure.
 void read_file(const Contents& contents, const std::string& file, std::vector<float>& texels,
                std::span<double> out) {
@@ -38,15 +44,14 @@ void read_file(const Contents& contents, const std::string& file, std::vector<fl
       recorded::write_observation(texels, out);
       return;
     }
-    const recorded::Table table = recorded::read_table(file);
+    const recorded::Table table = recorded::read_table(file, recorded::Rows::one_is_fine);
     if (table.rows() != 1 || table.columns.size() != contents.size()) {
       throw InputError({.file = file}, "one row of " + std::to_string(contents.size()) +
                                            " numbers was expected, as in the first file");
     }
     std::ranges::copy(table.values, out.begin());
   } catch (const InputError& error) {
-    throw std::runtime_error("what the program wrote is of no use: " + to_string(error.where()) +
-                             ": " + error.message() + "; mend the program and delete the file");
+    throw_useless(error);
   }
 }
 
@@ -129,7 +134,7 @@ Contents look_at_one(foreign::Renderings& renderings, const Look& look) {
     contents.shape = contents.pictures.shape(look.independent);
     contents.pictures.files.clear();
   } else {
-    contents.columns = recorded::read_table(file).columns;
+    contents.columns = recorded::read_table(file, recorded::Rows::one_is_fine).columns;
   }
   return contents;
 }
@@ -161,6 +166,10 @@ void check_command(const Parameters& parameters, const std::vector<std::string>&
     parameters.refuse("command", "has no place `{out}` for the file to write");
   }
   for (const std::string& word : command) check_places(parameters, word);
+  if (program_path(command[0], parameters.folder()).empty()) {
+    parameters.refuse("command", "names the program `" + command[0] +
+                                     "`, which cannot be started: there is none");
+  }
 }
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
@@ -170,6 +179,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
                                .cache = parameters.file("cache"),
                                .ending = parameters.string("output") == "text" ? "txt" : "exr",
                                .timeout = parameters.number("timeout"),
+                               .retries = parameters.count("retries"),
                                .memory = parameters.number("memory"),
                                .jobs = parameters.count("jobs")};
   check_command(parameters, rendering.command);
@@ -183,9 +193,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
     Contents contents = look_at_one(*renderings, look);
     return std::make_shared<CommandSetup>(std::move(renderings), std::move(contents));
   } catch (const InputError& error) {
-    parameters.refuse("command", "writes `" + error.where().file + "`: " + error.message());
-  } catch (const std::runtime_error& error) {
-    parameters.refuse("command", std::string("is of no use: ") + error.what());
+    throw_useless(error);
   }
 }
 
@@ -207,8 +215,9 @@ std::vector<Entry> foreign_command() {
             "What was made is kept in `cache`, in a folder for each command, number of samples "
             "and contents of the files that the command or `depends` names: an interrupted run "
             "goes on where it stopped. A file counts once its program has ended with status 0. "
-            "A program that fails, takes too long or writes nothing is an error with the end of "
-            "its standard error. The size is learnt from one picture of one sample; a test is "
+            "A program that fails, takes too long or writes nothing, and so at each of its "
+            "`retries`, is an error with its exit status and the end of its standard error. The "
+            "size is learnt from one picture of one sample; a test is "
             "planned on a pilot of pictures that it does not judge, 32 or, of small ones, up to "
             "512.",
         .parameters =
@@ -247,7 +256,15 @@ std::vector<Entry> foreign_command() {
               .fallback = "0",
               .high = 1024,
               .shapes_draws = false},
-             foreign::timeout_parameter("how long one picture may take", "600"),
+             foreign::timeout_parameter(
+                 "how long one picture may take, from the start of its program", "600"),
+             {.name = "retries",
+              .type = ParameterType::count,
+              .summary = "how many times a program that fails, takes too long or writes nothing is "
+                         "started again, with the same seed; each is told on standard error",
+              .fallback = "0",
+              .high = 100,
+              .shapes_draws = false},
              foreign::memory_parameter()},
         .averages = false},
        prepare}};

@@ -18,6 +18,8 @@ using std::chrono::steady_clock;
 // A question is as large as is answered in about this time: long against what the change between
 // two programs takes (some 20 microseconds), short against a time-out.
 constexpr double pleasant_seconds = 0.02;
+// Longer than most programs take to start and to reply.
+constexpr int silent_seconds = 3;
 constexpr std::size_t longest_hello = std::size_t{1} << 20;
 
 std::string seconds_text(double seconds) {
@@ -26,24 +28,9 @@ std::string seconds_text(double seconds) {
   return std::string(buffer.data()) + (seconds == 1 ? " second" : " seconds");
 }
 
-/// The last lines, on one line.
-std::string tail_of(const std::string& text) {
-  constexpr std::size_t most = 300;
-  std::size_t begin = text.size() > most ? text.size() - most : 0;
-  // Not from the middle of a word, where words are words.
-  const std::size_t blank = text.find_first_of(" \n", begin);
-  if (begin > 0 && blank != std::string::npos) begin = blank;
-  const std::string legible = shown(std::string_view(text).substr(begin), 2 * most);
-  std::string out;
-  for (const std::string_view word : words_of(legible)) {
-    out += (out.empty() ? "" : " ") + std::string(word);
-  }
-  return (begin > 0 && !out.empty() ? "… " : "") + out;
-}
-
 /// Questions that take alike long.
 std::pair<std::uint64_t, std::uint64_t> kind_of(const Question& question) {
-  if (!question.is_to_sampler()) return {0, 0};
+  if (!question.is_to_sampler()) return {0, question.primaries};
   return {question.key + 1, static_cast<std::uint64_t>(question.asked())};
 }
 
@@ -56,7 +43,7 @@ Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
     give_up("said no whole hello within " + seconds_text(terms_.timeout) +
             "; it ends with the line `ready`, and buffers must be flushed");
   } catch (const Refusal& refusal) {
-    throw NoAnswer(refusal.what());
+    throw Refused(refusal.what());
   } catch (const ProtocolError& error) {
     give_up("cannot be understood: " + std::string(error.what()));
   }
@@ -67,12 +54,29 @@ Deadline Dialogue::deadline() const {
          std::chrono::duration_cast<steady_clock::duration>(duration<double>(terms_.timeout));
 }
 
+/// Waits for bytes of its standard output. Where none come for a while the user is asked, once.
+std::size_t Dialogue::listen(std::span<char> into, Deadline end) {
+  const Deadline patience = steady_clock::now() + std::chrono::seconds(silent_seconds);
+  std::atomic_flag* const asked = terms_.asked_whether_it_flushes.get();
+  if (asked == nullptr || asked->test() || patience >= end) return child_.receive(into, end);
+  try {
+    return child_.receive(into, patience);
+  } catch (const TimeOut&) {
+    if (!asked->test_and_set()) {
+      notice("`" + terms_.name + "` has not replied for " + std::to_string(silent_seconds) +
+             " s; does it flush its output (print(..., flush=True))? A slow one is waited for: " +
+             seconds_text(terms_.timeout) + " (`timeout`)");
+    }
+    return child_.receive(into, end);
+  }
+}
+
 void Dialogue::hear_hello() {
   const Deadline end = deadline();
   std::string text;
   std::array<char, 4096> buffer{};
   while (!is_whole_hello(text)) {
-    const std::size_t count = child_.receive(buffer, end);
+    const std::size_t count = listen(buffer, end);
     if (count == 0) {
       const std::string said = text.empty() ? "" : "; it said `" + shown(text) + "`";
       give_up(child_.ending() + " before it had said its whole hello" + said);
@@ -91,9 +95,7 @@ void Dialogue::hear_hello() {
 
 void Dialogue::give_up(const std::string& why) {
   child_.kill();
-  const std::string tail = tail_of(child_.last_errors());
-  throw NoAnswer("`" + terms_.name + "` " + why +
-                 (tail.empty() ? "" : "; its standard error ends with: " + tail));
+  throw NoAnswer("`" + terms_.name + "` " + why + ending_with(child_.last_errors()));
 }
 
 std::vector<double> Dialogue::ask(const Question& question) { return ask(question, {}); }
@@ -113,7 +115,8 @@ std::vector<double> Dialogue::hear(const Question& question, std::string_view it
   const std::size_t width =
       question.is_to_sampler() ? numbers_of(question.asked()) : hello_.width();
   Reply reply(question, width, hello_.numbers);
-  const Deadline end = deadline();
+  Deadline end = deadline();
+  bool reads = true;
   if (child_.has_output()) {
     std::array<char, 64> early{};
     const std::size_t count = child_.receive(early, end);
@@ -123,9 +126,11 @@ std::vector<double> Dialogue::hear(const Question& question, std::string_view it
     }
   }
   try {
-    child_.send(to_bytes(question, hello_.numbers) + std::string(items), end);
+    reads = child_.send(to_bytes(question, hello_.numbers) + std::string(items), end);
+    // What it has not read it will not answer; it may be about to end, and say why.
+    if (!reads) end = std::min(end, steady_clock::now() + std::chrono::milliseconds(500));
     while (true) {
-      const std::size_t count = child_.receive(reply.space(), end);
+      const std::size_t count = listen(reply.space(), end);
       if (count == 0) {
         give_up(child_.ending() + " instead of answering for " + to_text(question) + "; " +
                 reply.so_far());
@@ -135,6 +140,7 @@ std::vector<double> Dialogue::hear(const Question& question, std::string_view it
       if (const std::string why = reply.ends_early(); !why.empty()) throw ProtocolError(why);
     }
   } catch (const TimeOut&) {
+    if (!reads) give_up("closed its standard input instead of answering for " + to_text(question));
     give_up("did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
             " (parameter `timeout`; does it flush its output after each reply?); " +
             reply.so_far());

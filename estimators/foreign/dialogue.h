@@ -2,8 +2,11 @@
 
 // A running program and the conversation with it.
 
+#include <atomic>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,6 +23,9 @@ struct Terms {
   Launch launch;
   double timeout = 60;  ///< seconds a reply may take
   std::string name;     ///< of the program in messages
+  /// Set once it was asked, of a program of the set-up that said nothing for 3 s, whether it
+  /// flushes its output; null where output cannot wait in a buffer.
+  std::shared_ptr<std::atomic_flag> asked_whether_it_flushes = {};
 };
 
 /// Why a program did not answer: a sentence with the program's name, how it ended and the end of
@@ -29,9 +35,15 @@ class NoAnswer : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The program itself says, in the place of its hello, that it cannot be used so.
+class Refused : public NoAnswer {
+ public:
+  using NoAnswer::NoAnswer;
+};
+
 class Dialogue {
  public:
-  /// Starts the program and reads its hello. Throws NoAnswer.
+  /// Starts the program and reads its hello. Throws NoAnswer, Refused where it refuses.
   explicit Dialogue(const Terms& terms);
 
   const Hello& hello() const { return hello_; }
@@ -43,17 +55,15 @@ class Dialogue {
   /// How many of the question's observations or items to ask for at a time, by how long the last
   /// replies to such questions took.
   std::uint64_t well_sized(const Question& question) const;
-  /// Whether nothing of this kind, of the same sampler, has been asked yet.
+  /// Whether nothing of this kind, of as many primaries or the same sampler, has been asked yet.
   bool is_new_to(const Question& question) const;
-  /// Whether it was shown that the program draws an observation the same when asked again.
-  bool witnessed() const { return witnessed_; }
-  void note_witnessed() { witnessed_ = true; }
   double cpu_seconds() const { return child_.cpu_seconds(); }
   Child& child() { return child_; }
 
  private:
   Deadline deadline() const;
   void hear_hello();
+  std::size_t listen(std::span<char> into, Deadline end);
   std::vector<double> hear(const Question& question, std::string_view items);
   void learn_pace(const Question& question, double seconds);
   [[noreturn]] void give_up(const std::string& why);
@@ -61,9 +71,9 @@ class Dialogue {
   const Terms& terms_;
   Child child_;
   Hello hello_;
-  /// Of questions for observations, and to each sampler for each of what it is asked.
+  /// The sizes of questions for observations of so many primaries, and to each sampler for what it
+  /// is asked.
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::uint64_t> sizes_;
-  bool witnessed_ = false;
 };
 
 }  // namespace assay::foreign

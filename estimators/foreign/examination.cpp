@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <set>
+#include <cstring>
+#include <map>
+#include <string_view>
+#include <utility>
 
 #include "estimators/foreign/shared_object.h"
 
@@ -11,53 +13,86 @@ namespace assay::foreign {
 
 namespace {
 
-// Pairs of observations, and how many different ones must be among them, before equality under two
-// keys is no coincidence: of a value with four outcomes it is at most some 3 in
-// 10^6 (probabilities 3/4 and three of 1/12).
-constexpr std::uint64_t most_pairs = 12;
-constexpr std::size_t least_different = 4;
+// Numbers that are drawn to be asked for again, and that are compared under another key.
+constexpr std::size_t numbers_twice = 32;
+constexpr std::size_t numbers_compared = 128;
+// Fewest observations, however many numbers they have. Ten pairs of different values are enough.
+constexpr std::size_t least_twice = 2;
+constexpr std::size_t least_compared = 16;
+// Pairs are judged after each: together they accuse with at most 5e-7.
+constexpr double least_chance = 5e-7 / numbers_compared;
 
-std::vector<double> one(const Asking& ask, Question question, std::uint64_t index) {
-  question.first = index;
-  question.count = 1;
-  return ask(question);
+/// Observations that hold so many numbers.
+std::size_t holding(std::size_t numbers, std::size_t width, std::size_t least) {
+  return std::clamp(numbers / width, least, numbers);
 }
+
+/// Observations of the stream whose first ones are known.
+class Source {
+ public:
+  Source(const Asking& ask, const FirstObservations& first) : ask_(ask), first_(first) {}
+
+  std::vector<double> at(std::size_t index) const {
+    return index < first_.count() ? first_.row(index) : of(first_.question, index);
+  }
+  /// The same of another key.
+  std::vector<double> of_other_key(std::size_t index) const {
+    Question question = first_.question;
+    question.key = ~question.key;
+    return of(question, index);
+  }
+  /// The same of twice as many primaries.
+  std::vector<double> of_twice_as_many(std::size_t index) const {
+    Question question = first_.question;
+    question.primaries *= 2;
+    return of(question, index);
+  }
+
+ private:
+  std::vector<double> of(Question question, std::size_t index) const {
+    question.first = index;
+    question.count = 1;
+    return ask_(question);
+  }
+
+  const Asking& ask_;
+  const FirstObservations& first_;
+};
+
+/// The probability that all pairs of exchangeable observations are equal, given their values.
+class Coincidence {
+ public:
+  void add(const std::vector<double>& value) {
+    const auto* const bytes = reinterpret_cast<const char*>(value.data());
+    // Two values of one hash make it larger.
+    double& earlier = pairs_[std::hash<std::string_view>{}({bytes, sizeof(double) * value.size()})];
+    probability_ *= (2 * earlier++ + 1) / (2 * all_++ + 1);
+  }
+  double probability() const { return probability_; }
+
+ private:
+  std::map<std::size_t, double> pairs_;
+  double all_ = 0;
+  double probability_ = 1;
+};
 
 /// Whether the same observations come for another key. The first pair that differs ends it: of
 /// continuous values that is the first.
-bool ignores_key(const Asking& ask, const Question& question) {
-  Question other = question;
-  other.key = ~question.key;
-  std::set<std::vector<double>> different;
-  for (std::uint64_t index = 0; index < most_pairs; ++index) {
-    const std::vector<double> mine = one(ask, question, index);
-    if (!same_bits(one(ask, other, index), mine)) return false;
-    different.insert(mine);
+bool ignores_key(const Source& source, std::size_t most) {
+  Coincidence coincidence;
+  for (std::size_t i = 0; i < most; ++i) {
+    const std::vector<double> mine = source.at(i);
+    if (!same_bits(source.of_other_key(i), mine)) return false;
+    coincidence.add(mine);
+    if (coincidence.probability() < least_chance) return true;
   }
-  return different.size() >= least_different;
+  return false;
 }
 
-// Observations 0 to 19 that are all the same may be those of an estimator without variance, or of a
-// rare event. They are not, where those of twice as many primaries are all the same too, but
-// others: of a mean of independent primaries that is v with probability p, the mean of two such is
-// v with p^2 at least, so that all of them come out so with probability at most (p (1 - p^2))^19 <=
-// 2e-8.
-constexpr std::uint64_t most_alike = 20;
-
-/// The first so many numbers of all of the observations are the same: these. The rays behind them
-/// are no means.
-std::optional<std::vector<double>> always_given(const Asking& ask, const Question& question,
-                                                std::size_t means) {
-  const auto means_of = [&](std::uint64_t index) {
-    std::vector<double> numbers = one(ask, question, index);
-    numbers.resize(std::min(means, numbers.size()));
-    return numbers;
-  };
-  const std::vector<double> first = means_of(0);
-  for (std::uint64_t index = 1; index < most_alike; ++index) {
-    if (!same_bits(means_of(index), first)) return {};
-  }
-  return first;
+/// What an observation begins with, so many numbers.
+std::vector<double> begin_of(std::vector<double> row, std::size_t numbers) {
+  row.resize(std::min(numbers, row.size()));
+  return row;
 }
 
 /// But for what the sum of so many equal numbers in single precision loses.
@@ -71,15 +106,19 @@ bool same_but_for_rounding(const std::vector<double>& a, const std::vector<doubl
   return std::ranges::equal(a, b, near);
 }
 
-/// Whether the index of an observation changes nothing, though the number of primaries does, whose
-/// mean it is said to be.
-bool ignores_index(const Asking& ask, const Question& question, std::size_t means) {
-  const auto once = always_given(ask, question, means);
-  if (!once) return false;
-  Question twice_as_many = question;
-  twice_as_many.primaries = 2 * question.primaries;
-  const auto twice = always_given(ask, twice_as_many, means);
-  return twice && !same_but_for_rounding(*once, *twice, twice_as_many.primaries);
+/// Whether the index of an observation changes nothing, though what else is asked does: `count`
+/// observations all begin with the same numbers, the others too, but with others.
+template <class Others>
+bool ignores_index(const Source& source, const Others& others, std::size_t numbers,
+                   std::size_t count, std::uint64_t primaries) {
+  const std::vector<double> mine = begin_of(source.at(0), numbers);
+  const std::vector<double> other = begin_of(others(0), numbers);
+  if (same_but_for_rounding(mine, other, primaries)) return false;
+  for (std::size_t i = 1; i < count; ++i) {
+    if (!same_bits(begin_of(source.at(i), numbers), mine)) return false;
+    if (!same_bits(begin_of(others(i), numbers), other)) return false;
+  }
+  return true;
 }
 
 constexpr const char* rule =
@@ -94,21 +133,64 @@ std::string gave_other_numbers(const std::string& name, const std::string& asked
 
 }  // namespace
 
-std::string why_unfit(const Asking& ask, const Question& question, const std::string& name,
+std::vector<double> FirstObservations::row(std::size_t index) const {
+  const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(index * width);
+  return {begin, begin + static_cast<std::ptrdiff_t>(width)};
+}
+
+std::optional<std::vector<double>> FirstObservations::usual() const {
+  if (count() == 0 || first_unusual(numbers, row(0))) return {};
+  return row(0);
+}
+
+std::uint64_t asked_twice(std::size_t width) { return holding(numbers_twice, width, least_twice); }
+
+std::string why_not_repeated(const Asking& ask, const FirstObservations& first,
+                             const std::string& name) {
+  Question one = first.question;
+  one.count = 1;
+  for (std::size_t i = first.count(); i-- > 0;) {
+    one.first = i;
+    if (!same_bits(ask(one), first.row(i))) return other_numbers(name, one);
+  }
+  return "";
+}
+
+std::string why_unfit(const Asking& ask, const FirstObservations& first, const std::string& name,
                       std::size_t means) {
-  if (ignores_key(ask, question)) {
+  const std::uint64_t primaries = first.question.primaries;
+  const Source source(ask, first);
+  const std::size_t most = holding(numbers_compared, first.width, least_compared);
+  if (ignores_key(source, most)) {
     return "`" + name +
            "` gave the same numbers for two keys: runs of other seeds would repeat each other, and "
            "so would estimators that must be independent; seed its random numbers with key and "
            "index";
   }
-  if (means > 0 && ignores_index(ask, question, means)) {
-    return "`" + name + "` gave the same numbers for observations 0 to " +
-           std::to_string(most_alike - 1) + " of " + std::to_string(question.primaries) +
-           " primaries, and others for all of twice as many: they are not means of independent "
-           "primaries; seed its random numbers with key and index";
+  if (!first.usual()) return "";
+  const std::size_t count = std::min(numbers_twice, most);
+  const auto other_key = [&](std::size_t i) { return source.of_other_key(i); };
+  const auto twice_as_many = [&](std::size_t i) { return source.of_twice_as_many(i); };
+  std::string others;
+  if (ignores_index(source, other_key, first.width, count, primaries)) {
+    others = "another key";
+  } else if (means > 0 && ignores_index(source, twice_as_many, means, count, 2 * primaries)) {
+    others = "twice as many: they are not means of independent primaries";
+  } else {
+    return "";
   }
-  return "";
+  return "`" + name + "` gave the same numbers for observations 0 to " + std::to_string(count - 1) +
+         " of " + std::to_string(primaries) + " primaries, and others for all of " + others +
+         "; seed its random numbers with key and index";
+}
+
+std::optional<std::size_t> first_unusual(std::span<const double> numbers,
+                                         std::span<const double> usual) {
+  for (std::size_t i = 0; i * usual.size() < numbers.size(); ++i) {
+    const auto row = numbers.subspan(i * usual.size(), usual.size());
+    if (std::memcmp(row.data(), usual.data(), usual.size_bytes()) != 0) return i;
+  }
+  return {};
 }
 
 std::string other_numbers(const std::string& name, const Question& question) {

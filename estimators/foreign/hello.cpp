@@ -18,9 +18,10 @@ using Words = std::vector<std::string_view>;
 
 struct BiasWord {
   std::string_view word;
-  BiasClass bias;
+  std::optional<BiasClass> bias;
 };
-constexpr std::array<BiasWord, 5> bias_words = {{{"unbiased", BiasClass::unbiased},
+constexpr std::array<BiasWord, 6> bias_words = {{{"unknown", std::nullopt},
+                                                 {"unbiased", BiasClass::unbiased},
                                                  {"primaries", BiasClass::inverse_primaries},
                                                  {"bootstrap", BiasClass::inverse_bootstrap},
                                                  {"start-up", BiasClass::start_up},
@@ -180,12 +181,12 @@ class Reader {
   }
 
   void bias(const Words& words) {
-    for (const BiasWord& known : bias_words) {
-      if (words.size() == 2 && words[1] == known.word) hello_.nature.bias = known.bias;
+    const std::string_view word = words.size() == 2 ? words[1] : "";
+    const auto* const known = std::ranges::find(bias_words, word, &BiasWord::word);
+    if (known == bias_words.end()) {
+      wrong_here("bias is unknown, unbiased, primaries, bootstrap, start-up or reconstruction");
     }
-    if (!hello_.nature.bias) {
-      wrong_here("bias is unbiased, primaries, bootstrap, start-up or reconstruction");
-    }
+    hello_.nature.bias = known->bias;
   }
 
   Domain domain(std::string_view word) const {
@@ -333,10 +334,8 @@ std::string image_lines(const ImageShape& image, const Channel& element) {
 }
 
 std::string bias_line(std::optional<BiasClass> bias) {
-  for (const BiasWord& known : bias_words) {
-    if (bias == known.bias) return "bias " + std::string(known.word) + "\n";
-  }
-  return "";
+  const auto* const known = std::ranges::find(bias_words, bias, &BiasWord::bias);
+  return "bias " + std::string(known->word) + "\n";
 }
 
 std::string sampler_line(const SamplerNote& sampler) {

@@ -10,8 +10,8 @@
 //
 // The first line tells the protocol's version and whether replies are `text` or `binary`. There is
 // a line for each channel, with what is known of it exactly after its name. `averages`: an
-// observation is the mean of its primaries. The bias is unbiased, primaries, bootstrap, start-up or
-// reconstruction.
+// observation is the mean of its primaries. The bias is unknown, as without the line, unbiased,
+// primaries, bootstrap, start-up or reconstruction.
 //
 // Instead of channels, or before channels that are diagnostic, `image 64 48 red green blue` says
 // that an observation is an image, `range LOW HIGH` what no element of it leaves, and `independent`
@@ -88,7 +88,7 @@ Hello parse_hello(std::string_view text, std::uint64_t most = most_numbers);
 std::string to_text(const Hello& hello);
 
 /// Lines of it, each with its end: of a channel; of an image, each of whose elements has the range
-/// of this one; of a bias, none where it is unknown; of a sampler.
+/// of this one; of a bias; of a sampler.
 std::string channel_line(const Channel& channel);
 std::string image_lines(const ImageShape& image, const Channel& element);
 std::string bias_line(std::optional<BiasClass> bias);

@@ -234,6 +234,8 @@ std::string library_host() {
 
 void set_stop_question(bool (*stop)()) { foreign::set_stop_question(stop); }
 
+void set_notice(void (*say)(const std::string& sentence)) { foreign::set_notice(say); }
+
 int host_library(const std::vector<std::string>& arguments) {
   const Channels channels;
   watch(channels.questions());

@@ -1,13 +1,17 @@
 #include "estimators/foreign/library_setup.h"
 
 #include <array>
+#include <atomic>
 #include <filesystem>
+#include <map>
+#include <mutex>
 
 #include "estimators/foreign/examination.h"
 #include "estimators/foreign/library_sampler.h"
 #include "estimators/foreign/streams_ahead.h"
 #include "estimators/foreign/words.h"
 #include "estimators/parameters.h"
+#include "estimators/thread_seconds.h"
 
 namespace assay::foreign {
 
@@ -182,42 +186,103 @@ std::vector<double> numbers_of(const PreparedLibrary& library, const Question& q
   return numbers;
 }
 
-/// Observation 0 comes first and, after others, again. What the library reports as an error is told
-/// by the observation that has it.
-std::string why_unfit(const PreparedLibrary& library, std::uint64_t key, std::uint64_t primaries) {
-  const Question first{.key = key, .first = 0, .count = 1, .primaries = primaries};
+/// What is found by asking for observations of so many primaries again.
+struct Examined {
+  FirstLook look;
+  std::vector<double> usual;  ///< of observations that were all the same
+  std::atomic<bool> varies = false;
+};
+
+/// Draws the first observations. What the library reports as an error is told by the observation
+/// that has it.
+std::string why_unfit(const PreparedLibrary& library, std::uint64_t key, std::uint64_t primaries,
+                      Examined& examined) {
   const auto ask = [&](const Question& one) { return numbers_of(library, one); };
+  const std::size_t width = library.hello().width();
+  FirstObservations first{
+      .question = {.key = key, .first = 0, .count = asked_twice(width), .primaries = primaries},
+      .width = width};
   try {
-    const std::vector<double> numbers = ask(first);
-    const std::string why = why_unfit(ask, first, library.file(), library.hello().means());
+    Question one = first.question;
+    for (one.count = 1; one.first < first.question.count; ++one.first) {
+      const std::vector<double> numbers = ask(one);
+      first.numbers.insert(first.numbers.end(), numbers.begin(), numbers.end());
+    }
+    const std::string why = why_not_repeated(ask, first, library.file());
     if (!why.empty()) return why;
-    return same_bits(ask(first), numbers) ? "" : other_numbers(library.file(), first);
+    examined.varies = !first.usual();
+    if (!examined.varies) examined.usual = first.row(0);
+    return why_unfit(ask, first, library.file(), library.hello().means());
   } catch (const LibraryError&) {
+    examined.varies = true;
     return "";
   }
 }
 
-class LibraryEstimator final : public Estimator {
+/// Holds those of one set-up, by primaries.
+class Examinations {
  public:
-  LibraryEstimator(std::shared_ptr<const PreparedLibrary> library,
-                   std::shared_ptr<FirstLook> first_look)
-      : library_(std::move(library)),
-        first_look_(std::move(first_look)),
-        elements_(library_->hello().image ? library_->hello().image->elements() : 1) {}
-
-  void announce(const Announcement& next) override { streams_.announce(next); }
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    first_look_->at([&] { return why_unfit(*library_, random.key().bits, primaries); });
-    AssayStream theirs = streams_.of(random.key(), random.observation());
-    cost.closest_hit_rays += library_->observe(theirs, primaries, out);
-    cost.samples += primaries * elements_;
+  Examined& of(std::uint64_t primaries) {
+    const std::scoped_lock lock(mutex_);
+    return all_[primaries];
   }
 
  private:
+  std::mutex mutex_;
+  std::map<std::uint64_t, Examined> all_;
+};
+
+class LibraryEstimator final : public Estimator {
+ public:
+  LibraryEstimator(std::shared_ptr<const PreparedLibrary> library,
+                   std::shared_ptr<Examinations> examinations)
+      : library_(std::move(library)),
+        examinations_(std::move(examinations)),
+        elements_(library_->hello().image ? library_->hello().image->elements() : 1) {}
+
+  void announce(const Announcement& next) override { streams_.announce(next); }
+  /// An examination's are not the estimator's.
+  double seconds_elsewhere() const override { return -seconds_examining_; }
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    if (examined_ == nullptr || primaries != primaries_) examine(random.key(), primaries);
+    AssayStream theirs = streams_.of(random.key(), random.observation());
+    cost.closest_hit_rays += library_->observe(theirs, primaries, out);
+    cost.samples += primaries * elements_;
+    if (!examined_->varies.load(std::memory_order_acquire)) {
+      examine_unusual({.key = random.key().bits,
+                       .first = random.observation(),
+                       .count = 1,
+                       .primaries = primaries},
+                      out);
+    }
+  }
+
+ private:
+  void examine(StreamKey key, std::uint64_t primaries) {
+    const double before = thread_seconds();
+    Examined& examined = examinations_->of(primaries);
+    examined.look.at([&] { return why_unfit(*library_, key.bits, primaries, examined); });
+    seconds_examining_ += thread_seconds() - before;
+    examined_ = &examined;
+    primaries_ = primaries;
+  }
+
+  /// Where it is the first other one, it is drawn again. Rays are not compared.
+  void examine_unusual(const Question& question, std::span<const double> out) {
+    if (!first_unusual(out, std::span(examined_->usual).first(out.size()))) return;
+    std::vector<double> again = numbers_of(*library_, question);
+    again.resize(out.size());
+    if (first_unusual(out, again)) throw LibraryError(other_numbers(library_->file(), question));
+    examined_->varies = true;
+  }
+
   std::shared_ptr<const PreparedLibrary> library_;
-  std::shared_ptr<FirstLook> first_look_;
+  std::shared_ptr<Examinations> examinations_;
+  Examined* examined_ = nullptr;  ///< of so many primaries
+  std::uint64_t primaries_ = 0;
+  double seconds_examining_ = 0;
   std::uint64_t elements_;
   StreamsAhead streams_;
 };
@@ -233,7 +298,7 @@ class LibrarySetup final : public Setup {
 
   std::vector<Channel> channels() const override { return library_->hello().channels; }
   std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<LibraryEstimator>(library_, first_look_);
+    return std::make_unique<LibraryEstimator>(library_, examinations_);
   }
   std::optional<ImageShape> image() const override { return library_->hello().image; }
   std::optional<Nature> nature() const override { return library_->hello().nature; }
@@ -241,7 +306,7 @@ class LibrarySetup final : public Setup {
 
  private:
   std::shared_ptr<const PreparedLibrary> library_;
-  std::shared_ptr<FirstLook> first_look_ = std::make_shared<FirstLook>();
+  std::shared_ptr<Examinations> examinations_ = std::make_shared<Examinations>();
   std::vector<NamedSampler> samplers_;
 };
 

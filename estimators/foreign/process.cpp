@@ -1,6 +1,7 @@
 // Observations that another program draws: a renderer, a script, anything that reads its standard
 // input and writes its standard output. Nothing is known of their mean but what the program says.
 
+#include <atomic>
 #include <memory>
 
 #include "estimators/foreign/setup.h"
@@ -15,6 +16,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   if (terms.launch.command.empty() || terms.launch.command.front().empty()) {
     parameters.refuse("command", "names no program; as in `[python3, mine.py]`");
   }
+  terms.asked_whether_it_flushes = std::make_shared<std::atomic_flag>();
   return foreign::start(std::move(terms), parameters, "command");
 }
 
@@ -46,17 +48,17 @@ std::vector<Entry> foreign_process() {
             "words (key, first, count, primaries), the reply count times channels doubles and the "
             "question again.\n"
             "An observation must be a function of key and index alone, whatever was asked before: "
-            "each program is asked for one observation twice, and other bits are an error; so are "
-            "the "
-            "same numbers under another key. A "
-            "program that ends, takes too long or writes anything else is an error too, with the "
+            "the first ones are asked for twice, and other bits are an error; so are the same "
+            "numbers under another key. A program that ends, takes too long or writes anything "
+            "else is an error too, with the "
             "index of the observation and the end of its standard error; what of its group still "
             "runs is killed.\n"
             "More lines of the hello: after a channel's name `mean X`, `error X`, `variance X` (of "
             "a primary), `low X`, `high X`, `rounding X`, `diagnostic`; `averages` where an "
-            "observation is the mean of its primaries; `bias` unbiased, primaries, bootstrap, "
-            "start-up or reconstruction; `image WIDTH HEIGHT COMPONENT…` in the place of "
-            "channels, with `range LOW HIGH` of its elements and `independent` where pixels are; "
+            "observation is the mean of its primaries; `bias` unknown, unbiased, primaries, "
+            "bootstrap, start-up or reconstruction; `image WIDTH HEIGHT COMPONENT…` in the place "
+            "of channels, with `range LOW HIGH` of its elements and `independent` where pixels "
+            "are; "
             "`rays` where one more number follows each observation, the rays it took; `sampler "
             "NAME DOMAIN` in binary, of a source of points that is asked for draws and densities "
             "(estimators/foreign/README.md); `error WORDS` to refuse.",

@@ -164,12 +164,6 @@ class Unfinished {
   std::string path_;
 };
 
-std::string with_errors(const std::string& text, Child& child) {
-  std::string errors = child.last_errors();
-  while (errors.ends_with('\n')) errors.pop_back();
-  return errors.empty() ? text : text + "; the end of its standard error: " + errors;
-}
-
 }  // namespace
 
 bool has_place(const std::vector<std::string>& command, std::string_view place) {
@@ -226,7 +220,8 @@ std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
   return tasks;
 }
 
-double Renderings::run_program(const Task& task, const std::string& out) {
+/// Why it failed, "" where it ended well. Its CPU seconds are added.
+std::string Renderings::run_program(const Task& task, const std::string& out, double& cpu_seconds) {
   std::string seeds;
   for (const std::uint32_t seed : task.seeds) {
     seeds += (seeds.empty() ? "" : ",") + std::to_string(seed);
@@ -239,59 +234,71 @@ double Renderings::run_program(const Task& task, const std::string& out) {
     launch.command.push_back(replaced(std::move(word), "{out}", out));
   }
   const double seconds = rendering_.timeout * static_cast<double>(task.seeds.size());
+  std::string failure;
+  Child child(launch);
   const Deadline deadline = std::chrono::steady_clock::now() +
                             std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
-  const std::string what = "`" + joined(launch.command) + "` ";
-  Child child(launch);
   child.close_input();
   try {
     std::array<char, 4096> said{};
     while (child.receive(said, deadline) > 0) {
     }
     if (!child.ends_by(deadline)) throw TimeOut("time-out");
+    const std::string ending = child.ending();
+    if (ending != "ended with exit status 0") failure = ending;
   } catch (const TimeOut&) {
     child.kill();
-    throw std::runtime_error(with_errors(what + "took more than " + text_of(seconds) +
-                                             " s and was ended; give it a larger `timeout`",
-                                         child));
+    failure = "took more than " + text_of(seconds) + " s and was ended; give it a larger `timeout`";
   }
-  const std::string ending = child.ending();
-  if (ending != "ended with exit status 0") {
-    throw std::runtime_error(with_errors(what + ending, child));
-  }
-  return child.cpu_seconds();
+  cpu_seconds += child.cpu_seconds();
+  if (failure.empty()) return "";
+  return "`" + joined(launch.command) + "` " + failure + ending_with(child.last_errors());
 }
 
-double Renderings::run(const Task& task) {
-  const std::string folder = folder_of(task.samples);
+/// Makes the files and removes their seeds from the task. Why those that are left could not be
+/// made.
+std::string Renderings::attempt(Task& task, const std::string& part, double& cpu_seconds) {
   const bool several = rendering_.takes_several();
-  std::string failure;
-  double seconds = 0;
-  const Unfinished part(folder, several ? "" : "." + rendering_.ending);
-  try {
-    if (several) fs::create_directories(part.path());
-    seconds = run_program(task, part.path());
-  } catch (const std::exception& error) {
-    failure = error.what();
-  }
-  for (const std::uint32_t seed : task.seeds) {
-    const std::string made =
-        several ? part.path() + "/" + std::to_string(seed) + "." + rendering_.ending : part.path();
+  fs::remove_all(part);
+  if (several) fs::create_directories(part);
+  // What was made before a program of several failed is whole or not: nobody knows.
+  const std::string failure = run_program(task, part, cpu_seconds);
+  if (!failure.empty()) return failure;
+  std::erase_if(task.seeds, [&](std::uint32_t seed) {
+    const std::string name = std::to_string(seed) + "." + rendering_.ending;
     std::error_code error;
-    // What was made before a program of several failed is whole or not: nobody knows.
-    if (failure.empty()) fs::rename(made, path_of(task.samples, seed), error);
-    if (failure.empty() && !error) continue;
-    const std::scoped_lock lock(mutex_);
-    failures_[{task.samples, seed}] =
-        !failure.empty()
-            ? failure
-            : "`" + joined(rendering_.command) +
-                  "` ended well and wrote no file for "
-                  "the seed " +
-                  std::to_string(seed) +
-                  (several ? ": it must write SEED." + rendering_.ending + " in the folder `{out}`"
-                           : ": it must write the file `{out}`");
+    fs::rename(several ? part + "/" + name : part, path_of(task.samples, seed), error);
+    return !error;
+  });
+  if (task.seeds.empty()) return "";
+  return "`" + joined(rendering_.command) + "` ended well and wrote no file for the seed " +
+         std::to_string(task.seeds.front()) +
+         (several ? ": it must write SEED." + rendering_.ending + " in the folder `{out}`"
+                  : ": it must write the file `{out}`");
+}
+
+/// CPU seconds. Failures are kept, not thrown.
+double Renderings::run(Task task) {
+  double seconds = 0;
+  std::string failure;
+  try {
+    const Unfinished part(folder_of(task.samples),
+                          rendering_.takes_several() ? "" : "." + rendering_.ending);
+    failure = attempt(task, part.path(), seconds);
+    const std::string of_all = " of " + std::to_string(rendering_.retries);
+    for (std::uint64_t retry = 1; !failure.empty() && retry <= rendering_.retries; ++retry) {
+      notice(failure + "; it is started again, retry " + std::to_string(retry) + of_all);
+      failure = attempt(task, part.path(), seconds);
+    }
+    if (!failure.empty() && rendering_.retries > 0) {
+      failure += "; it has failed " + std::to_string(rendering_.retries + 1) +
+                 " times (`retries: " + std::to_string(rendering_.retries) + "`)";
+    }
+  } catch (const std::exception& error) {
+    failure = error.what();  // an interruption, or a program that cannot be started
   }
+  const std::scoped_lock lock(mutex_);
+  for (const std::uint32_t seed : task.seeds) failures_[{task.samples, seed}] = failure;
   return seconds;
 }
 

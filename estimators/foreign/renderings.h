@@ -27,7 +27,8 @@ struct Rendering {
   std::string folder = "";                ///< where the program runs
   std::string cache = "";                 ///< folder of the files that are kept
   std::string ending = "exr";             ///< of the files
-  double timeout = 600;                   ///< seconds for one file
+  double timeout = 600;                   ///< seconds for one file, from a program's start
+  std::uint64_t retries = 0;              ///< times that a program that failed is started again
   double memory = 0;                      ///< MiB; 0: no limit
   std::uint64_t jobs = 1;                 ///< programs at a time
 
@@ -56,7 +57,8 @@ class Renderings {
   /// Throws std::runtime_error where the cache cannot be made or a file of `depends` is not there.
   explicit Renderings(Rendering rendering);
 
-  /// Makes what is missing, `jobs` at a time. Failures are kept for file() to tell. CPU seconds of
+  /// Makes what is missing, `jobs` at a time. A program that fails is started again by the same
+  /// words, which notice() tells. The last failures are kept for file() to tell. CPU seconds of
   /// the programs, without those of programs that they start and do not wait for.
   double make(const Wanted& wanted);
   bool takes_samples() const { return has_place(rendering_.command, "{samples}"); }
@@ -75,8 +77,9 @@ class Renderings {
   std::string folder_of(std::uint64_t samples);
   std::string path_of(std::uint64_t samples, std::uint32_t seed);
   std::vector<Task> tasks_of(const Wanted& wanted);
-  double run(const Task& task);
-  double run_program(const Task& task, const std::string& out);
+  double run(Task task);
+  std::string attempt(Task& task, const std::string& part, double& cpu_seconds);
+  std::string run_program(const Task& task, const std::string& out, double& cpu_seconds);
   std::string failure_of(std::uint64_t samples, std::uint32_t seed);
 
   Rendering rendering_;

@@ -7,6 +7,7 @@
 
 #include "estimators/foreign/isolated_sampler.h"
 #include "estimators/foreign/words.h"
+#include "estimators/thread_seconds.h"
 
 namespace assay::foreign {
 
@@ -60,10 +61,21 @@ class ForeignEstimator final : public Estimator {
     cost.closest_hit_rays += static_cast<std::uint64_t>(rays);
   }
 
-  void take() {
-    if (dialogue_) return;
-    dialogue_ = children_->take();
-    taken_at_ = dialogue_->cpu_seconds();
+  /// A program that has been examined; what that took is not the estimator's.
+  void take(const Question& wanted) {
+    while (true) {
+      if (!dialogue_) {
+        dialogue_ = children_->take();
+        taken_at_ = dialogue_->cpu_seconds();
+      }
+      if (!dialogue_->is_new_to(wanted)) return;
+      const double seconds = seconds_elsewhere() + thread_seconds();
+      const bool runs = children_->examine(*dialogue_, wanted);
+      seconds_ -= seconds_elsewhere() + thread_seconds() - seconds;
+      if (runs) return;
+      drop();
+      children_->refuse_after_failure(wanted);
+    }
   }
 
   void drop() {
@@ -81,11 +93,11 @@ class ForeignEstimator final : public Estimator {
   void fetch(const Question& wanted) {
     children_->refuse_after_failure(wanted);
     numbers_.clear();
-    take();
     Question question = wanted;
-    question.count = ahead(wanted);
-    question.count = dialogue_->well_sized(question);
     try {
+      take(wanted);
+      question.count = ahead(wanted);
+      question.count = dialogue_->well_sized(question);
       numbers_ = ask(question);
     } catch (const NoAnswer& failure) {
       drop();
@@ -97,19 +109,8 @@ class ForeignEstimator final : public Estimator {
 
   std::vector<double> ask(const Question& question) {
     std::vector<double> numbers = dialogue_->ask(question);
-    if (!dialogue_->witnessed()) witness(question, numbers);
+    children_->examine_unusual(*dialogue_, question, numbers);
     return numbers;
-  }
-
-  /// The last observation again, alone: a program that goes on from where its random numbers are
-  /// gives others.
-  void witness(const Question& question, const std::vector<double>& numbers) {
-    Question last = question;
-    last.first += question.count - 1;
-    last.count = 1;
-    children_->witness(*dialogue_, last,
-                       {numbers.end() - static_cast<std::ptrdiff_t>(width_), numbers.end()});
-    dialogue_->note_witnessed();
   }
 
   /// Asks a new program for the observations one by one, up to the one that cannot be had: those
@@ -119,7 +120,7 @@ class ForeignEstimator final : public Estimator {
     one.count = 1;
     for (std::uint64_t i = 0; i < all.count; ++i, ++one.first) {
       try {
-        take();
+        take(one);
         const std::vector<double> row = ask(one);
         numbers_.insert(numbers_.end(), row.begin(), row.end());
       } catch (const NoAnswer& alone) {
@@ -167,8 +168,8 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
   if (terms.name.empty()) terms.name = joined(terms.launch.command);
   try {
     return std::make_shared<ForeignSetup>(std::make_shared<Children>(std::move(terms)));
-  } catch (const NoAnswer& failure) {
-    parameters.refuse(name, std::string("starts no estimator: ") + failure.what());
+  } catch (const Refused& refusal) {
+    parameters.refuse(name, std::string("starts no estimator: ") + refusal.what());
   } catch (const std::system_error& failure) {
     const bool is_word = program.find('/') == std::string::npos;
     parameters.refuse(

@@ -27,7 +27,7 @@ class ForeignSetup final : public Setup {
 };
 
 /// Starts the program. InputError at the parameter `name`, whose value says which program it is,
-/// where it cannot be started or does not introduce itself.
+/// where it cannot be started or refuses; NoAnswer where it ends, or says what is no hello.
 std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
                                    std::string_view name);
 

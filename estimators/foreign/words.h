@@ -77,4 +77,19 @@ inline std::string shown(std::string_view text, std::size_t most = 60) {
   return text.size() > most ? out + "…" : out;
 }
 
+/// The end of a sentence on a program: the last lines of its standard error, on one line; "" where
+/// there are none.
+inline std::string ending_with(const std::string& errors) {
+  constexpr std::size_t most = 300;
+  std::size_t begin = errors.size() > most ? errors.size() - most : 0;
+  // Not from the middle of a word, where words are words.
+  const std::size_t blank = errors.find_first_of(" \n", begin);
+  if (begin > 0 && blank != std::string::npos) begin = blank;
+  const std::string legible = shown(std::string_view(errors).substr(begin), 2 * most);
+  std::string out;
+  for (const std::string_view word : words_of(legible)) out += " " + std::string(word);
+  if (out.empty()) return "";
+  return "; its standard error ends with:" + std::string(begin > 0 ? " …" : "") + out;
+}
+
 }  // namespace assay::foreign

@@ -197,6 +197,11 @@ std::string observation_place(const Setup& setup, const WhichObservation& which)
   return files == nullptr ? "" : files->place_of(which);
 }
 
+std::optional<std::uint64_t> observations_digest(const Setup& setup) {
+  const auto* const files = dynamic_cast<const InFiles*>(&setup);
+  return files != nullptr ? files->digest() : std::nullopt;
+}
+
 bool keeps_files(const Setup& setup) {
   return dynamic_cast<const InFiles*>(&setup) != nullptr && !setup.observations();
 }

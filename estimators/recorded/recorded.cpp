@@ -1,16 +1,21 @@
 // Observations that another program made, or Assay itself earlier: observation i is row i of a text
-// file (recorded/table.h), or picture i of several (estimators/pictures.h). Nothing is known of
-// their mean, unless a picture carries its own error and is a reference. `primaries` is 1: what one
-// observation was made from is the other program's affair.
+// or an array (recorded/table.h), or picture i of several (estimators/pictures.h). Nothing is known
+// of their mean, unless a picture carries its own error and is a reference. `primaries` is 1: what
+// one observation was made from is the other program's affair.
+
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
 #include "estimators/estimator.h"
 #include "estimators/ready_made.h"
+#include "recorded/byte_source.h"
 #include "recorded/picture_setup.h"
 #include "recorded/table.h"
 
@@ -19,6 +24,12 @@ namespace assay::plugins {
 namespace {
 
 using SharedTable = std::shared_ptr<const recorded::Table>;
+
+/// A table and where it came from.
+struct Reading {
+  SharedTable table;
+  std::string source;
+};
 
 /// Which columns are channels: `count` of them from `first`.
 struct Selection {
@@ -52,8 +63,8 @@ class Recorded final : public Estimator {
 
 class RecordedSetup final : public Setup, public recorded::InFiles {
  public:
-  RecordedSetup(SharedTable table, Selection selection, std::string file)
-      : table_(std::move(table)), selection_(selection), file_(std::move(file)) {}
+  RecordedSetup(Reading reading, Selection selection)
+      : table_(std::move(reading.table)), selection_(selection), file_(std::move(reading.source)) {}
 
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
@@ -69,8 +80,11 @@ class RecordedSetup final : public Setup, public recorded::InFiles {
   std::string data_file() const override { return file_; }
   std::string place_of(const recorded::WhichObservation& which) const override {
     if (which.index >= table_->rows()) return "";
-    return file_ + ":" + std::to_string(table_->lines[which.index]);
+    // An array has no lines: its rows are counted as numpy does.
+    return table_->lines.empty() ? file_ + "[" + std::to_string(which.index) + "]"
+                                 : file_ + ":" + std::to_string(table_->lines[which.index]);
   }
+  std::optional<std::uint64_t> digest() const override { return table_->digest(); }
   std::optional<StreamKey> data_stream() const override {
     if (!table_->stream) return {};
     return StreamKey{*table_->stream};
@@ -94,14 +108,45 @@ Selection select(const recorded::Table& table, Parameters& parameters) {
   return {static_cast<std::size_t>(found - table.columns.begin()), 1};
 }
 
-recorded::Table read(Parameters& parameters) {
-  const std::string file = parameters.file("file");
+/// `-` is no file of the suite's folder.
+std::string named_file(Parameters& parameters) {
+  const std::string file = parameters.string("file");
+  return recorded::is_standard_input(file) ? file : parameters.file("file");
+}
+
+/// Reads a table; what can be read but once, once for all estimators that name it.
+Reading read(const std::string& file) {
+  const auto table_of = [&] {
+    return std::make_shared<const recorded::Table>(
+        recorded::read_table(file, recorded::Rows::several));
+  };
+  struct stat status {};
+  const bool standard = recorded::is_standard_input(file);
+  const int failed = standard ? fstat(0, &status) : stat(file.c_str(), &status);
+  if (failed != 0 || !recorded::is_read_once(file)) {
+    return {table_of(), std::filesystem::weakly_canonical(file).string()};
+  }
+  static std::mutex mutex;
+  static std::map<std::pair<dev_t, ino_t>, Reading> readings;
+  const std::lock_guard lock(mutex);
+  Reading& reading = readings[{status.st_dev, status.st_ino}];
+  if (reading.table == nullptr) {
+    reading = {table_of(), standard && S_ISREG(status.st_mode)
+                               ? std::filesystem::weakly_canonical("/dev/stdin").string()
+                               : recorded::called(file)};
+  }
+  return reading;
+}
+
+Reading read(Parameters& parameters) {
+  const std::string file = named_file(parameters);
   try {
-    return recorded::read_table(file);
+    return read(file);
   } catch (const InputError& error) {
     // A file that cannot be used at all is a mistake of the suite; what stands in it, of the file.
     if (error.where().line != 0) throw;
-    parameters.refuse("file", "is `" + file + "`: " + error.message());
+    throw InputError(parameters.where("file"),
+                     "`" + recorded::called(file) + "`:\n  " + error.message());
   }
 }
 
@@ -121,7 +166,7 @@ PictureRequest picture_request(Parameters& parameters) {
     const std::string text = parameters.string(name);
     return parameters.given(name) ? text : std::string();
   };
-  return {.pattern = parameters.file("file"),
+  return {.pattern = named_file(parameters),
           .channels = parameters.string("channels"),
           .independent = parameters.string("pixels") == "independent",
           .exact = parameters.boolean("exact"),
@@ -183,10 +228,8 @@ std::shared_ptr<const Setup> prepare_text(Parameters& parameters) {
       parameters.refuse(name, "is of OpenEXR pictures, and `file` names none");
     }
   }
-  const auto table = std::make_shared<const recorded::Table>(read(parameters));
-  return std::make_shared<RecordedSetup>(
-      table, select(*table, parameters),
-      std::filesystem::weakly_canonical(parameters.file("file")).string());
+  const Reading reading = read(parameters);
+  return std::make_shared<RecordedSetup>(reading, select(*reading.table, parameters));
 }
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
@@ -210,15 +253,22 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 std::vector<Entry> recorded_recorded() {
   return {
       {{.name = "recorded",
-        .summary = "Observations from a text file, one a line, or from OpenEXR pictures, or "
-                   "moments of a saved run.",
+        .summary = "Observations from rows of text or an array of numpy, from OpenEXR pictures, "
+                   "or moments of a saved run.",
         .description =
-            "Observation i is row i of a text `file`. Numbers are separated by white space or "
-            "commas, "
-            "`#` begins a comment, and `# columns: a b c` names the columns, each of which is "
-            "a channel unless `column` picks one. Every row needs the same number of numbers; "
-            "`nan` and `inf` are read as such. What an observation was made from is not known "
+            "Observation i is row i of `file`: a text, a CSV, or an array that numpy saved "
+            "(.npy), any of them also packed by gzip. `-` is standard input, and a pipe, "
+            "`<(program)`, or a device will do; they are read once, for all estimators that name "
+            "them, and cannot be replayed. Each column is a channel unless `column` picks one. "
+            "Files of unequal length are compared whole, and an estimator beside a file takes as "
+            "many observations as that has rows. What an observation was made from is not known "
             "here: `primaries` stays 1.\n\n"
+            "In a text numbers are separated by `;`, commas, tabs or white space. Where `;` "
+            "separates, a comma is a decimal point. Columns are named by a first line without "
+            "numbers, or by `# columns: a b c`; a first column without a name holds the names of "
+            "rows and is left out. `#` begins a comment. Every row needs the same number of "
+            "numbers; `nan` and `inf` are read as such. An array has one dimension or two, of "
+            "float32, float64 or whole numbers.\n\n"
             "Or `file` is a pattern, `out/*.exr`, and observation i is the i-th OpenEXR picture "
             "by name, an image: of one part or several, scan lines or tiles. `channels` chooses "
             "among its channels; a layer, or a part, stands before a dot. A picture of a mean "
@@ -233,8 +283,8 @@ std::vector<Entry> recorded_recorded() {
             "run has, from a stream that the run has not used.",
         .parameters = {{.name = "file",
                         .type = ParameterType::string,
-                        .summary = "the file of rows, or a pattern of pictures, relative to the "
-                                   "suite",
+                        .summary = "the file of rows, `-` for standard input, or a pattern of "
+                                   "pictures; relative to the suite",
                         .fallback = "none"},
                        {.name = "column",
                         .type = ParameterType::string,

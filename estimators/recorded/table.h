@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers that another program wrote, as text.
+// Numbers that another program wrote, as text or as an array of numpy.
 
 #include <cstdint>
 #include <optional>
@@ -9,24 +9,38 @@
 
 namespace assay::recorded {
 
-/// Rows of numbers, one a line of the file, with a name to each column.
+/// Rows of numbers, with a name to each column.
 struct Table {
   std::vector<std::string> columns;
   std::vector<double> values;                ///< row after row
-  std::vector<int> lines = {};               ///< of the file, where the rows stand
+  std::vector<int> lines = {};               ///< of a text, where the rows stand
   std::optional<std::uint64_t> stream = {};  ///< what `# stream: HEX` says the rows were drawn from
 
   std::size_t rows() const { return columns.empty() ? 0 : values.size() / columns.size(); }
+  /// Differs between tables of other names or numbers, unless someone made them to agree.
+  std::uint64_t digest() const;
 };
 
-/// Reads a table. One row a line; numbers are separated by white space, or by commas where the line
-/// has any; `#` begins a comment, empty lines are skipped. Names: `# columns: a b c` before the
-/// first row, else `value` for one column and `value1`, `value2`, ... for more. `# stream: HEX`
-/// tells the key of the stream the rows were drawn from. Numbers as in C++,
-/// `inf` and `nan` included: a recorded failure is a value too.
-/// InputError at line and column for a text that is not a number or no double can hold, an empty
-/// field, a row of another length than the first or the header, a second or late or repeated
-/// header, a file without rows, and at `file` when it cannot be read.
-Table read_table(const std::string& file);
+/// One row of several numbers may be several observations that someone wrote on one line.
+enum class Rows { several, one_is_fine };
+
+/// Reads a table from a file, a pipe, a device or, for `-`, standard input (ByteSource), compressed
+/// by gzip or not. What begins as numpy's .npy is read as read_npy() says, anything else as text.
+///
+/// Text has one row a line. Numbers are separated by `;` where the line has any, else by commas,
+/// else by tabs (one may end the line), else by white space. They are written as in C++, `inf` and
+/// `nan` included: a recorded failure is a value too. Where `;` separates, a comma is a decimal
+/// point. `"` may enclose a field. `#` begins a comment, empty lines are skipped.
+///
+/// Columns are named by a first line in which nothing begins like a number, or by
+/// `# columns: a b c` before the first row. Else they are `value`, or `value1`, `value2`, …. A
+/// first column whose name is empty holds the names of rows (pandas, R) and is left out. `# stream:
+/// HEX` tells the key of the stream the rows were drawn from.
+///
+/// LineError for what is no number or no double can hold, an empty field, and a row of another
+/// length. LineError for a second, late or repeated header. InputError for a file without rows, and
+/// where several are expected for one row of several numbers without names. InputError for a binary file, and for more numbers
+/// than a quarter of the memory holds.
+Table read_table(const std::string& file, Rows expected);
 
 }  // namespace assay::recorded

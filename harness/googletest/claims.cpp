@@ -93,7 +93,8 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
               .beta = budget.beta};
   suite.tests = {
       harness::test_of_claim({.claim = claim, .detect = asked.detect, .allow = asked.allow})};
-  const harness::Question question = harness::ask(suite.tests[0], asked.estimators, seed);
+  const harness::Question question =
+      harness::ask_as_written(suite.tests[0], asked.estimators, seed);
   const std::vector<harness::FamilyPlace> place = harness::places(suite, {question});
   std::vector<const harness::PreparedEstimator*> used;
   for (const harness::Subject& subject : question.subjects) used.push_back(subject.estimator);

@@ -45,7 +45,7 @@ double by_harness(const std::shared_ptr<const Setup>& setup, std::uint64_t total
   pool->request(total / primaries);
   harness::Silence silence;
   harness::draw_all({pool}, {.threads = threads}, silence);
-  return pool->prefix(total / primaries).channels[0].moments.mean;
+  return pool->sample(total / primaries).drawn()->summary().channels[0].moments.mean;
 }
 
 void report(const char* plugin, std::uint64_t total) {

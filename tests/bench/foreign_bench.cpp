@@ -16,7 +16,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -26,6 +25,7 @@
 
 #include "estimators/catalogue.h"
 #include "estimators/library_host.h"
+#include "estimators/thread_seconds.h"
 
 namespace {
 
@@ -251,12 +251,6 @@ Seconds of_the_bare_loop(const std::string& script, const Drawn& drawn) {
   }
   pclose(pipe);
   return seconds;
-}
-
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 Seconds of_the_program(Estimator& worker, const Drawn& drawn) {

@@ -44,7 +44,7 @@ test_every_bad_suite_is_2_with_its_place() {
   for file in "$source_folder"/tests/suites/bad_*.yaml; do
     expect 2 run "$file"
     empty out
-    grep -qE "$(basename "$file"):[0-9]+:[0-9]+: " err || fail "no place of the mistake in $file"
+    grep -qE "$(basename "$file"):[0-9]+:[0-9]+:( |$)" err || fail "no place of the mistake in $file"
   done
 }
 
@@ -69,7 +69,7 @@ test_filter_that_matches_nothing_is_4() {
   write_suite good.yaml "$good"
   expect 4 run good.yaml --filter 'good/nothing' --report html=run.html
   empty out
-  contains err "--filter 'good/nothing' matches no test"
+  contains err '--filter good/nothing matches no test'
   contains err 'good/good'
   [ ! -e run.html ] || fail 'a report of nothing was written'
 }
@@ -216,6 +216,58 @@ test_sampled_file_is_checked_as_recorded() {
   expect 2 check 'mean(recorded) == 0' --secondaries 2001 \
     --estimator 'recorded=recorded,file=data.txt'
   contains err '2000'
+}
+
+test_numbers_come_through_pipes() {
+  "$assay" sample analytic/normal --secondaries 2000 >data.txt
+  local file code
+  for file in - /dev/stdin; do
+    code=0
+    cat data.txt | "$assay" check 'mean(mine) == 0' --estimator "mine=recorded,file=$file" \
+      --report json=run.json >out 2>err || code=$?
+    [ "$code" -eq 0 ] || fail "numbers from $file: $code"
+    expect 2 replay run.json 'check/mean(mine) == 0'
+    contains err 'came from standard input and cannot be read'
+  done
+  expect 0 check 'mean(mine) == 0' --estimator mine=recorded,file=<(cat data.txt)
+  gzip -k data.txt
+  expect 0 check 'mean(mine) == 0' --estimator mine=recorded,file=data.txt.gz
+  # Two columns of one stream are no independent samples, and neither are a stream and its file.
+  awk '{print $1, $1 + 1}' data.txt | grep -v '^#' >two.txt
+  code=0
+  "$assay" check 'mean(a) == mean(b)' --estimator a=recorded,file=-,column=value1 \
+    --estimator b=recorded,file=two.txt,column=value2 <two.txt >out 2>err || code=$?
+  [ "$code" -eq 2 ] || fail "a file and itself as standard input: $code"
+  contains err 'both sides are read from'
+  code=0
+  printf '1\n2\nthree\n' | "$assay" check 'mean(mine) == 0' --estimator mine=recorded,file=- \
+    >out 2>err || code=$?
+  [ "$code" -eq 2 ] || fail "a word among numbers: $code"
+  contains err 'standard input:3:1: `three` is not a number'
+  contains err '  three'
+}
+
+test_no_byte_of_a_data_file_reaches_the_terminal() {
+  printf '1 2\n3 \033[31m\2334\n' >escape.txt
+  head -c 3000 "$assay" >binary.txt
+  local file
+  for file in escape.txt binary.txt; do
+    expect 2 check 'mean(mine) == 0' --estimator mine=recorded,file=$file
+    ! LC_ALL=C grep -q '[^[:print:][:space:]]' <(tr -d '\200-\377' <err) || fail "$file is shown"
+    iconv -f UTF-8 -t UTF-16 err >/dev/null || fail "bytes of $file are shown"
+  done
+  contains err 'is a binary file, not text'
+}
+
+test_many_columns_are_few_lines() {
+  awk 'BEGIN { for (i = 0; i < 300; ++i) { for (j = 0; j < 500; ++j) printf "%d ", (i * j) % 7
+    print "" } }' >wide.txt
+  local options=(--estimator mine=recorded,file=wide.txt)
+  "$assay" check 'mean(mine) == 3' "${options[@]}" >out 2>err
+  [ "$(wc -l <out)" -lt 150 ] || fail "500 columns are $(wc -l <out) lines"
+  contains out '476 more channels'
+  expect 2 check 'mean(mine.none) == 3' "${options[@]}"
+  [ "$(wc -c <err)" -lt 1000 ] || fail 'an unknown column is answered by all of them'
 }
 
 test_check_names_a_plugin_directly() {
@@ -460,7 +512,7 @@ test_check_points_at_the_option_that_is_wrong() {
   contains err 'assay: --test F: does not answer this claim; there is `t`'
   lacks err '^'
   expect 2 check 'mean(analytic/dart_throwing) == analytic' --detect 0
-  contains err 'assay: --detect: `detect` must be above 0'
+  contains err 'assay: --detect 0: `detect` must be above 0'
   : >empty.yaml
   expect 2 run empty.yaml
   [ "$(cat err)" = 'assay: empty.yaml:1:1: the file is empty' ] || fail 'more than the place'

@@ -128,6 +128,61 @@ test_programs_that_fail_are_errors_and_the_others_finish() {
   none_left
 }
 
+test_seeds_that_do_nothing_are_errors_under_every_seed() {
+  local seeded='random.Random(key << 64 | index)' seed estimator
+  grep -qF "$seeded" "$examples/darts.py" || fail 'the example has changed'
+  sed "s/$seeded/random.Random()/" "$examples/darts.py" >unseeded.py
+  sed "s/$seeded/random.Random(index)/" "$examples/darts.py" >index.py
+  for seed in 1 2 3 4 5; do
+    for estimator in unseeded index; do
+      expect 1 check 'mean(mine) == 3.14159' --detect 1% --seed "$seed" \
+        --estimator "mine=process,command=[/usr/bin/python3, $estimator.py]"
+      tells out 'error'
+    done
+    tells out 'gave the same numbers for two keys'
+  done
+  none_left
+}
+
+test_seeds_of_libraries_that_do_nothing_are_errors() {
+  # Zeros and ones.
+  library index 'AssayStream mine = assay_stream(5, call->random->counter[2]);
+    call->out[0] = assay_uniform(&mine) < 0.2; return 0;'
+  library unseeded 'static unsigned state = 1; state = state * 1664525u + 1013904223u;
+    call->out[0] = state >> 31; return 0;'
+  suite seeds.yaml 'index: {plugin: library, file: index.so}' \
+    'index_inside: {plugin: library, file: index.so, isolated: false}' \
+    'unseeded: {plugin: library, file: unseeded.so}' \
+    'unseeded_inside: {plugin: library, file: unseeded.so, isolated: false}'
+  expect 1 run seeds.yaml --report json=run.json
+  verdict_is run.json sound pass
+  for name in index index_inside unseeded unseeded_inside; do
+    verdict_is run.json "$name" error
+  done
+}
+
+test_a_program_that_says_no_hello_is_an_error_of_its_tests() {
+  suite silent.yaml 'ended: {plugin: process, command: [sh, none.sh]}' \
+    'greets: {plugin: process, command: [echo, hello]}'
+  expect 1 run silent.yaml --report json=run.json
+  verdict_is run.json sound pass
+  for name in ended greets; do verdict_is run.json "$name" error; done
+  message run.json ended
+  tells err '`ended` cannot be prepared: `sh none.sh` ended with exit status'
+  tells err 'before it had said its whole hello'
+  message run.json greets
+  tells err 'the first is `assay 1 text`'
+  none_left
+}
+
+test_a_program_that_does_not_flush_is_asked_whether_it_does() {
+  printf '%s\n' 'import sys' 'print("assay 1 text\nchannel x\nready")' 'sys.stdin.readline()' >mine.py
+  suite silent.yaml 'mine: {plugin: process, command: [/usr/bin/python3, mine.py], timeout: 4}'
+  PYTHONUNBUFFERED= "$assay" run silent.yaml >out 2>err
+  tells err 'assay: `/usr/bin/python3 mine.py` has not replied for 3 s; does it flush its output (print(..., flush=True))?'
+  [ "$(grep -c 'has not replied' err)" -eq 1 ] || fail 'it was asked more than once'
+}
+
 test_mistakes_are_2_before_anything_is_sampled() {
   library other 'call->out[0] = 1; return 0;'
   sed 's/ASSAY_ABI_VERSION/7/' other.c >version.c
@@ -153,8 +208,6 @@ plugin: library, file: other.so, parameters: {rate: 2}|has no parameter `rate`
 plugin: library, file: loud.so|the library printed `welcome`
 plugin: process, command: [no_such_program]|cannot be started: No such file or directory
 plugin: process, command: python3|must be a list of texts
-plugin: process, command: [sh, none.sh]|before it had said its whole hello
-plugin: process, command: [echo, hello]|the first is `assay 1 text`
 plugin: process, command: [sh, none.sh], timeout: 0|must be above 0
 LINES
   none_left
@@ -188,7 +241,7 @@ printf 'assay 1 text\nchannel x low 0 high 3\nready\n'
 while read -r high low first count primaries; do
   i=$first
   while [ "$i" -lt $((first + count)) ]; do
-    echo "$((i % 100 == 99 ? 3 : (low + i) % 3)).5"; i=$((i + 1))
+    echo "$((i % 100 == 99 ? 3 : low * (i + 7) / 64 % 3)).5"; i=$((i + 1))
   done
   echo "$high $low $first $count $primaries"
 done
@@ -205,7 +258,7 @@ printf 'assay 1 text\nchannel x low 0 high 3\naverages\nready\n'
 while read -r high low first count primaries; do
   i=$first
   while [ "$i" -lt $((first + count)) ]; do
-    if [ "$primaries" -gt 1 ]; then echo "1.0$((1 + i % 2))"; else echo "$((i % 100 == 99 ? 4 : 1))"; fi
+    if [ "$primaries" -gt 1 ]; then echo "1.0$((1 + (i + low) % 2))"; else echo "$((i % 100 == 99 ? 4 : 1))"; fi
     i=$((i + 1))
   done
   echo "$high $low $first $count $primaries"

@@ -25,6 +25,9 @@ expect() {
   [ "$code" -eq "$wanted" ] || fail "assay $* ended with $code, not $wanted"
 }
 
-contains() { grep -qF -- "$2" "$1" || fail "no \`$2\` in $1"; }
+# In one line, or over the lines of a message.
+contains() {
+  grep -qF -- "$2" "$1" || tr -s ' \n' ' ' <"$1" | grep -qF -- "$2" || fail "no \`$2\` in $1"
+}
 lacks() { ! grep -qF -- "$2" "$1" || fail "\`$2\` in $1"; }
 empty() { [ ! -s "$1" ] || fail "$1 is not empty"; }

@@ -1,11 +1,21 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
 
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <thread>
 
+#include "estimators/line_error.h"
 #include "estimators/ready_made.h"
+#include "recorded/byte_source.h"
 #include "recorded/table.h"
 #include "tests/estimators/draws.h"
 
@@ -13,6 +23,7 @@ namespace assay {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
 // A file of its own for every test, gone afterwards.
@@ -30,7 +41,9 @@ class Recorded : public ::testing::Test {
     std::ofstream(folder_ / "data.txt", std::ios::binary) << text;
     return (folder_ / "data.txt").string();
   }
-  recorded::Table read(const std::string& text) const { return recorded::read_table(write(text)); }
+  recorded::Table read(const std::string& text) const {
+    return recorded::read_table(write(text), recorded::Rows::several);
+  }
 
   struct Refusal {
     int line;
@@ -79,7 +92,8 @@ TEST_F(Recorded, KnowsWhereEachRowStands) {
 
 TEST_F(Recorded, NamesColumnsThatHaveNone) {
   EXPECT_THAT(read("1\n2").columns, ElementsAre("value"));
-  EXPECT_THAT(read("# made by hand\n1 2 3\n").columns, ElementsAre("value1", "value2", "value3"));
+  EXPECT_THAT(read("# made by hand\n1 2 3\n4 5 6\n").columns,
+              ElementsAre("value1", "value2", "value3"));
   EXPECT_THAT(read("\xef\xbb\xbf# columns: x, y\n1,2\n").columns, ElementsAre("x", "y"));
 }
 
@@ -99,8 +113,12 @@ TEST_F(Recorded, KeepsEveryBitOfANumber) {
 TEST_F(Recorded, RefusesJunk) {
   expect_refused("1\n2\nthree\n", {3, 1}, "`three` is not a number");
   expect_refused("1 2x\n", {1, 3}, "`2x` is not a number");
-  expect_refused("a,b\n1,2\n", {1, 1}, "# columns: a b");
+  expect_refused("1,2\na,b\n", {2, 1}, "# columns: a b");
+  expect_refused("a,2\n", {1, 1}, "`a` is not a number");
   expect_refused("1,2 3\n", {1, 3}, "`2 3` is not a number");
+  expect_refused("1.#INF\n", {1, 1}, "`1.#INF` is not a number");
+  // A number that is missing is no name.
+  expect_refused("NA\n1\n", {1, 1}, "`NA` is not a number; write `nan`");
   expect_refused("+-1\n", {1, 1}, "`+-1` is not a number");
   expect_refused("0x10\n", {1, 1}, "is not a number");
 }
@@ -129,12 +147,14 @@ TEST_F(Recorded, RefusesBadHeaders) {
 }
 
 TEST_F(Recorded, RefusesAFileWithoutRows) {
-  expect_refused("", {0, 0}, "no rows");
+  expect_refused("", {0, 0}, "it is empty");
+  expect_refused("a,b\n", {0, 0}, "no rows");
   expect_refused("# columns: a\n\n", {0, 0}, "no rows");
 }
 
 TEST_F(Recorded, RefusesAFileThatIsNotThere) {
-  EXPECT_THROW(recorded::read_table((folder_ / "none.txt").string()), InputError);
+  EXPECT_THROW(recorded::read_table((folder_ / "none.txt").string(), recorded::Rows::several),
+               InputError);
   try {
     draws::prepare("recorded", "{file: none.txt}", folder_.string());
     FAIL() << "a missing file was accepted";
@@ -199,6 +219,301 @@ TEST_F(Recorded, RefusesMoreThanItHas) {
   const auto plugin = prepare("1\n2\n");
   EXPECT_THROW(draws::observe(plugin, 3), std::out_of_range);
   EXPECT_THROW(draws::observe(plugin, 1, 2), std::invalid_argument);
+}
+
+TEST_F(Recorded, TakesNamesFromAFirstLineWithoutNumbers) {
+  const auto csv = read("x,y\n1,2\n3,4\n");
+  EXPECT_THAT(csv.columns, ElementsAre("x", "y"));
+  EXPECT_THAT(csv.values, ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(csv.lines, ElementsAre(2, 3));
+  EXPECT_THAT(read("\xef\xbb\xbf\"x, mean\",\"the \"\"y\"\"\"\r\n\"1\",2\r\n").columns,
+              ElementsAre("x, mean", "the \"y\""));
+  EXPECT_THAT(read("x y\n1 2\n").columns, ElementsAre("x", "y"));
+  EXPECT_THAT(read("value\n0.5\n").values, ElementsAre(0.5));
+  EXPECT_THAT(read("# of a run\n\nvalue # in W\n0.5\n").columns, ElementsAre("value"));
+  expect_refused("x,x\n1,2\n", {1, 3}, "two columns `x`");
+  expect_refused("x,y\n1,2,3\n", {2, 5}, "columns: 2 (named in line 1)");
+}
+
+// pandas.DataFrame({'a': [1, 3], 'b': [2, 4]}).to_csv() and R's write.csv().
+TEST_F(Recorded, LeavesOutTheNamesOfRows) {
+  for (const char* text : {",a,b\n0,1,2\n1,3,4\n", "\"\",\"a\",\"b\"\n\"r1\",1,2\n\"r2\",3,4\n"}) {
+    const auto table = read(text);
+    EXPECT_THAT(table.columns, ElementsAre("a", "b"));
+    EXPECT_THAT(table.values, ElementsAre(1, 2, 3, 4));
+  }
+}
+
+TEST_F(Recorded, SplitsAtSemicolonsAndTabs) {
+  const auto german = read("\"x\";\"y\"\n1,5;-2,25e1\n3;4.5\n");
+  EXPECT_THAT(german.columns, ElementsAre("x", "y"));
+  EXPECT_THAT(german.values, ElementsAre(1.5, -22.5, 3, 4.5));
+  const auto tabs = read("x pos\ty pos\n1\t2\n3\t4\t\n");
+  EXPECT_THAT(tabs.columns, ElementsAre("x pos", "y pos"));
+  EXPECT_THAT(tabs.values, ElementsAre(1, 2, 3, 4));
+  expect_refused("1\t\t3\n", {1, 3}, "a number is missing");
+  expect_refused("1;;3\n", {1, 3}, "a number is missing");
+  expect_refused("1.234,5;2\n", {1, 1}, "`1.234,5` is not a number");
+  expect_refused("x\n1,5\n", {2, 3}, "write decimal points for commas");
+}
+
+TEST_F(Recorded, AsksOfOneRowWhetherItsNumbersAreObservations) {
+  std::string row;
+  for (int i = 0; i < 2000; ++i) row += std::to_string(i) + ", ";
+  write(row + "1\n");
+  const Refusal refused = refusal(row + "1\n");
+  EXPECT_EQ(refused.line, 0);
+  EXPECT_THAT(refused.message, HasSubstr("one row of 2001 numbers"));
+  const std::string file = (folder_ / "data.txt").string();
+  EXPECT_THAT(refused.message, HasSubstr("`tr -s ', \\t\\r' '\\n' < " + file + " > lines.txt`"));
+  // What is to be pasted does what it says.
+  const std::string lines = (folder_ / "lines.txt").string();
+  EXPECT_EQ(std::system(("tr -s ', \\t\\r' '\\n' < " + file + " > " + lines).c_str()), 0);
+  const auto table = recorded::read_table(lines, recorded::Rows::several);
+  EXPECT_THAT(table.columns, ElementsAre("value"));
+  EXPECT_EQ(table.rows(), 2001u);
+  EXPECT_EQ(read("a b\n1 2\n").rows(), 1u);
+}
+
+TEST_F(Recorded, BoundsWhatItSaysOfALongLine) {
+  const std::string word(100000, 'x');
+  const Refusal refused = refusal("1\n" + word + "\n");
+  EXPECT_EQ(std::pair(refused.line, refused.column), std::pair(2, 1));
+  EXPECT_LT(refused.message.size(), 300u);
+}
+
+TEST_F(Recorded, NamesBinaryFiles) {
+  using namespace std::string_literals;
+  const std::vector<std::pair<std::string, std::string>> kinds{
+      {"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"s, "PNG"},  {"PK\x03\x04\x14\0\0\0"s, "unzip"},
+      {"\x89HDF\r\n\x1a\n\0\0"s, "HDF5"},         {"\x7f"s + "ELF\x02\x01\x01\0"s, "a program"},
+      {"\xff\xfe\x31\0\n\0"s, "iconv -f UTF-16"}, {"\x76\x2f\x31\x01\x02\0\0\0"s, "OpenEXR"},
+      {"PF\n1 1\n-1\n\0\0\x80?"s, "PFM"},         {"1 2\n3 \0 4\n"s, "binary"},
+  };
+  for (const auto& [bytes, said] : kinds) {
+    const Refusal refused = [&] {
+      try {
+        recorded::read_table(write(bytes), recorded::Rows::several);
+      } catch (const InputError& error) {
+        return Refusal{error.where().line, error.where().column, error.message()};
+      }
+      return Refusal{-1, -1, "nothing was refused"};
+    }();
+    EXPECT_EQ(refused.line, 0) << said;
+    EXPECT_THAT(refused.message, HasSubstr("is a binary file, not text"));
+    EXPECT_THAT(refused.message, HasSubstr(said));
+    EXPECT_EQ(refused.message.find_first_of("\x7f\x89\xff\0"s), std::string::npos) << said;
+  }
+  // Letters alone make no picture.
+  EXPECT_THAT(read("PF\n1\n2\n").columns, ElementsAre("PF"));
+}
+
+TEST_F(Recorded, ReadsAPipeOnceAndForAll) {
+  const std::string pipe = (folder_ / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] {
+    std::ofstream to(pipe);
+    to << "a b\n1 2\n";
+    to.flush();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    to << "3 4\n";
+  });
+  const auto a = draws::prepare("recorded", "{file: pipe, column: a}", folder_.string());
+  const auto b = draws::prepare("recorded", "{file: pipe, column: b}", folder_.string());
+  writer.join();
+  EXPECT_THAT(draws::observe(a, 2)[0].values, ElementsAre(1, 3));
+  EXPECT_THAT(draws::observe(b, 2)[0].values, ElementsAre(2, 4));
+  EXPECT_EQ(a.setup->data_file(), b.setup->data_file());
+  EXPECT_TRUE(recorded::is_read_once(pipe));
+  EXPECT_TRUE(recorded::is_read_once("-"));
+  EXPECT_TRUE(recorded::is_read_once("/dev/fd/4711"));
+  EXPECT_FALSE(recorded::is_read_once(write("1\n")));
+  EXPECT_FALSE(recorded::is_read_once((folder_ / "none").string()));
+}
+
+TEST_F(Recorded, ReadsStandardInput) {
+  const std::string file = write("1\n2\nx\n");
+  const int standard = dup(STDIN_FILENO);
+  const int other = open(file.c_str(), O_RDONLY);
+  ASSERT_EQ(dup2(other, STDIN_FILENO), STDIN_FILENO);
+  try {
+    recorded::read_table("-", recorded::Rows::several);
+    ADD_FAILURE() << "`x` was taken";
+  } catch (const LineError& error) {
+    EXPECT_EQ(to_string(error.where()), "standard input:3:1");
+    EXPECT_EQ(error.line(), "x");
+  }
+  dup2(standard, STDIN_FILENO);
+  close(other);
+  close(standard);
+}
+
+TEST_F(Recorded, RefusesAFileThatChangesMeanwhile) {
+  for (const bool longer : {true, false}) {
+    std::string numbers;
+    for (int i = 0; i < 100000; ++i) numbers += "1\n";
+    recorded::ByteSource source(write(numbers));
+    source.take(source.look().size());
+    std::filesystem::resize_file(folder_ / "data.txt", longer ? 300000 : 100000);
+    try {
+      while (!source.look().empty()) source.take(source.look().size());
+      ADD_FAILURE() << "the change went unnoticed";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.message(), HasSubstr("changed while it was read"));
+    }
+  }
+}
+
+// ---- gzip
+
+std::string packed(const std::string& text) {
+  z_stream stream = {};
+  deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
+  std::string in = text;
+  stream.next_in = reinterpret_cast<Bytef*>(in.data());
+  stream.avail_in = static_cast<uInt>(in.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+TEST_F(Recorded, UnpacksGzip) {
+  std::string text = "x\n";
+  for (int i = 0; i < 200000; ++i) text += std::to_string(i) + "\n";
+  const auto table = read(packed(text));
+  EXPECT_THAT(table.columns, ElementsAre("x"));
+  ASSERT_EQ(table.rows(), 200000u);
+  EXPECT_EQ(table.values.back(), 199999);
+  // One member after another is one text (RFC 1952).
+  EXPECT_THAT(read(packed("1\n2\n") + packed("") + packed("3\n")).values, ElementsAre(1, 2, 3));
+  const Refusal refused = refusal(packed("1\n2x\n"));
+  EXPECT_EQ(std::pair(refused.line, refused.column), std::pair(2, 1));
+  EXPECT_THAT(refusal(packed(packed("1\n"))).message, HasSubstr("binary"));
+}
+
+TEST_F(Recorded, RefusesDamagedGzip) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += std::to_string(i * 7919 % 1000) + "\n";
+  const std::string whole = packed(text);
+  for (const std::size_t size :
+       {std::size_t{3}, std::size_t{15}, whole.size() / 2, whole.size() - 1}) {
+    expect_refused(whole.substr(0, size), {0, 0}, "cut short");
+  }
+  std::string damaged = whole;
+  damaged[damaged.size() - 6] ^= 0x10;  // the check sum
+  expect_refused(damaged, {0, 0}, "damaged");
+  expect_refused(whole + "junk", {0, 0}, "damaged");
+}
+
+// ---- numpy's format, https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html
+
+std::string npy(const std::string& type, bool fortran, const std::string& shape,
+                const std::string& data, char version = 1) {
+  std::string header = "{'descr': '" + type +
+                       "', 'fortran_order': " + (fortran ? "True" : "False") +
+                       ", 'shape': " + shape + ", }";
+  const std::size_t fixed = version == 1 ? 10 : 12;
+  while ((fixed + header.size() + 1) % 64 != 0) header += ' ';
+  header += '\n';
+  std::string text = std::string("\x93NUMPY") + version + '\0';
+  for (std::size_t i = 0; i < fixed - 8; ++i) {
+    text += static_cast<char>(header.size() >> (8 * i) & 0xFF);
+  }
+  return text + header + data;
+}
+
+template <class Number>
+std::string bytes_of(const std::vector<Number>& numbers, bool reversed = false) {
+  std::string text;
+  for (const Number& number : numbers) {
+    std::string one(sizeof(Number), '\0');
+    std::memcpy(one.data(), &number, sizeof(Number));
+    if (reversed) std::ranges::reverse(one);
+    text += one;
+  }
+  return text;
+}
+
+TEST_F(Recorded, ReadsArraysOfNumpy) {
+  const std::vector<double> doubles{1.5, -2, 1e300};
+  EXPECT_THAT(read(npy("<f8", false, "(3,)", bytes_of(doubles))).values, ElementsAreArray(doubles));
+  EXPECT_THAT(read(npy(">f8", false, "(3,)", bytes_of(doubles, true))).values,
+              ElementsAreArray(doubles));
+  EXPECT_THAT(read(npy("<f4", false, "(2,)", bytes_of<float>({0.1F, -3}))).values,
+              ElementsAre(static_cast<double>(0.1F), -3));
+  EXPECT_THAT(
+      read(npy(">i4", false, "(2,)", bytes_of<std::int32_t>({-7, 2000000000}, true))).values,
+      ElementsAre(-7, 2000000000));
+  EXPECT_THAT(read(npy("|i1", false, "(2,)", "\xff\x7f")).values, ElementsAre(-1, 127));
+  EXPECT_THAT(read(npy("|u1", false, "(2,)", "\xff\x7f")).values, ElementsAre(255, 127));
+  EXPECT_THAT(read(npy("<u8", false, "(1,)", bytes_of<std::uint64_t>({1ULL << 63}))).values,
+              ElementsAre(0x1p63));
+  EXPECT_THAT(read(npy("<i2", false, "(1,)", bytes_of<std::int16_t>({-300}))).values,
+              ElementsAre(-300));
+  const auto table =
+      read(npy("<i8", false, "(2, 3)", bytes_of<std::int64_t>({1, 2, 3, 4, 5, -6}), 2));
+  EXPECT_THAT(table.columns, ElementsAre("value1", "value2", "value3"));
+  EXPECT_THAT(table.values, ElementsAre(1, 2, 3, 4, 5, -6));
+  EXPECT_THAT(read(npy("<f8", true, "(2, 3)", bytes_of<double>({1, 4, 2, 5, 3, 6}), 3)).values,
+              ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(read(packed(npy("<f8", false, "(3,)", bytes_of(doubles)))).values,
+              ElementsAreArray(doubles));
+}
+
+TEST_F(Recorded, KnowsWhereAnElementStands) {
+  const auto rows = prepare(npy("<f4", false, "(2,)", bytes_of<float>({1, 2})));
+  const std::string file = std::filesystem::weakly_canonical(folder_ / "data.txt").string();
+  EXPECT_EQ(recorded::observation_place(*rows.setup, {.index = 1}), file + "[1]");
+  EXPECT_EQ(recorded::observation_place(*rows.setup, {.index = 2}), "");
+}
+
+TEST_F(Recorded, RefusesOtherArraysOfNumpy) {
+  const std::string data(64, '\0');
+  const auto refused = [&](const std::string& text, const std::string& message) {
+    expect_refused(text, {0, 0}, message);
+  };
+  refused(npy("<c16", false, "(4,)", data), "the type `<c16`");
+  refused(npy("<c16", false, "(4,)", data), "a.real");
+  refused(npy("<f2", false, "(32,)", data), "a.astype(\"f8\")");
+  refused(npy("|O", false, "(4,)", data), "the type `|O`");
+  refused(npy("<f8', 'x", false, "(8,)", data), "damaged");
+  refused(npy("<f8", false, "(2, 2, 2)", data), "3 dimensions (2 x 2 x 2)");
+  refused(npy("<f8", false, "()", data), "one number");
+  refused(npy("<f8", false, "(0,)", ""), "empty");
+  refused(npy("<f8", false, "(3, 0)", ""), "empty");
+  refused(npy("<f8", false, "(1, 8)", data), "one row of 8 numbers");
+  refused(npy("<f8", false, "(9,)", data), "the array has 9 numbers,\n  and 8 of them are there");
+  refused(npy("<f8", false, "(7,)", data), "bytes follow the array");
+  refused(npy("<f8", false, "(8,)", data, 4), "does not know");
+  refused(npy("<f8", false, "(1000000000000, 1000000000000)", data), "does not fit into memory");
+  refused(npy("<f8", false, "(99999999999999999999,)", data), "damaged");
+  refused(npy("<f8", false, "(-8,)", data), "damaged");
+  refused(npy("<f8", false, "(8,", data), "damaged");
+  std::string huge = npy("<f8", false, "(8,)", data, 2);
+  huge[10] = huge[11] = '\x7f';  // a header of 2 GB
+  refused(huge, "damaged");
+  const std::string whole = npy("<f8", false, "(8,)", data);
+  for (std::size_t size = 6; size < whole.size(); ++size) {
+    EXPECT_NE(refusal(whole.substr(0, size)).line, -1) << size;
+  }
+  std::string records = whole;
+  const std::string type = "'<f8'";
+  records.replace(records.find(type), type.size(), "[('')]");
+  refused(records.erase(records.find("  "), 1), "array of records");
+}
+
+TEST_F(Recorded, TellsDataApart) {
+  const auto digest = [&](const std::string& text) {
+    return recorded::observations_digest(*prepare(text).setup);
+  };
+  ASSERT_TRUE(digest("1\n2\n").has_value());
+  EXPECT_EQ(digest("1\n2\n"), digest("# by another hand\n1.0\n2\n"));
+  EXPECT_NE(digest("1\n2\n"), digest("2\n1\n"));
+  EXPECT_NE(digest("1\n2\n"), digest("a\n1\n2\n"));
 }
 
 }  // namespace

@@ -124,7 +124,14 @@ TEST(Claim, SaysWhatWasExpectedAndWhere) {
   EXPECT_EQ(refused("mean(a) == 1 2"), "1:14: the claim is over before the number `2`");
   EXPECT_EQ(refused("1 == mean(a)"),
             "1:1: a claim begins with a quantity, as in `mean(area) == 0.5`");
-  EXPECT_EQ(refused("mean(a) == 5%"), "1:13: a per cent needs a margin: `within 0.5% of …`");
+  EXPECT_EQ(refused("mean(a) == 5%"),
+            "1:13: a value has no per cent: write `0.05`, or a margin, as in `mean(a) within 5% of "
+            "0.5`");
+  EXPECT_EQ(refused("mean(a)"),
+            "1:8: the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …");
+  EXPECT_EQ(refused("distribution(a) == gaussian(0, 1)"),
+            "1:20: `gaussian` is nothing that a quantity can be compared with; did you mean "
+            "`normal(0, 1)`?");
 }
 
 TEST(Claim, KnowsTheHabitsOfOtherLanguages) {

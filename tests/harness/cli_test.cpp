@@ -39,7 +39,7 @@ TEST(CommandLine, RunsSuitesWithEveryOption) {
                                            "--quiet"});
   EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
   EXPECT_THAT(command.assignments, ElementsAre("x.n=1", "x.v=[1, 2]"));
-  EXPECT_EQ(command.options.filter, "*/mean*");
+  EXPECT_THAT(command.options.selection.filters, ElementsAre("*/mean*"));
   EXPECT_EQ(command.options.seed, 7U);
   EXPECT_EQ(command.options.threads, 2U);
   EXPECT_EQ(command.options.alpha, 0.05);
@@ -62,7 +62,7 @@ TEST(CommandLine, PlansSuitesAsTheyWouldRun) {
                                             "--seed", "3", "--threads", "1", "--quiet"});
   EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
   EXPECT_THAT(command.assignments, ElementsAre("x.n=1"));
-  EXPECT_EQ(command.options.filter, "a/*");
+  EXPECT_THAT(command.options.selection.filters, ElementsAre("a/*"));
   EXPECT_EQ(command.options.alpha, 0.05);
   EXPECT_EQ(command.options.coarsen, 2);
   EXPECT_EQ(command.options.seed, 3U);
@@ -82,6 +82,47 @@ TEST(CommandLine, RepeatedOptionsTakeOneValueEach) {
   const auto command = parsed<RunCommand>({"run", "--set", "x.n=1", "a.yaml", "b.yaml"});
   EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
   EXPECT_THAT(command.assignments, ElementsAre("x.n=1"));
+}
+
+TEST(CommandLine, OneReportOptionTakesSeveralReports) {
+  const auto paths = [](const std::vector<std::string>& words) {
+    std::string all;
+    const auto command = parsed<RunCommand>(words);
+    for (const ReportRequest& each : command.output.reports) {
+      all += each.kind + ">" + each.path + " ";
+    }
+    for (const std::string& suite : command.suites) all += suite + " ";
+    return all;
+  };
+  EXPECT_EQ(paths({"run", "s.yaml", "--report", "json=a", "console=b"}),
+            "json>a console>b s.yaml ");
+  EXPECT_EQ(paths({"run", "--report", "json=a", "html=b", "s.yaml"}), "json>a html>b s.yaml ");
+  EXPECT_EQ(paths({"run", "--report=json=a", "html=b", "s.yaml", "t.yaml"}),
+            "json>a html>b s.yaml t.yaml ");
+  EXPECT_EQ(paths({"run", "--report", "json=a", "s.yaml"}), "json>a s.yaml ");
+  EXPECT_EQ(paths({"run", "--report", "console", "html=b", "s.yaml"}), "console>- html>b s.yaml ");
+  EXPECT_EQ(paths({"run", "s.yaml", "--report", "json=a", "--report", "html=b", "junit=c"}),
+            "json>a html>b junit>c s.yaml ");
+  EXPECT_EQ(refused({"run", "s.yaml", "--report", "json=a", "htlm=b"}),
+            "the kind of --report cannot be `htlm`; did you mean `html`?");
+  EXPECT_THAT(refused({"run", "s.yaml", "--report"}), HasSubstr("--report"));
+  // A word that follows no report is an argument.
+  EXPECT_EQ(paths({"run", "json=a"}), "json=a ");
+}
+
+TEST(CommandLine, SelectsByFiltersAndTags) {
+  const auto run = parsed<RunCommand>({"run", "a.yaml", "--filter", "*/mean*", "--filter",
+                                       "-*slow*", "--tag", "fast", "--tag", "nightly"});
+  EXPECT_THAT(run.options.selection.filters, ElementsAre("*/mean*", "-*slow*"));
+  EXPECT_THAT(run.options.selection.tags, ElementsAre("fast", "nightly"));
+  EXPECT_EQ(run.options.command, "assay run a.yaml");  // each test's replay names the test
+  EXPECT_THAT(parsed<PlanCommand>({"plan", "a.yaml", "--tag", "x"}).options.selection.tags,
+              ElementsAre("x"));
+  const auto list = parsed<ListCommand>({"list", "tests", "a.yaml", "--tag", "x", "--filter=-b"});
+  EXPECT_THAT(list.selection.tags, ElementsAre("x"));
+  EXPECT_THAT(list.selection.filters, ElementsAre("-b"));
+  EXPECT_THAT(refused({"list", "plugins", "--tag", "x"}), HasSubstr("they select tests"));
+  EXPECT_THAT(refused({"check", "mean(a) == 1", "--tag", "x"}), HasSubstr("no option `--tag`"));
 }
 
 TEST(CommandLine, ChecksAClaim) {
@@ -205,7 +246,7 @@ TEST(CommandLine, NamesWhatIsMissingOrTooMuch) {
   EXPECT_EQ(refused({"check", "a.yaml"}),
             "`assay check` tests one claim; a suite is run by `assay run a.yaml`");
   EXPECT_EQ(refused({"check", "mean(a)", "==", "3"}),
-            "`==` is one argument too many; see `assay check --help`");
+            "`==` is one argument too many; quote the claim: `assay check 'mean(a) == 3'`");
   EXPECT_EQ(refused({"list"}), "`assay list` needs `plugins` or `tests`; see `assay list --help`");
   EXPECT_EQ(refused({"list", "tests"}), "`assay list` needs a suite file; see `assay list --help`");
   EXPECT_EQ(refused({"list", "plugins", "a.yaml"}), "`assay list plugins` takes no suite");
@@ -243,8 +284,10 @@ TEST(CommandLine, RefusesValuesOutOfRange) {
             "each number of --shard I/N must be a whole number, 1 or more, but it is `0`");
   EXPECT_EQ(
       run("--report", "html"),
-      "--report must be KIND=PATH, as in html=run.html, where the path - is standard output, but "
-      "it is `html`");
+      "--report must be KIND=PATH, but it is `html`; write `--report html=run.html`, where the "
+      "path - is standard output");
+  EXPECT_THAT(run("--report", "out/run.md"), HasSubstr("write `--report markdown=out/run.md`"));
+  EXPECT_THAT(run("--report", "json="), HasSubstr("write `--report json=run.json`"));
   EXPECT_EQ(run("--inconclusive", "maybe"),
             "--inconclusive cannot be `maybe`; there is: fail, pass");
   EXPECT_EQ(refused({"check", "mean(a) == 1", "--secondaries", "1"}),

@@ -45,36 +45,16 @@ Said ran(const Workplace& place, const std::vector<ReportRequest>& reports) {
   });
 }
 
-TEST(Commands, SayHowIdsLookWhenAFilterMatchesNone) {
-  const Workplace place;
-  const std::vector<Suite> suites{load_suite(place.write("suite.yaml", suite))};
-  EXPECT_EQ(unmatched_filter(suites, "suite/mean*"), "");
-  EXPECT_EQ(unmatched_filter(suites, "mean(normal)"),
-            "--filter 'mean(normal)' matches no test\n"
-            "  it is held against the whole id, suite/name, where * and ? are wild; near it:\n"
-            "    suite/mean(normal) == 2\n"
-            "    suite/mean(normal) <= 3\n");
-  EXPECT_EQ(unmatched_filter(suites, "suite/maen(normal) == 2"),
-            "--filter 'suite/maen(normal) == 2' matches no test\n"
-            "  it is held against the whole id, suite/name, where * and ? are wild; near it:\n"
-            "    suite/mean(normal) == 2\n");
-  EXPECT_EQ(unmatched_filter(suites, "zzz"),
-            "--filter 'zzz' matches no test\n"
-            "  it is held against the whole id, suite/name, where * and ? are wild; ids here are:\n"
-            "    suite/mean(normal) == 2\n"
-            "    suite/mean(normal) <= 3\n");
-}
-
 TEST(Commands, RunNothingWhenAFilterMatchesNone) {
   const Workplace place;
   const Suite loaded = load_suite(place.write("suite.yaml", suite));
   const Said run = said([&] {
-    return run_suites({loaded}, {.filter = "zzz"},
+    return run_suites({loaded}, {.selection = {.filters = {"zzz"}}},
                       {.reports = {{"json", place.file("run.json")}}, .quiet = true});
   });
   EXPECT_EQ(run.code, 4);
   EXPECT_EQ(run.out, "");
-  EXPECT_TRUE(run.err.starts_with("assay: --filter 'zzz' matches no test\n")) << run.err;
+  EXPECT_TRUE(run.err.starts_with("assay: --filter zzz matches no test\n")) << run.err;
   EXPECT_FALSE(std::filesystem::exists(place.file("run.json")));
 }
 

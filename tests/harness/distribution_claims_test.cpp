@@ -251,7 +251,7 @@ TEST(IntegralClaim, IsRefusedWhereItMeansNothing) {
             "20:22: `integral` and `inconsistency` are about a whole sampler: name "
             "`ward.direction`");
   EXPECT_EQ(refused("{claim: integral(ward.direction) == 1, detect: 1%}"),
-            "20:44: a margin in per cent has no meaning here: this is a probability; give an "
+            "20:52: a margin in per cent has no meaning here: this is a probability; give an "
             "absolute number");
   EXPECT_EQ(refused("{claim: integral(ward.direction) == 1 +- 0.1}"),
             "20:13: `integral` is held against an exact number: `+-` has no method here");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "estimators/line_error.h"
 #include "harness/suite.h"
 
 namespace assay::harness {
@@ -22,27 +23,51 @@ std::string failure_of(const std::string& file) {
 }
 
 TEST(Failure, ShowsPlaceLineAndCaretOfASuite) {
-  EXPECT_EQ(failure_of(bad_suite), bad_suite +
-                                       ":3:1: unknown key `test` of a suite; did you mean "
-                                       "`tests`?\n  test:\n  ^\n");
+  const std::string text = failure_of(bad_suite);
+  EXPECT_TRUE(text.starts_with("assay: " + bad_suite + ":3:1:")) << text;
+  EXPECT_TRUE(text.ends_with("did you mean `tests`?\n  test:\n  ^\n")) << text;
 }
 
 TEST(Failure, ShowsTheClaimOfTheCommandLine) {
   EXPECT_EQ(failure_text(InputError({"claim", 1, 6}, "no such estimator"), "mean(x) == 1"),
-            "claim:1:6: no such estimator\n  mean(x) == 1\n       ^\n");
+            "assay: claim:1:6: no such estimator\n  mean(x) == 1\n       ^\n");
+}
+
+TEST(Failure, IsInLinesOfEightyColumnsThatBreakNothingToPaste) {
+  const std::string part = "seventy columns are no room for this and that and what is yet to come";
+  EXPECT_EQ(in_lines(part + " now"), "assay: " + part + " now\n");
+  EXPECT_EQ(in_lines(part + " soon"), "assay: " + part + "\n       soon\n");
+  EXPECT_EQ(in_lines(part + " `a b`, as it is"), "assay: " + part + "\n       `a b`, as it is\n");
+  EXPECT_EQ(in_lines(part + " `a b"), "assay: " + part + " `a\n       b\n");
+  const std::string path(200, 'x');
+  EXPECT_EQ(in_lines("no " + path + " here"), "assay: no\n       " + path + "\n       here\n");
+  EXPECT_EQ(in_lines("it said:\n  this"), "assay: it said:\n  this\n");
+}
+
+TEST(Failure, ShowsTheLineThatItWasGiven) {
+  EXPECT_EQ(failure_text(LineError({"standard input", 7, 3}, "odd", "1 x"), ""),
+            "assay: standard input:7:3: odd\n  1 x\n    ^\n");
+}
+
+TEST(Failure, HidesWhatATerminalMustNotMeet) {
+  const std::string hidden = "\xef\xbf\xbd";
+  EXPECT_EQ(failure_text(LineError({"a\x1b.txt", 1, 5}, "`\x07\x9b`", "\x1b[\x80 x\x7f"), ""),
+            "assay: a" + hidden + ".txt:1:5: `" + hidden + hidden + "`\n  " + hidden + "[" +
+                hidden + " x" + hidden + "\n      ^\n");
 }
 
 TEST(Failure, IsOneLineWithoutAPlace) {
-  EXPECT_EQ(failure_text(InputError({}, "--seed is wrong"), "mean(x) == 1"), "--seed is wrong\n");
+  EXPECT_EQ(failure_text(InputError({}, "--seed is wrong"), "mean(x) == 1"),
+            "assay: --seed is wrong\n");
   EXPECT_EQ(failure_text(InputError({"/not/there.yaml", 3, 1}, "odd"), ""),
-            "/not/there.yaml:3:1: odd\n");
+            "assay: /not/there.yaml:3:1: odd\n");
 }
 
 TEST(Failure, PointsAtNothingInAnEmptyFile) {
   const std::string file = testing::TempDir() + "empty-of-failure-test.yaml";
   for (const char* text : {"", "\n \n"}) {
     std::ofstream(file, std::ios::trunc) << text;
-    EXPECT_EQ(failure_of(file), file + ":1:1: the file is empty\n");
+    EXPECT_EQ(failure_of(file), in_lines(file + ":1:1: the file is empty"));
   }
   std::filesystem::remove(file);
 }

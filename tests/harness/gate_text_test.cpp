@@ -40,5 +40,21 @@ TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
 }
 
+TEST(GateText, NamesFewOfManyRedGates) {
+  std::vector<reports::Gate> gates;
+  for (int i = 0; i < 1000; ++i) {
+    gates.push_back({.name = "largest deviation, value" + std::to_string(i),
+                     .value = 4,
+                     .limit = 2,
+                     .state = "red"});
+  }
+  const std::string all = red_gates(gates);
+  EXPECT_THAT(all, HasSubstr("value3)"));
+  EXPECT_THAT(all, Not(HasSubstr("value4)")));
+  EXPECT_THAT(all, HasSubstr("1000 in all"));
+  gates.resize(4);
+  EXPECT_THAT(red_gates(gates), Not(HasSubstr("in all")));
+}
+
 }  // namespace
 }  // namespace assay::harness

@@ -34,9 +34,9 @@ constexpr const char* two_tests = R"(  - {name: one, claim: mean(normal) == 2, s
 class Ledger : public testing::Test {
  protected:
   reports::Record night(const std::string& tests, std::uint64_t seed,
-                        const std::string& filter = "") {
+                        const std::vector<std::string>& filters = {}) {
     const std::string suite = place_.write("nights.yaml", estimators + tests);
-    return run_files({suite}, {.seed = seed, .filter = filter, .ledger = file()});
+    return run_files({suite}, {.seed = seed, .selection = {.filters = filters}, .ledger = file()});
   }
   std::string file() const { return place_.file("n.ledger"); }
   LedgerBook book() const { return LedgerBook::parse(read_text_file(file()), file()); }
@@ -98,7 +98,7 @@ TEST_F(Ledger, ASeedSeenBeforeAddsNothingAndSaysSo) {
 }
 
 TEST_F(Ledger, AFilterAddsItsTestsAlone) {
-  const reports::Record record = night(two_tests, 11, "*/two");
+  const reports::Record record = night(two_tests, 11, {"*/two"});
   EXPECT_EQ(record.ledger.series.size(), 1U);
   EXPECT_EQ(book().nights().size(), 1U);
   // The share of the budget is that of the whole suite.

@@ -23,9 +23,23 @@ TEST(List, PrintsEveryTestOnALineInTheOrderOfTheSuites) {
   suites[1].tests.resize(1);
   suites[1].tests[0].id = "b/other";
   testing::internal::CaptureStdout();
-  EXPECT_EQ(list_tests(suites), 0);
+  EXPECT_EQ(list_tests(suites, {}), 0);
   std::fflush(stdout);
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "a/mean(x) == 1\na/named\nb/other\n");
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(list_tests(suites, {.filters = {"-*/named"}}), 0);
+  std::fflush(stdout);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "a/mean(x) == 1\nb/other\n");
+}
+
+TEST(List, SaysSoWhereNoTestIsSelected) {
+  std::vector<Suite> suites(1);
+  suites[0].tests.resize(1);
+  suites[0].tests[0].id = "a/named";
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(list_tests(suites, {.tags = {"slow"}}), 4);
+  std::fflush(stderr);
+  EXPECT_TRUE(testing::internal::GetCapturedStderr().starts_with("assay: --tag slow: "));
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(Merge, OfShardsInAnyOrderIsOneRunByteForByteApartFromTimes) {
 TEST(Merge, OfFilteredShardsIsOneFilteredRun) {
   const Workplace place;
   const std::string file = place.write("good.yaml", suite);
-  const RunOptions options{.filter = "*mean(*"};
+  const RunOptions options{.selection = {.filters = {"*mean(*"}}};
   const reports::Record whole = run_files({file}, options);
   EXPECT_NE(whole.note, "");
   EXPECT_EQ(numbers_of(merge(shards_of({file}, 3, options))), numbers_of(whole));
@@ -164,7 +164,7 @@ TEST_F(Refusing, AnotherSeedIsAnotherRun) {
 }
 
 TEST_F(Refusing, OtherOptionsAreAnotherRun) {
-  EXPECT_THAT(refused_with({.filter = "*"}), HasSubstr("the options"));
+  EXPECT_THAT(refused_with({.selection = {.filters = {"*"}}}), HasSubstr("the options"));
   EXPECT_THAT(refused_with({.command = "assay run --set normal.mean=3"}), HasSubstr("the options"));
   EXPECT_THAT(refused_with({.alpha = 0.02}), HasSubstr("alpha and beta"));
 }

@@ -22,7 +22,7 @@ struct Ran {
     return night_evidence(test(i), 0, planned.suites[0]->pilots);
   }
   stats::Moments moments(std::size_t i, std::size_t subject = 0) const {
-    return data_of(test(i), 0)[subject].moments;
+    return data_of(*drawn(test(i)), 0)[subject].moments;
   }
 };
 

@@ -83,7 +83,7 @@ TEST(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
   const std::vector<Suite> suites = suites_of(place);
   const PlannedRun planned = planned_of(suites);
   const Pool& area = *planned.suites[0]->tests[0].pools[0];
-  const UnitCost cost = costs_of(planned).at(&area);
+  const UnitCost cost = std::get<UnitCost>(costs_of(planned).at(&area));
   EXPECT_EQ(cost.rays, static_cast<double>(area.primaries()));
   EXPECT_EQ(cost.samples, static_cast<double>(area.primaries()));
   EXPECT_GT(cost.seconds, 0);
@@ -162,7 +162,7 @@ TEST(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
   const SuiteRun& run = *planned.suites[0];
   ASSERT_FALSE(run.estimators.at("ratio").nature().averages);
   const Summary& pilot = *run.pilots.at("ratio").sums;
-  const UnitCost cost = costs_of(planned).at(run.tests[0].pools[0].get());
+  const UnitCost cost = std::get<UnitCost>(costs_of(planned).at(run.tests[0].pools[0].get()));
   EXPECT_EQ(cost.seconds, pilot.seconds / static_cast<double>(pilot.count));
 }
 
@@ -180,14 +180,14 @@ TEST(PlanTable, ShowsEveryTestInAHundredColumns) {
   EXPECT_THAT(text, HasSubstr("share observations"));
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(reports::columns(line), 100) << line;
-  EXPECT_EQ(plan_exit_code(planned), 0);
+  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 0);
 }
 
 TEST(PlanTable, AFilterPlansTheSameTestTheSameWay) {
   const Workplace place;
   const std::vector<Suite> suites = suites_of(place);
   const PlannedRun whole = planned_of(suites);
-  const PlannedRun alone = planned_of(suites, {.filter = "*/coarser"});
+  const PlannedRun alone = planned_of(suites, {.selection = {.filters = {"*/coarser"}}});
   ASSERT_EQ(alone.suites[0]->tests.size(), 1U);
   EXPECT_EQ(alone.suites[0]->tests[0].outcome.plan.looks.sizes,
             whole.suites[0]->tests[1].outcome.plan.looks.sizes);
@@ -202,15 +202,15 @@ tests:
   - {claim: variance(heavy) <= 1, detect: 50%}
 )"))};
   const PlannedRun planned = planned_of(suites);
-  EXPECT_EQ(plan_exit_code(planned), 1);
+  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 1);
   EXPECT_THAT(plan_text(planned, costs_of(planned)), HasSubstr("invalid: "));
 }
 
 TEST(PlanTable, NothingSelectedIsNothingPlanned) {
   const Workplace place;
   const std::vector<Suite> suites = suites_of(place);
-  const PlannedRun planned = planned_of(suites, {.filter = "planned/none"});
-  EXPECT_EQ(plan_exit_code(planned), 4);
+  const PlannedRun planned = planned_of(suites, {.selection = {.filters = {"planned/none"}}});
+  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 4);
 }
 
 // The bound on the share must hold for the mean of runs: 40 seeds, normal data, theta = 0. The mean
@@ -239,6 +239,33 @@ tests:
   EXPECT_LT(share, bound + 0.2);
   EXPECT_GT(bound, share / 2);
   EXPECT_LT(bound, 0.9);
+}
+
+TEST(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
+  const Workplace place;
+  const std::vector<Suite> suites{load_suite(place.write("law.yaml", R"(suite: law
+estimators: {normal: {plugin: analytic/normal, mean: 2}}
+tests:
+  - {claim: 'distribution(normal) == normal(2, 1)'}
+)"))};
+  const auto text = [&](const RunOptions& options) {
+    const PlannedRun planned = planned_of(suites, options);
+    return plan_text(planned, costs_of(planned));
+  };
+  EXPECT_THAT(text({}), HasSubstr("      `detect` is 0.05, the default of claims about laws\n"));
+  EXPECT_THAT(text({.coarsen = 2}), HasSubstr("`detect` is 0.1, the default"));
+}
+
+// Coarsened, a margin may be larger than its reference: nobody wrote it so.
+TEST(PlanTable, TakesACoarsenedMarginBeyondItsReference) {
+  const Workplace place;
+  const std::vector<Suite> suites{load_suite(place.write("coarse.yaml", R"(suite: coarse
+estimators: {normal: {plugin: analytic/normal, mean: 2}}
+tests:
+  - {claim: mean(normal) == 2, detect: 1.5}
+)"))};
+  EXPECT_EQ(planned_of(suites, {.coarsen = 4}).suites[0]->tests[0].outcome.plan.regions[0].detect,
+            6);
 }
 
 }  // namespace

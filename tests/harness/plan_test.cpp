@@ -256,13 +256,14 @@ tests:
   EXPECT_EQ(run.pilots.at("fewer").larger->values[0].size(), 2048) << "the least that tells";
   EXPECT_EQ(run.pilots.at("ratio").larger, nullptr);
 
-  const PlannedRun again = piloted(variances, {.threads = 4, .filter = "pilots/corners"});
+  const PlannedRun again =
+      piloted(variances, {.threads = 4, .selection = {.filters = {"pilots/corners"}}});
   const Pilot& alone = again.suites[0]->pilots.at("corners");
   ASSERT_NE(alone.larger, nullptr);
   EXPECT_EQ(alone.larger->values, corners.larger->values);
   EXPECT_EQ(alone.larger->moments(0).m4, corners.larger->moments(0).m4);
 
-  const PlannedRun means = piloted(variances, {.filter = "pilots/mean"});
+  const PlannedRun means = piloted(variances, {.selection = {.filters = {"pilots/mean"}}});
   EXPECT_EQ(means.suites[0]->pilots.at("corners").larger, nullptr) << "no such test is chosen";
 }
 

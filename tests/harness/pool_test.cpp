@@ -74,6 +74,13 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
   return pool;
 }
 
+/// The first observations of a pool that has drawn them.
+Drawn sample_of(const Pool& pool, std::uint64_t count) {
+  const Sample sample = pool.sample(count);
+  if (sample.fault() != nullptr) throw std::runtime_error(to_string(*sample.fault()));
+  return *sample.drawn();
+}
+
 void expect_same(const Summary& one, const Summary& other) {
   EXPECT_EQ(one.count, other.count);
   EXPECT_EQ(one.cost.samples, other.cost.samples);
@@ -144,10 +151,11 @@ TEST(Pool, OfEveryThreadCountHasTheSameBits) {
   for (const unsigned threads : {2U, 3U, 4U}) {
     const auto together = drawn({.prefixes = prefixes, .threads = threads});
     for (const std::uint64_t count : prefixes) {
-      expect_same(together->prefix(count), alone->prefix(count));
-      EXPECT_EQ(alone->prefix(count).count, count);
+      expect_same(sample_of(*together, count).summary(), sample_of(*alone, count).summary());
+      EXPECT_EQ(sample_of(*alone, count).summary().count, count);
     }
-    EXPECT_TRUE(std::ranges::equal(together->values(0, 700), alone->values(0, 700)));
+    EXPECT_TRUE(std::ranges::equal(sample_of(*together, 12345).values(0),
+                                   sample_of(*alone, 12345).values(0)));
   }
 }
 
@@ -171,7 +179,8 @@ TEST(Pool, PrefixIsThatOfAPoolDrawnOnlySoFar) {
   const auto all = drawn({.prefixes = prefixes, .threads = 2});
   ASSERT_EQ(all->block_size(), 2048);
   for (const std::uint64_t count : prefixes) {
-    expect_same(all->prefix(count), drawn({.prefixes = {count}})->prefix(count));
+    expect_same(sample_of(*all, count).summary(),
+                sample_of(*drawn({.prefixes = {count}}), count).summary());
   }
 }
 
@@ -179,8 +188,8 @@ TEST(Pool, DoesNotChangeWhenContinuedLater) {
   const auto pool = marked(9000);
   draw_up_to(3000, pool, 1);
   draw_up_to(9000, pool, 2);
-  EXPECT_EQ(pool->prefix(9000).channels[0].moments,
-            drawn({.prefixes = {9000}})->prefix(9000).channels[0].moments);
+  EXPECT_EQ(sample_of(*pool, 9000).summary().channels[0].moments,
+            sample_of(*drawn({.prefixes = {9000}}), 9000).summary().channels[0].moments);
 }
 
 TEST(Pool, DrawsNoMoreThanAnyoneMayAskFor) {
@@ -195,49 +204,73 @@ TEST(Pool, DrawsNoMoreThanAnyoneMayAskFor) {
 TEST(Pool, RefusesAMarkBehindWhatIsDrawn) {
   const auto pool = marked(9000);
   pool->request(3000);
-  EXPECT_EQ(pool->largest_prefix(), 0);
+  EXPECT_EQ(pool->seconds(), 0);
+  EXPECT_THROW(pool->sample(3000), std::logic_error) << "before it is drawn";
   draw_up_to(3000, pool, 1);
-  EXPECT_EQ(pool->largest_prefix(), 3000);
+  EXPECT_EQ(pool->seconds(), sample_of(*pool, 3000).summary().seconds);
   EXPECT_THROW(pool->mark(4000), std::logic_error);
   EXPECT_NO_THROW(pool->mark(3000));
   EXPECT_NO_THROW(pool->mark(5000));
 }
 
 TEST(Pool, KeepsTheFirstValuesAsManyAsPlanned) {
-  const auto pool = drawn({.prefixes = {5000}, .threads = 2});
-  EXPECT_EQ(pool->values(0, 5000).size(), 700);
-  EXPECT_EQ(pool->values(0, 10).size(), 10);
-  EXPECT_EQ(pool->values(1, 5000).size(), 20);
+  const auto pool = drawn({.prefixes = {10, 20, 700, 5000}, .threads = 2});
+  EXPECT_EQ(sample_of(*pool, 5000).values(0).size(), 700);
+  EXPECT_EQ(sample_of(*pool, 10).values(0).size(), 10);
+  EXPECT_EQ(sample_of(*pool, 5000).values(1).size(), 20);
   for (const std::uint64_t index : {0U, 7U, 19U}) {
     const std::vector<double> again =
         draw_observation(SumsSetup(), pool->key(), pool->primaries(), index);
-    EXPECT_EQ(pool->values(0, 700)[index], again[0]);
-    EXPECT_EQ(pool->values(1, 20)[index], again[1]);
+    EXPECT_EQ(sample_of(*pool, 700).values(0)[index], again[0]);
+    EXPECT_EQ(sample_of(*pool, 20).values(1)[index], again[1]);
   }
 }
 
 TEST(Pool, CountsWhatIsNotFiniteWithItsPlace) {
   const auto pool =
       drawn({.prefixes = {1000, 6000}, .threads = 2, .behaviour = {.not_a_number = 4321}});
-  const ChannelSummary& spoilt = pool->prefix(6000).channels[1];
+  const ChannelSummary& spoilt = sample_of(*pool, 6000).summary().channels[1];
   EXPECT_EQ(spoilt.nonfinite, 1);
   EXPECT_EQ(spoilt.first_nonfinite, 4321);
   EXPECT_EQ(spoilt.moments.count, 5999);
-  EXPECT_EQ(pool->prefix(6000).channels[0].nonfinite, 0);
-  EXPECT_EQ(pool->prefix(1000).channels[1].nonfinite, 0);
+  EXPECT_EQ(sample_of(*pool, 6000).summary().channels[0].nonfinite, 0);
+  EXPECT_EQ(sample_of(*pool, 1000).summary().channels[1].nonfinite, 0);
 }
 
 TEST(Pool, SaysAtWhichObservationItsEstimatorThrew) {
   const auto pool = drawn({.prefixes = {1000, 6000}, .threads = 2, .behaviour = {.throws = 4321}});
-  EXPECT_EQ(pool->trouble(), "observation 4321: the lamp burnt out");
-  EXPECT_FALSE(pool->has(6000));
-  EXPECT_FALSE(pool->has(4322));
+  ASSERT_TRUE(pool->fault());
+  EXPECT_EQ(to_string(*pool->fault()), "observation 4321: the lamp burnt out");
+  EXPECT_EQ(pool->sample(6000).drawn(), nullptr);
+  EXPECT_EQ(pool->sample(6000).fault()->observation, 4321);
+}
+
+TEST(Pool, TakesWhateverIsThrown) {
+  const auto words = [](const auto& thrown) {
+    try {
+      throw thrown;
+    } catch (...) {
+      return words_of(std::current_exception());
+    }
+  };
+  EXPECT_EQ(words(17), "it threw something that is no std::exception");
+  EXPECT_EQ(words(std::bad_alloc()), "there is not enough memory (std::bad_alloc)");
+  EXPECT_EQ(words(InputError({.file = "rows.txt", .line = 3, .column = 1}, "is short")),
+            "rows.txt:3:1: is short");
+}
+
+TEST(Pool, DrawsNothingFromASourceThatFailedBefore) {
+  const auto pool = marked(1000);
+  pool->fail({.words = "it ended in the pilot"});
+  draw_up_to(1000, pool, 2);
+  EXPECT_EQ(pool->drawn(), 0);
+  EXPECT_EQ(pool->sample(1000).fault()->words, "it ended in the pilot");
 }
 
 TEST(Pool, StillHasWhatCameBeforeTheTrouble) {
   const auto pool = drawn({.prefixes = {1000, 6000}, .threads = 2, .behaviour = {.throws = 4321}});
-  EXPECT_TRUE(pool->has(1000));
-  expect_same(pool->prefix(1000), drawn({.prefixes = {1000}})->prefix(1000));
+  expect_same(sample_of(*pool, 1000).summary(),
+              sample_of(*drawn({.prefixes = {1000}}), 1000).summary());
 }
 
 TEST(Pool, OfBoundedDataEndsWhereTheyEnd) {
@@ -248,7 +281,7 @@ TEST(Pool, OfBoundedDataEndsWhereTheyEnd) {
 
 TEST(Pool, HistogramHoldsEveryFiniteValue) {
   const auto pool = drawn({.prefixes = {5000}});
-  const Histogram& histogram = pool->prefix(5000).channels[0].details().histogram;
+  const Histogram& histogram = sample_of(*pool, 5000).summary().channels[0].details().histogram;
   std::uint64_t total = histogram.below + histogram.above;
   for (const std::uint64_t count : histogram.counts) total += count;
   EXPECT_EQ(total, 5000);
@@ -273,12 +306,13 @@ TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
   const auto second = pool_of({.throws = 11, .rows = 30});
   second->take_known(first->kept());
   drawn_from(second);
-  EXPECT_EQ(second->trouble(), "");
-  EXPECT_EQ(second->prefix(30).channels[1].moments.m4, first->prefix(30).channels[1].moments.m4);
-  EXPECT_EQ(second->prefix(30).cost, first->prefix(30).cost);
-  const auto drawn = std::get<0>(second->observations(20));
+  EXPECT_FALSE(second->fault());
+  EXPECT_EQ(sample_of(*second, 30).summary().channels[1].moments.m4,
+            sample_of(*first, 30).summary().channels[1].moments.m4);
+  EXPECT_EQ(sample_of(*second, 30).summary().cost, sample_of(*first, 30).summary().cost);
+  const auto drawn = std::get<0>(sample_of(*second, 30).observations(20));
   EXPECT_EQ(drawn.size(), 20U);
-  EXPECT_EQ(drawn.data(), std::get<0>(first->observations(20)).data());
+  EXPECT_EQ(drawn.data(), std::get<0>(sample_of(*first, 30).observations(20)).data());
 }
 
 // Pictures of files are summed when all are there, once for the pilot and the test.
@@ -301,8 +335,8 @@ TEST(Pool, PicturesOfFilesHaveTheSumsOfOneByOne) {
   two_threads->keep_observations(30);
   drawn_from(two_threads, 2);
   for (const std::uint64_t count : {20U, 30U}) {
-    const Summary& expected = one_by_one->prefix(count);
-    const Summary& sums = kept->prefix(count);
+    const Summary& expected = sample_of(*one_by_one, count).summary();
+    const Summary& sums = sample_of(*kept, count).summary();
     EXPECT_EQ(sums.count, count);
     EXPECT_EQ(sums.cost, expected.cost);
     ASSERT_EQ(sums.channels.size(), 2U);
@@ -314,12 +348,12 @@ TEST(Pool, PicturesOfFilesHaveTheSumsOfOneByOne) {
       EXPECT_EQ(sums.channels[c].nonfinite, expected.channels[c].nonfinite);
       EXPECT_EQ(sums.channels[c].first_nonfinite, expected.channels[c].first_nonfinite);
     }
-    expect_same(sums, two_threads->prefix(count));
+    expect_same(sums, sample_of(*two_threads, count).summary());
   }
   const auto known = pool_of(pictures);
   known->take_known(kept->kept());
   drawn_from(known, 1);
-  EXPECT_EQ(&known->prefix(30), &kept->prefix(30)) << "sums are shared";
+  EXPECT_EQ(&sample_of(*known, 30).summary(), &sample_of(*kept, 30).summary()) << "sums are shared";
 }
 
 }  // namespace

@@ -54,6 +54,23 @@ TEST(ProgressBar, TellsWhatRemainsAndWipesItself) {
   EXPECT_TRUE(out.str().ends_with("\r\033[K"));
 }
 
+TEST(ProgressBar, GivesWayToASentence) {
+  std::ostringstream out;
+  Hands hands;
+  ProgressBar bar(out, hands.clock());
+  bar.begin("sampling", 100);
+  const std::string before = out.str();
+  say_beside_progress("it is slow", out);
+  EXPECT_EQ(out.str(), before + "\r\033[Kassay: it is slow\n");
+  hands.time += 1s;
+  bar.advance(50);
+  EXPECT_THAT(out.str(), HasSubstr("it is slow\n\r\033[K[###############"));
+  bar.end();
+  std::ostringstream without;
+  say_beside_progress("it is slow", without);
+  EXPECT_EQ(without.str(), "assay: it is slow\n");
+}
+
 TEST(ProgressBar, StandsMoreDoneThanAnnounced) {
   std::ostringstream out;
   Hands hands;

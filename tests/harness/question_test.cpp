@@ -144,5 +144,68 @@ TEST(Question, RefusesAVarianceAgainstANumberWithAnError) {
       << refused("claim: variance(normal) == 1 +- 0.1");
 }
 
+// `5` where `5%` was meant excludes nothing: pi is smaller, and so is what the plugin knows.
+TEST(Question, RefusesAMarginLargerThanItsReference) {
+  EXPECT_EQ(refused("{claim: mean(darts) == 3, detect: 5}"),
+            "12:39: the margin 5 is 1.67 times what it is held against, 3: for 5 per cent write "
+            "`5%`; if so much is meant, `167%`");
+  for (const char* test :
+       {"{claim: mean(darts) == 3, detect: 5, allow: 0.1}",
+        "{claim: mean(darts) == analytic, detect: 5}", "{claim: mean(darts) within 5 of analytic}",
+        "{claim: mean(darts) within 5 of -3}", "{claim: bias(darts) == 0, detect: 5}",
+        "{claim: bias(darts) within 5 of 0}", "{claim: mean(normal) == mean(darts), detect: 5}",
+        "{claim: mean(normal) == 1.1 * mean(darts), detect: 5}",
+        "{claim: variance(darts) <= 3, detect: 5}",
+        "{claim: 'quantile(darts, 0.5) == 3', detect: 5}", "{claim: cost(area) <= 3, detect: 5}"}) {
+    const std::string text = refused(test);
+    EXPECT_NE(text.find("for 5 per cent write `5%`"), std::string::npos) << test << text;
+  }
+}
+
+// Of zero nothing is a part, exponents have no per cent, and a margin as large may be meant.
+TEST(Question, TakesAMarginThatMayBeMeant) {
+  for (const char* test :
+       {"{claim: mean(darts) == 0, detect: 5}", "{claim: mean(darts) within 5 of 0}",
+        "{claim: mean(darts) == 3, detect: 3}", "{claim: mean(darts) == 3, detect: 167%}",
+        "{claim: mean(darts) == 7 * mean(darts), detect: 5}",
+        "{claim: slope(bias(darts)) within 5 of -1, over: {primaries: [8, 16]}}"}) {
+    EXPECT_EQ(refused(test), "(nothing was refused)") << test;
+  }
+}
+
+TEST(Question, RefusesMoreThanAnyDifferenceOfProbabilities) {
+  for (const char* test : {"{claim: 'distribution(normal) == normal(0, 1)', detect: 5}",
+                           "{claim: distribution(hemisphere.direction) == density, detect: 5}",
+                           "{claim: distribution(normal) == distribution(darts), detect: 5}",
+                           "{claim: integral(hemisphere.direction) == 1, detect: 5}",
+                           "{claim: inconsistency(hemisphere.direction) == 0, detect: 5}",
+                           "{claim: inconsistency(hemisphere.direction) within 5 of 0}"}) {
+    const std::string text = refused(test);
+    EXPECT_NE(text.find("here 5 per cent is written `0.05`"), std::string::npos) << test << text;
+  }
+}
+
+TEST(Question, GivesLawsADefaultWhereNothingSaysHowManyObservations) {
+  const auto detect_of = [](const std::string& test) {
+    const auto asked = ask_text(suite_of(test));
+    return question_of(asked).test->detect.value_or(Margin{}).value;
+  };
+  for (const char* claim :
+       {"distribution(hemisphere.direction) == density",
+        "distribution(hemisphere.theta) == density", "distribution(normal) == normal(2, 1)",
+        "distribution(normal) == distribution(darts)"}) {
+    const std::string head = "{claim: '" + std::string(claim) + "'";
+    EXPECT_EQ(detect_of(head + "}"), 0.05) << claim;
+    EXPECT_EQ(detect_of(head + ", allow: 0.01, budget: 1000}"), 0.05) << claim;
+    EXPECT_EQ(detect_of(head + ", detect: 0.2}"), 0.2) << claim;
+    EXPECT_EQ(detect_of(head + ", secondaries: 100}"), 0) << claim;
+  }
+  EXPECT_EQ(detect_of("{claim: mean(darts) == 3}"), 0);
+  EXPECT_EQ(detect_of("{claim: 'quantile(darts, 0.5) == 3'}"), 0);
+  EXPECT_NE(refused("{claim: 'distribution(normal) == normal(0, 1)', allow: 0.05}")
+                .find("which is 0.05 by default; give a larger `detect`"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace assay::harness

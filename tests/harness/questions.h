@@ -31,8 +31,8 @@ inline std::unique_ptr<Asked> ask_text(const std::string& text) {
   auto asked = std::make_unique<Asked>();
   asked->suite = load_suite(place.write("suite.yaml", text));
   asked->estimators = prepare_all(asked->suite);
-  for (const TestEntry& test : asked->suite.tests) {
-    asked->questions.push_back(ask(test, asked->estimators, 1));
+  for (TestEntry& test : asked->suite.tests) {
+    asked->questions.push_back(ask_as_written(test, asked->estimators, 1));
   }
   return asked;
 }

@@ -60,7 +60,8 @@ TEST(Rows, TooFewToShowThatTheyAreIndependentAreInvalid) {
        {"claim: 'distribution(rows) == normal(0, 1)'", "claim: 'quantile(rows, 0.5) == 0'"}) {
     const reports::Test test = judged(chain, claim);
     EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
-    EXPECT_THAT(test.message, HasSubstr("20 rows of rows are too few for their order to show"));
+    EXPECT_THAT(test.message,
+                HasSubstr("`rows` has 20 rows, and it takes 100 to see that they do not"));
   }
   const reports::Test forced =
       judged(chain, "claim: 'distribution(rows) == normal(0, 1)', test: ks");
@@ -125,9 +126,41 @@ TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
   const std::vector<double> rows = rows_of(5, 1, normal);
   const reports::Test test = judged(rows, "claim: mean(rows) == 0");
   EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_THAT(test.message, HasSubstr("5 rows of rows are too few for their order"));
+  EXPECT_THAT(test.message, HasSubstr("`rows` has 5 rows, and it takes 100"));
   EXPECT_THAT(test.message, testing::Not(HasSubstr("primaries")));
   EXPECT_EQ(judged(rows, "claim: mean(rows) == 0, test: t").verdict, Verdict::pass);
+}
+
+// One sentence: what happened, how many rows it takes, what to write.
+TEST(Rows, TooFewSayHowManyItTakesAndWhatToWrite) {
+  const Draw lognormal = [](Philox& random) { return std::exp(1.2 * random.normal()); };
+  const Draw skewed = [](Philox& random) { return std::exp(2 * random.normal()); };
+  const Draw heavy = [](Philox& random) { return std::exp(4 * random.normal()); };
+  const auto said = [](const std::vector<double>& rows, const std::string& claim) {
+    const reports::Test test = judged(rows, "claim: '" + claim + "'");
+    EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
+    EXPECT_LE(test.message.size(), 200U) << test.message;
+    return test.message;
+  };
+  EXPECT_EQ(said({3}, "mean(rows) == 2"),
+            "`rows` has 1 row, and it takes 100 to see that they do not depend on each other; give "
+            "more, or, if they do not, add `test: skewness-corrected-t`");
+  for (const char* claim :
+       {"mean(rows) == 0", "distribution(rows) == normal(0, 1)", "quantile(rows, 0.5) == 0"}) {
+    EXPECT_THAT(said(rows_of(20, 1, normal), claim), HasSubstr("has 20 rows, and it takes 100"));
+  }
+  const std::string variance = said(rows_of(300, 4, lognormal), "variance(rows) == 10");
+  EXPECT_THAT(variance, AllOf(testing::StartsWith("300 rows are too few: a variance of values of "
+                                                  "this shape takes about "),
+                              testing::EndsWith("or, if they are normal, add `test: chi-square`")));
+  EXPECT_THAT(said({1, 3}, "variance(rows) == 2"),
+              testing::StartsWith("2 rows are too few: a variance of values of this shape takes"));
+  EXPECT_THAT(said(rows_of(5000, 5, skewed), "mean(rows) == 7.39"),
+              AllOf(HasSubstr("the rows are too few for how skewed they are: give about "),
+                    HasSubstr("rows, or rows that each average several")));
+  EXPECT_THAT(said(rows_of(3000, 6, heavy), "variance(rows) == 2"),
+              HasSubstr("more of them may only show more of the tail; claim a quantile, as "
+                        "`quantile(rows, 0.5) == …`"));
 }
 
 // Their least and largest value are no bounds of what they come from.
@@ -174,7 +207,7 @@ TEST(Rows, OfASkewedLawAreCorrectedOrTurnedAway) {
   const Draw lognormal = [](Philox& random) { return std::exp(1.5 * random.normal()); };
   const reports::Test test = judged(rows_of(120, 4, lognormal), "claim: mean(rows) == 3.08");
   EXPECT_EQ(test.verdict, Verdict::invalid);
-  EXPECT_THAT(test.message, HasSubstr("too skewed for how few they are"));
+  EXPECT_THAT(test.message, HasSubstr("too few for how skewed they are"));
 }
 
 TEST(Rows, RoundedCoarselyAreNotHeldAgainstAContinuousLaw) {

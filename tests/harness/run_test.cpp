@@ -106,7 +106,7 @@ TEST(Run, UnderAFilterKeepsEveryRemainingTestsNumbers) {
   const std::string file = place.write("suite.yaml", good());
   const reports::Record whole = run_files({file});
   for (const char* filter : {"*mean(area)*", "*distribution*", "*/no cosine", "*variance*"}) {
-    const reports::Record part = run_files({file}, {.filter = filter});
+    const reports::Record part = run_files({file}, {.selection = {.filters = {filter}}});
     ASSERT_FALSE(part.suites[0].tests.empty()) << filter;
     ASSERT_LT(part.suites[0].tests.size(), whole.suites[0].tests.size()) << filter;
     EXPECT_NE(part.note.find("fixed share"), std::string::npos);
@@ -210,7 +210,7 @@ TEST(Run, SplitsTheSuitesBudgetByWeight) {
   const reports::Record both = run_text(text);
   EXPECT_EQ(test_named(both, "one").samples[0].secondaries, 10000);
   EXPECT_EQ(test_named(both, "two").samples[0].secondaries, 30000);
-  const reports::Record alone = run_text(text, {.filter = "*/one"});
+  const reports::Record alone = run_text(text, {.selection = {.filters = {"*/one"}}});
   EXPECT_EQ(raw(alone.suites[0].tests[0]), raw(both.suites[0].tests[0]));
   EXPECT_FALSE(both.suites[0].timed);
 }

@@ -72,6 +72,18 @@ TEST(Sample, RefusesMoreRowsThanThereAre) {
   EXPECT_NE(text.find("has 3 rows"), std::string::npos) << text;
 }
 
+TEST(Sample, QuotesNamesThatWouldBeSeveral) {
+  const Workplace place;
+  const auto again = [&](const std::string& file, const std::string& text) {
+    return sampled(
+        {.source = "data", .estimators = {"data=recorded,file=" + place.write(file, text)}});
+  };
+  const std::string header = "# columns: \"x, mean\" y \"a \"\"b\"\"\"\n1 2 3\n4 5 6\n";
+  const std::string text = again("data.csv", "\"x, mean\",y,\"a \"\"b\"\"\"\n1,2,3\n4,5,6\n");
+  EXPECT_NE(text.find(header), std::string::npos) << text;
+  EXPECT_NE(again("data.txt", text).find(header), std::string::npos);
+}
+
 // The file says which stream it was drawn from, and the estimator steps aside.
 TEST(Sample, IsComparedWithItsOwnEstimatorOnAnotherCopyOfTheStream) {
   const Workplace place;

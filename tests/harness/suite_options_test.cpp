@@ -34,7 +34,8 @@ TEST(EstimatorOption, SaysWhatIsWrong) {
   const auto refused_option = [](const std::string& text) {
     return refusal([&] { parse_estimator_option(text); });
   };
-  EXPECT_EQ(refused_option("luminaire/area"), "expected NAME=PLUGIN[,key=value]…");
+  EXPECT_EQ(refused_option("luminaire/area"),
+            "the plugin needs a name, which the claim uses: `--estimator x=luminaire/area`");
   EXPECT_EQ(refused_option("2=luminaire/area"),
             "`2` cannot name an estimator: a letter, then letters, digits, `_`, `-` and `/`");
   EXPECT_EQ(refused_option("a=luminaire/areas"),
@@ -134,7 +135,8 @@ TEST(SuiteOfClaim, SaysWhatIsWrong) {
             "1:6: no --estimator is named `lamb`; did you mean `lamp`?");
   EXPECT_EQ(
       refused_check({.claim = "mean(luminaire/area) == 1", .estimators = {"b=luminaire/area"}}),
-      "nothing names the estimator `b`");
+      "`b` is used nowhere, only `luminaire/area`: write `b` in its place, or leave the option "
+      "out");
   EXPECT_EQ(refused_check({.claim = "mean(b) == 1",
                            .estimators = {"b=luminaire/area", "b=luminaire/cosine"}}),
             "a second estimator named `b`");

@@ -55,7 +55,7 @@ TEST(SuiteStatements, AreAnsweredByTheVerdictsOfARun) {
 
 TEST(SuiteStatements, AreLeftOutWhereNoTestOfTheirsIsRun) {
   const reports::Record record =
-      run_text(suite_text, {.threads = 1, .filter = "suite/mean(ramp)*"});
+      run_text(suite_text, {.threads = 1, .selection = {.filters = {"suite/mean(ramp)*"}}});
   const reports::Suite& suite = record.suites.at(0);
   ASSERT_EQ(suite.statements.size(), 2U);
   EXPECT_EQ(suite.statements[0].text, "Both are right.");

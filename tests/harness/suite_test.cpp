@@ -154,7 +154,7 @@ TEST(Suite, TakesAClaimFoldedOverLines) {
 
 TEST(Suite, RefusesWhatIsNotAFile) {
   EXPECT_EQ(refusal([] { load_suite("/nowhere/at/all.yaml"); }),
-            "cannot read `/nowhere/at/all.yaml`: No such file or directory");
+            "cannot read `/nowhere/at/all.yaml`: there is no such file");
   const Folder folder;
   EXPECT_EQ(refusal([&] { load_suite(folder.path()); }),
             "cannot read `" + folder.path() + "`: it is a folder; name the files in it");

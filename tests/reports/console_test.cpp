@@ -51,6 +51,21 @@ TEST(Console, WhatIsNotOkIsExplainedAndWhatIsOkIsNot) {
             std::string::npos);
 }
 
+TEST(Console, ManyChannelsAreFewLines) {
+  Record record = example_record();
+  ASSERT_FALSE(record.suites[0].estimators.empty());
+  EstimatorSummary& estimator = record.suites[0].estimators[0];
+  const auto lines_of = [&](std::size_t channels) {
+    estimator.channels.resize(channels);
+    for (std::size_t i = 0; i < channels; ++i) estimator.channels[i].name = "c" + std::to_string(i);
+    return lines(console(record, {.verbose = true})).size();
+  };
+  const std::size_t most = lines_of(24);
+  EXPECT_GT(most, lines_of(23));
+  EXPECT_EQ(lines_of(10000), most + 1);
+  EXPECT_NE(console(record, {.verbose = true}).find("9976 more channels"), std::string::npos);
+}
+
 TEST(Console, AnExpectedFailureIsNotShownAsAFailure) {
   const std::string text = console(example_record());
   EXPECT_NE(text.find("✓ fail (as expected) "), std::string::npos);

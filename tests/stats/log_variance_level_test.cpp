@@ -72,6 +72,23 @@ TEST(LogVarianceLevel, NeedsTheCountAtWhichItsFactorIsTheLimit) {
   EXPECT_EQ(values_for_log_variance({.kurtosis = 1, .sixth = 1}, 3), 2U) << "two values, evenly";
 }
 
+TEST(LogVarianceLevel, OfUnequalSizesIsThatOfTheSamplesExchanged) {
+  for (const double allocation : {1.6, 4.0}) {
+    const double one = log_variance_level_factor(
+        exponential, normal, {.count = 4000, .critical_value = 3, .allocation = allocation});
+    const double other =
+        log_variance_level_factor(normal, exponential,
+                                  {.count = static_cast<std::uint64_t>(4000 * allocation),
+                                   .critical_value = 3,
+                                   .allocation = 1 / allocation});
+    EXPECT_NEAR(one / other, 1, 1e-12);
+  }
+  // Of far more values of the second the first is all that is uncertain.
+  EXPECT_NEAR(static_cast<double>(values_for_log_variance(exponential, normal, 3, 1.25, 1e12)) /
+                  static_cast<double>(values_for_log_variance(exponential, 3)),
+              1, 1e-4);
+}
+
 // Exponential values at the count it asks for: the lower tail's rate at .01 is at most 1.25 times
 // nominal, at a twentieth of that count it is beyond. 8000 repetitions, so that a rate of 1.25
 // shows as more than 1.8 with probability 1e-5 (binomial), and of 2.2 as less than 1.5 with 1e-5.

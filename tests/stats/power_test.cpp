@@ -48,9 +48,9 @@ TEST(Power, GoldenValuesToThePrintedDigits) {
   const EquivalencePlan tost{.margin = .5, .alpha = .05};
   EXPECT_NEAR(equivalence_power(tost, 12, 0), .107144, 5e-7);
   EXPECT_NEAR(equivalence_power(tost, 50, 0), .934413, 5e-7);
-  const auto n3 = log_variance_sample_size({3, 3, 1, {1e-3, .1, true}}, 1.2);
+  const auto n3 = log_variance_sample_size({3, 3, 1, 1, {1e-3, .1, true}}, 1.2);
   EXPECT_NEAR(static_cast<double>(n3.value()), 2516, 1);
-  const auto n9 = log_variance_sample_size({9, 9, 1, {1e-3, .1, true}}, 1.2);
+  const auto n9 = log_variance_sample_size({9, 9, 1, 1, {1e-3, .1, true}}, 1.2);
   EXPECT_NEAR(static_cast<double>(n9.value()), 10062, 2);
   EXPECT_NEAR(student_t_detectable({.rates = strict}, 10000), .0622, 5e-5);
 }
@@ -117,6 +117,28 @@ TEST(Power, DetectableEffectsReachTheirPower) {
   EXPECT_NEAR(ks_power_bound({.two_samples = true, .rates = rates}, 1000,
                              ks_detectable({.two_samples = true, .rates = rates}, 1000)),
               .9, 1e-9);
+}
+
+TEST(Power, OfUnequalSizesIsThatOfTheSamplesExchanged) {
+  const ErrorRates rates{.01, .1, true};
+  const DistancePlan more_of_x{.two_samples = true, .allocation = 250 / 400.0, .rates = rates};
+  const DistancePlan more_of_y{.two_samples = true, .allocation = 400 / 250.0, .rates = rates};
+  EXPECT_DOUBLE_EQ(ks_detectable(more_of_x, 400), ks_detectable(more_of_y, 250));
+  EXPECT_LT(ks_detectable(more_of_x, 400),
+            ks_detectable({.two_samples = true, .rates = rates}, 250));
+  EXPECT_GT(ks_detectable(more_of_x, 400),
+            ks_detectable({.two_samples = true, .rates = rates}, 400));
+  // R 4.2.2: psmirnov(261/2000, c(400, 250), exact) leaves .0096 above, 260/2000 .0100035.
+  EXPECT_NEAR(ks_detectable(more_of_x, 400),
+              261 / 2000.0 + std::sqrt(std::log(10) / (2 * 400 * 250 / 650.0)), 1e-12);
+  // By ln(ratio) of variance 4 / 400 + 8 / 1600 = .015.
+  const LogVariancePlan x{
+      .kurtosis_x = 5, .kurtosis_y = 9, .allocation = 4, .rates = {.01, .1, false}};
+  const LogVariancePlan y{
+      .kurtosis_x = 9, .kurtosis_y = 5, .allocation = .25, .rates = {.01, .1, false}};
+  const double z = std::log(1.5) / std::sqrt(.015) - 2.3263478740408408;
+  EXPECT_NEAR(log_variance_power(x, 400, 1.5), std::erfc(-z / std::sqrt(2)) / 2, 1e-12);
+  EXPECT_NEAR(log_variance_power(y, 1600, 1.5), log_variance_power(x, 400, 1.5), 1e-12);
 }
 
 // The critical distance is remembered from one question to the next, if that is the same.

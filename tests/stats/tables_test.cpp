@@ -4,12 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include "stats/chi_square_two_sample.h"
 #include "stats/chi_square_variance.h"
 #include "stats/f_ratio.h"
 #include "stats/kolmogorov_smirnov.h"
 #include "stats/student_t.h"
 #include "stats/tails.h"
 #include "stats/welch_t.h"
+#include "tests/lehmer.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
@@ -62,6 +64,95 @@ TEST(Tables, EveryMethodAgreesWithScipyOnWholeDataSets) {
     const TestResult ks2 = kolmogorov_smirnov(ks_distance(tests::sorted(xs), tests::sorted(ys)));
     EXPECT_NEAR(ks2.statistic, row["ks2"], 1e-12);
     expect_p(ks2.log_p_upper, row["ks2_p"], 1e-10);
+  }
+}
+
+// The cells of make_unequal.R.
+std::vector<std::uint64_t> counts_of(const std::vector<double>& values) {
+  const std::vector<double> ends{-1, -.25, .5, 1.25};
+  std::vector<std::uint64_t> counts(ends.size() + 1);
+  for (const double value : values) {
+    const auto end = std::lower_bound(ends.begin(), ends.end(), value);
+    ++counts[static_cast<std::size_t>(end - ends.begin())];
+  }
+  return counts;
+}
+
+TEST(Tables, SamplesOfUnequalSizesAgreeWithR) {
+  for (const Row& row : tests::read_table("unequal")) {
+    const double k = row["k"];
+    SCOPED_TRACE(k);
+    const auto xs = tests::lehmer_sums(1000 * k, static_cast<std::size_t>(row["n"]));
+    auto ys = tests::lehmer_sums(1000 * k + 1, static_cast<std::size_t>(row["m"]));
+    for (double& y : ys) y = y * row["scale"] + row["shift"];
+    const Moments x = moments_of(xs);
+    const Moments y = moments_of(ys);
+    const TestResult t = student_t(x, {.0625});
+    EXPECT_NEAR(t.statistic / row["t"], 1, 1e-9);
+    expect_p(log_p_two_sided(t), row["t_p"], 1e-9);
+    const TestResult chi = chi_square_variance(x, 1.1);
+    EXPECT_NEAR(chi.statistic / row["chi"], 1, 1e-9);
+    expect_p(log_p_two_sided(chi), row["chi_p"], 1e-9);
+    const TestResult welch = welch_t(x, y, {});
+    EXPECT_NEAR(welch.statistic / row["welch"], 1, 1e-9);
+    EXPECT_NEAR(welch.distribution.parameters[0] / row["welch_nu"], 1, 1e-9);
+    expect_p(log_p_two_sided(welch), row["welch_p"], 1e-9);
+    expect_p(welch.log_p_lower, row["welch_less"], 1e-9);
+    const TestResult f = f_ratio(x, y, 1);
+    EXPECT_NEAR(f.statistic / row["f"], 1, 1e-9);
+    expect_p(log_p_two_sided(f), row["f_p"], 1e-9);
+    expect_p(f.log_p_upper, row["f_greater"], 1e-9);
+    const TestResult ks = kolmogorov_smirnov(ks_distance(tests::sorted(xs), tests::sorted(ys)));
+    EXPECT_NEAR(ks.statistic / row["ks"], 1, 1e-12);
+    EXPECT_EQ(ks.exactness, Exactness::exact);
+    expect_p(ks.log_p_upper, row["ks_p"], 1e-9);
+    const ChiSquareTwoSample cells = chi_square_two_sample({counts_of(xs), counts_of(ys)});
+    EXPECT_NEAR(cells.test.statistic / row["cells"], 1, 1e-9);
+    expect_p(cells.test.log_p_upper, row["cells_p"], 1e-9);
+  }
+}
+
+// NIST's StRD sets, by the rule they are published with.
+std::vector<double> numacc(int set) {
+  if (set == 1) return {10000001, 10000003, 10000002};
+  const double means[] = {1.2, 1000000.2, 10000000.2};
+  const double lows[] = {1.1, 1000000.1, 10000000.1};
+  const double highs[] = {1.3, 1000000.3, 10000000.3};
+  std::vector<double> values{means[set - 2]};
+  for (int i = 0; i < 500; ++i) {
+    values.push_back(lows[set - 2]);
+    values.push_back(highs[set - 2]);
+  }
+  return values;
+}
+
+// The same in blocks, as the harness takes them.
+Moments in_blocks(const std::vector<double>& values, std::size_t size) {
+  Moments all;
+  for (std::size_t first = 0; first < values.size(); first += size) {
+    const std::span<const double> rest = std::span(values).subspan(first);
+    all.merge(moments_of(rest.first(std::min(size, rest.size()))));
+  }
+  return all;
+}
+
+TEST(Tables, MeansFarFromZeroAgreeWithFiftyDigits) {
+  for (const Row& row : tests::read_table("numacc")) {
+    const auto xs = numacc(static_cast<int>(row["set"]));
+    const bool two = row["other"] != 0;
+    const auto ys = numacc(two ? static_cast<int>(row["other"]) : 1);
+    for (const std::size_t block : {std::size_t{10000}, std::size_t{64}, std::size_t{1}}) {
+      SCOPED_TRACE(row.text("set") + " " + row.text("other") + " " + row.text("offset") +
+                   " in blocks of " + std::to_string(block));
+      const Moments x = in_blocks(xs, block);
+      const Moments y = in_blocks(ys, block);
+      const TestResult result =
+          two ? welch_t(x, y, {row["scale"], row["offset"]}) : student_t(x, {row["offset"]});
+      EXPECT_NEAR(result.statistic / row["t"], 1, 1e-10);
+      EXPECT_NEAR(result.distribution.parameters[0] / row["nu"], 1, 1e-10);
+      EXPECT_LT(tests::log_p_error(result.log_p_lower, row["log_lower"]), 1e-10);
+      EXPECT_LT(tests::log_p_error(result.log_p_upper, row["log_upper"]), 1e-10);
+    }
   }
 }
 

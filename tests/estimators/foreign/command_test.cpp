@@ -5,9 +5,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <set>
 
 #include "estimators/foreign/render_seed.h"
+#include "estimators/library_host.h"
 #include "estimators/ready_made.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr_kinds.h"
@@ -227,6 +229,88 @@ TEST_F(Commands, ThatFailOnceLeaveNothingBehind) {
   EXPECT_THAT(failure([&] { draws::observe(prepare(), 1, 2); }), HasSubstr("exit status 1"));
 }
 
+std::vector<std::string> said;
+std::mutex saying;
+
+// By the same seed and under the same name; what was half written is gone.
+TEST_F(Commands, ThatFailAreStartedAgain) {
+  write_program(
+      "test -e tried.$1.$2 || { touch tried.$1.$2; echo half >$3; echo bad luck >&2; exit 3; }; "
+      "echo \"$1 $2\" >$3");
+  const std::vector<Value::Member> once{{"output", Value::scalar("text")},
+                                        {"retries", Value::scalar("1")}};
+  set_notice([](const std::string& sentence) {
+    const std::scoped_lock lock(saying);
+    said.push_back(sentence);
+  });
+  const draws::Prepared plugin = prepare(once);
+  const auto observed = draws::observe(plugin, 3, 4);
+  set_notice(nullptr);
+  EXPECT_EQ(starts(), 2U * (1 + 3));
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(observed[0].values[i], foreign::render_seed(plugin.key, i));
+  }
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(file(".assay-cache"))) {
+    if (!entry.is_regular_file() || entry.path().filename() == "command.txt") continue;
+    ++files;
+    EXPECT_THAT(draws::bytes_of(entry.path().string()),
+                HasSubstr(entry.path().stem().string() + " "));
+  }
+  EXPECT_EQ(files, 4U);
+  ASSERT_EQ(said.size(), 4U);
+  EXPECT_THAT(said[0], HasSubstr("ended with exit status 3; its standard error ends with: bad "
+                                 "luck; it is started again, retry 1 of 1"));
+  EXPECT_THAT(failure([&] { draws::observe(prepare(), 1, 8); }), HasSubstr("exit status 3"));
+}
+
+TEST_F(Commands, ThatFailAtEachRetrySayHowOften) {
+  write_program("echo what a pity >&2; exit 3");
+  const std::string text = failure([&] {
+    prepare({{"output", Value::scalar("text")}, {"retries", Value::scalar("2")}});
+  });
+  EXPECT_THAT(text, HasSubstr("exit status 3"));
+  EXPECT_THAT(text, HasSubstr("what a pity; it has failed 3 times (`retries: 2`)"));
+  EXPECT_EQ(starts(), 3U);
+}
+
+TEST_F(Commands, ThatMakeSomeFilesAreStartedAgainForTheOthers) {
+  several_ = true;
+  write_program("echo $1 >>asked; echo ${1%%,*} >$3/${1%%,*}.txt");
+  const draws::Prepared plugin =
+      prepare({{"output", Value::scalar("text")}, {"retries", Value::scalar("2")}});
+  const auto worker = plugin.setup->make();
+  worker->announce({.key = plugin.key, .first = 0, .last = 3});
+  std::string wanted = draws::bytes_of(file("asked"));
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    Stream random(plugin.key, i);
+    Cost cost;
+    double out = 0;
+    worker->secondary(random, 1, {&out, 1}, cost);
+    EXPECT_EQ(out, foreign::render_seed(plugin.key, i));
+    for (std::uint64_t j = i; j < 3; ++j) {
+      wanted += std::to_string(foreign::render_seed(plugin.key, j)) + (j < 2 ? "," : "\n");
+    }
+  }
+  EXPECT_EQ(draws::bytes_of(file("asked")), wanted);
+}
+
+// Eight of half a second, two at a time, take longer than each may.
+TEST_F(Commands, HaveTheirTimeFromTheirStart) {
+  write_program("sleep 0.5; echo $1 >$3");
+  const draws::Prepared plugin =
+      prepare({{"output", Value::scalar("text")}, {"timeout", Value::scalar("1.5")}});
+  const auto worker = plugin.setup->make();
+  worker->announce({.key = plugin.key, .first = 0, .last = 8});
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    Stream random(plugin.key, i);
+    Cost cost;
+    double out = 0;
+    worker->secondary(random, 1, {&out, 1}, cost);
+    EXPECT_EQ(out, foreign::render_seed(plugin.key, i));
+  }
+}
+
 TEST_F(Commands, NeedAPlaceForSamplesToTakeOtherThanOne) {
   std::ofstream(file("render.sh")) << "echo 1 >$2\n";
   const Entry& entry = find_plugin("command", {});
@@ -257,7 +341,8 @@ TEST_F(Commands, NeedPlacesForSeedAndFile) {
               HasSubstr("one picture a program"));
   EXPECT_THAT(refused({"render", "{seed}", "{sample}", "{out}"}),
               HasSubstr("did you mean `{samples}`?"));
-  EXPECT_THAT(refused({"no_such_program_anywhere", "{seed}", "{out}"}), HasSubstr("is of no use"));
+  EXPECT_THAT(refused({"no_such_program_anywhere", "{seed}", "{out}"}),
+              HasSubstr("cannot be started"));
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
 // What libraries in the process of the tests are told whose numbers are no function of what was
 // asked; programs that answer so are in process_test.cpp and isolated_sampler_test.cpp.
 
+#include "estimators/foreign/examination.h"
+
 #include <gmock/gmock.h>
 
+#include "estimators/thread_seconds.h"
 #include "tests/estimators/foreign/library.h"
 
 namespace assay::foreign {
@@ -38,7 +41,7 @@ TEST_F(Examination, WhoseObservationsAreNoFunctionOfKeyAndIndexIsRefused) {
   for (int worker = 0; worker < 2; ++worker) {
     EXPECT_THAT(
         trouble(*counting),
-        HasSubstr("counting.so` gave other numbers when it was asked for observation 0 of the "
+        HasSubstr("counting.so` gave other numbers when it was asked for observation 31 of the "
                   "same key again: an observation must be a function of key and index "
                   "alone"));
   }
@@ -53,7 +56,7 @@ TEST_F(Examination, WhoseObservationsAreNoFunctionOfKeyAndIndexIsRefused) {
       "call->out[0] = sum / (double)call->primaries; return 0; ";
   EXPECT_THAT(
       trouble(*load_as("by_key", averaging(with_body(by_key))), 8),
-      HasSubstr("by_key.so` gave the same numbers for observations 0 to 19 of 8 primaries"));
+      HasSubstr("by_key.so` gave the same numbers for observations 0 to 31 of 8 primaries"));
 }
 
 TEST_F(Examination, IsAskedAgainOnceForAllWorkersAndNothingMore) {
@@ -71,8 +74,73 @@ TEST_F(Examination, IsAskedAgainOnceForAllWorkersAndNothingMore) {
       estimator->secondary(random, 1, {&out, 1}, cost);
     }
   }
-  // Observation 0 first, beside that of another key, and last.
-  EXPECT_EQ(cost.closest_hit_rays, 200u + 4);
+  // 32 observations twice, and one of another key.
+  EXPECT_EQ(cost.closest_hit_rays, 200u + 65);
+}
+
+TEST_F(Examination, WhoseRareValueDoesNotComeAgainIsRefused) {
+  const auto setup =
+      load(compile_text(with_body("static int asked; int rare = call->random->counter[2] == 200; "
+                                  "call->out[0] = rare && asked++ == 0; return 0; ")));
+  EXPECT_THAT(
+      failure(*setup, 256, 64),
+      HasSubstr("gave other numbers when it was asked for observation 200 of the same key"));
+}
+
+TEST_F(Examination, IsNotTheEstimatorsTime) {
+  const auto setup = load(compile_text(with_body(
+      "double sum = 0; for (int i = 0; i < 1000000; ++i) sum += assay_uniform(call->random); "
+      "call->out[0] = sum; return 0; ")));
+  const auto estimator = setup->make();
+  const auto seconds_of = [&](std::uint64_t index) {
+    const auto seconds = [&] { return thread_seconds() + estimator->seconds_elsewhere(); };
+    const double before = seconds();
+    double out = 0;
+    Cost cost;
+    Stream random({1}, index);
+    estimator->secondary(random, 1, {&out, 1}, cost);
+    return seconds() - before;
+  };
+  const double first = seconds_of(0);
+  EXPECT_LT(first, 10 * seconds_of(1));
+}
+
+/// Bernoulli observations of probability p, of key and index or of the index alone.
+Asking coins(double p, bool with_key) {
+  return [p, with_key](const Question& question) {
+    Stream random({with_key ? question.key : 7}, question.first);
+    return std::vector<double>{random.uniform() < p ? 1.0 : 0.0};
+  };
+}
+
+std::string verdict_on(const Asking& ask, std::uint64_t key, std::uint64_t offset) {
+  const Asking shifted = [&](Question question) {
+    question.first += offset;
+    return ask(question);
+  };
+  FirstObservations first{.question = {.key = key, .count = asked_twice(1)}};
+  for (Question one = first.question; one.first < first.question.count; ++one.first) {
+    first.numbers.push_back(shifted(one)[0]);
+  }
+  return why_unfit(shifted, first, "coin", 0);
+}
+
+// Each of the 6000 is refused with a probability below 1e-6.
+TEST(Coins, OfKeyAndIndexAreTaken) {
+  for (const double p : {.5, .2, .1, .05, .02, .001}) {
+    for (std::uint64_t key = 0; key < 1000; ++key) {
+      ASSERT_EQ(verdict_on(coins(p, true), key, 0), "") << p << " " << key;
+    }
+  }
+}
+
+// Fewer than 5 of either outcome among 128 have a probability below 2e-8.
+TEST(Coins, OfTheIndexAloneAreRefused) {
+  for (const double p : {.5, .7854, .215}) {
+    for (std::uint64_t i = 0; i < 500; ++i) {
+      ASSERT_THAT(verdict_on(coins(p, false), i, 1000 * i), HasSubstr("for two keys")) << p;
+    }
+  }
 }
 
 TEST_F(Examination, WhoseSamplersDriftIsRefused) {

@@ -77,6 +77,18 @@ class Programs : public ::testing::Test {
     return "nothing was refused";
   }
 
+  /// What the program throws that is no mistake of its user's.
+  std::string fault(const std::vector<std::string>& command, double timeout = 20) {
+    try {
+      run(command, timeout);
+    } catch (const InputError& error) {
+      return "refused: " + error.message();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "nothing was thrown";
+  }
+
   std::filesystem::path folder_;
   std::vector<SharedSetup> setups_;
 };

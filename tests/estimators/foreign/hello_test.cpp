@@ -44,6 +44,12 @@ TEST(Hello, SaysNothingThatItDoesNotSay) {
   EXPECT_EQ(said.channels[0].low, -std::numeric_limits<double>::infinity());
 }
 
+TEST(Hello, MaySayThatItsBiasIsUnknown) {
+  EXPECT_FALSE(hello("channel area\nbias unknown\n").nature.bias.has_value());
+  EXPECT_EQ(to_text(hello("channel area\n")), to_text(hello("channel area\nbias unknown\n")));
+  EXPECT_EQ(hello("channel area\nbias bootstrap\n").nature.bias, BiasClass::inverse_bootstrap);
+}
+
 TEST(Hello, TakesWhatIsKnownOfAChannel) {
   const Channel area =
       hello("channel area mean 3.5 error 1e-9 variance 2 low 0 high inf rounding 1e-12\n")
@@ -141,7 +147,7 @@ TEST(Hello, RefusesLinesThatItDoesNotKnow) {
   EXPECT_THAT(wrong("channel two.words\n"), HasSubstr("letters, digits"));
   EXPECT_THAT(wrong("channel a\nchannel a\n"), HasSubstr("`a` twice"));
   EXPECT_THAT(wrong("image 2 2\nchannel x0y0\n"), HasSubstr("leave such channels out"));
-  EXPECT_THAT(wrong("channel a\nbias small\n"), HasSubstr("bias is unbiased"));
+  EXPECT_THAT(wrong("channel a\nbias small\n"), HasSubstr("bias is unknown, unbiased"));
   EXPECT_THAT(wrong("channel a\naverages 3\n"), HasSubstr("nothing follows"));
 }
 

@@ -4,9 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <mutex>
 #include <numbers>
 #include <thread>
 
+#include "estimators/library_host.h"
 #include "tests/estimators/foreign/foreign.h"
 
 namespace assay::foreign {
@@ -140,9 +142,14 @@ TEST_F(Process, CountsTheProgramsCpuTimeAsTheEstimators) {
   Cost cost;
   Stream random({1}, 0);
   EXPECT_EQ(estimator->seconds_elsewhere(), 0);
-  estimator->secondary(random, 20000, {&out, 1}, cost);
-  EXPECT_GT(estimator->seconds_elsewhere(), 0.001);
-  EXPECT_EQ(cost.samples, 20000u);
+  estimator->secondary(random, 4000, {&out, 1}, cost);
+  const double first = estimator->seconds_elsewhere();
+  EXPECT_GT(first, 0.001);
+  EXPECT_EQ(cost.samples, 4000u);
+  // That it is asked for 64 more observations first is not the estimator's.
+  Stream next({1}, 1);
+  estimator->secondary(next, 4000, {&out, 1}, cost);
+  EXPECT_LT(first, 10 * (estimator->seconds_elsewhere() - first));
 }
 
 TEST_F(Process, TakesRaysFromTheLastNumber) {
@@ -257,12 +264,78 @@ TEST_F(Process, RefusesObservationsThatAreNoFunctionOfTheirKey) {
   EXPECT_THROW(draw(*setup, 4, 4, 1, 17), std::runtime_error);
 }
 
-TEST_F(Process, TakesFewOutcomesForACoincidence) {
-  const auto setup = run_shell(R"(while read -r high low first count primaries; do i=$first
-  while [ $i -lt $((first + count)) ]; do echo $((i % 3)); i=$((i + 1)); done
-  echo "$high $low $first $count $primaries"; done
-)");
-  EXPECT_THAT(draw(*setup, 4, 4), ElementsAre(0, 1, 2, 0));
+/// A program whose observations are an expression of the shell, whatever the key.
+std::string of_index(const std::string& value) {
+  return "while read -r high low first count primaries; do i=$first\n"
+         "  while [ $i -lt $((first + count)) ]; do echo " +
+         value +
+         "; i=$((i + 1)); done\n"
+         "  echo \"$high $low $first $count $primaries\"; done\n";
+}
+
+// That all of 128 pairs are equal, k of them 1 and the others 0, has the probability C(128, k) /
+// C(256, 2 k): 2.6e-8 for 4 and 9.5e-10 for 5, where 5e-7 / 128 is the limit.
+TEST_F(Process, TakesRareValuesForACoincidence) {
+  const std::vector<double> values = draw(*run_shell(of_index("$((i % 32 == 7))")), 8, 8);
+  EXPECT_EQ(values[7], 1);
+  EXPECT_THAT(failure(*run_shell(of_index("$((i % 26 == 7))")), 8, 8),
+              HasSubstr("gave the same numbers for two keys"));
+}
+
+TEST_F(Process, RefusesFewOutcomesWhateverTheKey) {
+  EXPECT_THAT(failure(*run_shell(of_index("$((i % 3))")), 4, 4),
+              HasSubstr("gave the same numbers for two keys"));
+}
+
+TEST_F(Process, RefusesZerosAndOnesOfAGeneratorWithoutSeed) {
+  const std::string coins = R"(import random
+print("assay 1 text\nchannel x\nready", flush=True)
+while True:
+    high, low, first, count, primaries = map(int, input().split())
+    for _ in range(count):
+        print(int(random.Random().random() < .5))
+    print(high, low, first, count, primaries, flush=True)
+)";
+  EXPECT_THAT(failure(*run({"/usr/bin/python3", write("coins.py", coins)}), 4, 4),
+              AllOf(HasSubstr("gave other numbers when it was asked for observation"),
+                    HasSubstr("of the same key again")));
+}
+
+// Which alone would be as they should be.
+TEST_F(Process, RefusesObservationsThatDependOnThoseAskedForWithThem) {
+  EXPECT_THAT(failure(*run_shell(of_index("$((high % 2 + first))")), 4, 4),
+              HasSubstr("gave other numbers when it was asked for observation 31"));
+}
+
+TEST_F(Process, RefusesARareValueThatDoesNotComeAgain) {
+  const auto setup =
+      run_shell("asked=0\n" + of_index("$((i == 200 ? (asked = asked + 1) % 2 : 0))"));
+  EXPECT_THAT(
+      failure(*setup, 256, 64),
+      HasSubstr("gave other numbers when it was asked for observation 200 of the same key"));
+  EXPECT_THAT(failure(*run_shell(of_index("$((i == 200))")), 256, 64), "nothing failed");
+}
+
+TEST_F(Process, IsExaminedForEachNumberOfPrimaries) {
+  const auto setup =
+      run_shell("n=0\n" + of_index("$((i + high % 2 + (primaries > 1) * (n = n + 1)))"));
+  EXPECT_THAT(draw(*setup, 3, 3), ElementsAre(0, 1, 2));
+  EXPECT_THROW(draw(*setup, 3, 3, 64), std::runtime_error);
+}
+
+// Two images, the same again, and one of another key.
+TEST_F(Process, OfImagesIsAskedForFewAgain) {
+  const auto setup = run({"sh", "-c", R"(printf 'assay 1 text\nimage 4 4 r g\nready\n'
+while read -r high low first count primaries; do
+  echo "$((high % 2)) $first $count" >>questions
+  i=$first; while [ $i -lt $((first + count)) ]; do
+    x=$((i + high)); echo $x $x $x $x $x $x $x $x $x $x $x $x $x $x $x $x \
+      $x $x $x $x $x $x $x $x $x $x $x $x $x $x $x $x; i=$((i + 1)); done
+  echo "$high $low $first $count $primaries"; done)"});
+  draw(*setup, 1, 0);
+  std::ifstream file(folder_ / "questions");
+  const std::string asked{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(asked, "0 0 1\n0 1 1\n0 1 1\n0 0 1\n1 0 1\n0 0 1\n");
 }
 
 TEST_F(Process, RefusesObservationsThatAreNoFunctionOfTheirIndex) {
@@ -271,7 +344,7 @@ while read -r line; do set -- $line; i=0
   while [ $i -lt "$4" ]; do n=$((n + 1)); echo $n; i=$((i + 1)); done; echo "$line"; done
 )");
   EXPECT_THAT(failure(*setup, 4, 4),
-              AllOf(HasSubstr("gave other numbers when it was asked for observation 0"),
+              AllOf(HasSubstr("gave other numbers when it was asked for observation 31"),
                     HasSubstr("a function of key and index")));
 }
 
@@ -289,10 +362,16 @@ std::string of_means(const std::string& value, const std::string& word = "averag
 TEST_F(Process, RefusesMeansThatTheirIndexDoesNotChange) {
   const auto setup = run({"sh", write("program.sh", of_means("$((7 * primaries % 31))"))});
   EXPECT_THAT(failure(*setup, 4, 4),
-              HasSubstr("gave the same numbers for observations 0 to 19 of 1 primaries, and others "
+              HasSubstr("gave the same numbers for observations 0 to 31 of 1 primaries, and others "
                         "for all of twice as many"));
   // Nor is any other stream of it worth anything.
   EXPECT_THROW(draw(*setup, 4, 4, 1, 17), std::runtime_error);
+}
+
+TEST_F(Process, RefusesObservationsThatTheirKeyAloneChanges) {
+  EXPECT_THAT(failure(*run_shell(of_index("$low")), 4, 4),
+              HasSubstr("gave the same numbers for observations 0 to 31 of 1 primaries, and others "
+                        "for all of another key"));
 }
 
 TEST_F(Process, TakesMeansThatAreConstantForWhatTheyAre) {
@@ -324,6 +403,29 @@ TEST_F(Process, RefusesObservationsThatDependOnTheProcess) {
   EXPECT_THROW(two->secondary(random, 1, {&out, 1}, cost), std::runtime_error);
 }
 
+std::vector<std::string> said;
+std::mutex saying;
+
+// Though two workers wait for a program each.
+TEST_F(Process, IsAskedOnceWhetherItFlushes) {
+  set_notice([](const std::string& sentence) {
+    const std::scoped_lock lock(saying);
+    said.push_back(sentence);
+  });
+  const auto setup =
+      run_shell("read -r line; sleep 3.4; set -- $line; echo $(($3 + $1 % 2)); echo \"$line\"\n" +
+                std::string(answers));
+  {
+    std::jthread other([&] { draw(*setup, 2, 2); });
+    EXPECT_THAT(draw(*setup, 2, 2), ElementsAre(0, 1));
+  }
+  set_notice(nullptr);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_THAT(said[0], AllOf(HasSubstr("program.sh` has not replied for 3 s; does it flush its "
+                                       "output (print(..., flush=True))?"),
+                             HasSubstr("20 seconds (`timeout`)")));
+}
+
 TEST_F(Process, SurvivesAFloodOfStandardError) {
   const auto setup =
       run_shell("yes 'so much to say' | head -c 3000000 >&2\n" + std::string(answers));
@@ -333,7 +435,8 @@ TEST_F(Process, SurvivesAFloodOfStandardError) {
 }
 
 TEST_F(Process, SurvivesAProgramThatReadsNothing) {
-  EXPECT_THAT(failure(*run_shell("exec <&-; sleep 987657", 0.3), 2, 2), HasSubstr("within 0.3"));
+  EXPECT_THAT(failure(*run_shell("exec <&-; sleep 987657"), 2, 2),
+              HasSubstr("closed its standard input instead of answering for observation 0"));
   EXPECT_THAT(failure(*run_shell("exit 0"), 2, 2), HasSubstr("ended with exit status 0"));
   EXPECT_TRUE(is_soon_gone("987657"));
 }
@@ -349,19 +452,23 @@ TEST_F(Process, RefusesProgramsThatCannotBeStarted) {
   EXPECT_THAT(refusal({}), HasSubstr("names no program"));
 }
 
-TEST_F(Process, RefusesGarbageInThePlaceOfAHello) {
-  EXPECT_THAT(refusal({"echo", "Blender 3.4.1"}), HasSubstr("`Blender 3.4.1`"));
-  EXPECT_THAT(refusal({"head", "-c", "100000", "/dev/urandom"}), HasSubstr("starts no estimator"));
-  EXPECT_THAT(refusal({"head", "-c", "3000000", "/dev/zero"}), HasSubstr("hello has no end"));
-  EXPECT_THAT(refusal({"sh", "-c", "echo wrong licence >&2; exit 7"}),
+TEST_F(Process, SaysWhyThereIsNoHello) {
+  EXPECT_THAT(fault({"echo", "Blender 3.4.1"}), HasSubstr("`Blender 3.4.1`"));
+  EXPECT_THAT(fault({"head", "-c", "100000", "/dev/urandom"}), HasSubstr("cannot be understood"));
+  EXPECT_THAT(fault({"head", "-c", "3000000", "/dev/zero"}), HasSubstr("hello has no end"));
+  EXPECT_THAT(fault({"sh", "-c", "echo wrong licence >&2; exit 7"}),
               AllOf(HasSubstr("ended with exit status 7 before it had said its whole hello"),
                     HasSubstr("wrong licence")));
-  EXPECT_THAT(refusal({"sh", "-c", "echo hello; sleep 987658"}), HasSubstr("`hello`"));
-  EXPECT_THAT(refusal({"sh", "-c", "echo assay 1 text; sleep 987658"}, 0.2),
+  EXPECT_THAT(fault({"sh", "-c", "echo hello; sleep 987658"}), HasSubstr("`hello`"));
+  EXPECT_THAT(fault({"sh", "-c", "echo assay 1 text; sleep 987658"}, 0.2),
               HasSubstr("no whole hello within 0.2 seconds"));
+  EXPECT_TRUE(is_soon_gone("987658"));
+}
+
+// A program that refuses says so of what its user gave; one that ends does not.
+TEST_F(Process, RefusesWithItsOwnWords) {
   EXPECT_THAT(refusal({"sh", "-c", "echo assay 1 text; echo error no scene"}),
               HasSubstr("starts no estimator: no scene"));
-  EXPECT_TRUE(is_soon_gone("987658"));
 }
 
 TEST_F(Process, LimitsMemoryWhereAsked) {

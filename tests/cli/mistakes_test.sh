@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# What new users get wrong, and the answer: it names the place and what to write, in 80 columns.
+#   mistakes_test.sh ASSAY SOURCE_FOLDER TEST        TEST is one of the functions test_… below
+set -uo pipefail
+
+source "$(dirname "$0")/program.sh"
+
+# answers CODE MESSAGE ARGUMENT…
+answers() {
+  local code=$1 message=$2
+  shift 2
+  expect "$code" "$@"
+  empty out
+  [ "$(tr -s ' \n' ' ' <err | grep -cF -- "$message")" = 1 ] ||
+    fail "assay $*: no \`$message\`"
+  [ "$(LC_ALL=C.UTF-8 wc -L <err)" -le 80 ] || fail "assay $*: a line is wider than 80 columns"
+}
+
+# A suite whose only test is this one.
+suite_of() {
+  printf '%s\n' 'suite: s' 'estimators:' '  area: {plugin: luminaire/area, scene: triangle}' \
+    'tests:' "  - $1" >s.yaml
+}
+
+test_mistakes_in_a_test_say_what_to_write() {
+  local test message
+  while IFS='|' read -r test message; do
+    suite_of "$test"
+    answers 2 "s.yaml:5:$message" run s.yaml
+  done <<'TABLE'
+claim: mean(area) = analytic|23: a lone `=`; did you mean `==`?
+claim: mean(aera) == analytic|17: the suite has no estimator `aera`; did you mean `area`?
+claim: mean(area.red) == analytic|17: `area` has no part `red`; it has `irradiance`
+claim: mean(area) == 48%|28: a value has no per cent: write `0.48`, or a margin, as in `mean(a) within 48% of 0.5`
+claim: area == 0.48|12: expected a quantity, as in `mean(area)`, found `area`
+claim: mean(area)|22: the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …
+claim: 0.4 < mean(area) < 0.5|12: a claim begins with a quantity, as in `mean(area) == 0.5`
+claim: distribution(area) == gaussian(0, 1)|34: `gaussian` is nothing that a quantity can be compared with; did you mean `normal(0, 1)`?
+claim: mean(area) within 5 of analytic|30: the margin 5 is 10.4 times what it is held against, 0.481: for 5 per cent write `5%`
+{claim: quantile(area, 0.5) == 0.4}|28: inside {…} a comma ends the value of `claim`; quote the claim: `claim: "quantile(area, 0.5) == 0.4"`
+{claim: mean(area) == analytic, detect: 5}|45: the margin 5 is 10.4 times what it is held against, 0.481: for 5 per cent write `5%`; if so much is meant, `1040%`
+{claim: mean(area) == analytic, detect: 0}|37: `detect` must be above 0: it is the effect that must not pass, as `1%`
+{claim: distribution(area.point) == density, detect: 5}|58: the margin 5 is more than any difference of probabilities; here 5 per cent is written `0.05`
+{claim: mean(area) == analytic, expect: failed}|45: `expect` cannot be `failed`; did you mean `fail`?
+{claim: mean(area) == analytic, tags: slow}|43: `tags` must be a list: `tags: [slow, images]`
+{claim: mean(area) == analytic, test: F}|37: `test: F` does not answer this claim; there is `t`
+{claim: mean(area) == analytic, tolerance: 1%}|37: unknown key `tolerance` of a test
+TABLE
+}
+
+test_mistakes_at_the_head_of_a_suite_say_what_to_write() {
+  local line message
+  while IFS='|' read -r line message; do
+    printf '%b\n' "$line" >s.yaml
+    answers 2 "s.yaml:$message" run s.yaml
+  done <<'TABLE'
+estimators: {a: {plugin: luminaire/area}}|1:1: a suite needs the key `suite`, as in `suite: my first suite`
+suite: s\nseed: random|2:7: a suite's seed is a number, so that its runs repeat; `assay run --seed random` draws a fresh one
+suite: s\nalpha: 5%|2:8: `alpha` must be a number from 1e-9 to 0.5 (5 % is 0.05), but it is `5%`
+suite: s\nestimators:\n  - a: {plugin: luminaire/area}|3:3: `estimators` is a map of names, not a list: leave the `- ` out
+suite: s\nestimators:\n\ta: {plugin: luminaire/area}|3:1: indent with spaces, not with a tab
+suite: s\nestimators: {a: {plugin: luminare/area}}|2:26: there is no plugin `luminare/area`; did you mean `luminaire/area`?
+suite: s\nestimators: {a: {scene: triangle}}|2:17: `a` needs the key `plugin`, as in `a: {plugin: luminaire/area}`
+suite: s\nestimators: {a: {plugin: luminaire/area}}|1:1: a suite needs the key `tests`, as in `tests: [claim: mean(area) == analytic]`
+TABLE
+}
+
+test_mistakes_on_the_command_line_say_what_to_write() {
+  suite_of '{name: first, claim: mean(area) == analytic, tags: [mean]}'
+  answers 2 'cannot read `t.yaml`: there is no such file; did you mean `s.yaml`?' run t.yaml
+  answers 2 'unknown command `s.yaml`; did you mean `assay run s.yaml`?' s.yaml
+  answers 2 'unknown command `mean(x) == 1`; did you mean `assay check' 'mean(x) == 1'
+  answers 2 'has no option `--detect`; write it into the suite, as the key `detect`' \
+    run s.yaml --detect 1%
+  answers 2 'has no option `--thread`; did you mean `--threads`?' run s.yaml --thread 2
+  answers 2 '--seed must be a whole number from 0 to 18446744073709551615, or `random`, but it is `one`' \
+    run s.yaml --seed one
+  answers 2 '--coarsen needs a value: `--coarsen F`' run s.yaml --coarsen
+  answers 2 'it is `html`; write `--report html=run.html`' run s.yaml --report html
+  answers 2 'it is `out/a.xml`; write `--report junit=out/a.xml`' run s.yaml --report out/a.xml
+  answers 2 'the kind of --report cannot be `pdf`; there is: console, json' \
+    run s.yaml --report json=a pdf=b
+  answers 2 'no/where/a.html: its folder does not exist; make it by `mkdir -p no/where`' \
+    run s.yaml --report html=no/where/a.html
+  answers 4 '--tag maen: no test has this tag; did you mean `mean`?' run s.yaml --tag maen
+  answers 4 'it must match a whole id, suite/name, where * and ? are wild; near it: s/first' \
+    run s.yaml --filter first
+  answers 4 "no test is left by --filter '-*'" list tests s.yaml --filter '-*'
+}
+
+test_mistakes_in_a_check_say_what_to_write() {
+  local claim='mean(luminaire/area) == analytic'
+  echo 3 >one.txt
+  answers 2 '`==` is one argument too many; quote the claim: `assay check' check 'mean(a)' == 3
+  answers 2 'claim:1:6: there is no plugin `luminare/area`; did you mean `luminaire/area`?' \
+    check 'mean(luminare/area) == analytic'
+  answers 2 '--detect 5: the margin 5 is 10.4 times what it is held against' \
+    check "$claim" --detect 5
+  answers 2 '--detect 0: `detect` must be above 0' check "$claim" --detect 0
+  answers 2 '--detect 1e-5%: this claim would take about' check "$claim" --detect 1e-5%
+  answers 2 '--test welch: does not answer this claim; there is `t`' check "$claim" --test welch
+  answers 2 '`area` is used nowhere, only `luminaire/area`: write `area` in its place' \
+    check "$claim" --estimator area=luminaire/area
+  answers 2 'the plugin needs a name, which the claim uses: `--estimator x=recorded,file=one.txt`' \
+    check 'mean(x) == 1' --estimator recorded,file=one.txt
+  expect 1 check 'mean(x) == 1' --estimator x=recorded,file=one.txt
+  contains out '`x` has 1 row, and it takes 100 to see that they do not depend on each other'
+}
+
+"$3"

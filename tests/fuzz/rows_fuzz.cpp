@@ -1,0 +1,36 @@
+// Rows of other programs: text, arrays of numpy, both also packed (estimators/recorded/table.h).
+// Whatever the bytes are, they are read or refused with the file's name and a place in it; and what
+// was read is whole.
+//
+// sources: estimators/recorded/table.cpp estimators/recorded/byte_source.cpp
+// sources: estimators/recorded/npy.cpp estimators/recorded/foreign_formats.cpp
+// sources: estimators/recorded/fields.cpp estimators/foreign/child.cpp estimators/value.cpp
+// libraries: -lz
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "estimators/value.h"
+#include "recorded/table.h"
+#include "tests/fuzz/case.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using assay::fuzz::require;
+  const std::string file = assay::fuzz::written(data, size, ".txt");
+  try {
+    const assay::recorded::Table table =
+        assay::recorded::read_table(file, assay::recorded::Rows::several);
+    require(table.rows() > 0);
+    require(table.values.size() == table.rows() * table.columns.size());
+    require(table.lines.empty() || table.lines.size() == table.rows());
+    for (const std::string& name : table.columns) require(!name.empty());
+    require(table.digest() ==
+            assay::recorded::read_table(file, assay::recorded::Rows::several).digest());
+  } catch (const assay::InputError& error) {
+    require(error.where().file == file);
+    require(!error.message().empty() && error.message().size() < 1000);
+    require(error.where().line == 0 || error.where().column > 0);
+  }
+  return 0;
+}
