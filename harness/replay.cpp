@@ -191,7 +191,7 @@ const reports::Sample* recorded_of(const reports::Test& test, const Question& qu
                                    std::size_t subject, std::size_t channel) {
   const Subject& side = question.subjects[subject];
   if (std::ranges::find(side.channels, channel) == side.channels.end()) return nullptr;
-  // Of two subjects that are one estimator the samples stand in the subjects' order.
+  // The samples of two subjects that are one estimator stand in the subjects' order.
   auto earlier = std::ranges::count_if(
       std::span(question.subjects).first(subject),
       [&](const Subject& each) { return each.estimator->listed == side.estimator->listed; });

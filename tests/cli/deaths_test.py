@@ -250,6 +250,20 @@ class Ended:
     seconds: float
 
 
+def end_of(process, start):
+    """How a run of Assay ended, which it does in time and without a crash."""
+    try:
+        out, err = process.communicate(timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        raise Failure(f"an end within {PATIENCE} s", "Assay hangs") from None
+    ended = Ended(process.returncode, out.decode(errors="replace"),
+                  err.decode(errors="replace"), time.monotonic() - start)
+    require_no_crash(ended)
+    return ended
+
+
 class Bench:
     """The binary under test, a folder to work in, what was found."""
 
@@ -280,16 +294,7 @@ class Bench:
         process = subprocess.Popen([self.assay, *map(str, arguments)], cwd=self.work,
                                    env=self.environment, stdin=subprocess.DEVNULL,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, **more)
-        try:
-            out, err = process.communicate(timeout=PATIENCE)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
-            raise Failure(f"an end within {PATIENCE} s", "Assay hangs") from None
-        ended = Ended(process.returncode, out.decode(errors="replace"),
-                      err.decode(errors="replace"), time.monotonic() - start)
-        require_no_crash(ended)
-        return ended
+        return end_of(process, start)
 
     def note(self, what, failure):
         with self.lock:
@@ -1088,14 +1093,8 @@ def kill_once(bench, live, moment, pick):
             os.kill(victim, signal.SIGKILL)
         except ProcessLookupError:
             pass
-    try:
-        out, err = process.communicate(timeout=PATIENCE)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        raise Failure(f"an end within {PATIENCE} s", "Assay hangs") from None
-    require_no_crash(Ended(process.returncode, out.decode(), err.decode(errors="replace"), 0))
-    expect(process.returncode in (0, 1), "exit code 0 or 1", f"{process.returncode}: {err.decode()}")
+    ended = end_of(process, time.monotonic())
+    expect(ended.code in (0, 1), "exit code 0 or 1", f"{ended.code}: {ended.err}")
     bad = False
     for test in require_reports(bench, folder, 1)["suites"][0]["tests"]:
         name, verdict = test["name"], test["verdict"]

@@ -162,7 +162,7 @@ TEST(Question, RefusesAMarginLargerThanItsReference) {
   }
 }
 
-// Of zero nothing is a part, exponents have no per cent, and a margin as large may be meant.
+// Nothing is a part of zero, exponents have no per cent, and a margin as large may be meant.
 TEST(Question, TakesAMarginThatMayBeMeant) {
   for (const char* test :
        {"{claim: mean(darts) == 0, detect: 5}", "{claim: mean(darts) within 5 of 0}",

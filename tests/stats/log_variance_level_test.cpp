@@ -83,7 +83,7 @@ TEST(LogVarianceLevel, OfUnequalSizesIsThatOfTheSamplesExchanged) {
                                    .allocation = 1 / allocation});
     EXPECT_NEAR(one / other, 1, 1e-12);
   }
-  // Of far more values of the second the first is all that is uncertain.
+  // With far more values of the second only the first is uncertain.
   EXPECT_NEAR(static_cast<double>(values_for_log_variance(exponential, normal, 3, 1.25, 1e12)) /
                   static_cast<double>(values_for_log_variance(exponential, 3)),
               1, 1e-4);
