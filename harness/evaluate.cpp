@@ -275,11 +275,13 @@ std::vector<Replicate> replicates_of(const DrawnTest& test, std::size_t subject,
 
 }  // namespace
 
+Sample TestWork::sample(std::size_t subject) const {
+  return pools[subject]->sample(outcome.secondaries(subject));
+}
+
 std::vector<Sample> TestWork::samples() const {
   std::vector<Sample> samples;
-  for (std::size_t i = 0; i < pools.size(); ++i) {
-    samples.push_back(pools[i]->sample(outcome.secondaries(i)));
-  }
+  for (std::size_t i = 0; i < pools.size(); ++i) samples.push_back(sample(i));
   return samples;
 }
 

@@ -19,7 +19,9 @@ struct TestWork {
   /// Whether the verdict is all that is wanted: no interval of the effect, no power, no sentence.
   bool verdict_only = false;
 
-  /// What each subject yields for the current look, once it is drawn.
+  /// What a subject yields for the current look, once it is drawn.
+  Sample sample(std::size_t subject) const;
+  /// The same for each subject.
   std::vector<Sample> samples() const;
 };
 

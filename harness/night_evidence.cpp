@@ -92,9 +92,10 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
   std::string text = fmt::format(
       "\n{} {} {} {}", estimator.entry->information.name, estimator.parameters,
       estimator.primaries ? fmt::format("{}", *estimator.primaries) : "auto", side.purpose);
-  const std::optional<DrawnTest> test = drawn(work);
-  if (is_recorded(side) && test) {
-    const stats::Moments moments = data_of(*test, channel)[subject].moments;
+  if (!is_recorded(side)) return text;
+  const Sample sample = work.sample(subject);
+  if (const Drawn* const rows = sample.drawn()) {
+    const stats::Moments moments = rows->summary().moments(side.channels[channel]);
     text += fmt::format(" {} {} {}", moments.count, moments.mean, moments.m2);
   }
   return text;

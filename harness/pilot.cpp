@@ -130,8 +130,16 @@ std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t prim
                     few_observations);
 }
 
+namespace {
+
+std::string pilot_name_of(const std::string& estimator, const std::string& purpose) {
+  return estimator + (purpose.empty() ? "" : "." + purpose);
+}
+
+}  // namespace
+
 std::string pilot_name(const Subject& subject) {
-  return subject.estimator->name + (subject.purpose.empty() ? "" : "." + subject.purpose);
+  return pilot_name_of(subject.estimator->name, subject.purpose);
 }
 
 const Pilot* Pilots::find(const std::string& name) const {
@@ -142,6 +150,11 @@ const Pilot* Pilots::find(const std::string& name) const {
 const Fault* Pilots::fault(const std::string& name) const {
   const auto found = faults_.find(name);
   return found != faults_.end() ? &found->second : nullptr;
+}
+
+const Fault* Pilots::fault(const std::string& estimator, const std::string& purpose) const {
+  const Fault* const whole = fault(estimator);
+  return whole != nullptr ? whole : fault(pilot_name_of(estimator, purpose));
 }
 
 void Pilots::add(const std::string& name, std::variant<Pilot, Fault> pilot) {
@@ -168,8 +181,7 @@ void Pilots::merge(Pilots others) {
 
 std::string where_pilots_stopped(const Question& question, const Pilots& pilots) {
   for (const Subject& subject : question.subjects) {
-    const Fault* fault = pilots.fault(subject.estimator->name);
-    if (fault == nullptr) fault = pilots.fault(pilot_name(subject));
+    const Fault* fault = pilots.fault(subject.estimator->name, subject.purpose);
     const Pilot* const pilot = pilot_of(subject, pilots);
     if (fault == nullptr && pilot != nullptr && pilot->larger_fault && question.rests_on_tails()) {
       fault = &*pilot->larger_fault;

@@ -60,6 +60,8 @@ class Pilots {
   const Pilot& at(const std::string& name) const { return drawn_.at(name); }
   /// Null where there is none, or a pilot.
   const Fault* fault(const std::string& name) const;
+  /// Why an estimator could not be piloted, or its draws for `purpose`; null where both could.
+  const Fault* fault(const std::string& estimator, const std::string& purpose) const;
   bool contains(const std::string& name) const { return find(name) || fault(name); }
   bool empty() const { return drawn_.empty() && faults_.empty(); }
 
@@ -82,7 +84,7 @@ struct PilotRun {
   std::vector<const Subject*> draws = {};  ///< samplers whose draws are wanted besides
 };
 
-/// The estimator's name, and after a dot the sampler's of a subject that is its draws.
+/// The estimator's name. Of a sampler's draws their purpose follows after a dot.
 std::string pilot_name(const Subject& subject);
 
 /// Which subject's pilot stopped, where, and why; empty where all went well that the question rests

@@ -124,7 +124,7 @@ std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t se
     pool->take_known(pilot->kept);
   }
   // It is not asked again, which may take another time-out.
-  if (const Fault* fault = pilots.fault(wanted.estimator.name)) pool->fail(*fault);
+  if (const Fault* fault = pilots.fault(wanted.estimator.name, wanted.purpose)) pool->fail(*fault);
   const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());
   pool->plan(draws != nullptr ? sampler_plan(*draws)
                               : estimator_plan(*pool, wanted.estimator, pilots));
