@@ -5,18 +5,19 @@
 #include <set>
 #include <stdexcept>
 
-#include "harness/claim_entry.h"
-#include "harness/cli_values.h"
+#include "harness/command/cli_values.h"
 #include "harness/googletest/sources.h"
-#include "harness/looks.h"
-#include "harness/pilot_run.h"
-#include "harness/plan.h"
-#include "harness/pools.h"
-#include "harness/record_of.h"
-#include "harness/suite_keys.h"
-#include "reports/describe.h"
-#include "reports/number.h"
-#include "reports/verdict.h"
+#include "harness/plan/pilot_run.h"
+#include "harness/plan/plan.h"
+#include "harness/record/record_of.h"
+#include "harness/run/looks.h"
+#include "harness/run/pools.h"
+#include "harness/suite/claim_entry.h"
+#include "harness/suite/suite_keys.h"
+#include "reports/words/describe.h"
+#include "reports/words/evidence.h"
+#include "reports/words/number.h"
+#include "reports/words/verdict.h"
 
 namespace assay::googletest {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "harness/googletest/claims.h"
-#include "harness/prepare.h"
+#include "harness/sampling/prepare.h"
 
 namespace assay::googletest {
 

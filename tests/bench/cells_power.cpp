@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "stats/chi_square_fit.h"
-#include "stats/adaptive_cells.h"
+#include "stats/cells/adaptive_cells.h"
+#include "stats/cells/chi_square_fit.h"
 #include "tests/philox.h"
 
 namespace {
@@ -50,11 +50,12 @@ AdaptiveCells cells_of(const Peak& peak, double share) {
   const auto about = [&](double radius, double) {
     return radius / variance * std::exp(-radius * radius / (2 * variance));
   };
-  const PlaneDensity density{.x = {0, 1},
-                             .y = {0, 1},
-                             .values = peak.at_pole ? one_by_one(about) : one_by_one(beside),
-                             .x_panels = 100,
-                             .y_panels = peak.at_pole ? 1U : 100U};
+  const PlaneDensity density{
+      .x = {0, 1},
+      .y = {0, 1},
+      .values = peak.at_pole ? point_by_point(about) : point_by_point(beside),
+      .x_panels = 100,
+      .y_panels = peak.at_pole ? 1U : 100U};
   return adaptive_cells({even(16), even(32)}, density, share);
 }
 

@@ -10,8 +10,8 @@
 
 #include "estimators/catalogue.h"
 #include "estimators/flush_denormals.h"
-#include "harness/pool.h"
-#include "harness/scheduler.h"
+#include "harness/sampling/pool.h"
+#include "harness/sampling/scheduler.h"
 #include "tests/bench/paired.h"
 
 namespace {

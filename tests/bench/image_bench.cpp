@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "stats/image_welch.h"
+#include "stats/images/image_welch.h"
 #include "tests/bench/paired.h"
 
 namespace {

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "stats/binomial.h"
-#include "stats/image_pyramid.h"
-#include "stats/image_welch.h"
-#include "stats/tails.h"
+#include "stats/images/image_welch.h"
+#include "stats/means/binomial.h"
+#include "stats/pyramids/image_pyramid.h"
+#include "stats/tails/tails.h"
 #include "tests/philox.h"
 #include "tests/stats/image_samples.h"
 

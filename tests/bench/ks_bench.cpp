@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "estimators/stream.h"
-#include "stats/kolmogorov_smirnov.h"
+#include "stats/laws/kolmogorov_smirnov.h"
 #include "tests/bench/paired.h"
 
 namespace {

@@ -15,10 +15,10 @@
 #include <cstdio>
 #include <ctime>
 
-#include "harness/law_evidence.h"
-#include "harness/planned_run.h"
-#include "harness/sampler_setup.h"
-#include "harness/scheduler.h"
+#include "harness/draws/sampler_setup.h"
+#include "harness/families/law_evidence.h"
+#include "harness/run/planned_run.h"
+#include "harness/sampling/scheduler.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <ctime>
 #include <vector>
 
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
 #include "tests/bench/paired.h"
 
 namespace {

@@ -204,7 +204,7 @@ test_reports_are_what_other_programs_read() {
   xmllint --noout --nonet run.html || fail 'HTML is not well formed'
   local tests=$source_folder/tests/reports
   /usr/bin/python3 "$tests/check_junit.py" run.xml run.json || fail 'junitparser'
-  /usr/bin/python3 "$tests/check_schema.py" "$source_folder/reports/record.schema.json" run.json ||
+  /usr/bin/python3 "$tests/check_schema.py" "$source_folder/reports/record/record.schema.json" run.json ||
     fail 'the record does not follow its schema'
 }
 

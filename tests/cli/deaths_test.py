@@ -278,7 +278,7 @@ class Bench:
         sanitizer = "handle_segv=0:handle_abort=0:detect_leaks=0:allocator_may_return_null=1"
         given = os.environ.get("ASAN_OPTIONS")
         self.environment["ASAN_OPTIONS"] = sanitizer + (":" + given if given else "")
-        schema = json.loads((source / "reports/record.schema.json").read_text())
+        schema = json.loads((source / "reports/record/record.schema.json").read_text())
         self.schema = jsonschema.Draft202012Validator(schema)
         self.failures = []
         self.cells = 0

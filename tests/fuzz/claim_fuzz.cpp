@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "estimators/value.h"
-#include "harness/claim.h"
+#include "harness/language/claim.h"
 #include "tests/fuzz/case.h"
 
 using namespace assay;

@@ -11,14 +11,14 @@
 #include <string>
 #include <string_view>
 
-#include "reports/annotations.h"
-#include "reports/console.h"
-#include "reports/html.h"
-#include "reports/json.h"
-#include "reports/junit.h"
-#include "reports/markdown.h"
-#include "reports/metrics.h"
-#include "reports/read_json.h"
+#include "reports/formats/annotations.h"
+#include "reports/formats/console.h"
+#include "reports/formats/json.h"
+#include "reports/formats/junit.h"
+#include "reports/formats/markdown.h"
+#include "reports/formats/metrics.h"
+#include "reports/formats/read_json.h"
+#include "reports/viewer/html.h"
 #include "tests/fuzz/case.h"
 
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 
 #include "estimators/estimator.h"
-#include "harness/suite.h"
+#include "harness/suite/suite.h"
 #include "tests/fuzz/case.h"
 
 namespace assay::plugins {

@@ -1,7 +1,8 @@
-#include "harness/assumptions.h"
+#include "harness/run/assumptions.h"
 
 #include <gtest/gtest.h>
 
+#include "harness/families/methods.h"
 #include "questions.h"
 
 namespace assay::harness {

@@ -1,11 +1,11 @@
-#include "harness/calibrate.h"
+#include "harness/calibration/calibrate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "harness/calibration_runs.h"
+#include "harness/calibration/calibration_runs.h"
 #include "refusal.h"
 
 namespace assay::harness {

@@ -1,4 +1,4 @@
-#include "harness/cell_record.h"
+#include "harness/record/cell_record.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,12 @@
 // Claims of any kind are made from a description of them, written and read again; and no text,
 // however made, does anything but make a claim or an InputError.
 
-#include "harness/claim.h"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "estimators/stream.h"
-#include "harness/laws.h"
+#include "harness/language/claim.h"
+#include "harness/language/laws.h"
 
 namespace assay::harness {
 namespace {

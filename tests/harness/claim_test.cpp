@@ -1,4 +1,4 @@
-#include "harness/claim.h"
+#include "harness/language/claim.h"
 
 #include <gtest/gtest.h>
 

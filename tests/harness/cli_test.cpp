@@ -1,4 +1,4 @@
-#include "harness/cli.h"
+#include "harness/command/cli.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "estimators/stream.h"
-#include "harness/version.h"
+#include "harness/base/version.h"
 #include "refusal.h"
 
 namespace assay::harness {

@@ -1,11 +1,12 @@
-#include "harness/commands.h"
+#include "harness/command/commands.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "harness/replay.h"
-#include "reports/json.h"
+#include "harness/base/record_file.h"
+#include "harness/record/replay.h"
+#include "reports/formats/json.h"
 #include "running.h"
 
 namespace assay::harness {

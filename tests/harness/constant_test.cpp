@@ -1,4 +1,4 @@
-#include "harness/constant.h"
+#include "harness/theta/constant.h"
 
 #include <gtest/gtest.h>
 

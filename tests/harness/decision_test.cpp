@@ -1,4 +1,4 @@
-#include "harness/decision.h"
+#include "harness/theta/decision.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "normal_evidence.h"
-#include "stats/binomial.h"
+#include "stats/means/binomial.h"
 #include "tests/philox.h"
 
 namespace assay::harness {

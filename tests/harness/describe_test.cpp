@@ -1,4 +1,4 @@
-#include "harness/describe.h"
+#include "harness/command/describe.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "estimators/catalogue.h"
-#include "harness/commands.h"
-#include "harness/sampler_setup.h"
+#include "harness/command/commands.h"
+#include "harness/draws/sampler_setup.h"
 #include "refusal.h"
 
 namespace assay::harness {

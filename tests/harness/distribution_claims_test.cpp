@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "harness/consistency_setup.h"
+#include "harness/draws/consistency_setup.h"
 #include "questions.h"
 #include "refusal.h"
 #include "running.h"
@@ -148,8 +148,9 @@ TEST(AndersonDarlingClaim, IsRefusedWhereItHasNoAnswer) {
   EXPECT_THAT(refused("{claim: distribution(normal) == distribution(again), test: "
                       "anderson-darling}"),
               testing::StartsWith("20:58: `test: anderson-darling` does not answer this claim"));
-  EXPECT_EQ(refused("{claim: distribution(ward.direction) == density, test: anderson-darling}"),
-            "20:54: `test: anderson-darling` does not answer this claim; there is `chi-square-fit`");
+  EXPECT_EQ(
+      refused("{claim: distribution(ward.direction) == density, test: anderson-darling}"),
+      "20:54: `test: anderson-darling` does not answer this claim; there is `chi-square-fit`");
   EXPECT_EQ(verdict_of("{claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
                        "secondaries: 4}"),
             Verdict::invalid)

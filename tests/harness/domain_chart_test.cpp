@@ -1,4 +1,4 @@
-#include "harness/domain_chart.h"
+#include "harness/draws/domain_chart.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "harness/draw_text.h"
+#include "harness/draws/draw_text.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "harness/evaluate.h"
+#include "harness/run/evaluate.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "harness/holm_verdict.h"
+#include "harness/run/holm_verdict.h"
 #include "normal_evidence.h"
 #include "running.h"
 

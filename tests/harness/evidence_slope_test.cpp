@@ -1,12 +1,13 @@
-#include "harness/evidence_slope.h"
+#include "harness/families/evidence_slope.h"
 
 #include <gmock/gmock.h>
 
 #include <array>
 #include <cmath>
 
-#include "harness/assumptions.h"
-#include "harness/decision.h"
+#include "harness/families/methods.h"
+#include "harness/run/assumptions.h"
+#include "harness/theta/decision.h"
 #include "questions.h"
 
 namespace assay::harness {

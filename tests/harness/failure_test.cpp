@@ -1,4 +1,4 @@
-#include "harness/failure.h"
+#include "harness/command/failure.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "estimators/line_error.h"
-#include "harness/suite.h"
+#include "harness/suite/suite.h"
 
 namespace assay::harness {
 namespace {

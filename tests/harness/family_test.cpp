@@ -1,4 +1,4 @@
-#include "harness/family.h"
+#include "harness/theta/family.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "harness/gate_text.h"
+#include "harness/plan/gate_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

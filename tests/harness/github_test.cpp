@@ -1,11 +1,11 @@
-#include "harness/github.h"
+#include "harness/record/github.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "reports/markdown.h"
+#include "reports/formats/markdown.h"
 #include "running.h"
 
 namespace assay::harness {

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/commands.h"
-#include "harness/image_record.h"
-#include "reports/json.h"
-#include "reports/read_json.h"
+#include "harness/command/commands.h"
+#include "harness/record/image_record.h"
+#include "harness/record/replay.h"
+#include "reports/formats/json.h"
+#include "reports/formats/read_json.h"
 #include "running.h"
 #include "tests/estimators/exr.h"
 

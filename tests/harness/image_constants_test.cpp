@@ -1,6 +1,6 @@
 // Pixels of images that never varied, and those of which one half of the images saw nothing.
 
-#include "harness/image_constants.h"
+#include "harness/image/image_constants.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What a test's own images say of the level that their cells keep.
 
-#include "harness/image_evidence.h"
+#include "harness/image/image_evidence.h"
 
 #include <gtest/gtest.h>
 

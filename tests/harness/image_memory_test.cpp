@@ -1,12 +1,12 @@
 // Pictures that do not fit into memory are refused before they are read.
 
-#include "harness/image_memory.h"
+#include "harness/run/image_memory.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/suite.h"
+#include "harness/suite/suite.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"

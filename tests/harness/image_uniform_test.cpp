@@ -1,4 +1,4 @@
-#include "harness/image_uniform.h"
+#include "harness/image/image_uniform.h"
 
 #include <gtest/gtest.h>
 

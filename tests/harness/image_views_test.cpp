@@ -1,6 +1,6 @@
 // Images as views of whole observations.
 
-#include "harness/image_views.h"
+#include "harness/sampling/image_views.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "harness/inversion.h"
+#include "harness/theta/inversion.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "stats/student_t.h"
+#include "stats/means/student_t.h"
 #include "tests/stats/samples.h"
 
 namespace assay::harness {

@@ -1,4 +1,4 @@
-#include "harness/kept_sums.h"
+#include "harness/sampling/kept_sums.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

@@ -1,10 +1,10 @@
-#include "harness/law_evidence.h"
+#include "harness/families/law_evidence.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "stats/two_valued.h"
+#include "stats/means/two_valued.h"
 #include "tests/philox.h"
 
 namespace assay::harness {

@@ -1,4 +1,4 @@
-#include "harness/ledger_book.h"
+#include "harness/ledger/ledger_book.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "estimators/value.h"
-#include "harness/ledger_line.h"
+#include "harness/ledger/ledger_line.h"
 
 namespace assay::harness {
 namespace {

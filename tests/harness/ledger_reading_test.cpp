@@ -1,4 +1,4 @@
-#include "harness/ledger_reading.h"
+#include "harness/ledger/ledger_reading.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "harness/ledger.h"
+#include "harness/ledger/ledger.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,9 @@
 #include <thread>
 
 #include "estimators/stream.h"
-#include "harness/ledger_book.h"
-#include "harness/text_file.h"
+#include "harness/base/text_file.h"
+#include "harness/ledger/ledger_book.h"
+#include "harness/record/output.h"
 #include "running.h"
 
 namespace assay::harness {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "estimators/catalogue.h"
-#include "harness/commands.h"
+#include "harness/command/commands.h"
 
 namespace assay::harness {
 namespace {

@@ -1,11 +1,11 @@
-#include "harness/locked_file.h"
+#include "harness/base/locked_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "harness/text_file.h"
+#include "harness/base/text_file.h"
 #include "running.h"
 
 namespace assay::harness {

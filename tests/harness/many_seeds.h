@@ -10,12 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "harness/evaluate.h"
-#include "harness/frozen.h"
-#include "harness/pilot_run.h"
-#include "harness/plan.h"
-#include "harness/pools.h"
-#include "harness/scheduler.h"
+#include "harness/families/methods.h"
+#include "harness/plan/frozen.h"
+#include "harness/plan/pilot_run.h"
+#include "harness/plan/plan.h"
+#include "harness/run/evaluate.h"
+#include "harness/run/pools.h"
+#include "harness/sampling/scheduler.h"
 #include "questions.h"
 #include "running.h"
 #include "tests/stats/calibration.h"

@@ -1,4 +1,4 @@
-#include "harness/merge.h"
+#include "harness/record/merge.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/suite/run_options.h"
 #include "refusal.h"
-#include "reports/json.h"
-#include "reports/read_json.h"
+#include "reports/formats/json.h"
+#include "reports/formats/read_json.h"
 #include "running.h"
 
 namespace assay::harness {

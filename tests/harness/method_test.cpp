@@ -1,13 +1,15 @@
-#include "harness/method.h"
+#include "harness/theta/method.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "harness/families/methods.h"
+#include "harness/theta/scale.h"
 #include "questions.h"
 #include "refusal.h"
 #include "running.h"
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
 #include "tests/philox.h"
 
 namespace assay::harness {

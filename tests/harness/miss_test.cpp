@@ -8,7 +8,7 @@
 
 #include "known_effects.h"
 #include "many_seeds.h"
-#include "stats/binomial.h"
+#include "stats/means/binomial.h"
 #include "tests/philox.h"
 
 namespace assay::harness {

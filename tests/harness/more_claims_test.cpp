@@ -6,12 +6,12 @@
 
 #include <cmath>
 
-#include "harness/group_variance.h"
+#include "harness/sampling/group_variance.h"
 #include "questions.h"
 #include "refusal.h"
 #include "running.h"
-#include "stats/binomial.h"
-#include "stats/moments.h"
+#include "stats/basics/moments.h"
+#include "stats/means/binomial.h"
 
 namespace assay::harness {
 namespace {

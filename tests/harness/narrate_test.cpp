@@ -1,4 +1,4 @@
-#include "harness/narrate.h"
+#include "harness/run/narrate.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,9 +7,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "harness/suite/run_options.h"
 #include "questions.h"
 #include "recorded_rows.h"
-#include "reports/effect.h"
+#include "reports/words/effect.h"
 #include "running.h"
 #include "tests/stats/samples.h"
 

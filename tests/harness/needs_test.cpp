@@ -5,10 +5,11 @@
 
 #include <regex>
 
-#include "harness/merge.h"
+#include "harness/record/merge.h"
+#include "harness/suite/run_options.h"
 #include "refusal.h"
-#include "reports/json.h"
-#include "reports/read_json.h"
+#include "reports/formats/json.h"
+#include "reports/formats/read_json.h"
 #include "running.h"
 
 namespace assay::harness {

@@ -1,11 +1,11 @@
-#include "harness/night_evidence.h"
+#include "harness/ledger/night_evidence.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "harness/looks.h"
-#include "harness/planned_run.h"
+#include "harness/run/looks.h"
+#include "harness/run/planned_run.h"
 #include "running.h"
 #include "tests/philox.h"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "harness/evidence.h"
-#include "stats/tails.h"
+#include "harness/theta/evidence.h"
+#include "stats/tails/tails.h"
 
 namespace assay::harness {
 

@@ -11,9 +11,9 @@
 #include <limits>
 #include <vector>
 
-#include "harness/commands.h"
-#include "harness/replay.h"
-#include "reports/json.h"
+#include "harness/command/commands.h"
+#include "harness/record/replay.h"
+#include "reports/formats/json.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"

@@ -1,6 +1,6 @@
 // Claims on two stacks of pictures that are taken rows after rows.
 
-#include "harness/picture_stream.h"
+#include "harness/run/picture_stream.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -8,7 +8,7 @@
 
 #include <limits>
 
-#include "harness/planned_run.h"
+#include "harness/run/planned_run.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/running.h"
 #include "tests/philox.h"

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/critical.h"
+#include "harness/theta/critical.h"
 #include "planned.h"
-#include "stats/assumption_gates.h"
+#include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {
 namespace {

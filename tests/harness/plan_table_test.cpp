@@ -1,4 +1,4 @@
-#include "harness/plan_table.h"
+#include "harness/command/plan_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,10 @@
 #include <cmath>
 #include <sstream>
 
-#include "harness/forecast.h"
-#include "harness/looks.h"
-#include "reports/columns.h"
+#include "harness/command/run.h"
+#include "harness/plan/forecast.h"
+#include "harness/run/looks.h"
+#include "reports/words/columns.h"
 #include "running.h"
 
 namespace assay::harness {

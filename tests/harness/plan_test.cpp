@@ -1,16 +1,16 @@
-#include "harness/plan.h"
+#include "harness/plan/plan.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "harness/critical.h"
-#include "harness/planned_run.h"
+#include "harness/run/planned_run.h"
+#include "harness/theta/critical.h"
 #include "planned.h"
 #include "refusal.h"
 #include "running.h"
-#include "stats/power.h"
-#include "stats/tails.h"
+#include "stats/planning/power.h"
+#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/pilot_run.h"
-#include "harness/plan.h"
+#include "harness/plan/pilot_run.h"
+#include "harness/plan/plan.h"
 #include "questions.h"
 #include "running.h"
 

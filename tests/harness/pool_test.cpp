@@ -1,4 +1,4 @@
-#include "harness/pool.h"
+#include "harness/sampling/pool.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "harness/progress.h"
-#include "harness/scheduler.h"
+#include "harness/base/progress.h"
+#include "harness/sampling/scheduler.h"
+#include "stats/basics/for_each.h"
 
 namespace assay::harness {
 namespace {

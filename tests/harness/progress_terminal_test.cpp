@@ -1,4 +1,4 @@
-#include "harness/progress_terminal.h"
+#include "harness/base/progress_terminal.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "harness/question.h"
+#include "harness/question/question.h"
 
 #include <gtest/gtest.h>
 

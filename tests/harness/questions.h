@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/question.h"
-#include "harness/sampler_setup.h"
+#include "harness/draws/sampler_setup.h"
+#include "harness/question/question.h"
 #include "running.h"
 
 namespace assay::harness {

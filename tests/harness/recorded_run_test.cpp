@@ -1,14 +1,15 @@
-#include "harness/recorded_run.h"
+#include "harness/sampling/recorded_run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "harness/commands.h"
+#include "harness/command/commands.h"
+#include "harness/record/replay.h"
 #include "refusal.h"
-#include "reports/file.h"
-#include "reports/json.h"
+#include "reports/formats/json.h"
+#include "reports/record/file.h"
 #include "running.h"
 
 namespace assay::harness {

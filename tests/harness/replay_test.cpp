@@ -1,14 +1,15 @@
-#include "harness/replay.h"
+#include "harness/record/replay.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/commands.h"
-#include "harness/pool.h"
-#include "harness/prepare.h"
+#include "harness/base/record_file.h"
+#include "harness/command/commands.h"
+#include "harness/sampling/pool.h"
+#include "harness/sampling/prepare.h"
 #include "refusal.h"
-#include "reports/json.h"
+#include "reports/formats/json.h"
 #include "running.h"
 
 namespace assay::harness {

@@ -1,12 +1,13 @@
-#include "harness/run.h"
+#include "harness/command/run.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "estimators/text_pattern.h"
+#include "harness/record/output.h"
 #include "refusal.h"
-#include "reports/json.h"
+#include "reports/formats/json.h"
 #include "running.h"
 
 namespace assay::harness {

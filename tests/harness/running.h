@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/run.h"
-#include "reports/json.h"
+#include "harness/command/run.h"
+#include "reports/formats/json.h"
 
 namespace assay::harness {
 

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "harness/commands.h"
+#include "harness/command/commands.h"
 #include "refusal.h"
 #include "running.h"
 

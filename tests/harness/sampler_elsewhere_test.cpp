@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "harness/consistency_setup.h"
+#include "harness/draws/consistency_setup.h"
 
 namespace assay::harness {
 namespace {

@@ -1,4 +1,4 @@
-#include "harness/sampler_setup.h"
+#include "harness/draws/sampler_setup.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "harness/selection.h"
+#include "harness/suite/selection.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/commands.h"
+#include "harness/command/commands.h"
 #include "running.h"
 
 namespace assay::harness {

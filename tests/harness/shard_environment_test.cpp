@@ -1,4 +1,4 @@
-#include "harness/shard_environment.h"
+#include "harness/command/shard_environment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "harness/sound_draw.h"
+#include "harness/draws/sound_draw.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "harness/consistency_setup.h"
+#include "harness/draws/consistency_setup.h"
 
 namespace assay::harness {
 namespace {

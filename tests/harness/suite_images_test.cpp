@@ -1,13 +1,13 @@
 // `assay images`: what it makes of its options.
 
-#include "harness/suite_images.h"
+#include "harness/suite/suite_images.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/cli.h"
-#include "harness/run.h"
+#include "harness/command/cli.h"
+#include "harness/command/run.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "harness/suite.h"
+#include "harness/suite/suite.h"
 #include "refusal.h"
 
 namespace assay::harness {

@@ -5,11 +5,11 @@
 
 #include <regex>
 
-#include "harness/prepare.h"
-#include "harness/question.h"
-#include "harness/suite_entries.h"
-#include "harness/text_file.h"
-#include "harness/yaml.h"
+#include "harness/base/text_file.h"
+#include "harness/question/question.h"
+#include "harness/sampling/prepare.h"
+#include "harness/suite/suite_entries.h"
+#include "harness/suite/yaml.h"
 #include "refusal.h"
 
 namespace assay::harness {

@@ -1,8 +1,8 @@
-#include "harness/suite_statements.h"
+#include "harness/suite/suite_statements.h"
 
 #include <gtest/gtest.h>
 
-#include "reports/statements.h"
+#include "reports/record/statements.h"
 #include "running.h"
 
 namespace assay::harness {

@@ -1,4 +1,4 @@
-#include "harness/suite.h"
+#include "harness/suite/suite.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -8,12 +8,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "harness/commands.h"
+#include "harness/command/commands.h"
+#include "harness/record/replay.h"
 #include "recorded_rows.h"
 #include "refusal.h"
-#include "reports/json.h"
-#include "stats/image.h"
-#include "stats/log_variance.h"
+#include "reports/formats/json.h"
+#include "stats/images/image.h"
+#include "stats/variances/log_variance.h"
 #include "tests/lehmer.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"

@@ -1,9 +1,9 @@
-#include "harness/yaml.h"
+#include "harness/suite/yaml.h"
 
 #include <gtest/gtest.h>
 
 #include "estimators/stream.h"
-#include "harness/text_file.h"
+#include "harness/base/text_file.h"
 #include "refusal.h"
 
 namespace assay::harness {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "estimators/catalogue.h"
-#include "harness/suite.h"
+#include "harness/suite/suite.h"
 
 namespace assay::harness {
 namespace {

@@ -1,4 +1,4 @@
-#include "reports/annotations.h"
+#include "reports/formats/annotations.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "reports/calibration.h"
+#include "reports/record/calibration.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "reports/columns.h"
+#include "reports/words/columns.h"
 
 namespace assay::reports {
 namespace {

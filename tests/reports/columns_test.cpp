@@ -1,4 +1,4 @@
-#include "reports/columns.h"
+#include "reports/words/columns.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -6,7 +6,7 @@
 
 #include <clocale>
 
-#include "reports/text.h"
+#include "reports/words/text.h"
 #include "tests/reports/random_record.h"
 
 namespace assay::reports {

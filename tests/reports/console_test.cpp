@@ -1,12 +1,12 @@
-#include "reports/console.h"
+#include "reports/formats/console.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <sstream>
 
-#include "reports/columns.h"
-#include "reports/text.h"
+#include "reports/words/columns.h"
+#include "reports/words/text.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 

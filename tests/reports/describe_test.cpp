@@ -1,4 +1,4 @@
-#include "reports/describe.h"
+#include "reports/words/describe.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "reports/effect.h"
+#include "reports/words/effect.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "reports/evidence.h"
+#include "reports/words/evidence.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 // numbers, and text that no writer may pass on as it is. Made without random numbers and without
 // functions whose last digit depends on the machine.
 
-#include "reports/record.h"
+#include "reports/record/record.h"
 
 namespace assay::reports {
 

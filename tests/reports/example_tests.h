@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "reports/record.h"
+#include "reports/record/record.h"
 
 namespace assay::reports {
 

@@ -1,4 +1,4 @@
-#include "reports/file.h"
+#include "reports/record/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

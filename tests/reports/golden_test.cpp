@@ -10,13 +10,13 @@
 #include <iterator>
 #include <sstream>
 
-#include "reports/console.h"
-#include "reports/file.h"
-#include "reports/html.h"
-#include "reports/json.h"
-#include "reports/junit.h"
-#include "reports/markdown.h"
-#include "reports/metrics.h"
+#include "reports/formats/console.h"
+#include "reports/formats/json.h"
+#include "reports/formats/junit.h"
+#include "reports/formats/markdown.h"
+#include "reports/formats/metrics.h"
+#include "reports/record/file.h"
+#include "reports/viewer/html.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

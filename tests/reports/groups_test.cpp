@@ -1,4 +1,4 @@
-#include "reports/groups.h"
+#include "reports/record/groups.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "reports/html.h"
+#include "reports/viewer/html.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <regex>
 
-#include "reports/charts.h"
-#include "reports/evidence.h"
-#include "reports/svg.h"
-#include "reports/text.h"
+#include "reports/viewer/charts.h"
+#include "reports/viewer/svg.h"
+#include "reports/words/evidence.h"
+#include "reports/words/text.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 

@@ -8,12 +8,12 @@
 #include <limits>
 
 #include "example_record.h"
-#include "reports/base64.h"
-#include "reports/colour_scale.h"
-#include "reports/console.h"
-#include "reports/html.h"
-#include "reports/junit.h"
-#include "reports/markdown.h"
+#include "reports/formats/base64.h"
+#include "reports/formats/console.h"
+#include "reports/formats/junit.h"
+#include "reports/formats/markdown.h"
+#include "reports/viewer/colour_scale.h"
+#include "reports/viewer/html.h"
 
 namespace assay::reports {
 namespace {

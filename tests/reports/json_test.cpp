@@ -1,4 +1,4 @@
-#include "reports/json.h"
+#include "reports/formats/json.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "reports/html.h"
-#include "reports/read_json.h"
-#include "reports/text.h"
+#include "reports/formats/read_json.h"
+#include "reports/viewer/html.h"
+#include "reports/words/text.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 

@@ -1,9 +1,9 @@
-#include "reports/junit.h"
+#include "reports/formats/junit.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "reports/text.h"
+#include "reports/words/text.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 

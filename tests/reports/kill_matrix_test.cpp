@@ -1,13 +1,13 @@
-#include "reports/kill_matrix.h"
+#include "reports/words/kill_matrix.h"
 
 #include <gtest/gtest.h>
 
-#include "reports/charts.h"
-#include "reports/columns.h"
-#include "reports/console.h"
-#include "reports/html.h"
-#include "reports/kill_text.h"
-#include "reports/markdown.h"
+#include "reports/formats/console.h"
+#include "reports/formats/markdown.h"
+#include "reports/viewer/charts.h"
+#include "reports/viewer/html.h"
+#include "reports/words/columns.h"
+#include "reports/words/kill_text.h"
 
 namespace assay::reports {
 namespace {

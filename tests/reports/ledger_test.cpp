@@ -1,17 +1,17 @@
-#include "reports/ledger.h"
+#include "reports/formats/ledger.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "reports/console.h"
-#include "reports/html.h"
-#include "reports/json.h"
-#include "reports/junit.h"
-#include "reports/markdown.h"
-#include "reports/number.h"
-#include "reports/read_json.h"
+#include "reports/formats/console.h"
+#include "reports/formats/json.h"
+#include "reports/formats/junit.h"
+#include "reports/formats/markdown.h"
+#include "reports/formats/read_json.h"
+#include "reports/viewer/html.h"
+#include "reports/words/number.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

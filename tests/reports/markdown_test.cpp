@@ -1,11 +1,11 @@
-#include "reports/markdown.h"
+#include "reports/formats/markdown.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <sstream>
 
-#include "reports/text.h"
+#include "reports/words/text.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 

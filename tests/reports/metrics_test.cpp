@@ -1,4 +1,4 @@
-#include "reports/metrics.h"
+#include "reports/formats/metrics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "reports/number.h"
+#include "reports/words/number.h"
 
 #include <gtest/gtest.h>
 

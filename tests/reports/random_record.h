@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/fields.h"
+#include "reports/record/fields.h"
 
 namespace assay::reports {
 

@@ -1,9 +1,9 @@
-#include "reports/record.h"
+#include "reports/record/record.h"
 
 #include <gtest/gtest.h>
 
-#include "reports/describe.h"
-#include "reports/verdict.h"
+#include "reports/words/describe.h"
+#include "reports/words/verdict.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

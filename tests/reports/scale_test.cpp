@@ -1,4 +1,4 @@
-#include "reports/scale.h"
+#include "reports/viewer/scale.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

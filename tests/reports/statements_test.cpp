@@ -1,15 +1,15 @@
-#include "reports/statements.h"
+#include "reports/record/statements.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "reports/columns.h"
-#include "reports/console.h"
-#include "reports/html.h"
-#include "reports/json.h"
-#include "reports/markdown.h"
-#include "reports/read_json.h"
-#include "reports/statement_text.h"
+#include "reports/formats/console.h"
+#include "reports/formats/json.h"
+#include "reports/formats/markdown.h"
+#include "reports/formats/read_json.h"
+#include "reports/viewer/html.h"
+#include "reports/words/columns.h"
+#include "reports/words/statement_text.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

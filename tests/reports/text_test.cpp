@@ -1,4 +1,4 @@
-#include "reports/text.h"
+#include "reports/words/text.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,4 +1,4 @@
-#include "reports/verdict.h"
+#include "reports/words/verdict.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include "reports/file.h"
-#include "reports/html.h"
+#include "reports/record/file.h"
+#include "reports/viewer/html.h"
 #include "tests/reports/example_record.h"
 
 int main(int argc, char** argv) {

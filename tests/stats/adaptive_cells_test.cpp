@@ -1,4 +1,4 @@
-#include "stats/adaptive_cells.h"
+#include "stats/cells/adaptive_cells.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "stats/chi_square_fit.h"
+#include "stats/cells/chi_square_fit.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::stats {
@@ -29,7 +29,7 @@ std::vector<double> even(std::size_t cells) {
 PlaneGrid unit_grid(std::size_t rows, std::size_t columns) { return {even(rows), even(columns)}; }
 
 PlaneDensity on_unit_square(auto density) {
-  return {.x = {0, 1}, .y = {0, 1}, .values = one_by_one(density)};
+  return {.x = {0, 1}, .y = {0, 1}, .values = point_by_point(density)};
 }
 
 void expect_a_partition(const HalvedCells& cells) {

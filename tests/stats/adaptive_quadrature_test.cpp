@@ -1,4 +1,4 @@
-#include "stats/adaptive_quadrature.h"
+#include "stats/basics/adaptive_quadrature.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "stats/plane_cells.h"
+#include "stats/cells/plane_cells.h"
 
 namespace assay::stats {
 namespace {
@@ -32,7 +32,7 @@ void expect_the_same(QuadratureLimits limits) {
   AdaptiveQuadrature together(limits);
   AdaptiveQuadrature apart(limits);
   for (int round = 0; round < 3; ++round) {
-    const std::vector<Integral> all = together.along(one_by_one(density), lines());
+    const std::vector<Integral> all = together.along(point_by_point(density), lines());
     ASSERT_EQ(all.size(), lines().size());
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Line line = lines()[i];
@@ -137,7 +137,7 @@ TEST(AdaptiveQuadrature, ADensityIsAskedForOnePlaceOrMany) {
   const auto many = rule.over(
       rule.of([](auto at, auto values) { std::ranges::copy(at, values.begin()); }), {0, 1});
   EXPECT_EQ(one.value, many.value);
-  EXPECT_THROW(rule.along(one_by_one([](double, double) { return -1; }), lines()),
+  EXPECT_THROW(rule.along(point_by_point([](double, double) { return -1; }), lines()),
                std::domain_error);
 }
 

@@ -1,4 +1,4 @@
-#include "stats/anderson_darling.h"
+#include "stats/laws/anderson_darling.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/assumption_gates.h"
+#include "stats/gates/assumption_gates.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "stats/errors.h"
+#include "stats/basics/errors.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 

@@ -1,11 +1,11 @@
-#include "stats/binomial.h"
+#include "stats/means/binomial.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {

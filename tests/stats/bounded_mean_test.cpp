@@ -1,4 +1,4 @@
-#include "stats/bounded_mean.h"
+#include "stats/means/bounded_mean.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/cell_effect.h"
+#include "stats/cells/cell_effect.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "stats/chi_square_fit.h"
+#include "stats/cells/chi_square_fit.h"
 #include "tests/stats/multinomial.h"
 
 namespace assay::stats {

@@ -1,4 +1,4 @@
-#include "stats/chi_square_fit.h"
+#include "stats/cells/chi_square_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/multinomial.h"
 
 namespace assay::stats {

@@ -1,11 +1,11 @@
-#include "stats/chi_square_two_sample.h"
+#include "stats/cells/chi_square_two_sample.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "stats/sampled_cells.h"
+#include "stats/cells/sampled_cells.h"
 #include "tests/stats/expect_calibrated.h"
 
 namespace assay::stats {

@@ -1,11 +1,11 @@
-#include "stats/constant_sample.h"
+#include "stats/means/constant_sample.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {

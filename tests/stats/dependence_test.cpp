@@ -1,13 +1,13 @@
-#include "stats/dependence.h"
+#include "stats/gates/dependence.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 
-#include "stats/errors.h"
-#include "stats/student_t.h"
-#include "stats/tails.h"
+#include "stats/basics/errors.h"
+#include "stats/means/student_t.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/laws.h"
 #include "tests/stats/samples.h"

@@ -1,4 +1,4 @@
-#include "stats/distribution_band.h"
+#include "stats/laws/distribution_band.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numeric>
 #include <vector>
 
-#include "stats/binomial.h"
-#include "stats/kolmogorov_smirnov.h"
-#include "stats/tails.h"
+#include "stats/laws/kolmogorov_smirnov.h"
+#include "stats/means/binomial.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"

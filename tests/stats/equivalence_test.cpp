@@ -1,4 +1,4 @@
-#include "stats/equivalence.h"
+#include "stats/means/equivalence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/evidence_ledger.h"
+#include "stats/planning/evidence_ledger.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/holm.h"
+#include "stats/planning/holm.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,10 +1,10 @@
-#include "stats/image_cell_moments.h"
+#include "stats/images/image_cell_moments.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "stats/moments.h"
+#include "stats/basics/moments.h"
 #include "tests/stats/last_first.h"
 #include "tests/stats/samples.h"
 

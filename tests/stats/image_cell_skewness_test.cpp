@@ -1,4 +1,4 @@
-#include "stats/image_cell_skewness.h"
+#include "stats/images/image_cell_skewness.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stats/image_family.h"
-#include "stats/image_windows.h"
-#include "stats/tails.h"
+#include "stats/images/image_family.h"
+#include "stats/images/image_windows.h"
+#include "stats/tails/tails.h"
 #include "tests/philox.h"
 #include "tests/stats/last_first.h"
 

@@ -1,4 +1,4 @@
-#include "stats/image_element_moments.h"
+#include "stats/images/image_element_moments.h"
 
 #include <gtest/gtest.h>
 

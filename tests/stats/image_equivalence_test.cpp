@@ -1,4 +1,4 @@
-#include "stats/image_equivalence.h"
+#include "stats/images/image_equivalence.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <functional>
 #include <stdexcept>
 
-#include "stats/errors.h"
-#include "stats/tails.h"
+#include "stats/basics/errors.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/last_first.h"

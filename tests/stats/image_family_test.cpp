@@ -1,4 +1,4 @@
-#include "stats/image_family.h"
+#include "stats/images/image_family.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stats/image_pyramid.h"
+#include "stats/pyramids/image_pyramid.h"
 #include "tests/stats/image_samples.h"
 
 namespace assay::stats {

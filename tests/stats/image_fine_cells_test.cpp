@@ -1,15 +1,15 @@
 // The cells of image_pyramid, tile by tile and from blocks, against sums over each rectangle by
 // itself.
-#include "stats/image_fine_cells.h"
+#include "stats/pyramids/image_fine_cells.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "stats/image_coarse_cells.h"
-#include "stats/image_family.h"
-#include "stats/moments.h"
+#include "stats/basics/moments.h"
+#include "stats/images/image_family.h"
+#include "stats/pyramids/image_coarse_cells.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/samples.h"
 

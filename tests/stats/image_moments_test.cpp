@@ -1,4 +1,4 @@
-#include "stats/image_moments.h"
+#include "stats/images/image_moments.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stats/image_welch.h"
+#include "stats/images/image_welch.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/samples.h"
 

@@ -1,4 +1,4 @@
-#include "stats/image_pyramid.h"
+#include "stats/pyramids/image_pyramid.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "stats/image_welch.h"
-#include "stats/tails.h"
+#include "stats/images/image_welch.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/last_first.h"

@@ -1,4 +1,4 @@
-#include "stats/image_reference_error.h"
+#include "stats/images/image_reference_error.h"
 
 #include <gtest/gtest.h>
 

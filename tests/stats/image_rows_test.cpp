@@ -4,12 +4,12 @@
 
 #include <limits>
 
-#include "stats/image_cell_skewness.h"
-#include "stats/image_halves.h"
-#include "stats/image_row_distance.h"
-#include "stats/image_row_pyramid.h"
-#include "stats/image_sign_flip.h"
-#include "stats/image_sums.h"
+#include "stats/images/image_cell_skewness.h"
+#include "stats/images/image_halves.h"
+#include "stats/images/image_row_distance.h"
+#include "stats/images/image_sign_flip.h"
+#include "stats/images/image_sums.h"
+#include "stats/pyramids/image_row_pyramid.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/last_first.h"
 

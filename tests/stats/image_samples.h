@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "stats/image.h"
-#include "stats/moments.h"
+#include "stats/basics/moments.h"
+#include "stats/images/image.h"
 #include "tests/philox.h"
 
 namespace assay::tests {

@@ -1,4 +1,4 @@
-#include "stats/image_sign_flip.h"
+#include "stats/images/image_sign_flip.h"
 
 #include <gtest/gtest.h>
 

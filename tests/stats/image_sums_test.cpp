@@ -1,4 +1,4 @@
-#include "stats/image_sums.h"
+#include "stats/images/image_sums.h"
 
 #include <gtest/gtest.h>
 

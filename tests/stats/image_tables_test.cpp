@@ -6,12 +6,12 @@
 #include <cmath>
 #include <vector>
 
-#include "stats/image_equivalence.h"
-#include "stats/image_pyramid.h"
-#include "stats/image_sign_flip.h"
-#include "stats/image_welch.h"
-#include "stats/t_to_z.h"
-#include "stats/tails.h"
+#include "stats/images/image_equivalence.h"
+#include "stats/images/image_sign_flip.h"
+#include "stats/images/image_welch.h"
+#include "stats/pyramids/image_pyramid.h"
+#include "stats/tails/t_to_z.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {

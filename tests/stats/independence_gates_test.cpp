@@ -1,4 +1,4 @@
-#include "stats/independence_gates.h"
+#include "stats/gates/independence_gates.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <functional>
 #include <stdexcept>
 
-#include "stats/dependence.h"
-#include "stats/errors.h"
-#include "stats/welch_t.h"
+#include "stats/basics/errors.h"
+#include "stats/gates/dependence.h"
+#include "stats/means/welch_t.h"
 #include "tests/philox.h"
 #include "tests/stats/samples.h"
 

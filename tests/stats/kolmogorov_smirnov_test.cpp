@@ -1,4 +1,4 @@
-#include "stats/kolmogorov_smirnov.h"
+#include "stats/laws/kolmogorov_smirnov.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/kolmogorov.h"
+#include "stats/tails/kolmogorov.h"
 
 #include <gtest/gtest.h>
 

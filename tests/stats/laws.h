@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "stats/moments.h"
+#include "stats/basics/moments.h"
 #include "tests/philox.h"
 
 namespace assay::tests {

@@ -1,4 +1,4 @@
-#include "stats/log_efficiency.h"
+#include "stats/variances/log_efficiency.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "stats/cost_ratio.h"
-#include "stats/errors.h"
-#include "stats/power.h"
-#include "stats/tails.h"
+#include "stats/basics/errors.h"
+#include "stats/planning/power.h"
+#include "stats/tails/tails.h"
+#include "stats/variances/cost_ratio.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"

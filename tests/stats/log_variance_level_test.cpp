@@ -1,14 +1,14 @@
-#include "stats/log_variance_level.h"
+#include "stats/gates/log_variance_level.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "stats/cost_ratio.h"
-#include "stats/errors.h"
-#include "stats/log_variance.h"
-#include "stats/tails.h"
+#include "stats/basics/errors.h"
+#include "stats/tails/tails.h"
+#include "stats/variances/cost_ratio.h"
+#include "stats/variances/log_variance.h"
 #include "tests/philox.h"
 
 namespace assay::stats {

@@ -1,4 +1,4 @@
-#include "stats/looks.h"
+#include "stats/planning/looks.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "stats/student_t.h"
-#include "stats/tails.h"
+#include "stats/means/student_t.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/samples.h"
 

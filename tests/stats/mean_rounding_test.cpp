@@ -1,4 +1,4 @@
-#include "stats/mean_rounding.h"
+#include "stats/basics/mean_rounding.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/moments.h"
+#include "stats/basics/moments.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "stats/errors.h"
+#include "stats/basics/errors.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {

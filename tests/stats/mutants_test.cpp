@@ -7,16 +7,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "stats/binomial.h"
-#include "stats/chi_square_fit.h"
-#include "stats/equivalence.h"
-#include "stats/holm.h"
-#include "stats/kolmogorov.h"
-#include "stats/kolmogorov_smirnov.h"
-#include "stats/log_variance.h"
-#include "stats/student_t.h"
-#include "stats/tails.h"
-#include "stats/welch_t.h"
+#include "stats/cells/chi_square_fit.h"
+#include "stats/laws/kolmogorov_smirnov.h"
+#include "stats/means/binomial.h"
+#include "stats/means/equivalence.h"
+#include "stats/means/student_t.h"
+#include "stats/means/welch_t.h"
+#include "stats/planning/holm.h"
+#include "stats/tails/kolmogorov.h"
+#include "stats/tails/tails.h"
+#include "stats/variances/log_variance.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 

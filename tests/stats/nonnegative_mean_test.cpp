@@ -1,4 +1,4 @@
-#include "stats/nonnegative_mean.h"
+#include "stats/means/nonnegative_mean.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/pareto_tail.h"
+#include "stats/gates/pareto_tail.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/plane_cells.h"
+#include "stats/cells/plane_cells.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "stats/adaptive_cells.h"
+#include "stats/cells/adaptive_cells.h"
 
 namespace assay::stats {
 namespace {
@@ -43,7 +43,7 @@ TEST(PlaneCells, IndicesRunFastestInY) {
 TEST(PlaneCells, ProbabilitiesOfASmoothDensityAreExact) {
   const PlaneGrid grid = unit_grid(4);
   const CellProbabilities cells = cell_probabilities(
-      grid, {.x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double x, double y) {
+      grid, {.x = {0, 1}, .y = {0, 1}, .values = point_by_point([](double x, double y) {
                                          return 4 * x * y;
                                        })});
   EXPECT_NEAR(cells.probability[grid.index(.3, .8)], (4 - 1) / 16.0 * (16 - 9) / 16.0, 1e-14);
@@ -71,7 +71,7 @@ TEST(PlaneCells, AJumpAlongACurveIsFoundWithinItsErrorAndTheLimit) {
   const PlaneGrid grid = unit_grid(4);
   std::uint64_t evaluations = 0;
   const PlaneDensity disc{
-      .x = {0, 1}, .y = {0, 1}, .values = one_by_one([&](double x, double y) {
+      .x = {0, 1}, .y = {0, 1}, .values = point_by_point([&](double x, double y) {
                                   ++evaluations;
                                   return std::hypot(x - .5, y - .5) < r ? 1 / (pi * r * r) : 0;
                                 })};
@@ -87,10 +87,10 @@ TEST(PlaneCells, AJumpAlongACurveIsFoundWithinItsErrorAndTheLimit) {
 TEST(PlaneCells, ACornerOfTheSupportIsFoundInTheNextCell) {
   constexpr double tip = .2525;
   const PlaneGrid grid = unit_grid(4);
-  const PlaneDensity wedge{.x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double x, double y) {
-                                                       return x + std::abs(y - .135) < tip ? 1.0
-                                                                                           : 0;
-                                                     })};
+  const PlaneDensity wedge{
+      .x = {0, 1}, .y = {0, 1}, .values = point_by_point([](double x, double y) {
+                                  return x + std::abs(y - .135) < tip ? 1.0 : 0;
+                                })};
   const CellProbabilities cells = cell_probabilities(grid, wedge);
   const std::size_t next = grid.index(.26, .135);
   const double hidden = (tip - .25) * (tip - .25);
@@ -101,7 +101,7 @@ TEST(PlaneCells, ACornerOfTheSupportIsFoundInTheNextCell) {
 TEST(PlaneCells, ACellThatMayHideACornerSaysSo) {
   const PlaneGrid grid = unit_grid(4);
   const CellProbabilities cells = cell_probabilities(
-      grid, {.x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double x, double y) {
+      grid, {.x = {0, 1}, .y = {0, 1}, .values = point_by_point([](double x, double y) {
                                          return x < .25 && y < .25 ? 16.0 : 0;
                                        })});
   EXPECT_EQ(cells.probability[grid.index(.3, .1)], 0);
@@ -123,7 +123,7 @@ TEST(PlaneCells, ASupportIsFollowedFromCellToCell) {
   };
   const CellProbabilities cells = cell_probabilities(
       unit_grid(8),
-      {.x = {0, 1}, .y = {0, 1}, .values = one_by_one(density), .x_panels = 8, .y_panels = 8},
+      {.x = {0, 1}, .y = {0, 1}, .values = point_by_point(density), .x_panels = 8, .y_panels = 8},
       {.tolerance = 1e-8});
   EXPECT_NEAR(cells.total, .25 + half_width * length, cells.total_error);
   EXPECT_LT(cells.total_error, 2e-4);
@@ -135,7 +135,7 @@ TEST(PlaneCells, WhatUnderflowsHidesNoPeak) {
   const PlaneGrid grid = unit_grid(8);
   const auto peak = [](double x, double) { return 1500 * std::exp(-1500 * x); };
   const CellProbabilities cells = cell_probabilities(
-      grid, {.x = {0, 1}, .y = {0, 1}, .values = one_by_one(peak), .x_panels = 8});
+      grid, {.x = {0, 1}, .y = {0, 1}, .values = point_by_point(peak), .x_panels = 8});
   ASSERT_EQ(cells.probability[grid.index(.7, .1)], 0);
   EXPECT_NEAR(cells.total, 1, 1e-8);
   EXPECT_LT(cells.total_error, 1e-7);
@@ -148,7 +148,7 @@ TEST(PlaneCells, AJumpAlongALineAnywhereIsFoundWithinItsError) {
     for (const bool along_x : {true, false}) {
       const auto jump = [&](double x, double y) { return (along_x ? y : x) < place ? 2.0 : .5; };
       const CellProbabilities cells = cell_probabilities(
-          grid, {.x = {0, 1}, .y = {0, 1}, .values = one_by_one(jump)}, {.tolerance = 1e-8});
+          grid, {.x = {0, 1}, .y = {0, 1}, .values = point_by_point(jump)}, {.tolerance = 1e-8});
       EXPECT_NEAR(cells.total, 2 * place + .5 * (1 - place), cells.total_error) << place;
       EXPECT_LT(cells.total_error, 1e-6);
     }
@@ -159,7 +159,7 @@ TEST(PlaneCells, JumpsOnPanelBordersCostNothing) {
   std::uint64_t evaluations = 0;
   const PlaneDensity board{.x = {0, 1},
                            .y = {0, 1},
-                           .values = one_by_one([&](double x, double y) {
+                           .values = point_by_point([&](double x, double y) {
                              ++evaluations;
                              return int(x * 10) % 2 == int(y * 6) % 2 ? 2.0 : 0;
                            }),
@@ -172,10 +172,11 @@ TEST(PlaneCells, JumpsOnPanelBordersCostNothing) {
 
 TEST(PlaneCells, BadDensitiesAndGridsThrow) {
   const PlaneDensity negative{
-      .x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double, double) { return -1; })};
+      .x = {0, 1}, .y = {0, 1}, .values = point_by_point([](double, double) { return -1; })};
   EXPECT_THROW(cell_probabilities(unit_grid(2), negative), std::domain_error);
-  const PlaneDensity nan{
-      .x = {0, 1}, .y = {0, 1}, .values = one_by_one([](double, double) { return std::nan(""); })};
+  const PlaneDensity nan{.x = {0, 1}, .y = {0, 1}, .values = point_by_point([](double, double) {
+                                                     return std::nan("");
+                                                   })};
   EXPECT_THROW(cell_probabilities(unit_grid(2), nan), std::domain_error);
   EXPECT_THROW(cell_probabilities({{0, 1}, {1, 0}}, negative), std::domain_error);
 }

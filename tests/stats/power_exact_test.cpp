@@ -1,11 +1,11 @@
-#include "stats/power_exact.h"
+#include "stats/means/power_exact.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "stats/two_valued.h"
+#include "stats/means/two_valued.h"
 #include "tests/philox.h"
 
 namespace assay::stats {

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <functional>
 
-#include "stats/chi_square_fit.h"
-#include "stats/chi_square_variance.h"
-#include "stats/equivalence.h"
-#include "stats/f_ratio.h"
-#include "stats/kolmogorov_smirnov.h"
-#include "stats/log_variance.h"
-#include "stats/power.h"
-#include "stats/welch_t.h"
+#include "stats/cells/chi_square_fit.h"
+#include "stats/laws/kolmogorov_smirnov.h"
+#include "stats/means/equivalence.h"
+#include "stats/means/welch_t.h"
+#include "stats/planning/power.h"
+#include "stats/variances/chi_square_variance.h"
+#include "stats/variances/f_ratio.h"
+#include "stats/variances/log_variance.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {

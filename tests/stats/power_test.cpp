@@ -1,4 +1,4 @@
-#include "stats/power.h"
+#include "stats/planning/power.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "stats/planning.h"
+#include "stats/planning/planning.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {

@@ -1,4 +1,4 @@
-#include "stats/quantile_test.h"
+#include "stats/laws/quantile_test.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"

@@ -1,4 +1,4 @@
-#include "stats/quantisation_gate.h"
+#include "stats/gates/quantisation_gate.h"
 
 #include <gtest/gtest.h>
 

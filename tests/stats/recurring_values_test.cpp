@@ -1,4 +1,4 @@
-#include "stats/recurring_values.h"
+#include "stats/gates/recurring_values.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/repeated_run.h"
+#include "stats/gates/repeated_run.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "stats/moments.h"
+#include "stats/basics/moments.h"
 #include "tests/philox.h"
 
 namespace assay::tests {

@@ -1,4 +1,4 @@
-#include "stats/skewness_corrected_t.h"
+#include "stats/means/skewness_corrected_t.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "stats/errors.h"
-#include "stats/tails.h"
+#include "stats/basics/errors.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/laws.h"
 #include "tests/stats/samples.h"

@@ -1,4 +1,4 @@
-#include "stats/slope.h"
+#include "stats/variances/slope.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <iostream>
 #include <vector>
 
-#include "stats/errors.h"
-#include "stats/tails.h"
+#include "stats/basics/errors.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/table.h"
 

@@ -1,4 +1,4 @@
-#include "stats/smirnov.h"
+#include "stats/tails/smirnov.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "stats/sorted.h"
+#include "stats/basics/sorted.h"
 
 #include <gtest/gtest.h>
 

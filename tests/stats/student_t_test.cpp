@@ -1,11 +1,11 @@
-#include "stats/student_t.h"
+#include "stats/means/student_t.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "stats/errors.h"
+#include "stats/basics/errors.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {

@@ -1,4 +1,4 @@
-#include "stats/supremum_bound.h"
+#include "stats/laws/supremum_bound.h"
 
 #include <gtest/gtest.h>
 

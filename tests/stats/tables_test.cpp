@@ -4,13 +4,13 @@
 #include <cmath>
 #include <vector>
 
-#include "stats/chi_square_two_sample.h"
-#include "stats/chi_square_variance.h"
-#include "stats/f_ratio.h"
-#include "stats/kolmogorov_smirnov.h"
-#include "stats/student_t.h"
-#include "stats/tails.h"
-#include "stats/welch_t.h"
+#include "stats/cells/chi_square_two_sample.h"
+#include "stats/laws/kolmogorov_smirnov.h"
+#include "stats/means/student_t.h"
+#include "stats/means/welch_t.h"
+#include "stats/tails/tails.h"
+#include "stats/variances/chi_square_variance.h"
+#include "stats/variances/f_ratio.h"
 #include "tests/lehmer.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"

@@ -1,4 +1,4 @@
-#include "stats/tabulated_law.h"
+#include "stats/tails/tabulated_law.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "stats/plane_cells.h"
+#include "stats/cells/plane_cells.h"
 
 namespace assay::stats {
 namespace {

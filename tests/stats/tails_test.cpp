@@ -1,4 +1,4 @@
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
 
 #include <gtest/gtest.h>
 

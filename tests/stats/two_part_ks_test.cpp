@@ -1,4 +1,4 @@
-#include "stats/two_part_ks.h"
+#include "stats/laws/two_part_ks.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <iostream>
 #include <vector>
 
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 

@@ -1,4 +1,4 @@
-#include "stats/two_valued.h"
+#include "stats/means/two_valued.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "stats/special.h"
-#include "stats/tails.h"
+#include "stats/tails/special.h"
+#include "stats/tails/tails.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 

@@ -1,4 +1,4 @@
-#include "stats/uncertain_reference.h"
+#include "stats/means/uncertain_reference.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "stats/log_efficiency.h"
-#include "stats/tails.h"
+#include "stats/tails/tails.h"
+#include "stats/variances/log_efficiency.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/samples.h"
 

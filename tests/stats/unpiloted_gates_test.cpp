@@ -1,11 +1,11 @@
-#include "stats/unpiloted_gates.h"
+#include "stats/gates/unpiloted_gates.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "stats/errors.h"
+#include "stats/basics/errors.h"
 #include "tests/philox.h"
 #include "tests/stats/laws.h"
 #include "tests/stats/samples.h"

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
-#include "stats/assumption_gates.h"
-#include "stats/chi_square_variance.h"
-#include "stats/errors.h"
-#include "stats/f_ratio.h"
-#include "stats/log_variance.h"
-#include "stats/tails.h"
+#include "stats/basics/errors.h"
+#include "stats/gates/assumption_gates.h"
+#include "stats/tails/tails.h"
+#include "stats/variances/chi_square_variance.h"
+#include "stats/variances/f_ratio.h"
+#include "stats/variances/log_variance.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/samples.h"
 

@@ -1,11 +1,11 @@
-#include "stats/welch_t.h"
+#include "stats/means/welch_t.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "stats/errors.h"
+#include "stats/basics/errors.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {

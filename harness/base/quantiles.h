@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "reports/record/record.h"
+
+namespace assay::harness {
+
+/// Points of a normal quantile plot of some values: at most 99, at the probabilities (i - 1/2) / k.
+std::vector<reports::QuantilePoint> quantile_points(std::span<const double> values);
+
+}  // namespace assay::harness

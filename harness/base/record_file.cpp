@@ -1,0 +1,36 @@
+#include "harness/base/record_file.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "estimators/parameters.h"
+#include "harness/base/shell.h"
+#include "reports/formats/read_json.h"
+
+namespace assay::harness {
+
+reports::Record read_record(const std::string& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    throw InputError({.file = file},
+                     "there is no such file; `--report json=FILE` saves a run that can be read");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw InputError({.file = file}, "cannot be read; give a report of kind json");
+  for (const char* extension : {".yaml", ".yml"}) {
+    if (!file.ends_with(extension)) continue;
+    throw InputError(
+        {.file = file},
+        fmt::format("this is no saved run but a suite, it seems: `assay run {} --report "
+                    "json=run.json` saves one",
+                    shell_quoted(file)));
+  }
+  return reports::read_json(text.str(), file);
+}
+
+}  // namespace assay::harness

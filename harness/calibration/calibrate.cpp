@@ -1,0 +1,181 @@
+#include "harness/calibration/calibrate.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+#include "harness/base/interrupt.h"
+#include "harness/base/progress_terminal.h"
+#include "harness/calibration/calibration_runs.h"
+#include "harness/record/environment.h"
+#include "harness/record/record_of.h"
+#include "stats/means/binomial.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::CalibrationCell;
+using reports::Rate;
+
+/// Counts of one law, waiting for the number of cells that the limits are to hold for.
+struct Measured {
+  double alpha;
+  std::string law;
+  CalibrationCase of;
+  CaseCounts counts;
+
+  const VerdictCounts& at(Trial trial) const { return counts[static_cast<std::size_t>(trial)]; }
+};
+
+/// Exact limits, each side missing with probability `error`.
+Rate rate_of(std::uint64_t count, std::uint64_t runs, double error) {
+  if (runs == 0) return {};
+  const stats::Interval limits =
+      stats::clopper_pearson({.successes = count, .trials = runs}, 1 - 2 * error);
+  return {.count = count, .runs = runs, .low = limits.low, .high = limits.high};
+}
+
+double mean_observations(const VerdictCounts& counts) {
+  if (counts.runs == 0) return 0;
+  return static_cast<double>(counts.observations) / static_cast<double>(counts.runs);
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> by_frequency(const VerdictCounts& counts) {
+  std::vector<std::pair<std::string, std::uint64_t>> methods(counts.methods.begin(),
+                                                             counts.methods.end());
+  std::stable_sort(methods.begin(), methods.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  return methods;
+}
+
+CalibrationCell cell_of(const Measured& measured, double error) {
+  const bool proof = measured.of.proof;
+  const auto mistakes = [proof](const VerdictCounts& c) { return proof ? c.passed : c.failed; };
+  const VerdictCounts& level = measured.at(Trial::true_claim);
+  const VerdictCounts& power = measured.at(Trial::false_claim);
+  const VerdictCounts& alone = measured.at(Trial::alone);
+  return {.method = measured.of.method,
+          .question = measured.of.question,
+          .law = measured.law,
+          .alpha = measured.alpha,
+          .proof = proof,
+          .mistaken = rate_of(mistakes(level), level.runs, error),
+          .inconclusive = level.inconclusive,
+          .invalid = level.invalid,
+          .observations = mean_observations(level),
+          .chosen = by_frequency(level),
+          .found = rate_of(proof ? power.passed : power.failed, power.runs, error),
+          .missed = rate_of(proof ? power.failed : power.passed, power.runs, error),
+          .alone = rate_of(mistakes(alone), alone.runs, error),
+          .red = rate_of(alone.red, alone.runs, error),
+          .alone_green = rate_of(alone.mistaken_not_red, alone.runs, error),
+          .alone_observations = mean_observations(alone)};
+}
+
+void measure(const CalibrationBench& bench, const CalibrationRuns& options,
+             const std::function<void(std::uint64_t)>& done, std::vector<Measured>& all) {
+  const auto counts = run_calibration(bench, options, done);
+  stop_if_interrupted();
+  for (std::size_t a = 0; a < options.alphas.size(); ++a) {
+    for (std::size_t c = 0; c < bench.cases.size(); ++c) {
+      all.push_back({options.alphas[a], bench.law, bench.cases[c], counts[a][c]});
+    }
+  }
+}
+
+/// Cells of one alpha, then of one method and question, stand together; the order in which alphas,
+/// questions and laws were met stays.
+void group(std::vector<Measured>& all, const std::vector<double>& alphas) {
+  std::vector<std::string> questions;
+  for (const Measured& each : all) {
+    const std::string key = each.of.method + each.of.question;
+    if (std::find(questions.begin(), questions.end(), key) == questions.end()) {
+      questions.push_back(key);
+    }
+  }
+  const auto rank = [&](const Measured& each) {
+    const auto alpha = std::find(alphas.begin(), alphas.end(), each.alpha);
+    const auto question =
+        std::find(questions.begin(), questions.end(), each.of.method + each.of.question);
+    return std::pair(alpha - alphas.begin(), question - questions.begin());
+  };
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const Measured& a, const Measured& b) { return rank(a) < rank(b); });
+}
+
+/// A level or a law given twice would be measured twice.
+template <class T>
+void refuse_twice(const char* option, const std::vector<T>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(values.begin(), end, values[i]) == end) continue;
+    throw InputError({}, fmt::format("{} {} is given twice", option, values[i]));
+  }
+}
+
+std::string written(const reports::Calibration& calibration, const std::string& kind) {
+  if (kind == "json") return reports::json(calibration);
+  if (kind == "html") return reports::html(calibration);
+  if (kind == "markdown") return reports::markdown(calibration);
+  return reports::console(calibration);
+}
+
+}  // namespace
+
+reports::Calibration calibration(const CalibrateArguments& arguments, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  reports::Calibration result{.tool = this_tool(),
+                              .environment = this_environment(arguments.threads),
+                              .seed = arguments.seed,
+                              .runs = arguments.runs,
+                              .started = utc_now(),
+                              .detect = calibration_effects()};
+  std::vector<std::string> laws;
+  for (const std::string& law : arguments.laws) laws.push_back(calibration_law(law));
+  std::vector<std::string> without_blanks = laws;
+  for (std::string& law : without_blanks) std::erase(law, ' ');
+  refuse_twice("--law", without_blanks);
+  refuse_twice("--alpha", arguments.alphas);
+  if (laws.empty()) laws = calibration_laws();
+  const CalibrationRuns options{
+      .alphas = arguments.alphas.empty() ? std::vector{0.05, 0.01, 0.001} : arguments.alphas,
+      .runs = arguments.runs,
+      .seed = arguments.seed,
+      .threads = arguments.threads};
+  for (const std::string& method : arguments.methods) require_calibrated(method);
+  refuse_twice("METHOD", arguments.methods);
+  std::vector<Measured> all;
+  progress.begin("calibration", laws.size() * arguments.runs);
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    const CalibrationBench bench(
+        {.law = laws[i], .methods = arguments.methods, .samples = arguments.samples});
+    if (bench.cases.empty()) continue;
+    measure(
+        bench, options, [&](std::uint64_t done) { progress.advance(i * arguments.runs + done); },
+        all);
+  }
+  progress.end();
+  if (all.empty()) {
+    throw InputError({}, fmt::format("no question suits `{}` on these laws",
+                                     fmt::join(arguments.methods, "`, `")));
+  }
+  group(all, options.alphas);
+  const double error = result.error / static_cast<double>(all.size());
+  for (const Measured& each : all) result.cells.push_back(cell_of(each, error));
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+int calibrate(const CalibrateArguments& arguments, const Output& output) {
+  require_writable(output, {});
+  const std::unique_ptr<Progress> progress = make_progress(output.quiet);
+  const reports::Calibration measured = calibration(arguments, *progress);
+  write_reports(
+      output, [&](const ReportRequest& request, bool) { return written(measured, request.kind); });
+  return reports::defects(measured) == 0 ? 0 : 1;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,82 @@
+#pragma once
+
+// The command line as data. Parsing has no effects; program.h acts on what it returns.
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "harness/base/shell.h"
+#include "harness/calibration/calibrate.h"
+#include "harness/command/commands.h"
+#include "harness/record/merge.h"
+#include "harness/record/recorded_test.h"
+#include "harness/suite/suite_images.h"
+
+namespace assay::harness {
+
+struct RunCommand {
+  std::vector<std::string> suites;
+  std::vector<std::string> assignments;  ///< of --set
+  RunOptions options;
+  Output output;
+};
+
+struct PlanCommand {
+  std::vector<std::string> suites;
+  std::vector<std::string> assignments;  ///< of --set
+  RunOptions options;
+  bool quiet = false;
+};
+
+struct CheckCommand {
+  CheckArguments arguments;
+  RunOptions options;
+  Output output;
+};
+
+struct ImagesCommand {
+  ImagesArguments arguments;
+  RunOptions options;
+  Output output;
+};
+
+struct CalibrateCommand {
+  CalibrateArguments arguments;
+  Output output;
+};
+
+struct ListCommand {
+  bool tests = false;  ///< else plugins
+  std::vector<std::string> suites;
+  Selection selection;
+};
+
+struct DescribeCommand {
+  std::string plugin;
+};
+
+struct ReportCommand {
+  std::string file;
+  Output output;
+};
+
+struct MergeCommand {
+  MergeArguments arguments;
+  Output output;
+};
+
+/// --help, --version: text for standard output.
+struct TextCommand {
+  std::string text;
+};
+
+using Command = std::variant<RunCommand, PlanCommand, CheckCommand, ImagesCommand, SampleArguments,
+                             ListCommand, DescribeCommand, ReplayArguments, ReportCommand,
+                             MergeCommand, CalibrateCommand, TextCommand>;
+
+/// Parses the arguments after the program's name. InputError, with what was meant where that can be
+/// guessed, for anything that is not exactly as `--help` says.
+Command parse_command_line(const std::vector<std::string>& arguments);
+
+}  // namespace assay::harness

@@ -1,0 +1,72 @@
+#include "harness/command/commands.h"
+
+#include <fmt/format.h>
+
+#include "estimators/catalogue.h"
+#include "harness/base/progress_terminal.h"
+#include "harness/base/record_file.h"
+#include "harness/command/plan_table.h"
+#include "harness/command/run.h"
+#include "harness/run/unit_cost.h"
+#include "harness/suite/files_read.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr int nothing_ran = 4;
+
+/// Says so where a part of the selection selects no test.
+bool selects_nothing(const std::vector<Suite>& suites, const Selection& selection) {
+  const std::string why = unmatched(suites, selection);
+  if (!why.empty()) fmt::print(stderr, "assay: {}", why);
+  return !why.empty();
+}
+
+}  // namespace
+
+int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
+  std::vector<std::string> kept = files_read(suites);
+  if (!options.ledger.empty()) kept.push_back(options.ledger);
+  require_writable(output, kept);
+  if (selects_nothing(suites, options.selection)) return nothing_ran;
+  const std::unique_ptr<Progress> progress = make_progress(output.quiet);
+  std::string ledger_fault;
+  reports::Record record = run(suites, options, *progress, &ledger_fault);
+  report_run(record, output);
+  if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);
+  const int code = exit_code(record, output.inconclusive);
+  return code == nothing_ran && options.shard_of_runner ? 0 : code;
+}
+
+int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet) {
+  if (selects_nothing(suites, options.selection)) return nothing_ran;
+  const std::unique_ptr<Progress> progress = make_progress(quiet);
+  const PlannedRun planned = plan_run(suites, options, *progress);
+  const UnitCosts costs = measure_costs(planned, options.threads, *progress);
+  fmt::print("{}", plan_text(planned, costs));
+  return plan_exit_code(planned, costs);
+}
+
+int list_plugins() {
+  for (const Entry& entry : catalogue()) fmt::print("{}\n", entry.information.name);
+  return 0;
+}
+
+int list_tests(const std::vector<Suite>& suites, const Selection& selection) {
+  if (selects_nothing(suites, selection)) return nothing_ran;
+  for (const Suite& suite : suites) {
+    for (const TestEntry& test : suite.tests) {
+      if (selects(selection, test)) fmt::print("{}\n", test.id);
+    }
+  }
+  return 0;
+}
+
+int report_saved_run(const std::string& file, const Output& output) {
+  require_writable(output, {file});
+  reports::Record record = read_record(file);
+  write_reports(record, output);
+  return 0;
+}
+
+}  // namespace assay::harness

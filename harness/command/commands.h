@@ -1,0 +1,35 @@
+#pragma once
+
+// What the subcommands do, apart from parsing their arguments. Each returns an exit code.
+
+#include <string>
+#include <vector>
+
+#include "harness/record/output.h"
+#include "harness/suite/run_options.h"
+#include "harness/suite/suite.h"
+
+namespace assay::harness {
+
+/// Runs, writes the reports. 4 without a report when no test is selected.
+int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
+/// Prints what a run of the suites would do; only pilots are drawn. 4 when no test is
+/// selected, 1 when a test cannot come out as expected by its plan.
+int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
+int report_saved_run(const std::string& file, const Output& output);
+
+struct SampleArguments {
+  std::string source;  ///< as in a claim: estimator or plugin, with part
+  std::vector<std::string> estimators = {};
+  std::optional<std::uint64_t> secondaries = {};  ///< default 10, or the rows there are
+  std::uint64_t primaries = 1;
+  std::uint64_t seed = 1;
+};
+int sample(const SampleArguments&);
+
+int list_plugins();
+/// One id a line. 4 when no test is selected.
+int list_tests(const std::vector<Suite>& suites, const Selection& selection);
+int describe(const std::string& plugin);
+
+}  // namespace assay::harness

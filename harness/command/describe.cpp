@@ -1,0 +1,241 @@
+#include "harness/command/describe.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimators/catalogue.h"
+#include "harness/command/commands.h"
+
+namespace assay::harness {
+
+namespace {
+
+constexpr std::size_t page_width = 100;
+
+/// Columns that text takes on a terminal: its code points.
+std::size_t columns(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; }));
+}
+
+/// The first line begins at `indent`, the others at `hanging`.
+std::string hanging(const std::string& text, std::size_t indent, std::size_t hanging) {
+  return std::string(indent, ' ') + wrapped(text, page_width, hanging).substr(hanging);
+}
+
+std::string wrapped_line(std::string_view text, std::size_t width, std::size_t indent) {
+  const std::string margin(indent, ' ');
+  std::string out;
+  std::string line;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string word(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (!line.empty() && indent + columns(line) + 1 + columns(word) > width) {
+      out += margin + line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return out + (line.empty() ? "" : margin) + line + "\n";
+}
+
+const char* type_name(ParameterType type) {
+  switch (type) {
+    case ParameterType::number:
+      return "number";
+    case ParameterType::count:
+      return "count";
+    case ParameterType::boolean:
+      return "true or false";
+    case ParameterType::string:
+      return "text";
+    case ParameterType::texts:
+      return "list of texts";
+    case ParameterType::structure:
+      return "structure";
+  }
+  return "";
+}
+
+const char* bias_text(const Information& information) {
+  // A mutant's bias is its defect's; the class is that of the estimator it was made from.
+  if (!information.original.empty()) return "that of its defect";
+  if (information.name == "recorded") return "unknown: the observations were made elsewhere";
+  if (information.says_nature) return "what the program says of it; unknown where it says nothing";
+  switch (information.bias) {
+    case BiasClass::unbiased:
+      return "unbiased";
+    case BiasClass::inverse_primaries:
+      return "falls like 1 / primaries";
+    case BiasClass::inverse_bootstrap:
+      return "falls like 1 / bootstrap";
+    case BiasClass::start_up:
+      return "start-up: the chain has not forgotten where it began";
+    case BiasClass::reconstruction:
+      return "reconstruction: that of a filter or an interpolation";
+  }
+  return "";
+}
+
+const char* primaries_text(const Information& information) {
+  if (information.says_nature) return "averaged where the program says so; else 1 unless given";
+  return information.averages ? "averaged: a secondary estimate is the mean of its primaries"
+                              : "not averaged; 1 unless given";
+}
+
+const char* domain_name(Domain domain) {
+  switch (domain) {
+    case Domain::interval:
+      return "interval";
+    case Domain::square:
+      return "unit square";
+    case Domain::triangle:
+      return "triangle (barycentric)";
+    case Domain::hemisphere:
+      return "hemisphere (solid angle)";
+    case Domain::sphere:
+      return "sphere (solid angle)";
+  }
+  return "";
+}
+
+/// "(0, 1]", "[1, inf)", "a, b or c"; "" when anything goes.
+std::string range_text(const ParameterInformation& p) {
+  if (!p.choices.empty()) {
+    std::string all;
+    for (const std::string& choice : p.choices) all += (all.empty() ? "" : " | ") + choice;
+    return all;
+  }
+  if (std::isinf(p.low) && std::isinf(p.high)) return "";
+  return fmt::format("{}{}, {}{}", p.low_excluded || std::isinf(p.low) ? "(" : "[", p.low, p.high,
+                     p.high_excluded || std::isinf(p.high) ? ")" : "]");
+}
+
+std::string field(const char* name, const std::string& text) {
+  if (text.empty()) return "";
+  // The first line stands beside the field's name.
+  return fmt::format("{:<12}", name) + wrapped(text, page_width, 12).substr(12);
+}
+
+std::string parameter_text(const ParameterInformation& p) {
+  std::string head = fmt::format("{}: {}", p.name, type_name(p.type));
+  const std::string range = range_text(p);
+  if (!range.empty()) head += ", " + range;
+  if (!p.unit.empty()) head += ", " + p.unit;
+  head += p.fallback.empty() ? ", required" : ", default " + p.fallback;
+  return hanging(head, 2, 6) + wrapped(p.summary, page_width, 6);
+}
+
+std::string parameters_text(const Information& information) {
+  if (information.parameters.empty()) return "\nparameters: none\n";
+  std::string out = "\nparameters\n";
+  for (const ParameterInformation& p : information.parameters) out += parameter_text(p);
+  return out;
+}
+
+std::string exact_text(const std::optional<double>& value) {
+  return value ? fmt::format("{:.12g}", *value) : "not known";
+}
+
+std::string channel_text(const Channel& channel) {
+  std::string text = fmt::format("{}: mean {}", channel.name, exact_text(channel.mean));
+  if (channel.mean_error > 0) text += fmt::format(" +- {:.2g}", channel.mean_error);
+  text += ", variance of a primary " + exact_text(channel.variance);
+  if (std::isfinite(channel.low) || std::isfinite(channel.high)) {
+    text += fmt::format(", values in [{:.6g}, {:.6g}]", channel.low, channel.high);
+  }
+  if (channel.diagnostic) text += ", diagnostic (tested only where a claim names it)";
+  return hanging(text, 2, 6);
+}
+
+std::string sampler_text(const NamedSampler& named) {
+  const Domain domain = named.sampler->domain();
+  std::string text = fmt::format("{}: {}; marginals", named.name, domain_name(domain));
+  for (const Marginal& marginal : marginals(domain)) text += " " + marginal.name;
+  return hanging(text, 2, 6);
+}
+
+std::string image_text(const ImageShape& shape) {
+  return hanging(
+      fmt::format("{} x {} pixels of {}, {}", shape.width, shape.height,
+                  fmt::join(shape.components, ", "),
+                  shape.independent ? "independent of each other" : "which depend on each other"),
+      2, 6);
+}
+
+std::string setup_text(const Setup& setup) {
+  std::string out;
+  const std::optional<ImageShape> image = setup.image();
+  if (image) out += "\nimage (with default parameters)\n" + image_text(*image);
+  out += "\nchannels (with default parameters)\n";
+  const std::vector<Channel> channels = setup.channels();
+  const std::size_t shown = image ? 4 : 20;
+  for (std::size_t i = 0; i < std::min(shown, channels.size()); ++i) {
+    out += channel_text(channels[i]);
+  }
+  if (channels.size() > shown) out += fmt::format("  … {} more\n", channels.size() - shown);
+  const std::vector<NamedSampler> samplers = setup.samplers();
+  if (samplers.empty()) return out;
+  out += "\nsamplers\n";
+  for (const NamedSampler& named : samplers) out += sampler_text(named);
+  return out;
+}
+
+/// What only a prepared set-up knows, if it can be prepared without the user's parameters.
+std::string prepared_text(const Entry& plugin) {
+  const Information& information = plugin.information;
+  try {
+    Parameters parameters(information.name, information.parameters, Value{}, ".");
+    return setup_text(*plugin.prepare(parameters));
+  } catch (const InputError& e) {
+    return wrapped("\nchannels: known once its parameters are given (" + e.message() + ")",
+                   page_width, 0);
+  }
+}
+
+std::string mutants_text(const Information& information, const std::vector<Entry>& entries) {
+  std::string out;
+  for (const Entry& entry : entries) {
+    if (entry.information.original != information.name) continue;
+    out += hanging(entry.information.name + ": " + entry.information.defect, 2, 6);
+  }
+  return out.empty() ? "" : "\nmutants of it\n" + out;
+}
+
+}  // namespace
+
+std::string wrapped(const std::string& text, std::size_t width, std::size_t indent) {
+  std::string out;
+  std::string_view rest = text;
+  while (rest.ends_with('\n')) rest.remove_suffix(1);
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    out += wrapped_line(rest.substr(0, end), width, indent);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return out;
+}
+
+std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
+  const Information& information = plugin.information;
+  std::string out = information.name + "\n" + wrapped(information.summary, page_width, 2);
+  if (!information.description.empty()) {
+    out += "\n" + wrapped(information.description, page_width, 0);
+  }
+  out += "\n" + field("bias", bias_text(information));
+  out += field("primaries", primaries_text(information));
+  out += field("mutant of", information.original) + field("defect", information.defect);
+  return out + parameters_text(information) + prepared_text(plugin) +
+         mutants_text(information, entries);
+}
+
+int describe(const std::string& plugin) {
+  fmt::print("{}", manual(find_plugin(plugin, {}), catalogue()));
+  return 0;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,352 @@
+#include "harness/command/plan_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "harness/plan/forecast.h"
+#include "harness/run/observation_faults.h"
+#include "harness/theta/scale.h"
+#include "reports/words/columns.h"
+#include "reports/words/effect.h"
+#include "reports/words/number.h"
+#include "reports/words/text.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr int page_width = 100;
+constexpr std::size_t most_gates = 3;
+constexpr const char* unknown = "-";
+
+// Method, primaries, looks, first, last, in all, rays, CPU time, effect, share.
+constexpr std::size_t column_count = 10;
+using Cells = std::array<std::string, column_count>;
+const Cells headings{"method", "primaries", "looks",    "first",  "last",
+                     "in all", "rays",      "CPU time", "effect", "if true"};
+
+struct Row {
+  std::string name;
+  Cells cells;
+  std::vector<std::string> notes;
+};
+
+std::string plain(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const char32_t c = reports::next_code_point(text, i);
+    reports::append_code_point(out, c == 0xA0 ? U' ' : c);
+  }
+  return out;
+}
+
+std::string count_of(double count) {
+  return plain(reports::count_text(static_cast<std::uint64_t>(std::llround(count))));
+}
+
+/// Cost of a test's last look, or of a pool.
+struct Total {
+  double primaries = 0;
+  double rays = 0;
+  double seconds = 0;
+  bool known = true;  ///< rays and seconds are of everything
+
+  void add(const Pool& pool, double secondaries, const UnitCosts& costs) {
+    primaries += secondaries *
+                 static_cast<double>(primaries_of_observation(*pool.setup(), pool.primaries()));
+    const auto found = costs.find(&pool);
+    if (found != costs.end() && std::holds_alternative<UnitCost>(found->second)) {
+      const UnitCost& cost = std::get<UnitCost>(found->second);
+      rays += secondaries * cost.rays;
+      seconds += secondaries * cost.seconds;
+    } else if (!pool.setup()->observations()) {
+      known = false;
+    }
+  }
+};
+
+void add_last_look(const TestWork& work, const UnitCosts& costs, Total& total) {
+  const std::uint64_t last = work.outcome.plan.most_secondaries();
+  for (std::size_t i = 0; i < work.pools.size(); ++i) {
+    const std::uint64_t secondaries = work.outcome.question.subjects[i].secondaries(last);
+    total.add(*work.pools[i], static_cast<double>(secondaries), costs);
+  }
+}
+
+Total total_of(const TestWork& work, const UnitCosts& costs) {
+  Total total;
+  add_last_look(work, costs, total);
+  return total;
+}
+
+/// Of the one subject, of both where they differ, and of a sweep from the least to the most.
+std::string primaries_text(const Plan& plan) {
+  const auto [least, most] = std::minmax_element(plan.primaries.begin(), plan.primaries.end());
+  const auto text = [](std::uint64_t primaries) {
+    return count_of(static_cast<double>(primaries));
+  };
+  if (*least == *most) return text(*most);
+  if (plan.primaries.size() > 2) return text(*least) + " to " + text(*most);
+  return text(plan.primaries[0]) + " + " + text(plan.primaries[1]);
+}
+
+std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
+  const Regions& regions = test.plan.regions[0];
+  std::optional<double> effect = regions.detect;
+  if (regions.relation == Relation::within) effect = regions.within;
+  // Data that are given may find less than what was asked for.
+  if (!effect || test.question.test->secondaries || test.question.test->budget) {
+    effect = forecast.detectable;
+  }
+  if (!effect) return unknown;
+  return plain(
+      reports::margin_text(*effect, {.quantity = test.question.on_log_scale() ? "ln(ratio)" : "",
+                                     .relative = is_relative(test.question, 0)}));
+}
+
+std::string gate_text(const reports::Gate& gate) {
+  return fmt::format("{}: {} {}, limit {}", gate.state, gate.name, reports::human(gate.value),
+                     reports::human(gate.limit));
+}
+
+/// Gates that are not green in words, and how many are.
+std::vector<std::string> gate_notes(const std::vector<reports::Gate>& gates) {
+  std::vector<std::string> notes;
+  std::size_t green = 0;
+  std::size_t more = 0;
+  const reports::Gate* nearest = nullptr;
+  const auto nearness = [](const reports::Gate& gate) {
+    return std::abs(gate.value.value_or(0)) / gate.limit.value_or(1);
+  };
+  for (const reports::Gate& gate : gates) {
+    if (gate.state != "green") {
+      if (notes.size() < most_gates)
+        notes.push_back(gate_text(gate));
+      else
+        ++more;
+      continue;
+    }
+    ++green;
+    if (nearest == nullptr || nearness(gate) > nearness(*nearest)) nearest = &gate;
+  }
+  if (more > 0) notes.push_back(fmt::format("{} more gates that are not green", more));
+  if (green == 1) notes.push_back(gate_text(*nearest));
+  if (green > 1) {
+    notes.push_back(fmt::format("{} gates green, nearest to its limit {} {}, limit {}", green,
+                                nearest->name, reports::human(nearest->value),
+                                reports::human(nearest->limit)));
+  }
+  return notes;
+}
+
+/// Why the test will be an error: it has no plan, or an estimator stopped when its cost was
+/// measured; "" where nothing is known.
+std::string trouble_of(const TestWork& work, const UnitCosts& costs) {
+  const TestOutcome& test = work.outcome;
+  if (!test.plan.error.empty()) return test.plan.error;
+  if (!test.plan.pilot_error.empty()) return test.plan.pilot_error;
+  for (std::size_t i = 0; i < work.pools.size(); ++i) {
+    const auto found = costs.find(work.pools[i].get());
+    if (found == costs.end() || !std::holds_alternative<Fault>(found->second)) continue;
+    return fmt::format("`{}` stopped at {}, when its cost was measured",
+                       test.question.subjects[i].estimator->name,
+                       to_string(std::get<Fault>(found->second)));
+  }
+  return "";
+}
+
+Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
+  const TestOutcome& test = work.outcome;
+  const Plan& plan = test.plan;
+  const Total total = total_of(work, costs);
+  const Forecast expected = forecast(test, pilots);
+  Row row{.name = test.question.test->name, .cells = {}, .notes = gate_notes(plan.gates)};
+  row.cells = {plan.method.name,
+               primaries_text(plan),
+               fmt::format("{}", plan.looks.sizes.size()),
+               count_of(static_cast<double>(plan.looks.sizes.front())),
+               count_of(static_cast<double>(plan.most_secondaries())),
+               count_of(total.primaries),
+               total.known ? count_of(total.rays) : unknown,
+               total.known ? plain(reports::duration(total.seconds)) : unknown,
+               effect_text(test, expected),
+               expected.share ? fmt::format("{:.0f} %", 100 * *expected.share) : unknown};
+  if (!plan.caution.empty()) row.notes.push_back(plan.caution);
+  if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid);
+  if (const std::string trouble = trouble_of(work, costs); !trouble.empty()) {
+    row.notes.push_back("error: " + trouble);
+  }
+  return row;
+}
+
+class Page {
+ public:
+  void line(const std::string& text) {
+    std::string whole = plain(text);
+    whole.erase(whole.find_last_not_of(' ') + 1);
+    out_ += whole + "\n";
+  }
+  void paragraph(const std::string& text, const std::string& indent = "") {
+    for (const std::string& part :
+         reports::wrap(reports::one_line(text), page_width - static_cast<int>(indent.size()))) {
+      line(indent + part);
+    }
+  }
+  void blank() { out_ += "\n"; }
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string out_;
+};
+
+std::array<int, column_count> widths_of(const std::vector<Row>& rows) {
+  std::array<int, column_count> widths{};
+  for (std::size_t c = 0; c < column_count; ++c) {
+    widths[c] = reports::columns(headings[c]);
+    for (const Row& row : rows) widths[c] = std::max(widths[c], reports::columns(row.cells[c]));
+  }
+  return widths;
+}
+
+std::string line_of(const Cells& cells, const std::array<int, column_count>& widths) {
+  int wide = 4;
+  for (const int width : widths) wide += width + 2;
+  const std::string gap = wide - 2 <= page_width ? "  " : " ";
+  std::string line = "    " + reports::pad_right(cells[0], widths[0]);
+  for (std::size_t c = 1; c < column_count; ++c) {
+    const auto blanks = static_cast<std::size_t>(widths[c] - reports::columns(cells[c]));
+    line += gap + std::string(blanks, ' ') + cells[c];
+  }
+  return line;
+}
+
+/// Whether a program is missing that the suite needs.
+bool is_skipped(const SuiteRun& run) {
+  return !run.untested.empty() && run.untested.front().verdict == reports::Verdict::skipped;
+}
+
+void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
+  const Suite& suite = run.suite;
+  page.paragraph(suite.name + (suite.file.empty() ? "" : " (" + suite.file + ")"));
+  page.paragraph(fmt::format("alpha {}, beta {}, seed {}", suite.alpha, suite.beta, run.seed));
+  page.blank();
+  for (const Untested& each : run.untested) {
+    if (is_skipped(run)) break;
+    page.paragraph(each.test->name, "  ");
+    page.paragraph("error: " + each.message, "      ");
+  }
+  if (run.tests.empty()) {
+    if (run.untested.empty()) page.paragraph("No test of this suite is selected.");
+    if (is_skipped(run)) {
+      page.paragraph("Its tests will be skipped: " + run.untested.front().message + ".");
+    }
+    page.blank();
+    return;
+  }
+  std::vector<Row> rows;
+  for (const TestWork& work : run.tests) rows.push_back(row_of(work, run.pilots, costs));
+  const auto widths = widths_of(rows);
+  page.line(line_of(headings, widths));
+  for (const Row& row : rows) {
+    page.paragraph(row.name, "  ");
+    page.line(line_of(row.cells, widths));
+    for (const std::string& note : row.notes) page.paragraph(note, "      ");
+  }
+  page.blank();
+}
+
+/// All that is drawn at the most: each pool to the last look of the test that asks most of it.
+Total total_of(const PlannedRun& planned, const UnitCosts& costs) {
+  Total total;
+  for (const auto& pool : planned.pools.all()) {
+    total.add(*pool, static_cast<double>(pool->most_marked()), costs);
+  }
+  return total;
+}
+
+/// What a run takes if theta = 0 in every claim: each pool to the largest of its tests' means.
+Total expected_total(const PlannedRun& planned, const UnitCosts& costs) {
+  std::map<const Pool*, std::uint64_t> most;
+  for (const auto& run : planned.suites) {
+    for (const TestWork& work : run->tests) {
+      const std::uint64_t expected = expected_secondaries(work.outcome, run->pilots);
+      for (std::size_t i = 0; i < work.pools.size(); ++i) {
+        std::uint64_t& of_pool = most[work.pools[i].get()];
+        of_pool = std::max(of_pool, work.outcome.question.subjects[i].secondaries(expected));
+      }
+    }
+    for (const Picture& picture : run->pictures) {
+      most[picture.pool.get()] = std::max(most[picture.pool.get()], picture.pool->requested());
+    }
+  }
+  Total total;
+  for (const auto& [pool, secondaries] : most) {
+    total.add(*pool, static_cast<double>(secondaries), costs);
+  }
+  return total;
+}
+
+std::string total_text(const Total& total) {
+  return fmt::format("{} primaries, {} rays, {} of CPU time", count_of(total.primaries),
+                     count_of(total.rays), plain(reports::duration(total.seconds)));
+}
+
+void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs) {
+  std::size_t tests = 0;
+  Total separate;
+  for (const auto& run : planned.suites) {
+    tests += run->tests.size();
+    for (const TestWork& work : run->tests) add_last_look(work, costs, separate);
+  }
+  page.paragraph(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
+                             tests == 1 ? "" : "s", total_text(separate)));
+  page.paragraph(fmt::format(
+      "Tests of one estimator share observations, and every estimator is drawn for its picture: at "
+      "most {} in all. Most tests end at an earlier look: about {} if every claim holds exactly "
+      "(tests whose share is not known counted in full).",
+      total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
+  page.paragraph(
+      "primaries: of one secondary estimate. first, last: secondaries of each source at these "
+      "looks, of a file all its rows where these are fewer. in all, rays, CPU time: primaries of "
+      "all sources up to the last look, of images those of every pixel and component, and what "
+      "they cost. "
+      "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
+      "beta. if true: the share of the last look that is drawn on average if the claim holds "
+      "exactly, at most.");
+}
+
+}  // namespace
+
+std::string plan_text(const PlannedRun& planned, const UnitCosts& costs) {
+  Page page;
+  for (const auto& run : planned.suites) write(page, *run, costs);
+  write_totals(page, planned, costs);
+  return page.take();
+}
+
+int plan_exit_code(const PlannedRun& planned, const UnitCosts& costs) {
+  bool any = false;
+  bool bad = false;
+  bool skipped = false;
+  for (const auto& run : planned.suites) {
+    skipped = skipped || is_skipped(*run);
+    for (const Untested& each : run->untested) {
+      if (each.verdict != reports::Verdict::error) continue;
+      any = true;
+      bad = bad || each.test->expect != Expectation::error;
+    }
+    for (const TestWork& work : run->tests) {
+      const TestOutcome& test = work.outcome;
+      any = true;
+      bad = bad || !trouble_of(work, costs).empty() ||
+            (!test.plan.invalid.empty() && test.question.test->expect != Expectation::invalid);
+    }
+  }
+  if (!any) return skipped ? 77 : 4;
+  return bad ? 1 : 0;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,139 @@
+#include "harness/command/program.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+
+#include "estimators/library_host.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/progress_terminal.h"
+#include "harness/command/cli.h"
+#include "harness/command/failure.h"
+#include "harness/command/shard_environment.h"
+#include "harness/record/replay.h"
+
+namespace assay::harness {
+
+namespace {
+
+constexpr int trouble = 2;
+constexpr int stopped = 130;
+
+std::vector<Suite> load(const std::vector<std::string>& files) {
+  std::vector<Suite> suites;
+  std::map<std::filesystem::path, std::string> seen;
+  for (const std::string& file : files) {
+    suites.push_back(load_suite(file));
+    const auto [first, is_new] = seen.emplace(std::filesystem::weakly_canonical(file), file);
+    if (is_new) continue;
+    throw InputError(
+        {}, file == first->second
+                ? fmt::format("the suite `{}` is given twice", file)
+                : fmt::format("`{}` and `{}` are one suite; give it once", first->second, file));
+  }
+  return suites;
+}
+
+int act(const RunCommand& command) {
+  std::vector<Suite> suites = load(command.suites);
+  for (const std::string& text : command.assignments) set_parameter(suites, text);
+  RunOptions options = command.options;
+  take_shard_from(system_environment, options);
+  return run_suites(suites, options, command.output);
+}
+
+int act(const PlanCommand& command) {
+  std::vector<Suite> suites = load(command.suites);
+  for (const std::string& text : command.assignments) set_parameter(suites, text);
+  return plan_suites(suites, command.options, command.quiet);
+}
+
+int act(const CheckCommand& command) {
+  return run_suites({suite_of_claim(command.arguments)}, command.options, command.output);
+}
+
+/// What is freed stays with the process. Moments, weights and maps of pictures come and go by tens
+/// of megabytes, and pages that the system has to give anew take longer than what is done with
+/// them.
+void keep_freed_memory() {
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, -1);
+}
+
+int act(const ImagesCommand& command) {
+  keep_freed_memory();
+  return run_suites({suite_of_images(command.arguments)}, command.options, command.output);
+}
+
+int act(const SampleArguments& arguments) { return sample(arguments); }
+
+int act(const ListCommand& command) {
+  return command.tests ? list_tests(load(command.suites), command.selection) : list_plugins();
+}
+
+int act(const DescribeCommand& command) { return describe(command.plugin); }
+
+int act(const ReplayArguments& arguments) { return replay(arguments); }
+
+int act(const ReportCommand& command) { return report_saved_run(command.file, command.output); }
+
+int act(const MergeCommand& command) { return merge_shards(command.arguments, command.output); }
+
+int act(const CalibrateCommand& command) { return calibrate(command.arguments, command.output); }
+
+int act(const TextCommand& command) {
+  fmt::print("{}", command.text);
+  return 0;
+}
+
+/// The text that columns of the place `claim` refer to.
+std::string claim_of(const Command& command) {
+  if (const auto* check = std::get_if<CheckCommand>(&command)) return check->arguments.claim;
+  return "";
+}
+
+/// Output that could not be written (a full disk, a closed pipe) must not look like success.
+int flushed(int code) {
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
+  fmt::print(stderr, "assay: standard output could not be written\n");
+  return code == 0 ? trouble : code;
+}
+
+int guarded(const std::vector<std::string>& arguments, Command& command) {
+  command = parse_command_line(arguments);
+  watch_interrupts();
+  set_stop_question(interrupted);
+  set_notice([](const std::string& sentence) { say_beside_progress(sentence); });
+  set_library_host("/proc/self/exe");
+  const int code = std::visit([](const auto& c) { return act(c); }, command);
+  return interrupted() ? stopped : flushed(code);
+}
+
+}  // namespace
+
+int program(const std::vector<std::string>& arguments) {
+  // Not for users: this very program started by itself, to keep a library's crash out of the run.
+  if (!arguments.empty() && arguments.front() == library_host_word) {
+    return host_library({arguments.begin() + 1, arguments.end()});
+  }
+  Command command;
+  try {
+    return guarded(arguments, command);
+  } catch (const InputError& e) {
+    fmt::print(stderr, "{}", failure_text(e, claim_of(command)));
+  } catch (const std::runtime_error& e) {
+    // The world's fault: a full disk, a file that went away.
+    fmt::print(stderr, "{}", in_lines(e.what()));
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}", in_lines(fmt::format("internal error: {}", e.what())));
+  } catch (...) {
+    fmt::print(stderr, "assay: an estimator threw something that is no std::exception\n");
+  }
+  return interrupted() ? stopped : trouble;
+}
+
+}  // namespace assay::harness

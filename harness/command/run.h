@@ -1,0 +1,20 @@
+#pragma once
+
+// From suites to a record: pilot, plan, sampling, the family decision, verdicts.
+
+#include <string>
+#include <vector>
+
+#include "harness/base/progress.h"
+#include "harness/suite/run_options.h"
+#include "harness/suite/suite.h"
+#include "reports/record/record.h"
+
+namespace assay::harness {
+
+/// Runs the selected tests of the suites. InputError for anything found wrong before sampling. A
+/// ledger that cannot be written is a std::runtime_error, or is told in `ledger_fault`.
+reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
+                    std::string* ledger_fault = nullptr);
+
+}  // namespace assay::harness

@@ -1,0 +1,203 @@
+#include "harness/draws/consistency_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "estimators/flush_denormals.h"
+#include "harness/draws/sound_draw.h"
+#include "harness/sampling/fetched_ahead.h"
+
+namespace assay::harness {
+namespace {
+
+double relative_difference(double a, double b) {
+  if (a == b) return 0;
+  return std::abs(a - b) / std::max(std::abs(a), std::abs(b));
+}
+
+/// The larger, and NaN where one is.
+double farther(double one, double other) { return std::isnan(one) || one > other ? one : other; }
+
+/// Whether a draw's own numbers say how far it is from what its sampler declares.
+bool needs_no_density(const Sampler& sampler, const SamplerDraw& draw) {
+  return !draw.valid || sampler.point_mass(draw.lobe) > 0;
+}
+
+double without_density(const SamplerDraw& draw) {
+  return draw.valid || draw.weight == 0 ? 0 : std::numeric_limits<double>::infinity();
+}
+
+double with_density(const SamplerDraw& draw, double density, double evaluation) {
+  return farther(relative_difference(draw.density, density),
+                 relative_difference(draw.weight * density, evaluation));
+}
+
+struct JudgedDraw {
+  SamplerDraw draw;
+  double difference = 0;
+  double density = 0;  ///< as declared at its point, where that was asked for
+};
+
+JudgedDraw judged_alone(const Sampler& sampler, const SamplerDraw& draw) {
+  if (needs_no_density(sampler, draw)) return {draw, without_density(draw)};
+  const double density = sampler.density(draw.point);
+  return {draw, with_density(draw, density, sampler.evaluate(draw.point)), density};
+}
+
+/// Draws that must be held against density() and evaluate(), by their places among others.
+struct Compared {
+  std::vector<std::size_t> places = {};
+  std::vector<Point> points = {};
+  std::vector<double> densities = {};
+  std::vector<double> evaluations = {};
+};
+
+Compared compared(const Sampler& sampler, std::span<const SamplerDraw> draws) {
+  Compared some;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    if (needs_no_density(sampler, draws[i])) continue;
+    some.places.push_back(i);
+    some.points.push_back(draws[i].point);
+  }
+  some.densities.resize(some.points.size());
+  some.evaluations.resize(some.points.size());
+  return some;
+}
+
+/// Numbers at the points up to the first of which there is none; how many. Throws where there is
+/// not even one.
+std::size_t write_some(std::span<const Point> points, std::span<double> out, auto numbers) {
+  std::size_t done = 0;
+  try {
+    while (done < points.size()) done += numbers(points.subspan(done), out.subspan(done));
+  } catch (const std::runtime_error&) {
+    if (done == 0) throw;
+  }
+  return done;
+}
+
+/// Of how many of the draws the numbers can be had. Throws where of none.
+std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
+  if (some.points.empty()) return draws;
+  try {
+    std::size_t known = write_some(some.points, some.densities, [&](auto points, auto out) {
+      return sampler.densities(points, out);
+    });
+    known = write_some(std::span(some.points).first(known), some.evaluations,
+                       [&](auto points, auto out) { return sampler.evaluations(points, out); });
+    return known < some.points.size() ? some.places[known] : draws;
+  } catch (const std::runtime_error&) {
+    if (some.places[0] == 0) throw;
+    return some.places[0];
+  }
+}
+
+/// Up to the first of which no claim can be: what its sampler declares there is not asked for.
+/// Throws where that is the first of all.
+std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream> streams) {
+  std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    try {
+      sound(named, draws[i]);
+    } catch (const std::runtime_error&) {
+      if (i == 0) throw;
+      draws.resize(i);
+    }
+  }
+  return draws;
+}
+
+std::vector<JudgedDraw> judged(const NamedSampler& named, std::span<Stream> streams) {
+  const Sampler& sampler = *named.sampler;
+  std::vector<JudgedDraw> all;
+  const std::vector<SamplerDraw> draws = sound_draws(named, streams);
+  for (const SamplerDraw& draw : draws) all.push_back({draw, without_density(draw)});
+  Compared some = compared(sampler, draws);
+  all.resize(ask(sampler, some, draws.size()));
+  for (std::size_t i = 0; i < some.places.size() && some.places[i] < all.size(); ++i) {
+    JudgedDraw& mine = all[some.places[i]];
+    mine.difference = with_density(mine.draw, some.densities[i], some.evaluations[i]);
+    mine.density = some.densities[i];
+  }
+  return all;
+}
+
+class ConsistencyEstimator final : public Estimator {
+ public:
+  explicit ConsistencyEstimator(const ConsistencySetup& setup)
+      : setup_(setup), rounding_(setup.sampler().rounding()) {}
+
+  void announce(const Announcement& next) override { ahead_.announce(next); }
+  double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
+
+  void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
+    const auto [draw, difference, density] = next(random);
+    if (density < 0) sound_density(setup_.named(), draw.point, density);
+    // NaN is not consistent either.
+    const bool consistent = difference <= rounding_;
+    out[0] =
+        consistent ? 0 : 1 + static_cast<double>(setup_.cells().index(sound(setup_.named(), draw)));
+    out[1] = difference;
+    cost.samples += 1;
+  }
+
+ private:
+  JudgedDraw next(Stream& random) {
+    const Sampler& sampler = setup_.sampler();
+    if (sampler.is_elsewhere()) {
+      return ahead_.of(random, [&](auto streams) { return judged(setup_.named(), streams); });
+    }
+    const SamplerDraw draw = sampler.sample(random);
+    sound(setup_.named(), draw);
+    return judged_alone(sampler, draw);
+  }
+
+  const ConsistencySetup& setup_;
+  double rounding_;
+  FetchedAhead<JudgedDraw> ahead_;
+};
+
+}  // namespace
+
+double inconsistency(const Sampler& sampler, const SamplerDraw& draw) {
+  return judged_alone(sampler, draw).difference;
+}
+
+ConsistencySetup::ConsistencySetup(NamedSampler named)
+    : SamplerSetup(std::move(named)), cells_(sampler()) {}
+
+std::vector<Channel> ConsistencySetup::channels() const {
+  return {{.name = inconsistent_channel}, {.name = "difference", .diagnostic = true}};
+}
+
+std::unique_ptr<Estimator> ConsistencySetup::make() const {
+  return std::make_unique<ConsistencyEstimator>(*this);
+}
+
+std::optional<std::uint64_t> first_inconsistent(const Pool& pool, std::uint64_t count) {
+  const FlushDenormals flush;
+  const std::unique_ptr<Estimator> estimator = pool.setup()->make();
+  estimator->announce({.key = pool.key(), .first = 0, .last = count});
+  std::vector<double> out(pool.channels());
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Stream random(pool.key(), i);
+    Cost unused;
+    estimator->secondary(random, pool.primaries(), out, unused);
+    if (out[0] != 0) return i;
+  }
+  return std::nullopt;
+}
+
+std::string consistency_purpose(const std::string& sampler) { return sampler + " consistency"; }
+
+std::shared_ptr<const SamplerSetup> consistency_setup(const NamedSampler& named,
+                                                      const Location& where) {
+  require_sound(named, where);
+  return std::make_shared<const ConsistencySetup>(named);
+}
+
+}  // namespace assay::harness

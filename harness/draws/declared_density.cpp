@@ -1,0 +1,103 @@
+#include "harness/draws/declared_density.h"
+
+#include <utility>
+#include <vector>
+
+#include "harness/draws/domain_chart.h"
+#include "harness/draws/sound_draw.h"
+
+namespace assay::harness {
+namespace {
+
+// So many panels of both coordinates together cost about as much as the limits allow.
+constexpr std::size_t most_panels = std::size_t{1} << 15;
+
+Panels affordable(Panels panels) {
+  while (panels.first * panels.second > most_panels) {
+    std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
+    larger = (larger + 1) / 2;
+  }
+  return panels;
+}
+
+Densities checked(const NamedSampler& named, Densities densities) {
+  return [&named, densities](std::span<const Point> points, std::span<double> out) {
+    const std::size_t written = densities(points, out);
+    for (std::size_t i = 0; i < written; ++i) sound_density(named, points[i], out[i]);
+    return written;
+  };
+}
+
+void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out) {
+  for (std::size_t done = 0; done < points.size();) {
+    done += densities(points.subspan(done), out.subspan(done));
+  }
+}
+
+/// A density on a plane as stats integrates it.
+class OnChart {
+ public:
+  OnChart(const DomainChart& chart, Densities densities)
+      : chart_(chart),
+        densities_(std::move(densities)),
+        firsts_(chart.coordinate),
+        seconds_(chart.coordinate) {}
+
+  void operator()(std::span<const double> x, std::span<const double> y, std::span<double> values) {
+    points_.clear();
+    jacobians_.clear();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Coordinate& first = firsts_(x[i]);
+      const Coordinate& second = seconds_(y[i]);
+      points_.push_back(chart_.point(first, second));
+      jacobians_.push_back(chart_.jacobian(first, second));
+    }
+    write_all(densities_, points_, values);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] *= jacobians_[i];
+  }
+
+ private:
+  DomainChart chart_;
+  Densities densities_;
+  RememberedCoordinates firsts_;
+  RememberedCoordinates seconds_;
+  std::vector<Point> points_;
+  std::vector<double> jacobians_;
+};
+
+}  // namespace
+
+Densities densities_of(const NamedSampler& named) {
+  return checked(named, [&named](std::span<const Point> points, std::span<double> out) {
+    return named.sampler->densities(points, out);
+  });
+}
+
+Densities densities_of_lobe(const NamedSampler& named, int lobe) {
+  return checked(named, [&named, lobe](std::span<const Point> points, std::span<double> out) {
+    return named.sampler->lobe_densities(lobe, points, out);
+  });
+}
+
+stats::LineDensity line_density(const Sampler& sampler, Densities densities) {
+  const auto values = [densities = std::move(densities)](std::span<const double> x,
+                                                         std::span<double> out) {
+    std::vector<Point> points;
+    for (const double each : x) points.push_back({each, 0, 0});
+    write_all(densities, points, out);
+  };
+  return {.values = values, .panels = sampler.panels().first};
+}
+
+stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
+                                  Densities densities) {
+  const DomainChart chart = chart_by(sampler.domain(), marginal);
+  const Panels panels = affordable(sampler.panels());
+  return {.x = chart.first,
+          .y = chart.second,
+          .values = OnChart(chart, std::move(densities)),
+          .x_panels = marginal == 0 ? panels.first : panels.second,
+          .y_panels = marginal == 0 ? panels.second : panels.first};
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,125 @@
+#include "harness/draws/draw_cells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "harness/draws/domain_chart.h"
+
+namespace assay::harness {
+namespace {
+
+// Fine enough to see a defect of one quadrant or a wrong exponent; cells that expect fewer than 20
+// points are pooled by the test.
+constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
+constexpr std::size_t interval_cells = 64;
+
+}  // namespace
+
+std::string range_text(const std::string& name, stats::Span span) {
+  const double largest = std::max(std::abs(span.low), std::abs(span.high));
+  // No two doubles share 17.
+  const int digits = std::clamp(2 + static_cast<int>(std::log10(largest / span.width())), 3, 17);
+  return fmt::format("{} {:.{}g} to {:.{}g}", name, span.low, digits, span.high, digits);
+}
+
+stats::PlaneGrid measure_grid(const Sampler& sampler) {
+  if (sampler.domain() != Domain::interval) {
+    return equal_measure_grid(sampler.domain(), plane_cells);
+  }
+  const auto [low, high] = sampler.bounds();
+  stats::PlaneGrid grid{.x_borders = {}, .y_borders = {0, 1}};
+  for (std::size_t k = 0; k < interval_cells; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(interval_cells);
+    const double border = low + (high - low) * share;
+    if (grid.x_borders.empty() || border > grid.x_borders.back()) grid.x_borders.push_back(border);
+  }
+  if (grid.x_borders.back() == high) grid.x_borders.pop_back();
+  grid.x_borders.push_back(high);
+  return grid;
+}
+
+DrawCells::DrawCells(const Sampler& sampler)
+    : DrawCells(sampler, std::vector(static_cast<std::size_t>(sampler.lobes()),
+                                     stats::whole_cells(measure_grid(sampler)))) {}
+
+DrawCells::DrawCells(const Sampler& sampler, std::vector<stats::HalvedCells> of_lobes)
+    : sampler_(sampler), of_lobes_(std::move(of_lobes)) {
+  for (const stats::HalvedCells& cells : of_lobes_) {
+    begin_.push_back(lobes_end_);
+    lobes_end_ += cells.size();
+  }
+  for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
+    if (sampler.point_mass(lobe) != 0) point_masses_.push_back(lobe);
+  }
+}
+
+std::size_t DrawCells::index(const SamplerDraw& draw) const {
+  if (!draw.valid) return size() - 1;
+  const auto point_mass = std::ranges::find(point_masses_, draw.lobe);
+  if (point_mass != point_masses_.end()) {
+    return lobes_end_ + static_cast<std::size_t>(point_mass - point_masses_.begin());
+  }
+  const auto lobe = static_cast<std::size_t>(draw.lobe);
+  if (sampler_.domain() == Domain::interval) {
+    return begin_[lobe] + of_lobes_[lobe].index(draw.point[0], 0);
+  }
+  const auto [first, second] = chart_by(sampler_.domain(), 0).coordinates(draw.point);
+  return begin_[lobe] + of_lobes_[lobe].index(first, second);
+}
+
+DrawCells::Found DrawCells::found(std::size_t cell) const {
+  const auto after = std::ranges::upper_bound(begin_, cell);
+  const auto lobe = static_cast<std::size_t>(after - begin_.begin()) - 1;
+  return {.lobe = lobe, .cell = cell - begin_[lobe]};
+}
+
+std::size_t DrawCells::grid_cell(std::size_t cell) const {
+  const auto [lobe, number] = found(cell);
+  return of_lobes_[lobe].grid_cells[number];
+}
+
+stats::PlaneCell DrawCells::sides(std::size_t cell) const {
+  const auto [lobe, number] = found(cell);
+  return of_lobes_[lobe].cells[number];
+}
+
+std::vector<std::size_t> DrawCells::at(double x, double y) const {
+  std::vector<std::size_t> cells;
+  for (std::size_t lobe = 0; lobe < of_lobes_.size(); ++lobe) {
+    cells.push_back(begin_[lobe] + of_lobes_[lobe].index(x, y));
+  }
+  return cells;
+}
+
+std::string DrawCells::describe(std::size_t cell) const {
+  if (cell == size() - 1) return "the draws without a point";
+  if (cell >= lobes_end_) {
+    return fmt::format("the points of lobe {}", point_masses_[cell - lobes_end_]);
+  }
+  const std::vector<Marginal> coordinates = cell_coordinates(sampler_);
+  const stats::PlaneCell where = sides(cell);
+  std::string text = range_text(coordinates[0].name, where.x);
+  if (coordinates.size() > 1) text += ", " + range_text(coordinates[1].name, where.y);
+  return of_lobes_.size() > 1 ? fmt::format("{} of lobe {}", text, found(cell).lobe) : text;
+}
+
+std::vector<Marginal> marginals_of(const Sampler& sampler) {
+  std::vector<Marginal> all = marginals(sampler.domain());
+  if (sampler.domain() == Domain::interval) {
+    all[0].low = sampler.bounds()[0];
+    all[0].high = sampler.bounds()[1];
+  }
+  return all;
+}
+
+std::vector<Marginal> cell_coordinates(const Sampler& sampler) {
+  std::vector<Marginal> all = marginals_of(sampler);
+  if (sampler.domain() == Domain::triangle) all[1].name = "v / (1 - u)";
+  return all;
+}
+
+}  // namespace assay::harness

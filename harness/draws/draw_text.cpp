@@ -1,0 +1,44 @@
+#include "harness/draws/draw_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <span>
+
+#include "estimators/flush_denormals.h"
+#include "harness/draws/sampler_setup.h"
+
+namespace assay::harness {
+namespace {
+
+std::size_t coordinates(Domain domain) {
+  switch (domain) {
+    case Domain::interval:
+      return 1;
+    case Domain::square:
+    case Domain::triangle:
+      return 2;
+    case Domain::hemisphere:
+    case Domain::sphere:
+      break;
+  }
+  return 3;
+}
+
+}  // namespace
+
+std::string draw_text(const Sampler& sampler, StreamKey key, std::uint64_t index) {
+  const FlushDenormals flush;
+  Stream random(key, index);
+  const SamplerDraw draw = draws_of(sampler, std::span(&random, 1)).at(0);
+  if (!draw.valid) return fmt::format("no point; weight {}", draw.weight);
+  const std::span point = std::span(draw.point).first(coordinates(sampler.domain()));
+  std::string text = fmt::format("point ({}); weight {}", fmt::join(point, ", "), draw.weight);
+  if (sampler.lobes() > 1) text += fmt::format("; lobe {}", draw.lobe);
+  if (sampler.point_mass(draw.lobe) > 0) return text + "; a point mass, which has no density";
+  return text + fmt::format("; density {} with the draw, {} at its point; evaluate there {}",
+                            draw.density, sampler.density(draw.point),
+                            sampler.evaluate(draw.point));
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,163 @@
+#include "harness/draws/sound_draw.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace assay::harness {
+namespace {
+
+// Normalised in single precision a length is off by some 1e-7, by a fast reciprocal root 3e-5; one
+// that was not normalised is off by more.
+constexpr double least_length_slack = 1e-4;
+// Some ten roundings of single precision.
+constexpr double least_slack = 1e-6;
+// A number's rounding in single precision, relative.
+constexpr double single_rounding = std::numeric_limits<float>::epsilon();
+
+bool on_directions(const Sampler& sampler) {
+  return sampler.domain() == Domain::hemisphere || sampler.domain() == Domain::sphere;
+}
+
+std::string in_words(const Sampler& sampler, const Point& p) {
+  if (sampler.domain() == Domain::interval) return fmt::format("{}", p[0]);
+  if (!on_directions(sampler)) return fmt::format("({}, {})", p[0], p[1]);
+  return fmt::format("({}, {}, {})", p[0], p[1], p[2]);
+}
+
+std::string domain_in_words(const Sampler& sampler) {
+  const auto [low, high] = sampler.bounds();
+  switch (sampler.domain()) {
+    case Domain::interval:
+      return fmt::format("interval [{}, {}]", low, high);
+    case Domain::square:
+      return "square (u and v from 0 to 1)";
+    case Domain::triangle:
+      return "triangle (u >= 0, v >= 0, u + v <= 1)";
+    case Domain::hemisphere:
+      return "hemisphere (z >= 0)";
+    case Domain::sphere:
+      break;
+  }
+  return "sphere";
+}
+
+double length_of(const Point& p) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
+
+struct Range {
+  double low;
+  double high;
+};
+
+/// Whether the coordinate is in the range, where it is at most `slack` outside by being taken
+/// there.
+bool settle(double& x, Range range, double slack) {
+  if (!(x >= range.low - slack && x <= range.high + slack)) return false;
+  x = std::clamp(x, range.low, range.high);
+  return true;
+}
+
+/// An interval far from 0 has bounds that single precision itself has not.
+double slack_of_interval(double slack, Range range) {
+  return slack * (range.high - range.low) +
+         single_rounding * std::max(std::abs(range.low), std::abs(range.high));
+}
+
+/// The same of a point. What u + v exceeds 1 by is left: the coordinates of cells know of it.
+bool settle(Point& p, const Sampler& sampler) {
+  const double slack = std::max(least_slack, sampler.rounding());
+  switch (sampler.domain()) {
+    case Domain::interval: {
+      const auto [low, high] = sampler.bounds();
+      return settle(p[0], {low, high}, slack_of_interval(slack, {low, high}));
+    }
+    case Domain::triangle:
+      if (!(p[0] + p[1] <= 1 + slack)) return false;
+      [[fallthrough]];
+    case Domain::square:
+      return settle(p[0], {0, 1}, slack) && settle(p[1], {0, 1}, slack);
+    case Domain::hemisphere:
+      return settle(p[2], {0, 2}, slack);
+    case Domain::sphere:
+      break;
+  }
+  return true;
+}
+
+void require_lobe(const NamedSampler& named, int lobe) {
+  const int lobes = named.sampler->lobes();
+  if (lobe >= 0 && lobe < lobes) return;
+  throw std::runtime_error(
+      fmt::format("sampler `{}` drew from lobe {}, and declares {}", named.name, lobe, lobes));
+}
+
+void require_unit(const NamedSampler& named, const Point& point) {
+  if (!on_directions(*named.sampler)) return;
+  const double length = length_of(point);
+  if (std::abs(length - 1) <= least_length_slack) return;
+  if (std::abs(length - 1) <= named.sampler->rounding()) return;
+  throw std::runtime_error(
+      fmt::format("sampler `{}` drew {}, whose length is {}: a direction must have length 1",
+                  named.name, in_words(*named.sampler, point), length));
+}
+
+void require_density(const NamedSampler& named, const SamplerDraw& draw) {
+  if (!(draw.density < 0) || named.sampler->point_mass(draw.lobe) > 0) return;
+  throw std::runtime_error(
+      fmt::format("sampler `{}` drew {} with density {}: a density must be "
+                  ">= 0",
+                  named.name, in_words(*named.sampler, draw.point), draw.density));
+}
+
+/// Whether a draw is sound without a closer look, as nearly all are: asking the sampler for all
+/// that the rules below need takes longer than some samplers take to draw. Where |length^2 - 1| is
+/// at most the slack, so is |length - 1|.
+bool is_plainly_sound(Domain domain, const SamplerDraw& draw) {
+  if (draw.lobe != 0 || !(draw.density >= 0)) return false;
+  const auto& [x, y, z] = draw.point;
+  const double off = std::abs(x * x + y * y + z * z - 1);
+  switch (domain) {
+    case Domain::hemisphere:
+      return z >= 0 && off <= least_length_slack;
+    case Domain::sphere:
+      return off <= least_length_slack;
+    case Domain::square:
+      return x >= 0 && x <= 1 && y >= 0 && y <= 1;
+    case Domain::triangle:
+      return x >= 0 && y >= 0 && x + y <= 1;
+    case Domain::interval:
+      break;
+  }
+  return false;
+}
+
+}  // namespace
+
+SamplerDraw sound(const NamedSampler& named, SamplerDraw draw) {
+  if (is_plainly_sound(named.sampler->domain(), draw)) return draw;
+  require_lobe(named, draw.lobe);
+  if (!draw.valid) return draw;
+  const Point drawn = draw.point;
+  require_unit(named, drawn);
+  if (!settle(draw.point, *named.sampler)) {
+    throw std::runtime_error(fmt::format("sampler `{}` drew {}, outside its {}", named.name,
+                                         in_words(*named.sampler, drawn),
+                                         domain_in_words(*named.sampler)));
+  }
+  require_density(named, draw);
+  return draw;
+}
+
+double sound_density(const NamedSampler& named, const Point& point, double density) {
+  if (density >= 0 && std::isfinite(density)) return density;
+  throw std::domain_error(
+      fmt::format("sampler `{}` declares the density {} at {}: a density must "
+                  "be non-negative and finite",
+                  named.name, density, in_words(*named.sampler, point)));
+}
+
+}  // namespace assay::harness

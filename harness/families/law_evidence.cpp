@@ -1,0 +1,307 @@
+#include "harness/families/law_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "harness/draws/sampler_setup.h"
+#include "harness/language/law_cdf.h"
+#include "stats/basics/sorted.h"
+#include "stats/laws/anderson_darling.h"
+#include "stats/laws/two_part_ks.h"
+#include "stats/means/binomial.h"
+#include "stats/means/two_valued.h"
+
+namespace assay::harness {
+namespace {
+
+using stats::Interval;
+using stats::TestResult;
+
+constexpr const char* quantity = "largest distance of distribution functions";
+constexpr const char* masses_without_a_point = "the masses without a point";
+constexpr const char* quantity_of_both =
+    "largest distance of distribution functions, or of the masses without a point";
+
+/// A sup distance of which the law's table leaves a range.
+Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
+  stats::OneSampleDistance least = measured;
+  stats::OneSampleDistance most = measured;
+  least.distance = std::max(0.0, measured.distance - error);
+  most.distance = std::min(1.0, measured.distance + error);
+  // Asked for again and again, at up to 10 ms each.
+  const TestResult at_none = stats::kolmogorov_smirnov(least);
+  const auto at = [least, most, at_none](double theta) {
+    if (theta <= 0) return at_none;
+    TestResult result = stats::ks_margin(least, theta);
+    result.log_p_lower = stats::ks_margin(most, theta).log_p_lower;
+    return result;
+  };
+  const auto interval = [least, most](double confidence) -> Interval {
+    return {stats::ks_interval(least, confidence).low, stats::ks_interval(most, confidence).high,
+            confidence};
+  };
+  return {.estimate = measured.distance,
+          .at = at,
+          .interval = interval,
+          .quantity = quantity,
+          .distance = true};
+}
+
+/// The same, but for theta = 0.
+Evidence with_anderson_darling(Evidence distance, const TestResult& at_null) {
+  distance.at = [at_null, margin = std::move(distance.at)](double theta) {
+    return theta <= 0 ? at_null : margin(theta);
+  };
+  return distance;
+}
+
+Evidence from_distance(const stats::TwoSampleDistance& distance, const TestResult& at_none) {
+  return {
+      .estimate = distance.distance(),
+      .at = [distance, at_none](
+                double theta) { return theta <= 0 ? at_none : stats::ks_margin(distance, theta); },
+      .interval =
+          [distance](double confidence) { return stats::ks_interval(distance, confidence); },
+      .quantity = quantity,
+      .distance = true};
+}
+
+Evidence from_distance(const stats::TwoSampleDistance& distance) {
+  return from_distance(distance, stats::kolmogorov_smirnov(distance));
+}
+
+double clamp_unit(double p) { return std::clamp(p, 0.0, 1.0); }
+
+/// theta = |P(no point) - declared|; exact binomial at the ends of what the error leaves.
+Evidence from_proportion(stats::Successes missing, const DeclaredLaw& declared) {
+  const double low = declared.missing - declared.missing_error;
+  const double high = declared.missing + declared.missing_error;
+  const auto at = [=](double theta) {
+    // "at most theta": the mass lies within [low - theta, high + theta].
+    const TestResult above = stats::binomial(missing, clamp_unit(high + theta));
+    const TestResult below = stats::binomial(missing, clamp_unit(low - theta));
+    TestResult result = above;
+    result.log_p_upper =
+        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
+    // "at least theta": it lies beyond one of the nearer ends, if probabilities reach there.
+    const double upper_end = low + theta;
+    const double lower_end = high - theta;
+    const double not_above =
+        upper_end > 1 ? -HUGE_VAL : stats::binomial(missing, clamp_unit(upper_end)).log_p_lower;
+    const double not_below =
+        lower_end < 0 ? -HUGE_VAL : stats::binomial(missing, clamp_unit(lower_end)).log_p_upper;
+    result.log_p_lower = std::max({not_above, not_below, std::numeric_limits<double>::lowest()});
+    return result;
+  };
+  const auto interval = [=](double confidence) -> Interval {
+    const Interval p = stats::clopper_pearson(missing, confidence);
+    return {std::max({0.0, p.low - high, low - p.high}), std::max(p.high - low, high - p.low),
+            confidence};
+  };
+  const double share = static_cast<double>(missing.successes) / static_cast<double>(missing.trials);
+  return {.estimate = std::abs(share - declared.missing), .at = at, .interval = interval};
+}
+
+stats::TwoValued no_point_or_point(const Points& points) {
+  return {.range = {0, 1}, .high = {.successes = points.missing(), .trials = points.draws}};
+}
+
+/// theta = |difference of the probabilities of no point|.
+Evidence from_proportions(const Points& x, const Points& y) {
+  const stats::TwoValued one = no_point_or_point(x);
+  const stats::TwoValued other = no_point_or_point(y);
+  const auto at = [=](double theta) {
+    const TestResult above = stats::two_valued_contrast(one, other, {.scale = 1, .offset = theta});
+    const TestResult below = stats::two_valued_contrast(one, other, {.scale = 1, .offset = -theta});
+    TestResult result = above;
+    result.log_p_upper =
+        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
+    result.log_p_lower = std::max(above.log_p_lower, below.log_p_upper);
+    return result;
+  };
+  const auto interval = [=](double confidence) -> Interval {
+    const Interval d = stats::two_valued_difference_interval(one, other, confidence);
+    return {std::max({0.0, d.low, -d.high}), std::max(std::abs(d.low), std::abs(d.high)),
+            confidence};
+  };
+  const auto share = [](const Points& p) {
+    return static_cast<double>(p.missing()) / static_cast<double>(p.draws);
+  };
+  return {.estimate = std::abs(share(x) - share(y)), .at = at, .interval = interval};
+}
+
+// What rounding may be off in the logarithm of a p-value, and more.
+constexpr double rounding = 1e-6;
+
+/// Whether an interval at this confidence may begin above theta, or end beyond it: tests at theta,
+/// of which an exact interval of two proportions takes some hundred.
+bool may_begin_above(double theta, const Evidence& evidence, double confidence) {
+  return evidence.at(theta).log_p_upper <= std::log(1 - confidence) + rounding;
+}
+bool may_end_beyond(double theta, const Evidence& evidence, double confidence) {
+  return evidence.at(theta).log_p_lower >= std::log((1 - confidence) / 2) - rounding;
+}
+
+/// A distance with its name.
+struct Part {
+  Evidence evidence;
+  std::string name;
+};
+
+/// The estimate is the larger of the two distances, and p that of the part with the smaller p.
+std::string p_is_of(const Part& part) {
+  return fmt::format("; p is that of {}, {:.4g} apart", part.name, part.evidence.estimate);
+}
+
+/// theta = the larger of the two. "At most" is rejected where either part rejects it at half the
+/// level (Bonferroni), "at least" where both do (intersection of unions).
+Evidence larger_of(const Evidence& points, const Part& masses) {
+  const Evidence& missing = masses.evidence;
+  const auto at = [points, missing](double theta) {
+    const TestResult one = points.at(theta);
+    const TestResult other = missing.at(theta);
+    TestResult result = other.log_p_upper < one.log_p_upper ? other : one;
+    result.log_p_upper = std::min(0.0, result.log_p_upper + std::numbers::ln2);
+    result.log_p_lower = std::max(one.log_p_lower, other.log_p_lower);
+    return result;
+  };
+  const auto interval = [points, missing](double confidence) -> Interval {
+    const double halved = 1 - (1 - confidence) / 2;
+    Interval both{points.interval(halved).low, points.interval(confidence).high, confidence};
+    if (may_begin_above(both.low, missing, halved)) {
+      both.low = std::max(both.low, missing.interval(halved).low);
+    }
+    if (may_end_beyond(both.high, missing, confidence)) {
+      both.high = std::max(both.high, missing.interval(confidence).high);
+    }
+    return both;
+  };
+  return {.estimate = std::max(points.estimate, missing.estimate),
+          .at = at,
+          .interval = interval,
+          .most_against = [points, masses](double theta) -> std::string {
+            const double of_masses = masses.evidence.at(theta).log_p_upper;
+            return of_masses < points.at(theta).log_p_upper ? p_is_of(masses) : "";
+          },
+          .quantity = quantity_of_both,
+          .distance = true};
+}
+
+/// A distance of which nothing is known.
+Evidence unknown_distance() {
+  return {.estimate = 0,
+          .at = [](double) { return TestResult{.distribution = {.family = "bound"}}; },
+          .interval =
+              [](double confidence) {
+                return Interval{0, 1, confidence};
+              },
+          .quantity = quantity,
+          .distance = true};
+}
+
+/// Without the values at the atom.
+Points away_from(double atom, Points points) {
+  std::erase(points.sorted, atom);
+  return points;
+}
+
+/// A sample without a point says nothing of the points' law.
+void require_points(const Points& points) {
+  if (points.sorted.empty()) {
+    throw std::domain_error("no draw yielded a point: there is nothing to compare");
+  }
+}
+
+}  // namespace
+
+std::optional<double> no_point_of(const Subject& side) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
+  if (draws == nullptr) return std::nullopt;
+  return no_point(draws->marginals()[side.channels[0]]);
+}
+
+Points points_of(const Question& question, std::size_t subject, std::size_t channel,
+                 std::span<const double> values) {
+  Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
+  const Subject& side = question.subjects[subject];
+  if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
+    points.of_a_sampler = true;
+    std::erase(points.sorted, no_point(draws->marginals()[side.channels[channel]]));
+  }
+  points.sorted = stats::sorted(std::move(points.sorted));
+  return points;
+}
+
+DeclaredLaw declared_law(const Question& question, std::size_t channel) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
+  DeclaredLaw declared;
+  if (question.kind == QuestionKind::fit_to_law) {
+    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}, .of_sorted = {}};
+  } else {
+    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
+    declared.law = {.cdf = std::cref(table), .left_limit = {}, .of_sorted = [&table](auto values) {
+                      return table.of_sorted(values);
+                    }};
+    declared.error = table.error;
+  }
+  if (draws != nullptr) {
+    declared.missing = draws->density_cells().without_density();
+    declared.missing_error = draws->density_cells().tolerance();
+  }
+  return declared;
+}
+
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared, PointsTest test) {
+  require_points(points);
+  const std::vector<double> values = stats::probabilities(points.sorted, declared.law);
+  const stats::Probabilities at{values};
+  Evidence rest = from_distance(stats::ks_distance(points.sorted, at), declared.error);
+  if (test == PointsTest::anderson_darling) {
+    rest = with_anderson_darling(std::move(rest), stats::anderson_darling(at, declared.error));
+  }
+  if (declared.missing == 0 && points.missing() == 0) return rest;
+  const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
+  return larger_of(rest, {from_proportion(missing, declared), masses_without_a_point});
+}
+
+Evidence points_against_points(const Points& x, const Points& y) {
+  require_points(x);
+  require_points(y);
+  const Evidence rest = from_distance(stats::ks_distance(x.sorted, y.sorted));
+  if (!x.of_a_sampler && !y.of_a_sampler) return rest;
+  return larger_of(rest, {from_proportions(x, y), masses_without_a_point});
+}
+
+Evidence points_split_at(double atom, const Points& x, const Points& y) {
+  const stats::TwoPartTest parts = stats::two_part_ks(x.sorted, y.sorted, atom);
+  const Points x_rest = away_from(atom, x);
+  const Points y_rest = away_from(atom, y);
+  const bool both = !x_rest.sorted.empty() && !y_rest.sorted.empty();
+  const Part at_atom{from_proportions(x_rest, y_rest), fmt::format("the values at {:.6g}", atom)};
+  Evidence evidence =
+      larger_of(both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted), parts.rest)
+                     : unknown_distance(),
+                at_atom);
+  const bool atom_decides = log_p_two_sided(parts.atom) < parts.rest.log_p_upper;
+  TestResult at_null = atom_decides ? parts.atom : parts.rest;
+  at_null.log_p_lower = 0;
+  at_null.log_p_upper = parts.log_p;
+  evidence.at = [at_null, margin = std::move(evidence.at)](double theta) {
+    return theta <= 0 ? at_null : margin(theta);
+  };
+  evidence.most_against = [atom_decides, at_atom,
+                           margin = std::move(evidence.most_against)](double theta) -> std::string {
+    if (theta > 0) return margin(theta);
+    return atom_decides ? p_is_of(at_atom) : "";
+  };
+  evidence.quantity = fmt::format(
+      "largest distance of distribution functions away from {0:.6g}, or of the probabilities of "
+      "{0:.6g},",
+      atom);
+  return evidence;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,86 @@
+#include "harness/families/lost_to_rounding.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "stats/basics/mean_rounding.h"
+
+namespace assay::harness {
+namespace {
+
+// Moves a tail of one per cent by a third, if it were all to one side.
+constexpr double tolerated = 0.1;
+
+/// On the scale of the first mean.
+struct Part {
+  double rounding = 0;
+  double standard_error = 0;
+};
+
+Part part_of(const Question& question, std::size_t subject, const ChannelData& data) {
+  if (data.moments.count < 2) return {};
+  const double factor = subject == 0 ? 1 : std::abs(question.factor);
+  return {.rounding = factor * stats::rounding_of_mean(data.moments),
+          .standard_error = factor * data.moments.standard_error()};
+}
+
+/// Standard deviation of what rounding adds to the mean of so many, of which the sum is formed one
+/// by one: each step a variance of spacing^2 / 12, the spacing of doubles in proportion to what is
+/// summed so far, so that its square is a third of the last one's on average.
+double rounding_of_sum(double mean, double primaries) {
+  const double sum = std::abs(mean) * primaries;
+  const double spacing = std::nextafter(sum, std::numeric_limits<double>::infinity()) - sum;
+  return spacing * std::sqrt(primaries / 36) / primaries;
+}
+
+}  // namespace
+
+std::string lost_to_rounding(const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  std::size_t worst = 0;
+  double most = 0;
+  double rounding = 0;
+  double error = question.of_two() ? 0 : question.references[channel].standard_error;
+  for (std::size_t subject = 0; subject < data.size(); ++subject) {
+    const Part part = part_of(question, subject, data[subject]);
+    if (part.rounding > most) worst = subject;
+    most = std::max(most, part.rounding);
+    rounding = std::hypot(rounding, part.rounding);
+    error = std::hypot(error, part.standard_error);
+  }
+  if (!(rounding > tolerated * error)) return "";
+  return fmt::format(
+      "the mean of `{}` is {:.6g}: numbers of that size are rounded so coarsely that their mean is "
+      "off by about {:.2g} where the standard error is {:.2g}; take a constant near the mean off "
+      "the observations",
+      question.subjects[worst].estimator->name, data[worst].moments.mean, rounding, error);
+}
+
+std::string variances_lost_to_rounding(const Subject& side, std::uint64_t primaries,
+                                       std::span<const stats::Moments> channels) {
+  const double averaged = side.averaged(primaries);
+  double added = 0;
+  double total = 0;
+  double squared_error = 0;
+  double mean = 0;
+  for (const stats::Moments& x : channels) {
+    if (averaged <= 1 || x.count < 2 || !(x.m2 > 0)) continue;  // a single number is no sum
+    const double count = static_cast<double>(x.count);
+    added += std::pow(rounding_of_sum(x.mean, averaged), 2);
+    total += x.variance();
+    // Of two values that come equally often the kurtosis is 1, and the error of second order.
+    squared_error += std::pow(x.variance(), 2) * std::max(x.kurtosis() - 1, 1 / count) / count;
+    if (std::abs(x.mean) > std::abs(mean)) mean = x.mean;
+  }
+  if (!(added > tolerated * std::sqrt(squared_error))) return "";
+  return fmt::format(
+      "the mean of `{}` is {:.6g}: sums of {:g} numbers of that size are rounded so coarsely that "
+      "their variance is larger by a part of {:.2g} where its standard error is {:.2g}; take a "
+      "constant near the mean off the observations",
+      side.estimator->name, mean, averaged, added / total, std::sqrt(squared_error) / total);
+}
+
+}  // namespace assay::harness

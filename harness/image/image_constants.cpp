@@ -1,0 +1,253 @@
+#include "harness/image/image_constants.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "estimators/ready_made.h"
+#include "stats/basics/moments.h"
+#include "stats/means/constant_sample.h"
+#include "stats/tails/tails.h"
+
+namespace assay::harness {
+namespace {
+
+/// Least and greatest value of an element.
+struct Span {
+  double low;
+  double high;
+  bool constant(double rounding) const { return high - low <= 2 * rounding; }
+};
+
+/// Where one number, itself of one of the images, is to stand in every image of a stack.
+struct Replacement {
+  std::size_t element;
+  double value;
+};
+
+/// The stack with these elements replaced; images that change are kept in `copies`.
+template <class Real>
+stats::ImageStack<Real> replaced(const stats::ImageStack<Real>& stack,
+                                 const std::vector<Replacement>& replacements,
+                                 std::vector<std::vector<Real>>& copies) {
+  if (replacements.empty()) return stack;
+  stats::ImageStack<Real> out{stack.extent, {}};
+  for (const std::span<const Real> image : stack.images) {
+    std::vector<Real>& copy = copies.emplace_back(image.begin(), image.end());
+    for (const Replacement& each : replacements) copy[each.element] = static_cast<Real>(each.value);
+    out.images.emplace_back(copy);
+  }
+  return out;
+}
+
+/// What a channel declares of its values.
+struct Declared {
+  double low;
+  double high;
+  double rounding;
+};
+
+/// Of every element; of pictures of files one for all.
+class DeclaredElements {
+ public:
+  explicit DeclaredElements(const Subject& subject) {
+    if (recorded::unknown_channels(*subject.setup)) return;
+    const std::vector<Channel> all = subject.setup->channels();
+    each_.reserve(subject.channels.size());
+    for (const std::size_t channel : subject.channels) {
+      each_.push_back({all[channel].low, all[channel].high, all[channel].rounding});
+    }
+  }
+  const Declared& operator[](std::size_t element) const {
+    return each_.empty() ? any_ : each_[element];
+  }
+  template <class Map>
+  void map(const Map& mapped) {
+    any_ = mapped(any_);
+    for (Declared& channel : each_) channel = mapped(channel);
+  }
+
+ private:
+  Declared any_{Channel().low, Channel().high, Channel().rounding};
+  std::vector<Declared> each_;
+};
+
+constexpr std::size_t at_a_time = 256;
+using Spans = std::array<Span, at_a_time>;
+
+/// Of the elements from `first` on, as many as there are; of one that is no constant it ends where
+/// that shows: nearly always the second image tells that none of them is a constant. Whether any
+/// may be.
+template <class Real>
+bool find_spans(const stats::ImageStack<Real>& stack, const DeclaredElements& channels,
+                std::size_t first, Spans& spans) {
+  const std::size_t size = std::min(at_a_time, stack.extent.elements() - first);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double value = stack.images[0][first + i];
+    spans[i] = {value, value};
+  }
+  bool constants = true;
+  for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
+    const Real* const image = stack.images[r].data() + first;
+    constants = false;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double value = image[i];
+      spans[i].low = std::min(spans[i].low, value);
+      spans[i].high = std::max(spans[i].high, value);
+      constants |= spans[i].constant(channels[first + i].rounding);
+    }
+  }
+  return constants;
+}
+
+/// What a constant can have missed: its value, and the range of the law it is of.
+struct Missing {
+  double constant;
+  double low;
+  double high;
+  std::size_t count;
+
+  /// Held against a mean that is known, or estimated.
+  double log_p(const Constant& mean) const {
+    const stats::ConstantSample sample{.value = constant,
+                                       .low = std::min(low, constant),
+                                       .high = std::max(high, constant),
+                                       .count = count};
+    return stats::log_p_constant(sample, {mean.value, mean.standard_error});
+  }
+  double sign(const Constant& mean) const { return constant < mean.value ? -1 : 1; }
+  bool bounded(const Constant& mean) const {
+    return std::isfinite(mean.value < constant ? low : high);
+  }
+};
+
+template <class Real>
+Constant mean_of(const stats::ImageStack<Real>& stack, std::size_t element) {
+  stats::Moments moments;
+  for (const std::span<const Real> image : stack.images) moments.add(image[element]);
+  return {moments.mean, moments.standard_error()};
+}
+
+/// Of factor x + offset.
+Declared mapped(const Declared& channel, const Question& question) {
+  const double low = question.factor * channel.low + question.offset;
+  const double high = question.factor * channel.high + question.offset;
+  return {.low = std::min(low, high),
+          .high = std::max(low, high),
+          .rounding = channel.rounding * std::abs(question.factor)};
+}
+
+}  // namespace
+
+double z_of(const UnseenElement& unseen) {
+  if (unseen.log_p == std::numeric_limits<double>::lowest()) {
+    return unseen.sign * std::numeric_limits<double>::infinity();
+  }
+  return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
+}
+
+template <class Real>
+VaryingPart<Real>::VaryingPart(const Question& question, const ImagePair<Real>& pair,
+                               std::span<const double> weights)
+    : of_two_(pair.of_two()), first_(pair.first()), weights_(weights) {
+  if (of_two_) {
+    second_ = pair.second();
+    settle_two(question);
+  } else {
+    settle_against_reference(question, pair);
+  }
+}
+
+template <class Real>
+void VaryingPart<Real>::settle_against_reference(const Question& question,
+                                                 const ImagePair<Real>& pair) {
+  const stats::ImageReference reference = pair.reference();
+  value_.assign(reference.value.begin(), reference.value.end());
+  error_.assign(reference.standard_error.begin(), reference.standard_error.end());
+  value_in_sums_ = value_;
+  error_in_sums_ = error_;
+  const DeclaredElements channels(question.subjects[0]);
+  Spans spans;
+  bool constants = false;
+  std::vector<Replacement> replacements;
+  for (std::size_t i = 0; i < value_.size(); ++i) {
+    if (i % at_a_time == 0) constants = find_spans(first_, channels, i, spans);
+    if (!constants) continue;
+    const Span span = spans[i % at_a_time];
+    if (!span.constant(channels[i].rounding)) continue;
+    ++constants_;
+    const double constant = first_.images[0][i];
+    const Constant expected{value_[i], error_.empty() ? 0 : error_[i]};
+    const bool differs = std::abs(constant - expected.value) > channels[i].rounding;
+    if (differs) {
+      const Missing missing{constant, channels[i].low, channels[i].high, first_.images.size()};
+      unseen_.push_back({i, missing.sign(expected), missing.log_p(expected)});
+    }
+    if (span.low < span.high) replacements.push_back({i, constant});
+    value_[i] = constant;
+    if (!error_.empty()) error_[i] = 0;
+    if (differs && stays_in_sums(i)) {
+      left_to_sums_.push_back(i);
+    } else {
+      value_in_sums_[i] = constant;
+      if (!error_.empty()) error_in_sums_[i] = 0;
+    }
+  }
+  for (std::vector<double>* errors : {&error_, &error_in_sums_}) {
+    if (std::ranges::all_of(*errors, [](double error) { return error == 0; })) errors->clear();
+  }
+  first_ = replaced(first_, replacements, settled_);
+}
+
+template <class Real>
+void VaryingPart<Real>::settle_two(const Question& question) {
+  const DeclaredElements one(question.subjects[0]);
+  DeclaredElements two(question.subjects[1]);
+  two.map([&](const Declared& channel) { return mapped(channel, question); });
+  std::vector<Replacement> of_first;
+  std::vector<Replacement> of_second;
+  Spans first_spans;
+  Spans second_spans;
+  bool constants = false;
+  for (std::size_t i = 0; i < first_.extent.elements(); ++i) {
+    if (i % at_a_time == 0) {
+      constants = find_spans(first_, one, i, first_spans);
+      constants |= find_spans(second_, two, i, second_spans);
+    }
+    if (!constants) continue;
+    const bool first_constant = first_spans[i % at_a_time].constant(one[i].rounding);
+    const bool second_constant = second_spans[i % at_a_time].constant(two[i].rounding);
+    if (!first_constant && !second_constant) continue;
+    const double a = first_.images[0][i];
+    const double b = second_.images[0][i];
+    if (first_constant && second_constant) {
+      ++constants_;
+      const bool equal = std::abs(a - b) <= one[i].rounding + two[i].rounding;
+      of_first.push_back({i, a});
+      of_second.push_back({i, equal ? a : b});
+      continue;
+    }
+    const Declared& channel = first_constant ? one[i] : two[i];
+    const stats::ImageStack<Real>& constant = first_constant ? first_ : second_;
+    const Constant mean = mean_of(first_constant ? second_ : first_, i);
+    const Missing missing{first_constant ? a : b, channel.low, channel.high,
+                          constant.images.size()};
+    if (!missing.bounded(mean)) continue;
+    const double sign = first_constant ? missing.sign(mean) : -missing.sign(mean);
+    unseen_.push_back({i, sign, missing.log_p(mean)});
+    if (stays_in_sums(i)) {
+      left_to_sums_.push_back(i);
+      continue;
+    }
+    of_first.push_back({i, missing.constant});
+    of_second.push_back({i, missing.constant});
+  }
+  first_ = replaced(first_, of_first, settled_);
+  second_ = replaced(second_, of_second, settled_);
+}
+
+template class VaryingPart<float>;
+template class VaryingPart<double>;
+
+}  // namespace assay::harness

@@ -1,0 +1,325 @@
+#include "harness/image/image_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimators/stream.h"
+#include "harness/base/parallel.h"
+#include "harness/image/image_flips.h"
+#include "harness/image/image_uniform.h"
+#include "harness/sampling/picture_look.h"
+#include "harness/theta/inversion.h"
+#include "harness/theta/scale.h"
+#include "stats/basics/errors.h"
+#include "stats/basics/moments.h"
+#include "stats/images/image_equivalence.h"
+#include "stats/images/image_reference_error.h"
+#include "stats/images/image_windows.h"
+#include "stats/pyramids/image_pyramid.h"
+#include "stats/tails/tails.h"
+
+namespace assay::harness {
+namespace {
+
+// This share of the level goes to elements that never varied.
+constexpr double unseen_share = 0.02;
+
+// ---- theta = 0
+
+template <class Real, class Second>
+stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const Second& b) {
+  constexpr std::size_t rows_at_a_time = 16 * GroupedFlips<Real>::row_unit;
+  GroupedFlips<Real> flips;
+  for (std::size_t row = 0; row < a.extent.height; row += rows_at_a_time) {
+    flips.take(stats::pair_of(a, b), {row, std::min(row + rows_at_a_time, a.extent.height)});
+  }
+  return flips.matrix();
+}
+
+template <class Real>
+bool has_error(const stats::ImageStack<Real>&) {
+  return false;
+}
+bool has_error(const stats::ImageReference& b) { return !b.standard_error.empty(); }
+
+/// The signs' own stream, of so many images.
+Stream signs_of(const ImageTest& test, std::size_t images) {
+  return {stream_key(test.flips.bits, "sign flips", "", 0), images};
+}
+
+/// The sum of squares of correlated elements.
+template <class Real>
+void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test, std::size_t images,
+                        ImageOutcome& outcome) {
+  // A reference's error does not flip with the replicates: cells alone are left.
+  if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return;
+  const std::optional<FlipSize> size = flip_size(test.share, images);
+  if (!size) return;
+  outcome.by_sign_flips = add_flipped_energy(
+      outcome.family, varying.first().extent, *size, signs_of(test, images),
+      [&] { return varying.with([](const auto& a, const auto& b) { return flips_of(a, b); }); });
+}
+
+template <class Real>
+void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test, std::size_t images,
+                    ImageOutcome& outcome) {
+  outcome.z.resize(varying.first().extent.elements());
+  const stats::PyramidOptions options{
+      .energy = test.independent && (test.symmetric || !test.weights.empty()),
+      .smallest = test.smallest_cell,
+      .weights = test.weights,
+      .only_in_sums = varying.left_to_sums(),
+      .z = outcome.z,
+      .for_each = on_all_threads};
+  outcome.family = varying.in_sums(
+      [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
+  if (!test.independent && test.symmetric) add_flipped_energy(varying, test, images, outcome);
+}
+
+stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageExtent& extent) {
+  stats::ImageFinding finding = stats::certain_finding(extent, unseen.element, unseen.sign);
+  finding.log_p = unseen.log_p;
+  finding.z = z_of(unseen);
+  const double elements = static_cast<double>(extent.elements());
+  finding.adjusted_log_p = std::min(0.0, unseen.log_p + std::log(elements / unseen_share));
+  return finding;
+}
+
+/// The elements that never varied join the family, at the share that was set aside for them.
+void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
+  stats::ImageFamily& family = outcome.family;
+  for (stats::ImageFinding& group : family.groups) {
+    group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
+  }
+  const auto least = std::min_element(
+      outcome.unseen.begin(), outcome.unseen.end(),
+      [](const UnseenElement& a, const UnseenElement& b) { return a.log_p < b.log_p; });
+  if (least != outcome.unseen.end()) family.groups.push_back(finding_of(*least, extent));
+  stats::decide(family);
+}
+
+// ---- theta beyond 0
+
+/// The norm in it is that of the margin.
+stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
+                                        const stats::ImageExtent& extent, bool relative) {
+  if (!relative) return stats::with_norm(distance, static_cast<double>(extent.elements()));
+  if (!(distance.squared_norm > 0)) {
+    throw std::domain_error(
+        "the image that it is held against is zero within its noise, and nothing is a per cent of "
+        "it; with `detect` or `within` as a number differences are in its own unit");
+  }
+  return distance;
+}
+
+template <class Real>
+stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative,
+                                 stats::ElementErrors errors) {
+  stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
+    return stats::image_distance(first, second, on_all_threads);
+  });
+  if (!pair.of_two()) {
+    distance = stats::with_reference_error(distance, pair.first(), pair.reference(), errors);
+  }
+  return in_units_of_margin(distance, pair.extent(), relative);
+}
+
+template <class Real>
+double uniform_error(const ImagePair<Real>& pair, bool relative) {
+  return uniform_error(
+      channel_means(pair.first()),
+      pair.of_two() ? channel_means(pair.second()) : channel_means(pair.reference()), relative);
+}
+
+/// Replicates at which theta would be excluded from `margin` on: the squared bias's standard error
+/// falls like 1 / R while it is noise, like 1 / sqrt R where there is a bias.
+double wanted_replicates(const stats::ImageDistance& distance, double margin, const ImageTest& test,
+                         double replicates) {
+  const double estimate = std::max(0.0, distance.squared_bias / distance.squared_norm);
+  const double room = margin * margin - estimate;
+  if (!(room > 0)) return 0;
+  const double t =
+      -stats::student_t_quantile({stats::Tail::lower, std::log(test.share.beta)}, distance.degrees);
+  const double needed = (t + 1) * std::sqrt(distance.bias_variance) / distance.squared_norm / room;
+  return replicates * std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
+}
+
+/// Tests of a squared margin. An estimate below zero excludes no more than one of zero would: a
+/// bias smaller than none is excluded by no one.
+stats::TestResult at_squared_margin(const stats::ImageDistance& distance, double margin) {
+  stats::ImageDistance at_least_zero = distance;
+  at_least_zero.squared_bias = std::max(0.0, distance.squared_bias);
+  stats::TestResult result = stats::squared_margin_test(distance, margin);
+  result.log_p_lower = stats::squared_margin_test(at_least_zero, margin).log_p_lower;
+  return result;
+}
+
+stats::Interval interval_of(const stats::ImageDistance& distance, double confidence) {
+  const double step = std::sqrt(distance.bias_variance) / distance.squared_norm;
+  const stats::Interval squared = interval_by_inversion(
+      [&](double margin) { return at_squared_margin(distance, margin); },
+      {.estimate = distance.squared_bias / distance.squared_norm, .step = step}, confidence);
+  return {std::sqrt(std::max(0.0, squared.low)), std::sqrt(std::max(0.0, squared.high)),
+          confidence};
+}
+
+std::string all_alike(const Question& question) {
+  std::string words;
+  for (const Subject& subject : question.subjects) {
+    words += fmt::format("{}`{}`", words.empty() ? "all images of " : " are alike, and all of ",
+                         subject.estimator->name);
+  }
+  return words + " are alike";
+}
+
+void require_spread(const Question& question, bool any, const stats::ImageDistance& distance) {
+  if (any && distance.bias_variance > 0) return;
+  throw stats::ZeroVariance(fmt::format(
+      "{}: without spread nothing can be said of what was never seen; see that the seed changes "
+      "the image, take fewer `primaries`, or more observations",
+      all_alike(question)));
+}
+
+/// What ImageOutcome::level_factor says.
+template <class Real>
+double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
+  const auto side = [](const stats::ImageStack<Real>& stack, double factor) -> stats::CellPilot {
+    return {
+        .stack = stack, .factor = factor, .replicates = static_cast<double>(stack.images.size())};
+  };
+  std::vector<stats::CellPilot> sides{side(pair.first(), 1)};
+  if (pair.of_two()) sides.push_back(side(pair.second(), -1));
+  const std::vector<stats::CellTails> tails =
+      stats::cell_tails(sides, test.share.alpha, stats::WeightsFrom::pilot, on_all_threads);
+  double largest = 1;
+  for (const stats::CellTails& cells : tails) {
+    if (cells.size < test.smallest_cell) continue;
+    // Cells that depend on each other scatter as one.
+    const auto count = static_cast<double>(stats::aligned_cells(pair.extent(), cells.size));
+    const double of_dependent = cells.factor - cells.scatter * std::sqrt(count);
+    largest = std::max(largest, test.independent ? cells.common : of_dependent);
+  }
+  return largest;
+}
+
+/// What the pair shows, and how far it is apart.
+template <class Real>
+stats::ImageDistance look_at(const Question& question, const ImageTest& test,
+                             const ImagePair<Real>& pair, ImageOutcome& outcome) {
+  stats::check::replicates("image", pair.fewest_replicates());
+  const bool relative = is_relative(question, 0);
+  const auto errors =
+      test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown;
+  const stats::ImageDistance distance = distance_of(pair, relative, errors);
+  const VaryingPart varying(question, pair, test.weights);
+  require_spread(question, varying.any(), distance);
+  outcome.unseen = varying.unseen();
+  outcome.replicates = pair.most_replicates();
+  outcome.smallest_cell = test.smallest_cell;
+  outcome.symmetric = test.symmetric;
+  look_at_family(varying, test, pair.fewest_replicates(), outcome);
+  for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
+  add_unseen(pair.extent(), outcome);
+  outcome.uniform_error = uniform_error(pair, relative);
+  outcome.level_factor = level_factor(pair, test);
+  return distance;
+}
+
+/// The same of pictures that were looked at when they were read. They declare neither rounding nor
+/// range: an element that never varied is as it is.
+stats::ImageDistance look_at(const Question& question, const ImageTest& test,
+                             const PictureLook& look, ImageOutcome& outcome) {
+  const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
+  const bool relative = is_relative(question, 0);
+  const stats::ImageDistance distance = in_units_of_margin(look.distance, extent, relative);
+  require_spread(question, look.family.tested > 0, distance);
+  outcome.replicates = look.pictures;
+  outcome.smallest_cell = test.smallest_cell;
+  outcome.symmetric = test.symmetric;
+  outcome.family = look.family;
+  outcome.z = look.z;
+  stats::leave_out(outcome.family, {test.smallest_cell, !test.symmetric});
+  if (look.flips && test.symmetric) {
+    outcome.by_sign_flips =
+        add_flipped_energy(outcome.family, extent, flip_size(test.share, look.pictures).value(),
+                           signs_of(test, look.pictures), [&] { return *look.flips; });
+  }
+  add_unseen(extent, outcome);
+  outcome.uniform_error = uniform_error(look.means[0], look.means[1], relative);
+  return distance;
+}
+
+std::string range_text(std::uint32_t first, std::uint32_t count, const char* name) {
+  if (count == 1) return fmt::format("{} {}", name, first);
+  return fmt::format("{}s {}-{}", name, first, first + count - 1);
+}
+
+}  // namespace
+
+std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape) {
+  const std::string component =
+      shape.components.size() > 1 ? " of " + shape.components[finding.channel] : "";
+  const std::string z = fmt::format("z = {:+.3g}", finding.z);
+  const stats::Rectangle& window = finding.window;
+  switch (finding.statistic) {
+    case stats::ImageStatistic::energy:
+      return fmt::format("the sum of squares over the whole image{}, {}", component, z);
+    case stats::ImageStatistic::alternating: {
+      constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
+      return fmt::format("the whole image{} with alternating signs ({}), {}", component,
+                         patterns[static_cast<int>(finding.alternation)], z);
+    }
+    case stats::ImageStatistic::window:
+      break;
+  }
+  if (window.width == 1 && window.height == 1) {
+    return fmt::format("pixel x {}, y {}{}, {}", window.x, window.y, component, z);
+  }
+  if (window.width == shape.width && window.height == shape.height) {
+    return fmt::format("the whole image{}, {}", component, z);
+  }
+  return fmt::format("{}, {}{} ({} x {} pixels), {}", range_text(window.x, window.width, "column"),
+                     range_text(window.y, window.height, "row"), component, window.width,
+                     window.height, z);
+}
+
+ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
+                                 std::span<const ChannelData> data) {
+  const bool relative = is_relative(question, 0);
+  ImageEvidence result;
+  const auto look = [&](const auto& images) {
+    return look_at(question, test, images, result.outcome);
+  };
+  const stats::ImageDistance distance =
+      test.look != nullptr ? look(*test.look) : with_pair(question, data, look);
+  const TestEntry& entry = *question.test;
+  const bool within = entry.claim.relation == Relation::within;
+  if (within || entry.detect) {
+    const double margin = within ? entry.claim.margin.value : entry.detect->value;
+    result.outcome.wanted =
+        wanted_replicates(distance, margin, test, static_cast<double>(result.outcome.replicates));
+  }
+  const stats::ImageFamily& family = result.outcome.family;
+  const stats::TestResult equal{
+      .statistic = family.winner.z,
+      .distribution = {"image-family", {static_cast<double>(family.tested)}},
+      .log_p_lower = 0,
+      .log_p_upper = family.log_p,
+      .exactness = stats::Exactness::asymptotic};
+  result.evidence = {
+      .estimate = std::sqrt(std::max(0.0, distance.squared_bias / distance.squared_norm)),
+      .at =
+          [distance, equal](double theta) {
+            return theta > 0 ? at_squared_margin(distance, theta * theta) : equal;
+          },
+      .interval = [distance](double confidence) { return interval_of(distance, confidence); },
+      .quantity = relative ? "relative root mean square difference of the images"
+                           : "root mean square difference of the images",
+      .relative = relative,
+      .distance = true};
+  return result;
+}
+
+}  // namespace assay::harness

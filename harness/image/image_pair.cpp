@@ -1,0 +1,76 @@
+#include "harness/image/image_pair.h"
+
+#include <algorithm>
+
+namespace assay::harness {
+namespace {
+
+/// c y + b: what E x is compared with.
+struct Mapping {
+  double factor;
+  double offset;
+  bool changes() const { return factor != 1 || offset != 0; }
+};
+
+Mapping mapping_of(const Question& question, std::size_t subject) {
+  return subject == 0 || !question.of_two() ? Mapping{1, 0}
+                                            : Mapping{question.factor, question.offset};
+}
+
+ImageViews mapped(const ImageViews& views, const Mapping& mapping) {
+  std::vector<std::vector<double>> copies;
+  views.with([&](const auto& images) {
+    for (const auto& image : images) {
+      std::vector<double>& copy = copies.emplace_back(image.begin(), image.end());
+      for (double& value : copy) value = mapping.factor * value + mapping.offset;
+    }
+  });
+  return ImageViews(std::move(copies));
+}
+
+template <class Real>
+const ImageViews::Images<Real>& images_of(const ImageViews& views, const Mapping& mapping,
+                                          ImageViews& made) {
+  if (mapping.changes()) {
+    made = mapped(views, mapping);
+  } else if (views.single_precision() && !std::is_same_v<Real, float>) {
+    made = widened(views.images<float>());
+  } else {
+    return views.images<Real>();
+  }
+  return made.images<Real>();
+}
+
+}  // namespace
+
+stats::ImageExtent extent_of(const ImageShape& shape) {
+  return {.width = shape.width, .height = shape.height, .channels = shape.components.size()};
+}
+
+template <class Real>
+ImagePair<Real>::ImagePair(const Question& question, std::span<const ChannelData> data)
+    : extent_(extent_of(*question.subjects[0].image)),
+      first_{extent_, images_of<Real>(data[0].images, mapping_of(question, 0), made_[0])} {
+  if (question.of_two()) {
+    second_ = stats::ImageStack<Real>{
+        extent_, images_of<Real>(data[1].images, mapping_of(question, 1), made_[1])};
+    return;
+  }
+  for (const Constant& reference : question.references) {
+    value_.push_back(reference.value + question.offset);
+    error_.push_back(reference.standard_error);
+  }
+  if (std::all_of(error_.begin(), error_.end(), [](double e) { return e == 0; })) error_.clear();
+}
+
+bool in_single_precision(const Question& question, std::span<const ChannelData> data) {
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    if (!data[i].images.single_precision() || mapping_of(question, i).changes()) return false;
+  }
+  return true;
+}
+
+template class ImagePair<float>;
+template class ImagePair<double>;
+
+}  // namespace assay::harness

@@ -1,0 +1,66 @@
+#pragma once
+
+// The two sides of a claim on images as stats takes them.
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "harness/question/question.h"
+#include "harness/theta/method.h"
+#include "stats/images/image.h"
+
+namespace assay::harness {
+
+stats::ImageExtent extent_of(const ImageShape& shape);
+
+/// Replicates of an image, and what they are held against: replicates of another, scaled, or a
+/// number for each element.
+template <class Real>
+class ImagePair {
+ public:
+  /// Of single precision only where in_single_precision says so.
+  ImagePair(const Question& question, std::span<const ChannelData> data);
+  ImagePair(const ImagePair&) = delete;  // spans point inside
+  ImagePair& operator=(const ImagePair&) = delete;
+
+  const stats::ImageExtent& extent() const { return extent_; }
+  bool of_two() const { return second_.has_value(); }
+  /// The fewest replicates of a side, and the most.
+  std::size_t fewest_replicates() const {
+    return std::min(first_.images.size(), (second_ ? *second_ : first_).images.size());
+  }
+  std::size_t most_replicates() const {
+    return std::max(first_.images.size(), (second_ ? *second_ : first_).images.size());
+  }
+  const stats::ImageStack<Real>& first() const { return first_; }
+  const stats::ImageStack<Real>& second() const { return *second_; }
+  stats::ImageReference reference() const { return {extent_, value_, error_}; }
+
+  /// What `use` makes of the first stack and what it is held against.
+  template <class Use>
+  auto with(const Use& use) const {
+    return second_ ? use(first_, *second_) : use(first_, reference());
+  }
+
+ private:
+  stats::ImageExtent extent_;
+  ImageViews made_[2];  // where a side is scaled, or widened to the other's precision
+  stats::ImageStack<Real> first_;
+  std::optional<stats::ImageStack<Real>> second_;
+  std::vector<double> value_;
+  std::vector<double> error_;
+};
+
+/// Whether both sides are pictures of files and are compared as they are.
+bool in_single_precision(const Question& question, std::span<const ChannelData> data);
+
+/// What `use` makes of the pair, in the precision that it is kept in.
+template <class Use>
+auto with_pair(const Question& question, std::span<const ChannelData> data, const Use& use) {
+  if (in_single_precision(question, data)) return use(ImagePair<float>(question, data));
+  return use(ImagePair<double>(question, data));
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,332 @@
+#include "harness/language/claim.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/language/claim_lexer.h"
+#include "harness/language/claim_rules.h"
+#include "harness/language/laws.h"
+
+namespace assay::harness {
+
+namespace {
+
+using Kind = Token::Kind;
+
+std::vector<std::string> quantity_words() {
+  std::vector<std::string> words;
+  for (const QuantityName name : offered_quantities()) words.emplace_back(to_string(name));
+  return words;
+}
+
+bool stands_on_the_right(std::string_view word) {
+  return word == "analytic" || word == "density" || find_law(word);
+}
+
+/// What may begin the right side, apart from numbers.
+std::vector<std::string> side_words() {
+  std::vector<std::string> words = quantity_words();
+  words.insert(words.end(), {"analytic", "density"});
+  for (const LawInformation& law : laws()) words.push_back(law.name);
+  return words;
+}
+
+std::optional<QuantityName> quantity_named(std::string_view word) {
+  for (const QuantityName name : quantity_names()) {
+    if (word == to_string(name)) return name;
+  }
+  return {};
+}
+
+Source source_of(const Token& word) {
+  const std::size_t dot = std::min(word.text.find('.'), word.text.size());
+  return {.estimator = word.text.substr(0, dot),
+          .part = word.text.substr(std::min(dot + 1, word.text.size())),
+          .where = word.where};
+}
+
+class Parser {
+ public:
+  Parser(std::string_view text, const Location& where) : lexer_(text, where) {}
+
+  Claim claim() {
+    Claim claim;
+    claim.left = left();
+    relation(claim);
+    claim.right = side();
+    end("the claim");
+    return claim;
+  }
+
+  Source source() {
+    const Source found = source_of(expect_word("an estimator"));
+    end("the source");
+    return found;
+  }
+
+  Margin margin() {
+    const Token token = lexer_.next();
+    if (token.kind != Kind::number) unexpected(token, "a margin, as `0.5%` or `0.002`");
+    Margin margin{.value = token.number, .relative = lexer_.peek().is("%"), .where = token.where};
+    if (margin.relative) margin.value = percent(token);
+    if (margin.relative) lexer_.next();
+    if (margin.value < 0) fail(token.where, "a margin cannot be negative");
+    return margin;
+  }
+
+  void end(const char* what) {
+    const Token token = lexer_.next();
+    if (token.is("*")) fail(token.where, "a factor stands before its quantity: `0.5 * mean(b)`");
+    if (token.is(",")) {
+      fail(token.where, fmt::format("{} is over before `,`; decimals stand after a point", what));
+    }
+    if (token.is_word("within")) {
+      fail(token.where, fmt::format("{} is over before `within`, which stands in place of the "
+                                    "relation: `mean(a) within 1% of 0.5`",
+                                    what));
+    }
+    if (token.kind != Kind::end) {
+      fail(token.where, fmt::format("{} is over before {}", what, shown(token)));
+    }
+  }
+
+ private:
+  /// A hundredth of a decimal number, rounded once: 0.1% is the double nearest to 0.001.
+  static double percent(const Token& token) {
+    const std::size_t e = std::min(token.text.find_first_of("eE"), token.text.size());
+    const std::string exponent = token.text.substr(std::min(e + 1, token.text.size()));
+    const int shifted = (exponent.empty() ? 0 : std::stoi(exponent)) - 2;
+    const ScannedNumber hundredth =
+        scan_number(token.text.substr(0, e) + "e" + std::to_string(shifted));
+    if (hundredth.overflows) fail(token.where, "the margin does not fit a double");
+    return hundredth.value;
+  }
+
+  Quantity left() {
+    const Token token = lexer_.peek();
+    if (token.kind == Kind::number) {
+      fail(token.where, "a claim begins with a quantity, as in `mean(area) == 0.5`");
+    }
+    return quantity();
+  }
+
+  Quantity quantity() {
+    const Token name = expect_word("a quantity (mean, variance, distribution …)");
+    if (name.text == "slope") return slope(name);
+    const std::optional<QuantityName> known = quantity_named(name.text);
+    if (!known) no_quantity(name);
+    Quantity quantity{.name = *known, .where = name.where};
+    expect("(", fmt::format("`(` after `{}`", name.text));
+    quantity.source = source_of(expect_word("the name of an estimator"));
+    while (lexer_.peek().is(",")) {
+      lexer_.next();
+      quantity.arguments.push_back(expect_number());
+    }
+    expect(")", "`)` or `,`");
+    return quantity;
+  }
+
+  Quantity slope(const Token& name) {
+    expect("(", "`(` after `slope`");
+    const Token inner = lexer_.peek();
+    if (inner.is_word("slope")) fail(inner.where, "a slope has no slope");
+    Quantity quantity = this->quantity();
+    quantity.slope = true;
+    quantity.where = name.where;
+    expect(")", "`)`");
+    return quantity;
+  }
+
+  void relation(Claim& claim) {
+    const Token token = lexer_.next();
+    for (const Relation known : {Relation::equal, Relation::at_most, Relation::at_least,
+                                 Relation::less, Relation::greater}) {
+      if (token.is(to_string(known))) {
+        claim.relation = known;
+        return;
+      }
+    }
+    if (token.kind == Kind::end) {
+      fail(token.where, "the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …");
+    }
+    if (!token.is_word("within")) {
+      const std::string hint = token.kind == Kind::word ? did_you_mean(token.text, {"within"}) : "";
+      unexpected(token, "`==`, `<=`, `>=`, `<`, `>` or `within … of`", hint);
+    }
+    claim.relation = Relation::within;
+    claim.margin = margin();
+    const Token of = lexer_.next();
+    if (!of.is_word("of")) unexpected(of, "`of` after the margin");
+  }
+
+  Side side() {
+    const Token token = lexer_.peek();
+    if (token.kind == Kind::number) return number_side();
+    if (token.kind != Kind::word) unexpected(token, expected_side);
+    if (token.text == "slope" || quantity_named(token.text)) return ScaledQuantity{1, quantity()};
+    lexer_.next();
+    if (token.text == "analytic") return Analytic{};
+    if (token.text == "density" || find_law(token.text)) return law(token);
+    fail(token.where, fmt::format("`{}` is nothing that a quantity can be compared with{}",
+                                  token.text, side_advice(token)));
+  }
+
+  Side number_side() {
+    const double number = lexer_.next().number;
+    const Token token = lexer_.peek();
+    if (token.is("*")) {
+      lexer_.next();
+      const Token factor = lexer_.peek();
+      if (factor.kind == Kind::number) {
+        fail(factor.where, "a claim has no arithmetic; write the product as one number");
+      }
+      return ScaledQuantity{number, quantity()};
+    }
+    if (token.is("%")) {
+      fail(token.where, fmt::format("a value has no per cent: write `{:g}`, or a margin, as in "
+                                    "`mean(a) within {:g}% of 0.5`",
+                                    number / 100, number));
+    }
+    if (!token.is("+-")) return Constant{number, 0};
+    lexer_.next();
+    const Location where = lexer_.peek().where;
+    const double error = expect_number();
+    if (error < 0) fail(where, "a standard error cannot be negative");
+    return Constant{number, error};
+  }
+
+  Law law(const Token& name) {
+    Law law{.name = name.text, .where = name.where};
+    if (!lexer_.peek().is("(")) return law;
+    if (name.text == "density") fail(lexer_.peek().where, "`density` takes no numbers");
+    lexer_.next();
+    law.arguments.push_back(expect_number());
+    while (lexer_.peek().is(",")) {
+      lexer_.next();
+      law.arguments.push_back(expect_number());
+    }
+    expect(")", "`)` or `,`");
+    return law;
+  }
+
+  /// The commonest slips: an estimator without its quantity, and the two sides exchanged.
+  [[noreturn]] void no_quantity(const Token& name) {
+    for (const char* of_spread :
+         {"stddev", "stdev", "std", "deviation", "standard_deviation", "sd"}) {
+      if (name.text != of_spread) continue;
+      fail(name.where,
+           fmt::format("there is no quantity `{}`; square it: `variance(…)`", name.text));
+    }
+    if (name.text == "median") {
+      fail(name.where, "there is no quantity `median`; it is a quantile: `quantile(…, 0.5)`");
+    }
+    const std::string near = did_you_mean(name.text, quantity_words());
+    if (near.empty() && stands_on_the_right(name.text)) {
+      fail(name.where, fmt::format("`{}` stands on the right, as in `mean(area) == analytic` or "
+                                   "`distribution(x) == normal(0, 1)`",
+                                   name.text));
+    }
+    if (near.empty() && !lexer_.peek().is("(")) {
+      fail(name.where,
+           fmt::format("expected a quantity, as in `mean({0})`, found `{0}`", name.text));
+    }
+    fail(name.where, fmt::format("there is no quantity `{}`{}", name.text,
+                                 advice(name.text, quantity_words())));
+  }
+
+  std::string side_advice(const Token& token) {
+    if (token.text == "pi") return "; write it as a number, 3.141592653589793";
+    if (token.text == "gaussian") return "; did you mean `normal(0, 1)`?";
+    const std::string near = did_you_mean(token.text, side_words());
+    if (!near.empty()) return near;
+    // `mean(a) == b`: the name of an estimator where its quantity should be.
+    if (!lexer_.peek().is("(")) {
+      return fmt::format("; of an estimator, write its quantity, as in `mean({})`", token.text);
+    }
+    return fmt::format("; expected {}", expected_side);
+  }
+
+  static std::string advice(std::string_view word, const std::vector<std::string>& known) {
+    const std::string near = did_you_mean(word, known);
+    if (!near.empty()) return near;
+    std::string all = "; expected one of";
+    for (const std::string& name : known) all += (name == known[0] ? " " : ", ") + name;
+    return all;
+  }
+
+  void expect(std::string_view symbol, const std::string& expected) {
+    const Token token = lexer_.next();
+    if (!token.is(symbol)) unexpected(token, expected);
+  }
+
+  Token expect_word(const char* expected) {
+    Token token = lexer_.next();
+    if (token.kind != Kind::word) unexpected(token, expected);
+    return token;
+  }
+
+  double expect_number() {
+    const Token token = lexer_.next();
+    if (token.kind != Kind::number) unexpected(token, "a number");
+    return token.number;
+  }
+
+  [[noreturn]] static void unexpected(const Token& token, const std::string& expected,
+                                      const std::string& hint = "") {
+    fail(token.where, fmt::format("expected {}, found {}{}", expected, shown(token), hint));
+  }
+
+  [[noreturn]] static void fail(const Location& where, const std::string& why) {
+    throw InputError(where, why);
+  }
+
+  static constexpr const char* expected_side =
+      "a number, `analytic`, a quantity as `mean(…)`, or a law as `uniform(0, 1)`";
+
+  Lexer lexer_;
+};
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") + 1 - first));
+}
+
+}  // namespace
+
+Claim parse_claim(std::string_view text, const Location& where) {
+  Claim claim = Parser(text, where).claim();
+  claim.text = trimmed(text);
+  check_claim(claim);
+  return claim;
+}
+
+Source parse_source(std::string_view text, const Location& where) {
+  return Parser(text, where).source();
+}
+
+Margin parse_margin(std::string_view text, const Location& where, std::string_view what) {
+  try {
+    Parser parser(text, where);
+    const Margin margin = parser.margin();
+    parser.end("the margin");
+    return margin;
+  } catch (const InputError& e) {
+    throw InputError(where, fmt::format("{} must be a margin such as `0.5%` or `0.002`, but it is "
+                                        "`{}`: {}",
+                                        what, text, e.message()));
+  }
+}
+
+bool is_estimator_name(std::string_view name) {
+  try {
+    const Source source = parse_source(name, {});
+    return source.estimator == name;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace assay::harness

@@ -1,3 +1,0 @@
-#include "harness/program.h"
-
-int main(int argc, char** argv) { return assay::harness::program({argv + 1, argv + argc}); }

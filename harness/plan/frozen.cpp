@@ -1,0 +1,175 @@
+#include "harness/plan/frozen.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "harness/families/law_evidence.h"
+#include "harness/families/methods.h"
+#include "harness/plan/image_plan.h"
+#include "harness/plan/pilot_shape.h"
+#include "harness/plan/rows.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr double least_share = 0.01;
+// 64 pilot points of both sides to a cell.
+constexpr stats::CellNumbers plane_cells{.bands = 16, .cuts = 16};
+constexpr stats::CellNumbers line_cells{.bands = 64, .cuts = 1};
+
+/// Whether this side's pilot may choose: rows only if no side has a pilot of its own.
+bool may_choose(const Question& question, std::size_t subject) {
+  return !is_recorded(question.subjects[subject]) ||
+         std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded);
+}
+
+std::vector<double> pilot_values(const Question& question, std::size_t subject, std::size_t channel,
+                                 const Pilots& pilots, const Plan& plan) {
+  const Subject& side = question.subjects[subject];
+  if (pilot_of(side, pilots) == nullptr || !may_choose(question, subject)) return {};
+  return as_secondaries(side, pilot_channel(question, subject, channel, pilots).values,
+                        plan.primaries[subject]);
+}
+
+/// Leaves out values that come less often than this: those of a bucket that few fall into, so that
+/// of continuous values hardly any are left to be sorted.
+void drop_rare(std::vector<double>& values, double least) {
+  constexpr int bits = 14;
+  const auto bucket = [](double value) {
+    const auto word = std::bit_cast<std::uint64_t>(value + 0.0);  // of -0 that of 0
+    return static_cast<std::size_t>((word * 0x9E3779B97F4A7C15) >> (64 - bits));
+  };
+  std::vector<std::uint32_t> counts(std::size_t{1} << bits);
+  for (const double value : values) ++counts[bucket(value)];
+  std::erase_if(values, [&](double value) { return counts[bucket(value)] < least; });
+}
+
+std::optional<Atom> most_frequent(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  const auto total = static_cast<double>(values.size());
+  drop_rare(values, least_share * total);
+  std::sort(values.begin(), values.end());
+  std::optional<Atom> atom;
+  for (auto begin = values.begin(); begin != values.end();) {
+    const auto end = std::upper_bound(begin, values.end(), *begin);
+    const double share = static_cast<double>(end - begin) / total;
+    const bool again = end - begin > 1 && share >= least_share;
+    if (again && (!atom || share > atom->share)) atom = Atom{.value = *begin, .share = share};
+    begin = end;
+  }
+  return atom;
+}
+
+bool is_of_draws(const Question& question) {
+  return std::any_of(question.subjects.begin(), question.subjects.end(),
+                     [](const Subject& side) { return !side.purpose.empty(); });
+}
+
+/// The pilots' points of both sides, but for those without one.
+std::vector<stats::PlanePoint> pilot_points(const Question& question, const Pilots& pilots,
+                                            const Plan& plan) {
+  std::vector<stats::PlanePoint> points;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    const std::vector<double> first = pilot_values(question, subject, 0, pilots, plan);
+    const std::vector<double> second = side.channels.size() > 1
+                                           ? pilot_values(question, subject, 1, pilots, plan)
+                                           : std::vector<double>(first.size(), 0);
+    const std::optional<double> none = no_point_of(side);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if (first[i] != none && std::isfinite(first[i]) && std::isfinite(second[i])) {
+        points.push_back({first[i], second[i]});
+      }
+    }
+  }
+  return points;
+}
+
+void freeze_cells(const Question& question, const Pilots& pilots, Plan& plan) {
+  std::vector<stats::PlanePoint> points = pilot_points(question, pilots, plan);
+  if (points.empty()) {
+    plan.invalid = "the pilots gave no point to choose cells by";
+    return;
+  }
+  const bool plane = question.subjects[0].channels.size() > 1;
+  plan.method.frozen.cells = std::make_shared<const stats::SampledCells>(
+      stats::sampled_cells(std::move(points), plane ? plane_cells : line_cells));
+}
+
+bool has_any(const std::vector<std::optional<Atom>>& atoms) {
+  return std::any_of(atoms.begin(), atoms.end(), [](const auto& atom) { return atom.has_value(); });
+}
+
+void note(const Question& question, const std::vector<std::optional<Atom>>& atoms, Plan& plan) {
+  for (std::size_t channel = 0; channel < atoms.size(); ++channel) {
+    if (!atoms[channel]) continue;
+    const std::string part =
+        atoms.size() > 1 ? " in channel " + question.channel_name(channel) : "";
+    plan.gates.push_back(
+        {.name = fmt::format("share of {:.6g}{}, pilots of both", atoms[channel]->value, part),
+         .value = atoms[channel]->share,
+         .limit = least_share,
+         .state = "amber"});
+  }
+}
+
+}  // namespace
+
+bool takes_from_pilot(const Method& method) {
+  return method.name == "two-part-ks" || method.name == two_sample_cells || method.name == "image";
+}
+
+std::vector<const Subject*> piloted_draws(const Question& question) {
+  std::vector<const Subject*> draws;
+  if (question.kind != QuestionKind::same_cells) return draws;
+  for (const Subject& side : question.subjects) {
+    if (!side.purpose.empty()) draws.push_back(&side);
+  }
+  return draws;
+}
+
+std::vector<std::optional<Atom>> atoms_of(const Question& question, const Pilots& pilots,
+                                          const Plan& plan) {
+  std::vector<std::optional<Atom>> atoms;
+  if (is_of_draws(question)) return atoms;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    std::vector<double> both;
+    for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+      const auto values = pilot_values(question, subject, channel, pilots, plan);
+      both.insert(both.end(), values.begin(), values.end());
+    }
+    atoms.push_back(most_frequent(std::move(both)));
+  }
+  return atoms;
+}
+
+void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
+  if (plan.method.name == two_sample_cells) {
+    freeze_cells(question, pilots, plan);
+  } else if (plan.method.name == "image") {
+    plan.method.frozen.weights = image_weights(question, pilots, plan);
+  } else if (plan.method.name == "two-part-ks") {
+    plan.method.frozen.atoms = atoms_of(question, pilots, plan);
+    if (has_any(plan.method.frozen.atoms)) return;
+    plan.invalid =
+        "`two-part-ks` splits off a value that comes again and again, and the pilots show none "
+        "that "
+        "is one in a hundred; leave `test` out";
+  }
+}
+
+void choose_for_laws(const Question& question, const Pilots& pilots, Plan& plan) {
+  if (question.kind == QuestionKind::same_law) {
+    const auto atoms = atoms_of(question, pilots, plan);
+    note(question, atoms, plan);
+    if (!question.test->method && has_any(atoms)) {
+      plan.method = find_method(question, "two-part-ks");
+    }
+  }
+  freeze(question, pilots, plan);
+}
+
+}  // namespace assay::harness

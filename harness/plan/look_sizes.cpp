@@ -1,0 +1,41 @@
+#include "harness/plan/look_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace assay::harness {
+
+std::uint64_t largest_look(const Question& question, std::uint64_t most) {
+  return std::min(most, question.test->secondaries.value_or(most));
+}
+
+std::uint64_t fewest_secondaries(const Question& question, std::uint64_t look) {
+  std::uint64_t fewest = look;
+  for (const Subject& side : question.subjects) fewest = std::min(fewest, side.secondaries(look));
+  return fewest;
+}
+
+double times_the_fewest(const Question& question, std::size_t subject, std::uint64_t look) {
+  return static_cast<double>(question.subjects[subject].secondaries(look)) /
+         static_cast<double>(fewest_secondaries(question, look));
+}
+
+stats::SampleSizes sizes_of(const Question& question, std::uint64_t look) {
+  const auto taken = [&](std::size_t subject) {
+    return static_cast<double>(question.subjects[subject].secondaries(look));
+  };
+  return {.x = taken(0), .y = taken(question.of_two() ? 1 : 0)};
+}
+
+std::uint64_t whole_secondaries(double count) {
+  return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
+}
+
+void note_too_few(Plan& plan, std::uint64_t size, std::uint64_t needed) {
+  plan.gates.push_back({.name = "number of observations (limit: the fewest that keep the level)",
+                        .value = static_cast<double>(size),
+                        .limit = static_cast<double>(needed),
+                        .state = "red"});
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,63 @@
+#include "harness/plan/pilot_run.h"
+
+#include <algorithm>
+
+#include "harness/families/methods.h"
+#include "harness/plan/frozen.h"
+#include "harness/theta/method.h"
+
+namespace assay::harness {
+namespace {
+
+/// Names of the estimators whose costs some claim is about.
+std::set<std::string> costly(const std::vector<Question>& questions) {
+  std::set<std::string> names;
+  for (const Question& question : questions) {
+    if (methods_for(question).front().keeps != Keeps::costs) continue;
+    for (const Subject& subject : question.subjects) names.insert(subject.estimator->name);
+  }
+  return names;
+}
+
+// Enough to tell a kurtosis of .5 from that of a normal law, whatever few a claim asks for.
+constexpr std::uint64_t least_of_larger = 2048;
+
+/// Of estimators whose variance or cost some claim is about the most observations that such a claim
+/// asks for; of a reference only the mean is used.
+std::map<std::string, std::uint64_t> on_tails(const std::vector<Question>& questions) {
+  std::map<std::string, std::uint64_t> most;
+  for (const Question& question : questions) {
+    if (!question.rests_on_tails()) continue;
+    for (std::size_t i = 0; i < question.compared(); ++i) {
+      std::uint64_t& size = most[question.subjects[i].estimator->name];
+      size =
+          std::max({size, least_of_larger, question.test->secondaries.value_or(many_observations)});
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
+                      std::uint64_t seed, unsigned threads) {
+  PilotRun run{.seed = seed, .threads = threads, .with_cost = costly(questions)};
+  const std::map<std::string, std::uint64_t> most = on_tails(questions);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!chosen[i]) continue;
+    for (const Subject* subject : piloted_draws(questions[i])) run.draws.push_back(subject);
+    if (!questions[i].rests_on_tails()) continue;
+    for (const Subject& subject : questions[i].subjects) {
+      const auto found = most.find(subject.estimator->name);
+      if (found != most.end()) run.on_tails.insert(*found);
+    }
+  }
+  return run;
+}
+
+PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
+                      unsigned threads) {
+  return pilot_run_of(questions, std::vector<bool>(questions.size(), true), seed, threads);
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,292 @@
+#include "harness/plan/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "harness/families/methods.h"
+#include "harness/plan/gate_text.h"
+#include "harness/plan/image_plan.h"
+#include "harness/plan/method_choice.h"
+#include "harness/plan/rows.h"
+#include "harness/plan/sample_size.h"
+#include "harness/question/declared_range.h"
+#include "harness/sampling/pool.h"
+#include "harness/theta/critical.h"
+#include "harness/theta/scale.h"
+
+namespace assay::harness {
+namespace {
+
+// Half a day at 40 ns a primary.
+constexpr double most_planned_primaries = 1e12;
+// Ten looks cost twice the observations of one at most, where no reference's error takes part.
+constexpr std::uint64_t dearest_looks = 4;
+// Secondaries that have a spread.
+constexpr std::uint64_t fewest_tested = 2;
+
+/// The look that a budget in primaries pays for: two secondaries of each subject at least, or it is
+/// refused.
+std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t budget) {
+  const std::uint64_t each = primaries_of_each(question, plan);
+  std::uint64_t paid = budget / each;
+  // What subjects without more secondaries leave goes to the others.
+  while (paid >= fewest_tested) {
+    const std::uint64_t next = primaries_of_look(question, plan, paid + 1);
+    const std::uint64_t spent = primaries_of_look(question, plan, paid);
+    if (next == spent || next > budget) return paid;
+    paid += (budget - spent) / (next - spent);
+  }
+  throw InputError(question.test->place_of("budget"),
+                   fmt::format("its budget (or its share of the suite's) of {} primaries does not "
+                               "pay for two observations, the fewest that can be tested: these "
+                               "take {}; give a larger budget, or fewer `primaries`",
+                               budget, fewest_tested * each));
+}
+
+/// The largest look: all that there are of the subject with most, or what a budget in primaries
+/// pays for. One that is drawn beside rows of files takes as many as the longest file has.
+std::uint64_t most_available(const Question& question, const Plan& plan) {
+  const std::uint64_t most =
+      question.most_rows().value_or(std::numeric_limits<std::uint64_t>::max());
+  const std::optional<Budget>& budget = question.test->budget;
+  if (!budget || !budget->primaries) return most;
+  return std::min(most, paid_for(question, plan, *budget->primaries));
+}
+
+/// Stops before hours are spent on what was hardly meant.
+void require_possible(const Question& question, const Plan& plan, std::uint64_t secondaries) {
+  const TestEntry& test = *question.test;
+  const Location& where = test.place_of(test.detect ? "detect" : "claim");
+  if (secondaries >= impossible_secondaries) {
+    if (question.kind == QuestionKind::integral) {
+      const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+      throw InputError(
+          where, fmt::format("no number of observations would decide this claim: the quadrature of "
+                             "the density is certain only to {:.1g}, too little for the margin; "
+                             "give a larger one, or let the sampler's panels() be finer",
+                             draws.density_cells().tolerance()));
+    }
+    const bool uncertain = std::ranges::any_of(
+        question.references, [](const Constant& each) { return each.standard_error > 0; });
+    throw InputError(where,
+                     uncertain ? "no number of observations would decide this claim: the "
+                                 "reference's own standard error is too large for the margin; give "
+                                 "a larger margin or a better reference"
+                               : "this claim would take more observations than can be counted; "
+                                 "give a larger margin");
+  }
+  const double total =
+      static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(question, plan));
+  if (total <= most_planned_primaries) return;
+  throw InputError(where, fmt::format("this claim would take about {:.1e} primaries; give a larger "
+                                      "margin, or a `budget` to spend on it all the same",
+                                      total));
+}
+
+stats::LookSchedule one_look(std::uint64_t secondaries) { return {{secondaries}, {1}}; }
+
+/// Of a method in seconds: replicates of whole blocks, as many observations in those of each
+/// subject; one look.
+stats::LookSchedule timed_look(const Plan& plan, std::uint64_t secondaries) {
+  std::uint64_t block = 1;
+  for (const std::uint64_t primaries : plan.primaries) {
+    block = std::max(block, block_size_of(primaries));
+  }
+  const std::uint64_t unit = block * replicate_count;
+  return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit);
+}
+
+/// Looks that double from the fewest that mean anything up to what `detect` needs at the last
+/// look's share of the errors. One look where nothing asks for a number or the number is given: all
+/// rows of a file, `secondaries`, the classical 1000.
+stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
+                               const Pilots& pilots, const Plan& plan, std::uint64_t first) {
+  const std::uint64_t most = most_available(question, plan);
+  if (plan.method.keeps == Keeps::blocks) {
+    if (question.test->secondaries || question.test->budget) {
+      throw InputError(
+          question.test->place_of(question.test->secondaries ? "secondaries" : "budget"),
+          "a claim in seconds is timed on whole replicates: `secondaries` and "
+          "`budget` cannot be chosen; leave them out");
+    }
+    const auto planned = planned_secondaries(question, place.share, pilots, plan);
+    if (planned) require_possible(question, plan, *planned);
+    return timed_look(plan, std::max(first, planned.value_or(usual_secondaries)));
+  }
+  if (question.test->secondaries) {
+    const std::uint64_t given = std::min(*question.test->secondaries, most);
+    if (!question.test->budget) require_possible(question, plan, given);
+    return one_look(given);
+  }
+  if (has_rows(question)) return one_look(most);
+  const std::optional<std::uint64_t> alone =
+      planned_secondaries(question, place.share, pilots, plan);
+  const std::uint64_t classical =
+      question.kind == QuestionKind::image ? classical_replicates : usual_secondaries;
+  if (!alone) return one_look(std::min(std::max(first, classical), most));
+  if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
+  if (*alone <= first) return one_look(std::min(first, most));
+  std::size_t count = std::min<std::size_t>(most_looks, 1 + std::bit_width((*alone - 1) / first));
+  for (; count > 1; --count) {
+    const double weight = 1 / static_cast<double>(count);
+    const ErrorShare share{.alpha = place.share.alpha * weight, .beta = place.share.beta * weight};
+    const std::uint64_t last = std::min(
+        most, planned_secondaries(question, share, pilots, plan).value_or(impossible_secondaries));
+    // Near what the reference's error allows, smaller shares may be beyond any number: fewer looks.
+    if (last > dearest_looks * *alone) continue;
+    if (last <= first) return one_look(last);
+    return stats::geometric_looks(
+        {.first = std::max(first, (last >> (count - 1)) + 1), .last = last}, look_growth);
+  }
+  return one_look(std::min(*alone, most));
+}
+
+/// Of a test that is invalid before it begins: what is drawn decides nothing, and only shows what
+/// its estimators yield.
+stats::LookSchedule look_for_its_picture(const Question& question, const Plan& plan) {
+  const bool given = question.test->secondaries || has_rows(question);
+  if (given || plan.method.keeps == Keeps::blocks) return plan.looks;
+  return one_look(std::min(plan.looks.sizes.front(), usual_secondaries));
+}
+
+std::vector<Regions> regions_of(const Question& question) {
+  const TestEntry& test = *question.test;
+  std::vector<Regions> all;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    Regions regions{.relation = test.claim.relation};
+    if (test.allow) regions.allow = margin_on_theta(question, channel, *test.allow);
+    if (test.detect) regions.detect = margin_on_theta(question, channel, *test.detect);
+    if (regions.relation == Relation::within) {
+      regions.within = margin_on_theta(question, channel, test.claim.margin);
+    }
+    all.push_back(regions);
+  }
+  return all;
+}
+
+/// A density that a claim is about must be there: better known now than after the draws.
+void require_density(const Question& question) {
+  if (question.kind != QuestionKind::fit_to_density && question.kind != QuestionKind::integral) {
+    return;
+  }
+  dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
+}
+
+/// Which estimator's pilot gave what is not finite; empty where none did. Rows of files are the
+/// test's own.
+std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) {
+  for (const Subject& subject : question.subjects) {
+    const Pilot* const pilot = pilot_of(subject, pilots);
+    if (pilot == nullptr || pilot->sums->elements || subject.setup->observations()) continue;
+    for (const std::size_t channel : subject.channels) {
+      const ChannelSummary& seen = pilot->sums->channels[channel];
+      if (seen.nonfinite == 0) continue;
+      return fmt::format(
+          "{} of {} observations of `{}` in the pilot are not finite, the first is observation {}",
+          seen.nonfinite, pilot->sums->count, subject.estimator->name, seen.first_nonfinite);
+    }
+  }
+  return "";
+}
+
+/// Which estimator's pilot gave what its channel declares that it never gives: single primaries
+/// show what means may not. Empty where none did.
+std::string misdeclared(const Question& question, const Pilots& pilots) {
+  for (const Subject& subject : question.subjects) {
+    const Pilot* const pilot = pilot_of(subject, pilots);
+    if (pilot == nullptr) continue;
+    if (std::string fault = outside_of_range(subject, *pilot->sums); !fault.empty()) return fault;
+  }
+  return "";
+}
+
+/// What the user may not have meant: a `detect` by default, or a margin larger than the second of
+/// two means, which the pilot alone knows.
+std::string caution_of(const Question& question, const Pilots& pilots) {
+  if (question.test->detect_by_default) {
+    return fmt::format("`detect` is {}, the default of claims about laws",
+                       question.test->detect->value);
+  }
+  if (question.kind != QuestionKind::mean_of_two) return "";
+  const Subject& second = question.subjects[1];
+  const Pilot* const pilot = pilot_of(second, pilots);
+  if (pilot == nullptr) return "";
+  constexpr double certain = 8;  // standard errors: of a mean near zero margins are no part
+  double size = 0;
+  for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
+    const stats::Moments moments = pilot_channel(second, *pilot, channel).moments;
+    const double mean = std::abs(moments.mean);
+    if (moments.count > 1 && mean > certain * moments.standard_error()) {
+      size = std::max(size, std::abs(question.factor) * mean);
+    }
+  }
+  for (const Margin& margin : margins_of(*question.test)) {
+    if (std::string text = missing_per_cent(margin, size); !text.empty()) {
+      return "the margin " + text;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string lack_of_density(const Question& question, const NoDensity& why) {
+  return fmt::format("the density that `{}` declares cannot be had: {}",
+                     question.subjects[0].estimator->name, why.what());
+}
+
+std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
+  return primaries_of_look(question, plan, 1);
+}
+
+std::uint64_t primaries_of_look(const Question& question, const Plan& plan, std::uint64_t look) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < plan.primaries.size(); ++i) {
+    const Subject& side = question.subjects[i];
+    sum += primaries_of_observation(*side.setup, plan.primaries[i]) * side.secondaries(look);
+  }
+  return sum;
+}
+
+Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+               const Primaries& primaries) {
+  const TestEntry& test = *question.test;
+  Plan plan{
+      .method = test.method ? find_method(question, *test.method) : methods_for(question).front(),
+      .regions = regions_of(question),
+      .gates_invalidate = !test.method};
+  for (const Subject& subject : question.subjects) {
+    const bool single = question.of_laws() && !subject.estimator->primaries;
+    plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
+  }
+  plan.pilot_error = not_finite_in_pilot(question, pilots);
+  plan.error = where_pilots_stopped(question, pilots);
+  if (plan.error.empty()) plan.error = misdeclared(question, pilots);
+  if (!plan.error.empty()) {
+    plan.looks = one_look(2);
+    return plan;
+  }
+  try {
+    require_density(question);
+    const std::uint64_t most = most_available(question, plan);
+    const std::uint64_t least = choose_method(question, place, pilots, most, plan);
+    plan.looks = plan_looks(question, place, pilots, plan, least);
+    if (plan.invalid.empty()) plan.invalid = too_few_replicates(question, plan);
+    if (!plan.invalid.empty()) plan.looks = look_for_its_picture(question, plan);
+    plan.hint += rows_beside_primaries(question);
+    plan.caution = caution_of(question, pilots);
+  } catch (const std::domain_error& error) {
+    plan.looks = one_look(2);
+    plan.invalid = in_words(error);
+  } catch (const NoDensity& failure) {
+    plan.looks = one_look(2);
+    plan.error = lack_of_density(question, failure);
+  }
+  return plan;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,69 @@
+#include "harness/plan/primaries.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "harness/sampling/beyond_doubles.h"
+#include "harness/theta/constant.h"
+#include "harness/theta/critical.h"
+#include "stats/gates/assumption_gates.h"
+
+namespace assay::harness {
+namespace {
+
+// Below this the cost of an observation (stream, moments) shows against 20 ns a primary.
+constexpr std::uint64_t least_primaries = 64;
+// Beyond this a larger mean no longer tames the tail in reasonable time: another method, or none.
+constexpr std::uint64_t most_primaries = 4096;
+
+bool chooses_primaries(const Subject& subject) {
+  return subject.averages && subject.purpose.empty() && !subject.estimator->primaries;
+}
+
+/// Primaries that one question asks of one of its estimators.
+std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& place,
+                               std::size_t subject, const Pilots& pilots) {
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  std::uint64_t wanted = least_primaries;
+  for (std::size_t channel = 0; channel < question.subjects[subject].channels.size(); ++channel) {
+    const stats::Moments& pilot = pilot_channel(question, subject, channel, pilots).moments;
+    if (is_constant(question, subject, channel, pilot)) continue;
+    if (!beyond_doubles(pilot, "").empty()) continue;  // the plan says so
+    const stats::PrimaryShape shape = stats::primary_shape(pilot);
+    const stats::PlannedTest test{
+        .secondaries = question.test->secondaries.value_or(usual_secondaries), .critical_value = x};
+    wanted = std::max(wanted, question.of_spread()
+                                  ? stats::primaries_for_variance(shape, shape_limits(x))
+                                  : stats::primaries_for_mean(shape, test));
+  }
+  return wanted;
+}
+
+}  // namespace
+
+Primaries choose_primaries(const std::vector<Question>& questions,
+                           const std::vector<FamilyPlace>& places, const Pilots& pilots) {
+  Primaries chosen;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const Question& question = questions[i];
+    if (question.of_laws()) continue;
+    for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+      const Subject& side = question.subjects[subject];
+      if (!chooses_primaries(side) || pilot_of(side, pilots) == nullptr) continue;
+      const std::uint64_t wanted = wanted_primaries(question, places[i], subject, pilots);
+      std::uint64_t& primaries = chosen[side.estimator->name];
+      // A power of two: another seed's pilot then mostly chooses the same.
+      primaries = std::max(primaries, std::bit_ceil(std::min(wanted, most_primaries)));
+    }
+  }
+  return chosen;
+}
+
+std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen) {
+  if (!subject.purpose.empty()) return 1;
+  if (subject.estimator->primaries) return *subject.estimator->primaries;
+  const auto found = chosen.find(subject.estimator->name);
+  return found != chosen.end() ? found->second : 1;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,365 @@
+#include "harness/plan/rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "estimators/ready_made.h"
+#include "harness/families/methods.h"
+#include "harness/theta/constant.h"
+#include "harness/theta/gate.h"
+#include "stats/basics/sorted.h"
+#include "stats/gates/dependence.h"
+#include "stats/gates/independence_gates.h"
+#include "stats/gates/lagged_correlation.h"
+#include "stats/gates/quantisation_gate.h"
+#include "stats/gates/recurring_values.h"
+#include "stats/gates/repeated_run.h"
+#include "stats/gates/unpiloted_gates.h"
+
+namespace assay::harness {
+namespace {
+
+using stats::Gate;
+using stats::GateState;
+
+// In fewer the gates of independence see little: laws of 12 to 50 states of a chain failed under up
+// to half of the seeds with all of them green, and of 100 one in a thousand.
+constexpr std::size_t fewest_in_order_to_tell = 100;
+// Glynn and Iglehart 1990: Student's t on fewer batch means is off.
+constexpr std::size_t fewest_batches = 20;
+
+/// One channel of a recorded subject, as far as the test reads it.
+struct Rows {
+  std::size_t subject;
+  std::size_t channel;
+  std::string label;
+  std::span<const double> values;
+};
+
+std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::uint64_t count) {
+  std::vector<Rows> all;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (!is_recorded(side) || pilot == nullptr || pilot->values.empty()) continue;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const PilotChannel data = pilot_channel(side, *pilot, channel);
+      const std::size_t used = std::min<std::uint64_t>(data.values.size(), count);
+      const bool finite = std::all_of(data.values.begin(), data.values.end(),
+                                      [](double value) { return std::isfinite(value); });
+      if (!finite || used < fewest_in_order ||
+          is_constant(question, subject, channel, data.moments))
+        continue;
+      const std::string part =
+          side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";
+      all.push_back({.subject = subject,
+                     .channel = channel,
+                     .label = "rows of " + side.estimator->name + part,
+                     .values = data.values.first(used)});
+    }
+  }
+  return all;
+}
+
+bool enough_batches(std::span<const double> values) {
+  return values.size() / stats::sufficient_batch(values) >= fewest_batches;
+}
+
+/// What of a chain with this autocorrelation time the question could be asked of.
+std::string enough_of_a_chain(const Question& question, double time) {
+  const auto apart = static_cast<std::size_t>(std::ceil(10 * time));
+  if (!question.of_means()) {
+    return fmt::format("keep one row in {}, {} of them at least", apart, fewest_in_order_to_tell);
+  }
+  if (question.test->claim.relation == Relation::within) {
+    return fmt::format("means of {} successive rows each, {} of them at least", apart,
+                       fewest_in_order_to_tell);
+  }
+  return fmt::format("{} rows at least, of which batches are then averaged",
+                     fewest_batches * std::max(apart, fewest_batches));
+}
+
+/// `at_a_lag`: it is values some steps apart that show it, not neighbours.
+std::string dependent(const Question& question, const Rows& rows, bool at_a_lag) {
+  const double time = std::max(1.0, stats::autocorrelation_time(rows.values));
+  const stats::LaggedCorrelation worst = stats::worst_of(stats::lagged_correlations(rows.values));
+  if (at_a_lag && worst.correlation > 0 && static_cast<double>(worst.lag) > time) {
+    return fmt::format(
+        "the {} are not independent: those {} apart have a rank correlation of {:.2g}, as where so "
+        "many chains take turns; give one row a chain",
+        rows.label, worst.lag, worst.correlation);
+  }
+  const double worth = static_cast<double>(rows.values.size()) / time;
+  return fmt::format(
+      "the {} are not independent: {} of them are worth about {:.0f} independent ones; give one "
+      "row a chain, or {}",
+      rows.label, rows.values.size(), worth, enough_of_a_chain(question, time));
+}
+
+/// Of what chance does not make.
+Gate red_gate(const char* name, std::size_t value, std::size_t limit) {
+  const auto shown = static_cast<double>(value);
+  return {.name = name,
+          .value = shown,
+          .low = shown,
+          .limit = static_cast<double>(limit),
+          .state = GateState::red};
+}
+
+std::string from_to(std::size_t first, std::size_t length) {
+  return fmt::format("{} to {}", first + 1, first + length);
+}
+
+std::string repeated(const Rows& rows, const stats::RepeatedRun& again) {
+  return fmt::format(
+      "of the {} those from {} are those from {} again, bit for bit: they are no observations of "
+      "their own; give each run of the program that writes them a seed of its own",
+      rows.label, from_to(again.second, again.length), from_to(again.first, again.length));
+}
+
+std::string recurring(const Rows& rows, const stats::RecurringValues& alike) {
+  return fmt::format(
+      "of the {} {} values occur exactly {} times each, bit for bit, where independent ones would "
+      "show {} such at most: they are no observations of their own; keep each row once",
+      rows.label, alike.values, alike.times, alike.limit);
+}
+
+/// Two samples that are held against each other.
+struct Pair {
+  const Subject& first;
+  const Subject& second;
+};
+
+[[noreturn]] void refuse(const Question& question, const Pair& pair, const std::string& why) {
+  throw InputError(
+      question.test->claim.left.where,
+      fmt::format("`{}` and `{}` are no independent samples: {}, bit for bit; give the "
+                  "two sides seeds of their own, none of them twice",
+                  pair.first.estimator->name, pair.second.estimator->name, why));
+}
+
+void refuse_shared_pictures(const Question& question, std::uint64_t count) {
+  for (const Subject& first : question.subjects) {
+    for (const Subject& second : std::span(&first + 1, std::to_address(question.subjects.end()))) {
+      if (const auto files = recorded::shared_picture(*first.setup, *second.setup, count)) {
+        refuse(question, {first, second},
+               fmt::format("`{}` and `{}` are the same picture", files->first, files->second));
+      }
+    }
+  }
+}
+
+void refuse_shared_rows(const Question& question, const Rows& one, const Rows& two) {
+  const Subject& first = question.subjects[one.subject];
+  const Subject& second = question.subjects[two.subject];
+  if (const auto run = stats::common_run(one.values, two.values)) {
+    refuse(question, {first, second},
+           fmt::format("rows {} of `{}` are rows {} of `{}`", from_to(run->first, run->length),
+                       first.setup->data_file(), from_to(run->second, run->length),
+                       second.setup->data_file()));
+  }
+  if (const auto shared = stats::shared_values(one.values, two.values)) {
+    refuse(question, {first, second},
+           fmt::format("{} rows of `{}` are rows of `{}`, in another order", shared->values,
+                       first.setup->data_file(), second.setup->data_file()));
+  }
+}
+
+/// Why rows are too few to show that they are independent. "" where there are enough.
+std::string too_few_to_tell(const Question& question, const Pilots& pilots, std::uint64_t count,
+                            Plan& plan) {
+  std::string reason;
+  for (const Subject& side : question.subjects) {
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (!is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
+    const PilotChannel first = pilot_channel(side, *pilot, 0);
+    // Constants have gates of their own, but a single row is none.
+    const bool constant = first.values.size() > 1 && !(first.moments.m2 > 0);
+    if (first.values.empty() || constant) continue;
+    const std::uint64_t rows = std::min<std::uint64_t>(first.values.size(), count);
+    plan.gates.push_back({.name = "rows that show their independence of " + side.estimator->name,
+                          .value = static_cast<double>(rows),
+                          .limit = static_cast<double>(fewest_in_order_to_tell),
+                          .state = rows < fewest_in_order_to_tell ? "red" : "green"});
+    if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
+    reason = fmt::format(
+        "`{}` has {} row{}, and it takes {} to see that they do not depend on each other; give "
+        "more, or, if they do not, add {}",
+        side.estimator->name, rows, rows == 1 ? "" : "s", fewest_in_order_to_tell,
+        written_key(*question.test, "test", plan.method.name));
+  }
+  return reason;
+}
+
+/// Of rows that may depend on each other too weakly for a gate.
+void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
+  for (const Rows& rows : all) {
+    const double factor = stats::allowance_for_dependence(rows.values);
+    if (!(factor > 1)) continue;
+    plan.method.frozen.row_allowances.push_back(
+        {.subject = rows.subject, .channel = rows.channel, .factor = factor});
+    plan.gates.push_back({.name = "variance of the mean, allowed for dependence, " + rows.label,
+                          .value = factor,
+                          .limit = 1,
+                          .state = "amber"});
+  }
+}
+
+}  // namespace
+
+bool is_recorded(const Subject& subject) { return subject.setup->observations().has_value(); }
+
+bool has_rows(const Question& question) {
+  return std::any_of(question.subjects.begin(), question.subjects.end(), is_recorded);
+}
+
+void require_independent_sides(const Question& question, const Pilots& pilots,
+                               std::uint64_t count) {
+  if (question.subjects.size() < 2) return;
+  refuse_shared_pictures(question, count);
+  const std::vector<Rows> all = rows_of(question, pilots, count);
+  for (const Rows& one : all) {
+    for (const Rows& two : all) {
+      if (one.subject < two.subject && one.channel == two.channel) {
+        refuse_shared_rows(question, one, two);
+      }
+    }
+  }
+}
+
+void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
+                        Plan& plan) {
+  const bool forced = question.test->method.has_value();
+  std::string reason;
+  if (plan.invalid.empty()) reason = too_few_to_tell(question, pilots, count, plan);
+  const std::vector<Rows> all = rows_of(question, pilots, count);
+  const bool batches = question.of_means() && question.test->claim.relation != Relation::within &&
+                       std::all_of(all.begin(), all.end(),
+                                   [](const Rows& each) { return enough_batches(each.values); });
+  bool answered = false;
+  for (const Rows& rows : all) {
+    if (const auto again = stats::repeated_run(rows.values)) {
+      plan.gates.push_back(
+          gate_of(red_gate("longest repetition", again->length, 0), ", " + rows.label));
+      if (reason.empty()) reason = repeated(rows, *again);
+    } else if (const auto alike = stats::recurring_values(rows.values)) {
+      plan.gates.push_back(
+          gate_of(red_gate("values that occur equally often", alike->values, alike->limit),
+                  ", " + rows.label));
+      if (reason.empty()) reason = recurring(rows, *alike);
+    }
+    std::vector<Gate> gates{stats::lag_one_gate(rows.values), stats::lagged_gate(rows.values),
+                            stats::batch_gate(rows.values)};
+    const bool red = std::any_of(gates.begin(), gates.end(),
+                                 [](const Gate& gate) { return gate.state == GateState::red; });
+    const bool averaged = red && batches && !forced;
+    answered = answered || averaged;
+    if (red && !averaged && reason.empty()) {
+      reason = dependent(question, rows,
+                         gates[1].state == GateState::red && gates[0].state != GateState::red);
+    }
+    for (Gate& gate : gates) {
+      if (averaged && gate.state == GateState::red) gate.state = GateState::amber;
+      plan.gates.push_back(gate_of(gate, ", " + rows.label));
+    }
+  }
+  if (forced) return;
+  if (!reason.empty()) {
+    plan.invalid = reason;
+  } else if (answered) {
+    plan.method = find_method(question, "batch-means");
+    // What stood against the rows one by one; of a side that is drawn it still does.
+    if (std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded)) {
+      plan.invalid.clear();
+    }
+  } else if (question.of_means() && !is_exact(plan.method)) {
+    allow_for_dependence(all, plan);
+  }
+}
+
+std::string rows_beside_primaries(const Question& question) {
+  if (question.kind != QuestionKind::variance_of_two) return "";
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Subject& rows = question.subjects[i];
+    const Subject& other = question.subjects[1 - i];
+    if (!is_recorded(rows) || !other.averages) continue;
+    return fmt::format(
+        "; a row of `{}` is held against a single primary of `{}`: rows that are means of n have a "
+        "variance n times less, and the claim on them a factor n",
+        rows.estimator->name, other.estimator->name);
+  }
+  return "";
+}
+
+stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
+                         std::span<const double> values, stats::Moments moments) {
+  // Constants are judged by themselves, and have no order.
+  if (!(moments.m2 > 0) || values.size() < fewest_in_order) return moments;
+  if (plan.method.name == "batch-means") {
+    return stats::batch_means(values, stats::sufficient_batch(values));
+  }
+  for (const RowAllowance& each : plan.method.frozen.row_allowances) {
+    if (each.subject != subject || each.channel != channel) continue;
+    moments.m2 *= each.factor;
+    moments.m3 *= each.factor * std::sqrt(each.factor);
+    moments.m4 *= each.factor * each.factor;
+  }
+  return moments;
+}
+
+std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
+                            double critical_value) {
+  const Question& question = outcome.question;
+  const std::string& method = outcome.plan.method.name;
+  std::vector<Gate> gates;
+  if (!has_rows(question)) return gates;
+  if (question.kind == QuestionKind::fit_to_law || question.kind == QuestionKind::fit_to_density) {
+    const bool by_points = method == "ks" || method == "anderson-darling";
+    if (!by_points || data[0].values.size() < 2) return gates;
+    const std::vector<double> sorted =
+        stats::sorted({data[0].values.begin(), data[0].values.end()});
+    gates.push_back(stats::quantisation_gate(sorted, outcome.share().alpha));
+  }
+  if (!question.of_means() || is_exact(outcome.plan.method)) return gates;
+  const bool batches = method == "batch-means";
+  const stats::Moments& first = data[0].moments;
+  if (data.size() == 1) {
+    if (!batches) gates.push_back(stats::unpiloted_count_gate(first, critical_value));
+    gates.push_back(stats::unpiloted_skewness_gate(first, critical_value));
+    return gates;
+  }
+  const double factor = question.factor;
+  const double x = first.variance() / static_cast<double>(first.count);
+  const double y =
+      factor * factor * data[1].moments.variance() / static_cast<double>(data[1].moments.count);
+  const double shares[] = {x / (x + y), y / (x + y)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (batches || !is_recorded(question.subjects[i])) continue;
+    gates.push_back(stats::unpiloted_count_gate(data[i].moments, critical_value, shares[i]));
+  }
+  gates.push_back(stats::unpiloted_skewness_gate(first, data[1].moments, factor, critical_value));
+  return gates;
+}
+
+void require_lasting_rows(const Suite& suite, const std::string& record) {
+  for (const EstimatorEntry& entry : suite.estimators) {
+    const Value* const file = entry.plugin == "recorded" ? entry.parameters.find("file") : nullptr;
+    if (file == nullptr) continue;
+    const std::string& name = file->text();
+    const std::string path = (std::filesystem::path(suite.folder) / name).string();
+    if (!recorded::is_read_once(name) && !recorded::is_read_once(path)) continue;
+    throw InputError(
+        {.file = record},
+        fmt::format("the data of `{}` came from {} and cannot be read\n  again; write "
+                    "them to a file and test that: its record can be replayed",
+                    entry.name,
+                    name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`"));
+  }
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,32 @@
+#include "harness/question/declared_range.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+namespace assay::harness {
+
+std::string outside_of_range(const Subject& subject, const Summary& drawn) {
+  // A mutant declares what its original does.
+  const bool mutant = !subject.estimator->entry->information.original.empty();
+  if (mutant || drawn.elements || subject.setup->observations()) return "";
+  const std::vector<Channel> channels = subject.setup->channels();
+  const auto finite = [](double end) { return std::isfinite(end) ? std::abs(end) : 0; };
+  for (const std::size_t i : subject.channels) {
+    const Channel& channel = channels[i];
+    const double slack = 1e-9 * (finite(channel.low) + finite(channel.high));
+    const stats::Moments& seen = drawn.channels[i].moments;
+    if (seen.count == 0) continue;
+    const bool above = seen.maximum > channel.high + slack;
+    if (!above && !(seen.minimum < channel.low - slack)) continue;
+    return fmt::format(
+        "`{}` gave {:.17g} in its channel `{}`, {} {:.17g}, which it declares to be "
+        "its `{}`",
+        subject.estimator->name, above ? seen.maximum : seen.minimum, channel.name,
+        above ? "above" : "below", above ? channel.high : channel.low, above ? "high" : "low");
+  }
+  return "";
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,266 @@
+#include "harness/question/pilot.h"
+
+#include <algorithm>
+
+#include "estimators/ready_made.h"
+#include "harness/base/interrupt.h"
+#include "harness/sampling/recorded_run.h"
+#include "harness/sampling/scheduler.h"
+#include "stats/images/image.h"
+
+namespace assay::harness {
+namespace {
+
+// many_observations are enough to know a skewness and a kurtosis of light-tailed primaries to some
+// per cent, and cheap against any test. One that does not average may be a chain or an image:
+// fewer, unless they are so far from normal that the test of a variance takes thousands anyway.
+constexpr std::uint64_t few_observations = 512;
+// The most primaries that a larger pilot takes: chains may have millions.
+constexpr std::uint64_t most_primaries_of_larger = std::uint64_t{1} << 27;
+// 3 + 3 sqrt(24 / 512): three standard errors above that of as few normal values.
+constexpr double near_normal_kurtosis = 3.65;
+// Of images as many as this many elements pay for, at least the fewest that tell their variance.
+constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
+constexpr std::uint64_t least_images = 2 * stats::least_replicates;
+
+/// How many observations a larger pilot has; those of any where there is none: of images, and of
+/// files, of which each may be a rendering.
+std::uint64_t larger_size(const PreparedEstimator& estimator, const PilotRun& run) {
+  const auto worth = run.on_tails.find(estimator.name);
+  const Setup& setup = *estimator.setup;
+  if (worth == run.on_tails.end() || estimator.nature().averages || setup.observations() ||
+      setup.image() || recorded::keeps_files(setup) ||
+      setup.channels().size() > most_kept_channels) {
+    return few_observations;
+  }
+  const std::uint64_t affordable = most_primaries_of_larger / estimator.primaries.value_or(1);
+  return std::clamp(std::min(worth->second, affordable), few_observations, many_observations);
+}
+
+bool is_far_from_normal(const stats::Moments& moments) {
+  return !(moments.m2 > 0) || moments.kurtosis() > near_normal_kurtosis;
+}
+
+/// A value that does not vary may be a rare one that was not seen. A cost that does not vary is the
+/// rule.
+bool is_far_from_normal(const Pool& pool, const Summary& sums) {
+  const std::vector<Channel> channels = pool.setup()->channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!channels[i].diagnostic && is_far_from_normal(sums.moments(i))) return true;
+    for (const stats::JointMoments& joint : sums.details(i).with_cost) {
+      if (joint.cost.m2 > 0 && is_far_from_normal(joint.cost)) return true;
+    }
+  }
+  return false;
+}
+
+std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, const PilotRun& run) {
+  const bool averages = estimator.nature().averages;
+  const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
+  auto pool =
+      std::make_shared<Pool>(estimator.setup, key_of(estimator, run.seed, 0, "pilot"), primaries);
+  std::uint64_t usual = averages ? many_observations : few_observations;
+  if (const auto images = usual_images(*estimator.setup, primaries)) {
+    usual = *images;
+    pool->keep_observations(usual);  // those of files are kept anyway
+  }
+  const std::uint64_t count = estimator.setup->observations().value_or(usual);
+  if (pool->channels() <= most_kept_channels) {
+    const std::uint64_t kept = std::max(count, larger_size(estimator, run));
+    for (ChannelPlan& channel : pool->plans()) channel.keep = kept;
+  }
+  pool->request(count);
+  return pool;
+}
+
+std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
+  auto pool = std::make_shared<Pool>(
+      subject.setup, key_of(*subject.estimator, seed, 0, subject.purpose + " pilot"), 1);
+  for (ChannelPlan& channel : pool->plans()) channel.keep = many_observations;
+  pool->request(many_observations);
+  return pool;
+}
+
+/// Moments that means of so many primaries would have these of. A kurtosis that is below 3 by
+/// chance would become one that no law has (Pearson 1916: at least 1 and the square of the
+/// skewness).
+stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
+  if (!(means.m2 > 0)) return means;
+  const double n = static_cast<double>(primaries);
+  const double values = static_cast<double>(means.count);
+  const double least = 1 + n * means.skewness() * means.skewness();
+  const double kurtosis = std::max(least, 3 + n * (means.kurtosis() - 3));
+  means.m3 *= n * n;
+  means.m2 *= n;
+  means.m4 = kurtosis * means.m2 * means.m2 / values;
+  return means;
+}
+
+/// The sums of a pilot pool, as of single primaries where a recorded run has means of several.
+std::shared_ptr<const Summary> sums_of(const Drawn& drawn) {
+  const RecordedRun* run = as_recorded_run(*drawn.pool().setup());
+  if (run == nullptr || !run->entry().information.averages) return drawn.shared_summary();
+  auto sums = std::make_shared<Summary>(drawn.summary());
+  for (ChannelSummary& channel : sums->channels) {
+    channel.moments = of_primaries(channel.moments, run->primaries());
+  }
+  return sums;
+}
+
+std::variant<Pilot, Fault> read(const Pool& pool) {
+  const Sample sample = pool.sample(pool.requested());
+  if (sample.fault() != nullptr) return *sample.fault();
+  const Drawn& drawn = *sample.drawn();
+  Pilot pilot{.sums = sums_of(drawn), .primaries = pool.primaries()};
+  for (std::size_t i = 0; i < pool.plan().size() && pool.plan()[i].keep > 0; ++i) {
+    const std::span<const double> kept = drawn.values(i);
+    if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
+  }
+  pilot.kept = pool.kept();
+  pilot.images = drawn.observations(usual_images(*pool.setup(), pool.primaries()).value_or(0));
+  return pilot;
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
+  const auto image = setup.image();
+  if (!image) return std::nullopt;
+  return std::clamp(image_elements / (image->elements() * primaries), least_images,
+                    few_observations);
+}
+
+namespace {
+
+std::string pilot_name_of(const std::string& estimator, const std::string& purpose) {
+  return estimator + (purpose.empty() ? "" : "." + purpose);
+}
+
+}  // namespace
+
+std::string pilot_name(const Subject& subject) {
+  return pilot_name_of(subject.estimator->name, subject.purpose);
+}
+
+const Pilot* Pilots::find(const std::string& name) const {
+  const auto found = drawn_.find(name);
+  return found != drawn_.end() ? &found->second : nullptr;
+}
+
+const Fault* Pilots::fault(const std::string& name) const {
+  const auto found = faults_.find(name);
+  return found != faults_.end() ? &found->second : nullptr;
+}
+
+const Fault* Pilots::fault(const std::string& estimator, const std::string& purpose) const {
+  const Fault* const whole = fault(estimator);
+  return whole != nullptr ? whole : fault(pilot_name_of(estimator, purpose));
+}
+
+void Pilots::add(const std::string& name, std::variant<Pilot, Fault> pilot) {
+  if (auto* const drawn = std::get_if<Pilot>(&pilot)) {
+    drawn_.emplace(name, std::move(*drawn));
+  } else {
+    faults_.emplace(name, std::get<Fault>(std::move(pilot)));
+  }
+}
+
+void Pilots::add_larger(const std::string& name, std::variant<Pilot, Fault> larger) {
+  Pilot& few = drawn_.at(name);
+  if (auto* const drawn = std::get_if<Pilot>(&larger)) {
+    few.larger = std::make_shared<const Pilot>(std::move(*drawn));
+  } else {
+    few.larger_fault = std::get<Fault>(std::move(larger));
+  }
+}
+
+void Pilots::merge(Pilots others) {
+  drawn_.merge(others.drawn_);
+  faults_.merge(others.faults_);
+}
+
+std::string where_pilots_stopped(const Question& question, const Pilots& pilots) {
+  for (const Subject& subject : question.subjects) {
+    const Fault* fault = pilots.fault(subject.estimator->name, subject.purpose);
+    const Pilot* const pilot = pilot_of(subject, pilots);
+    if (fault == nullptr && pilot != nullptr && pilot->larger_fault && question.rests_on_tails()) {
+      fault = &*pilot->larger_fault;
+    }
+    if (fault == nullptr) continue;
+    return fmt::format("`{}` stopped in the pilot at {}", subject.estimator->name,
+                       to_string(*fault));
+  }
+  return "";
+}
+
+const Pilot* pilot_of(const Subject& subject, const Pilots& pilots) {
+  return pilots.find(pilot_name(subject));
+}
+
+PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel) {
+  const std::size_t index = subject.channels[channel];
+  return {.moments = pilot.moments(index),
+          .values = index < pilot.values.size() ? std::span<const double>(pilot.values[index])
+                                                : std::span<const double>()};
+}
+
+const Pilot* pilot_of(const Question& question, std::size_t subject, const Pilots& pilots) {
+  const Pilot* const pilot = pilot_of(question.subjects[subject], pilots);
+  const bool larger = pilot != nullptr && pilot->larger && question.rests_on_tails();
+  return larger ? pilot->larger.get() : pilot;
+}
+
+PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
+                           const Pilots& pilots) {
+  return pilot_channel(question.subjects[subject], *pilot_of(question, subject, pilots), channel);
+}
+
+namespace {
+
+/// Draws on where a claim needs more than the first observations tell.
+void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estimators,
+             const std::vector<std::shared_ptr<Pool>>& pools, const PilotRun& run,
+             Progress& progress) {
+  std::vector<std::string> names;
+  std::vector<std::shared_ptr<Pool>> enlarged;
+  for (std::size_t i = 0; i < estimators.size(); ++i) {
+    const std::uint64_t size = larger_size(*estimators[i], run);
+    const Pilot* const few = pilots.find(estimators[i]->name);
+    if (size == few_observations || few == nullptr) continue;
+    if (!is_far_from_normal(*pools[i], *few->sums)) continue;
+    names.push_back(estimators[i]->name);
+    enlarged.push_back(pools[i]);
+    pools[i]->request(size);
+  }
+  if (enlarged.empty()) return;
+  draw_all(enlarged, {.threads = run.threads, .phase = "pilot"}, progress);
+  if (interrupted()) return;
+  // Claims on means do without: an estimator that fails only here has not failed them.
+  for (std::size_t i = 0; i < enlarged.size(); ++i) pilots.add_larger(names[i], read(*enlarged[i]));
+}
+
+}  // namespace
+
+Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
+                  Progress& progress) {
+  std::vector<std::string> names;
+  std::vector<std::shared_ptr<Pool>> pools;
+  for (const PreparedEstimator* estimator : estimators) {
+    names.push_back(estimator->name);
+    pools.push_back(pilot_pool(*estimator, run));
+    if (!run.with_cost.contains(estimator->name)) continue;
+    for (ChannelPlan& channel : pools.back()->plans()) channel.with_cost = true;
+  }
+  for (const Subject* subject : run.draws) {
+    names.push_back(pilot_name(*subject));
+    pools.push_back(draws_pool(*subject, run.seed));
+  }
+  draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
+  Pilots pilots;
+  if (interrupted()) return pilots;
+  for (std::size_t i = 0; i < pools.size(); ++i) pilots.add(names[i], read(*pools[i]));
+  enlarge(pilots, estimators, pools, run, progress);
+  return pilots;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,243 @@
+#include "harness/question/question_sources.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/draws/consistency_setup.h"
+#include "harness/sampling/recorded_run.h"
+
+namespace assay::harness {
+namespace {
+
+std::string parts_of(const PreparedEstimator& estimator) {
+  std::string text;
+  const auto add = [&](const std::string& name) {
+    text += (text.empty() ? "`" : ", `") + name + "`";
+  };
+  if (const auto image = estimator.setup->image()) {
+    for (const std::string& component : image->components) add(component);
+    add(element_name(*image, 0));
+    text += ", …";
+    add(element_name(*image, image->elements() - 1));
+  } else {
+    constexpr std::size_t most = 16;
+    const std::vector<Channel> channels = estimator.setup->channels();
+    for (std::size_t i = 0; i < std::min(most, channels.size()); ++i) add(channels[i].name);
+    if (channels.size() > most) text += fmt::format(", … ({} in all)", channels.size());
+  }
+  for (const NamedSampler& named : estimator.setup->samplers()) {
+    add(named.name);
+    for (const Marginal& marginal : marginals(named.sampler->domain())) {
+      add(named.name + "." + marginal.name);
+    }
+  }
+  return text;
+}
+
+/// Of what takes channels, where a sampler of the estimator is named.
+void require_no_sampler(const Source& source, const PreparedEstimator& estimator) {
+  const std::string name = source.part.substr(0, source.part.find('.'));
+  const std::vector<NamedSampler> samplers = estimator.setup->samplers();
+  if (std::ranges::find(samplers, name, &NamedSampler::name) == samplers.end()) return;
+  throw InputError(source.where,
+                   fmt::format("`{}` is a sampler of `{}`: claims about it are `distribution`, "
+                               "`integral` and `inconsistency`; others take a channel of the "
+                               "estimator, as `{}.{}`",
+                               name, source.estimator, source.estimator,
+                               estimator.setup->channels().front().name));
+}
+
+[[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
+  throw InputError(source.where, fmt::format("`{}` has no part `{}`; it has {}", source.estimator,
+                                             source.part, parts_of(estimator)));
+}
+
+std::vector<std::size_t> tested_channels(const std::vector<Channel>& channels) {
+  std::vector<std::size_t> tested;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!channels[i].diagnostic) tested.push_back(i);
+  }
+  return tested;
+}
+
+std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
+                                        const std::string& name) {
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i].name == name) return {i};
+  }
+  return {};
+}
+
+/// The elements of an image, all or those of the component that the part names; none where it names
+/// something else.
+std::vector<std::size_t> elements_named(ImageShape& shape, const std::string& part) {
+  const std::size_t components = shape.components.size();
+  const auto named = std::find(shape.components.begin(), shape.components.end(), part);
+  std::vector<std::size_t> elements;
+  if (!part.empty() && named == shape.components.end()) return elements;
+  const bool whole = part.empty();
+  const std::size_t first = whole ? 0 : static_cast<std::size_t>(named - shape.components.begin());
+  for (std::size_t i = first; i < shape.elements(); i += whole ? 1 : components) {
+    elements.push_back(i);
+  }
+  if (!whole) shape.components = {part};
+  return elements;
+}
+
+/// The sampler a part names, itself or before a marginal's name; the only one when it names none.
+const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
+                                  const std::string& part, std::string& rest) {
+  const auto dot = part.find('.');
+  for (const NamedSampler& named : samplers) {
+    if (named.name == part.substr(0, dot)) {
+      rest = dot == std::string::npos ? "" : part.substr(dot + 1);
+      return &named;
+    }
+  }
+  rest = part;
+  return samplers.size() == 1 ? &samplers[0] : nullptr;
+}
+
+}  // namespace
+
+const PreparedEstimator& estimator_of(const Source& source, const Estimators& estimators) {
+  const auto found = estimators.find(source.estimator);
+  if (found != estimators.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : estimators) names.push_back(name);
+  throw InputError(source.where, fmt::format("no estimator `{}` in this suite{}", source.estimator,
+                                             did_you_mean(source.estimator, names)));
+}
+
+Subject estimates(const Source& source, const PreparedEstimator& estimator) {
+  Subject subject{.estimator = &estimator,
+                  .setup = estimator.setup,
+                  .channels = {},
+                  .averages = estimator.nature().averages};
+  if (auto image = estimator.setup->image()) {
+    subject.channels = elements_named(*image, source.part);
+    if (!subject.channels.empty()) subject.image = std::move(image);
+  }
+  if (subject.channels.empty()) {
+    const std::vector<Channel> channels = estimator.setup->channels();
+    subject.channels =
+        source.part.empty() ? tested_channels(channels) : channels_named(channels, source.part);
+  }
+  if (subject.channels.empty()) {
+    require_no_sampler(source, estimator);
+    no_such_part(source, estimator);
+  }
+  return subject;
+}
+
+Subject estimates(const Source& source, const Estimators& estimators) {
+  return estimates(source, estimator_of(source, estimators));
+}
+
+Subject draws(const Source& source, const Estimators& estimators, Draws what) {
+  const PreparedEstimator& estimator = estimator_of(source, estimators);
+  std::string rest;
+  const std::vector<NamedSampler> samplers = estimator.setup->samplers();
+  if (samplers.empty() && source.part.empty()) {
+    throw InputError(source.where,
+                     fmt::format("`{}` has no sampler whose draws could be tested; it has {}",
+                                 source.estimator, parts_of(estimator)));
+  }
+  const NamedSampler* named = sampler_named(samplers, source.part, rest);
+  if (named == nullptr) no_such_part(source, estimator);
+  Subject subject{.estimator = &estimator,
+                  .setup = sampler_setup(*named, source.where),
+                  .purpose = named->name,
+                  .channels = {},
+                  .averages = false};
+  if (what == Draws::consistency) {
+    subject.setup = consistency_setup(*named, source.where);
+    subject.purpose = consistency_purpose(named->name);
+  }
+  const std::vector<Channel> channels = subject.setup->channels();
+  if (what == Draws::consistency && rest.empty()) {
+    subject.channels = channels_named(channels, inconsistent_channel);
+  } else if (!rest.empty() && what != Draws::consistency) {
+    subject.channels = channels_named(channels, rest);
+    if (rest == cell_channel) subject.channels.clear();
+  } else if (what == Draws::cells) {
+    subject.channels = channels_named(channels, cell_channel);
+  } else {
+    subject.channels = tested_channels(channels);
+  }
+  if (subject.channels.empty()) no_such_part(source, estimator);
+  return subject;
+}
+
+Subject values(const Source& source, const Estimators& estimators) {
+  const PreparedEstimator& estimator = estimator_of(source, estimators);
+  const std::vector<Channel> channels = estimator.setup->channels();
+  if (source.part.empty() || !channels_named(channels, source.part).empty()) {
+    return estimates(source, estimators);
+  }
+  return draws(source, estimators, Draws::marginals);
+}
+
+Constant analytic_mean(const Channel& channel, const Source& source) {
+  if (channel.mean) return {*channel.mean, channel.mean_error};
+  throw InputError(
+      source.where,
+      fmt::format("`{}` knows no analytic mean of `{}` with these parameters; give the "
+                  "number, or compare with an estimator you trust",
+                  source.estimator, channel.name));
+}
+
+Constant analytic_variance(const Channel& channel, const Source& source) {
+  if (channel.variance) return {*channel.variance, 0};
+  throw InputError(source.where,
+                   fmt::format("`{}` knows no exact variance of `{}` with these parameters; give "
+                               "the number",
+                               source.estimator, channel.name));
+}
+
+StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
+  return subject.setup->data_stream().value_or(
+      key_of(*subject.estimator, seed, subject.copy, subject.purpose));
+}
+
+void require_moments_suffice(const Question& question) {
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    const Subject& side = question.subjects[i];
+    const RecordedRun* run = as_recorded_run(*side.setup);
+    if (run == nullptr) continue;
+    const std::string name = side.estimator->name;
+    const bool reference = i >= question.compared();
+    const bool costs =
+        question.kind == QuestionKind::cost || question.kind == QuestionKind::efficiency;
+    if (!reference && !costs && !question.of_means() && !question.of_variances()) {
+      throw InputError(question.test->where,
+                       fmt::format("`{}` has the moments of a run, not its observations: they tell "
+                                   "of mean, bias, variance, cost and efficiency, not of this; "
+                                   "keep observations with `assay sample` and give them as `file`",
+                                   name));
+    }
+    if (costs && !reference && !run->knows_cost(question.test->cost)) {
+      throw InputError(question.test->where,
+                       fmt::format("the run that `{}` is of does not tell how its costs vary: "
+                                   "claim something of its efficiency there",
+                                   name));
+    }
+    if (question.test->secondaries && *question.test->secondaries != run->summary().count) {
+      throw InputError(question.test->place_of("secondaries"),
+                       fmt::format("`{}` has the moments of {} observations together; leave "
+                                   "`secondaries` out",
+                                   name, run->summary().count));
+    }
+    const auto& method = question.test->method;
+    if (method && (method == "binomial" || method == "bounded" || method == "betting" ||
+                   method == "batch-means")) {
+      throw InputError(question.test->place_of("test"),
+                       fmt::format("`test: {}` needs observations, and `{}` "
+                                   "has the moments of a run",
+                                   *method, name));
+    }
+  }
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,173 @@
+#include "harness/record/cell_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "harness/draws/cell_close_up.h"
+#include "harness/draws/sampler_setup.h"
+#include "harness/families/evidence_cells.h"
+#include "stats/cells/chi_square_fit.h"
+
+namespace assay::harness {
+namespace {
+
+/// Counts in rows of cells of two coordinates.
+struct Cells {
+  std::string axes;  ///< what rows and columns are
+  std::size_t width = 0, height = 0;
+  std::vector<double> observed = {}, expected = {};
+  std::vector<double> z = {};
+  std::string of_z = "";  ///< what else is to be said of z
+  std::optional<CloseUp> close = {};
+};
+
+/// In standard deviations, of a count whose variance is `variance` times what is expected. A draw
+/// where none is expected is beyond any scale.
+double residual(double observed, double expected, double variance = 1) {
+  const double difference = observed - expected;
+  if (expected > 0) return difference / std::sqrt(expected * variance);
+  return difference > 0 ? std::numeric_limits<double>::infinity() : 0;
+}
+
+std::string axis(const Marginal& marginal, const std::vector<double>& borders) {
+  return fmt::format("{} {:.4g} to {:.4g}", marginal.name, borders.front(), borders.back());
+}
+
+/// Of the cells of a domain that have the same measure.
+std::string axes_of(const SamplerSetup& draws, const stats::PlaneGrid& grid) {
+  const std::vector<Marginal> coordinates = cell_coordinates(draws.sampler());
+  return fmt::format("{} from top to bottom, {} from left to right",
+                     axis(coordinates[0], grid.x_borders), axis(coordinates[1], grid.y_borders));
+}
+
+/// Whether some cells of the grid hold several that were counted: parts, or lobes.
+bool are_divided(const DensityCells& density, const stats::PlaneGrid& grid) {
+  return density.cells.in_domain() > grid.size();
+}
+
+// The fewest expected draws of which a residual is shown: some tell where, before they are enough
+// for a test.
+constexpr double least_shown = 5;
+
+/// Of each cell in the domain of which so many draws are expected.
+std::vector<std::optional<double>> residuals_of(const DensityCells& density,
+                                                const ChannelData& data, double least) {
+  const auto total = static_cast<double>(data.moments.count);
+  std::vector<std::optional<double>> residuals;
+  for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
+    const double expected = total * density.mass.probability[i];
+    const auto observed = static_cast<double>(data.cells[i]);
+    residuals.push_back(expected >= least ? std::optional(residual(observed, expected))
+                                          : std::nullopt);
+  }
+  return residuals;
+}
+
+/// In the grid's cells: counts summed over the lobes and over the parts of what was halved. The
+/// residual is that of the one of these that is farthest off, of those that are tested by
+/// themselves; where there is none, that of the sum.
+Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
+  const stats::PlaneGrid grid = measure_grid(draws.sampler());
+  const DensityCells& density = draws.density_cells();
+  const auto total = static_cast<double>(data.moments.count);
+  Cells cells{.axes = axes_of(draws, grid),
+              .width = grid.columns(),
+              .height = grid.rows(),
+              .observed = std::vector<double>(grid.size()),
+              .expected = std::vector<double>(grid.size())};
+  // Those of cells that are tested by themselves.
+  const std::vector<std::optional<double>> tested =
+      residuals_of(density, data, stats::FitOptions{}.minimum_expected);
+  std::vector<std::optional<double>> farthest(grid.size());
+  for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
+    const std::size_t place = density.cells.grid_cell(i);
+    cells.observed[place] += static_cast<double>(data.cells[i]);
+    cells.expected[place] += total * density.mass.probability[i];
+    if (std::abs(tested[i].value_or(0)) > std::abs(farthest[place].value_or(0))) {
+      farthest[place] = tested[i];
+    }
+  }
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    cells.z.push_back(farthest[i].value_or(residual(cells.observed[i], cells.expected[i])));
+  }
+  if (are_divided(density, grid)) {
+    cells.of_z = "; of the parts of a cell the one that is farthest off";
+    cells.close = close_up(density, draws.sampler(), residuals_of(density, data, least_shown));
+  }
+  return cells;
+}
+
+bool are_a_rectangle(const stats::SampledCells& cells) {
+  const std::size_t cuts = cells.cut_borders.front().size();
+  return cuts > 0 && std::all_of(cells.cut_borders.begin(), cells.cut_borders.end(),
+                                 [&](const auto& borders) { return borders.size() == cuts; });
+}
+
+/// The first sample, against its part of both together.
+Cells of_two(const Question& question, const stats::SampledCells& sampled,
+             std::span<const ChannelData> data) {
+  const Subject& first = question.subjects[0];
+  const std::vector<Channel> channels = first.setup->channels();
+  const std::vector<std::uint64_t> x = counts_in(sampled, first, data[0]);
+  const std::vector<std::uint64_t> y = counts_in(sampled, question.subjects[1], data[1]);
+  const auto n = static_cast<double>(data[0].all_values[0].size());
+  const auto m = static_cast<double>(data[1].all_values[0].size());
+  Cells cells{.axes = fmt::format("of {}, parts of equal probability: of {} from top to bottom, of "
+                                  "{} within each from left to right; expected as of both samples",
+                                  first.estimator->listed, channels[first.channels[0]].name,
+                                  channels[first.channels[1]].name),
+              .width = sampled.cut_borders.front().size() + 1,
+              .height = sampled.cut_borders.size()};
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    cells.observed.push_back(static_cast<double>(x[i]));
+    cells.expected.push_back(static_cast<double>(x[i] + y[i]) * n / (n + m));
+    cells.z.push_back(residual(cells.observed[i], cells.expected[i], m / (n + m)));
+  }
+  return cells;
+}
+
+Cells cells_of(const DrawnTest& test) {
+  const TestOutcome& outcome = test.outcome;
+  const Question& question = outcome.question;
+  const std::vector<ChannelData> data = data_of(test, outcome.channels[0].index);
+  if (question.kind == QuestionKind::fit_to_density && outcome.plan.method.keeps == Keeps::cells) {
+    const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+    if (draws.sampler().domain() != Domain::interval) return of_density(draws, data[0]);
+  }
+  const auto& sampled = outcome.plan.method.frozen.cells;
+  const bool plane = question.subjects[0].channels.size() > 1;
+  if (question.kind == QuestionKind::same_cells && plane && sampled && are_a_rectangle(*sampled)) {
+    return of_two(question, *sampled, data);
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_cells(const DrawnTest& drawn, reports::Test& test) {
+  if (drawn.outcome.channels.empty()) return;
+  const Cells cells = cells_of(drawn);
+  if (cells.observed.empty()) return;
+  const auto add = [&](const char* name, const std::string& axes, std::size_t width,
+                       std::span<const double> values) {
+    reports::Map map{.name = name,
+                     .source = axes,
+                     .file = "",
+                     .width = width,
+                     .height = values.size() / width,
+                     .components = {"draws"},
+                     .texels = {}};
+    for (const double value : values) map.texels.values.push_back(static_cast<float>(value));
+    test.maps.push_back(std::move(map));
+  };
+  add("cells_observed", cells.axes, cells.width, cells.observed);
+  add("cells_expected", cells.axes, cells.width, cells.expected);
+  add("cells_z", cells.axes + cells.of_z, cells.width, cells.z);
+  if (cells.close) add("cells_z_close", cells.close->axes, cells.close->side, cells.close->z);
+}
+
+}  // namespace assay::harness

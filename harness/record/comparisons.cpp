@@ -1,0 +1,111 @@
+#include "harness/record/comparisons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "harness/sampling/beyond_doubles.h"
+#include "stats/means/welch_t.h"
+#include "stats/planning/holm.h"
+#include "stats/variances/log_variance.h"
+
+namespace assay::harness {
+namespace {
+
+// More pairs than this are no picture any more.
+constexpr std::size_t most_estimators = 40;
+
+using Pair = std::pair<std::string, std::string>;
+
+std::set<Pair> pairs_of(const std::vector<std::vector<std::string>>& claimed) {
+  std::set<Pair> pairs;
+  for (const std::vector<std::string>& names : claimed) {
+    if (names.size() == 2) pairs.insert(std::minmax(names[0], names[1]));
+  }
+  return pairs;
+}
+
+/// Estimators of one quantity, as far as can be told.
+bool comparable(const Pictured& first, const Pictured& second, const std::set<Pair>& claimed) {
+  if (first.image || second.image || !first.drawn || !second.drawn) return false;
+  if (claimed.contains(std::minmax(first.name, second.name))) return true;
+  const std::vector<PicturedChannel>& mine = first.channels;
+  const std::vector<PicturedChannel>& theirs = second.channels;
+  if (mine.size() != theirs.size()) return false;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    if (mine[i].name != theirs[i].name || !mine[i].mean || !theirs[i].mean) return false;
+    // Closed forms of one number reached in two ways differ in their last digits.
+    const double scale = std::max(std::abs(*mine[i].mean), std::abs(*theirs[i].mean));
+    if (std::abs(*mine[i].mean - *theirs[i].mean) > 1e-9 * scale) return false;
+  }
+  return true;
+}
+
+struct ComparedPair {
+  reports::Comparison row;
+  double log_mean_p = 0;
+  double log_variance_p = 0;
+};
+
+ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t channel) {
+  const stats::Moments& x = first.channels[channel].moments;
+  const stats::Moments& y = second.channels[channel].moments;
+  ComparedPair pair{
+      .row = {.first = first.name, .second = second.name, .channel = first.channels[channel].name}};
+  if (!has_spread(x) || !has_spread(y)) return pair;
+  const double null = second.averaged / first.averaged;
+  pair.log_mean_p = stats::log_p_two_sided(stats::welch_t(x, y, {}));
+  pair.row.mean_p = std::exp(pair.log_mean_p);
+  pair.row.log10_mean_p = pair.log_mean_p / std::log(10.0);
+  // The variance of a primary and that of a secondary are two quantities.
+  if (first.averages != second.averages) return pair;
+  pair.log_variance_p = stats::log_p_two_sided(stats::log_variance_ratio(x, y, null));
+  pair.row.variance_p = std::exp(pair.log_variance_p);
+  pair.row.log10_variance_p = pair.log_variance_p / std::log(10.0);
+  const double ratio = x.variance() / y.variance() / null;
+  if (std::isfinite(ratio)) pair.row.variance_ratio = ratio;
+  return pair;
+}
+
+/// Holm over all means and all variances compared.
+void mark_differences(std::vector<ComparedPair>& pairs, double alpha) {
+  std::vector<double> log_p;
+  for (const ComparedPair& pair : pairs) {
+    log_p.push_back(pair.log_mean_p);
+    log_p.push_back(pair.log_variance_p);
+  }
+  const std::vector<double> adjusted = stats::holm(log_p);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].row.means_differ = adjusted[2 * i] <= std::log(alpha);
+    pairs[i].row.variances_differ = adjusted[2 * i + 1] <= std::log(alpha);
+  }
+}
+
+}  // namespace
+
+bool has_spread(const stats::Moments& moments) {
+  return moments.count > 3 && moments.m2 > 0 && beyond_doubles(moments, "").empty();
+}
+
+std::vector<reports::Comparison> comparisons(const std::vector<Pictured>& estimators,
+                                             const std::vector<std::vector<std::string>>& claimed,
+                                             double alpha) {
+  if (estimators.size() > most_estimators) return {};
+  const std::set<Pair> together = pairs_of(claimed);
+  std::vector<ComparedPair> pairs;
+  for (std::size_t i = 0; i < estimators.size(); ++i) {
+    for (std::size_t j = i + 1; j < estimators.size(); ++j) {
+      const Pictured& first = estimators[i];
+      const Pictured& second = estimators[j];
+      if (!comparable(first, second, together)) continue;
+      const std::size_t channels = std::min(first.channels.size(), second.channels.size());
+      for (std::size_t c = 0; c < channels; ++c) pairs.push_back(compare(first, second, c));
+    }
+  }
+  mark_differences(pairs, alpha);
+  std::vector<reports::Comparison> rows;
+  for (ComparedPair& pair : pairs) rows.push_back(std::move(pair.row));
+  return rows;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,209 @@
+#include "harness/record/merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "harness/base/numbers.h"
+#include "harness/base/record_file.h"
+#include "harness/record/comparisons.h"
+#include "harness/record/record_of.h"
+#include "harness/record/shard_check.h"
+#include "harness/run/holm_verdict.h"
+#include "harness/run/narrate.h"
+#include "harness/sampling/recorded_moments.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+/// A test of a shard with what the family needs of it.
+struct Part {
+  reports::Test test;
+  reports::ShardTest family;
+};
+
+std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t suite) {
+  std::vector<Part> parts;
+  for (const ShardFile& shard : shards) {
+    const std::vector<reports::Test>& tests = shard.record.suites[suite].tests;
+    for (std::size_t i = 0; i < tests.size(); ++i) {
+      parts.push_back({tests[i], shard.record.shard->suites[suite].results[i]});
+    }
+  }
+  std::sort(parts.begin(), parts.end(),
+            [](const Part& a, const Part& b) { return a.family.position < b.family.position; });
+  return parts;
+}
+
+void refute(Part& part, const FamilyMember& member) {
+  reports::Test& test = part.test;
+  test.verdict = Verdict::fail;
+  test.ok = test.verdict == test.expected;
+  for (std::size_t i = 0; i < test.channels.size(); ++i) {
+    test.channels[i].effect = part.family.refuted[i];
+  }
+  const std::size_t by = *member.refuted_by;
+  const bool several = member.log_p.size() + member.untested > 1;
+  test.message = narrate_holm({.effect = test.channels[by].effect,
+                               .channel = several ? test.channels[by].name : "",
+                               .log_p = member.log_p[by],
+                               .log_p_adjusted = member.log_p_adjusted[by],
+                               .earlier_look = several ? 0 : earlier_look(test.looks)});
+}
+
+void apply_holm(std::vector<Part>& parts, double alpha) {
+  std::vector<FamilyMember> family;
+  std::vector<Part*> owners;
+  for (Part& part : parts) {
+    if (!part.family.inside) continue;
+    family.push_back({.verdict = part.test.verdict,
+                      .weight = part.family.weight,
+                      .untested = part.family.untested,
+                      .log_p = part.family.log_p});
+    owners.push_back(&part);
+  }
+  try {
+    decide_family(family, alpha);
+  } catch (const std::domain_error& error) {
+    throw InputError({}, fmt::format("the shards' shares of alpha do not fit together: {}; was a "
+                                     "record edited? Run the shards again",
+                                     error.what()));
+  }
+  for (std::size_t k = 0; k < family.size(); ++k) {
+    std::vector<reports::Channel>& channels = owners[k]->test.channels;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      channels[i].p_adjusted = probability(family[k].log_p_adjusted[i]);
+      channels[i].log10_p_adjusted = log10_of(family[k].log_p_adjusted[i]);
+    }
+    if (family[k].refuted_by) refute(*owners[k], family[k]);
+  }
+}
+
+/// An estimator as one shard saw it.
+struct View {
+  const reports::EstimatorSummary* row;
+  const reports::ShardPicture* picture;
+
+  /// One run shows what the test that drew most of it has drawn; only where no test draws it, what
+  /// was drawn for the picture alone.
+  bool shows_less_than(const View& other) const {
+    return std::pair(picture->by_tests, picture->secondaries) <
+           std::pair(other.picture->by_tests, other.picture->secondaries);
+  }
+};
+
+/// Of each estimator the view that one run would have, in the suite's order.
+std::vector<View> views_of(const std::vector<ShardFile>& shards, std::size_t suite) {
+  std::vector<View> best;
+  for (const ShardFile& shard : shards) {
+    const std::vector<reports::EstimatorSummary>& rows = shard.record.suites[suite].estimators;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const View view{&rows[i], &shard.record.shard->suites[suite].pictures[i]};
+      const auto at = std::lower_bound(best.begin(), best.end(), view, [](const View& a, View b) {
+        return a.picture->position < b.picture->position;
+      });
+      if (at == best.end() || at->picture->position != view.picture->position) {
+        best.insert(at, view);
+      } else if (at->shows_less_than(view)) {
+        *at = view;
+      }
+    }
+  }
+  return best;
+}
+
+Pictured pictured(const View& view) {
+  Pictured result{.name = view.row->name,
+                  .drawn = view.picture->drawn,
+                  .image = view.picture->image,
+                  .averaged = view.picture->averaged,
+                  .averages = view.row->variance_of == "primary"};
+  for (const reports::ShardChannel& channel : view.picture->channels) {
+    result.channels.push_back({channel.name, channel.reference, moments_of(channel.moments)});
+  }
+  return result;
+}
+
+/// Those of all shards, each once, in the order of the suite's file. A shard has left out what none
+/// of its tests has to do with.
+std::vector<reports::Statement> statements_of(const std::vector<ShardFile>& shards,
+                                              std::size_t suite) {
+  std::map<std::pair<int, std::string>, reports::Statement> by_line;
+  for (const ShardFile& shard : shards) {
+    for (const reports::Statement& statement : shard.record.suites[suite].statements) {
+      by_line.emplace(std::pair(statement.line, statement.text), statement);
+    }
+  }
+  std::vector<reports::Statement> all;
+  for (auto& [place, statement] : by_line) all.push_back(std::move(statement));
+  return all;
+}
+
+reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t index, bool& whole) {
+  reports::Suite suite = shards.front().record.suites[index];
+  suite.estimators.clear();
+  suite.tests.clear();
+  suite.timed = std::any_of(shards.begin(), shards.end(), [&](const ShardFile& shard) {
+    return shard.record.suites[index].timed;
+  });
+  std::vector<Part> parts = parts_of(shards, index);
+  const bool complete = parts.size() == shards.front().record.shard->suites[index].tests;
+  if (complete) apply_holm(parts, suite.alpha);
+  whole = whole && complete;
+  std::vector<Pictured> pictures;
+  for (const View& view : views_of(shards, index)) {
+    suite.estimators.push_back(*view.row);
+    pictures.push_back(pictured(view));
+  }
+  std::vector<std::vector<std::string>> compared;
+  for (Part& part : parts) {
+    compared.push_back(part.family.compared);
+    // The file stood beside the shard's record; a report that writes maps names them again.
+    for (reports::Map& map : part.test.maps) map.file.clear();
+    suite.tests.push_back(std::move(part.test));
+  }
+  suite.comparisons = comparisons(pictures, compared, suite.alpha);
+  suite.statements = statements_of(shards, index);
+  return suite;
+}
+
+}  // namespace
+
+reports::Record merge(std::vector<ShardFile> shards) {
+  check_shards(shards);
+  std::sort(shards.begin(), shards.end(), [](const ShardFile& a, const ShardFile& b) {
+    return a.record.shard->index < b.record.shard->index;
+  });
+  reports::Record record = shards.front().record;
+  record.shard.reset();
+  record.suites.clear();
+  record.seconds = 0;
+  for (const ShardFile& shard : shards) {
+    record.started = std::min(record.started, shard.record.started);
+    record.seconds += shard.record.seconds;
+    record.environment.threads =
+        std::max(record.environment.threads, shard.record.environment.threads);
+  }
+  bool whole = true;
+  for (std::size_t i = 0; i < shards.front().record.suites.size(); ++i) {
+    record.suites.push_back(merge_suite(shards, i, whole));
+  }
+  record.note = whole ? "" : partial_note;
+  return record;
+}
+
+int merge_shards(const MergeArguments& arguments, const Output& output) {
+  require_writable(output, arguments.records);
+  std::vector<ShardFile> shards;
+  for (const std::string& file : arguments.records) shards.push_back({file, read_record(file)});
+  reports::Record record = merge(std::move(shards));
+  report_run(record, output);
+  return exit_code(record, output.inconclusive);
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,183 @@
+#include "harness/record/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/base/numbers.h"
+#include "harness/plan/rows.h"
+#include "harness/record/image_record.h"
+#include "stats/gates/independence_gates.h"
+#include "stats/means/student_t.h"
+#include "stats/variances/log_variance.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Estimate;
+using reports::Number;
+
+const char* bias_name(std::optional<BiasClass> bias) {
+  if (!bias) return "unknown";
+  switch (*bias) {
+    case BiasClass::unbiased:
+      return "unbiased";
+    case BiasClass::inverse_primaries:
+      return "O(1/M)";
+    case BiasClass::inverse_bootstrap:
+      return "O(1/bootstrap)";
+    case BiasClass::start_up:
+      return "start-up";
+    case BiasClass::reconstruction:
+      break;
+  }
+  return "reconstruction";
+}
+
+double per_primary(const Picture& picture) {
+  return picture.estimator->nature().averages ? static_cast<double>(picture.pool->primaries()) : 1;
+}
+
+Estimate mean_of(const stats::Moments& moments, double confidence) {
+  if (moments.count == 0) return {};
+  if (moments.m2 == 0) return {number(moments.mean), number(moments.mean), number(moments.mean)};
+  if (!has_spread(moments)) return {number(moments.mean), {}, {}};  // too few for an interval
+  const stats::Interval interval = stats::student_t_interval(moments, {.value = 0}, confidence);
+  return {number(moments.mean), number(interval.low), number(interval.high)};
+}
+
+Estimate variance_of(const stats::Moments& moments, double primaries, double confidence) {
+  if (moments.count < 2) return {};
+  if (moments.m2 == 0) return {0.0, 0.0, 0.0};
+  if (!has_spread(moments)) return {number(primaries * moments.variance()), {}, {}};
+  const stats::Interval log = stats::log_variance_interval(moments, 1, confidence);
+  return {number(primaries * moments.variance()), number(primaries * std::exp(log.low)),
+          number(primaries * std::exp(log.high))};
+}
+
+/// A sample's moments as those of so many fewer independent values, of the same mean and variance.
+stats::Moments of_fewer(stats::Moments x, double factor) {
+  const double before = static_cast<double>(x.count);
+  const double after = std::max(4.0, std::round(before / factor));
+  x.count = static_cast<std::uint64_t>(after);
+  x.m2 *= (after - 1) / (before - 1);
+  x.m3 *= after / before;
+  x.m4 *= after / before;
+  return x;
+}
+
+/// The first `count` rows of one channel; nothing where they are not kept.
+std::span<const double> rows_of(const Picture& picture, const SuiteRun& run, std::size_t channel,
+                                std::uint64_t count) {
+  const Pilot* const pilot = run.pilots.find(picture.estimator->name);
+  if (!picture.pool->setup()->observations() || pilot == nullptr ||
+      channel >= pilot->values.size() || count > pilot->values[channel].size()) {
+    return {};
+  }
+  return std::span(pilot->values[channel]).first(count);
+}
+
+/// Of rows that may depend on each other those of as many independent ones as they are worth.
+stats::Moments moments_of(const Picture& picture, const SuiteRun& run, const Drawn& drawn,
+                          std::size_t channel) {
+  const stats::Moments& moments = drawn.summary().channels[channel].moments;
+  const std::span<const double> rows = rows_of(picture, run, channel, drawn.summary().count);
+  const bool all = moments.count == rows.size();  // the others were not finite
+  if (!has_spread(moments) || !all || rows.size() < fewest_in_order) return moments;
+  const double factor = stats::allowance_for_dependence(rows);
+  return factor > 1 ? of_fewer(moments, factor) : moments;
+}
+
+reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run) {
+  const std::uint64_t count = shown_by(picture, run);
+  const double confidence = 1 - run.suite.alpha;
+  const Information& information = picture.estimator->entry->information;
+  const Nature nature = picture.estimator->nature();
+  reports::EstimatorSummary row{
+      .name = picture.estimator->name,
+      .plugin = information.name,
+      .parameters = picture.estimator->parameters,
+      // Of rows that were made elsewhere nothing is known.
+      .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(nature.bias),
+      .original = information.original,
+      .defect = information.defect,
+      .stream = stream_text(*picture.pool),
+      .primaries = picture.pool->primaries(),
+      .secondaries = count,
+      .confidence = confidence,
+      .variance_of = nature.averages ? "primary" : "secondary"};
+  const Sample sample = picture.pool->sample(count);
+  const Drawn* const drawn = sample.drawn();
+  if (drawn == nullptr) return row;
+  const Summary& summary = drawn->summary();
+  row.cost = cost_of(summary);
+  if (picture.pool->setup()->image()) {
+    row.channels.push_back(
+        image_channel(*picture.pool->setup(), summary,
+                      {.averaged = per_primary(picture), .confidence = confidence}));
+    return row;
+  }
+  const std::vector<Channel> channels = picture.pool->setup()->channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i].diagnostic) continue;
+    const stats::Moments moments = moments_of(picture, run, *drawn, i);
+    reports::EstimatorChannel channel{
+        .name = channels[i].name,
+        .mean = mean_of(moments, confidence),
+        .variance = variance_of(moments, per_primary(picture), confidence)};
+    if (channels[i].mean) channel.reference = *channels[i].mean;
+    if (channels[i].variance) channel.reference_variance = *channels[i].variance;
+    row.channels.push_back(channel);
+  }
+  return row;
+}
+
+}  // namespace
+
+reports::Cost cost_of(const Summary& summary) {
+  return {.camera_rays = summary.cost.camera_rays,
+          .closest_hit_rays = summary.cost.closest_hit_rays,
+          .shadow_rays = summary.cost.shadow_rays,
+          .samples = summary.cost.samples,
+          .seconds = summary.seconds};
+}
+
+std::string stream_text(const Pool& pool) { return fmt::format("{:016x}", pool.key().bits); }
+
+Pictured pictured(const Picture& picture, const SuiteRun& run) {
+  const std::uint64_t count = shown_by(picture, run);
+  const Sample sample = picture.pool->sample(count);
+  const Drawn* const drawn = sample.drawn();
+  const bool image = picture.pool->setup()->image().has_value();
+  Pictured result{.name = picture.estimator->name,
+                  .drawn = drawn != nullptr,
+                  .image = image,
+                  .averaged = per_primary(picture),
+                  .averages = picture.estimator->nature().averages};
+  if (image || drawn == nullptr) return result;
+  const std::vector<Channel> channels = picture.pool->setup()->channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    result.channels.push_back(
+        {channels[i].name, channels[i].mean, moments_of(picture, run, *drawn, i)});
+  }
+  return result;
+}
+
+std::vector<std::string> compared_by(const Question& question) {
+  if (question.subjects.size() != 2) return {};
+  return {question.subjects[0].estimator->name, question.subjects[1].estimator->name};
+}
+
+void add_pictures(const SuiteRun& run, reports::Suite& suite) {
+  std::vector<Pictured> all;
+  for (const Picture& picture : run.pictures) {
+    suite.estimators.push_back(summarise(picture, run));
+    all.push_back(pictured(picture, run));
+  }
+  std::vector<std::vector<std::string>> claimed;
+  for (const TestWork& work : run.tests) claimed.push_back(compared_by(work.outcome.question));
+  suite.comparisons = comparisons(all, claimed, run.suite.alpha);
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,327 @@
+#include "harness/record/record_of.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/base/numbers.h"
+#include "harness/base/quantiles.h"
+#include "harness/base/shell.h"
+#include "harness/families/methods.h"
+#include "harness/question/question_image.h"
+#include "harness/record/cell_record.h"
+#include "harness/record/environment.h"
+#include "harness/record/image_record.h"
+#include "harness/record/law_picture.h"
+#include "harness/record/picture.h"
+#include "harness/record/shard_record.h"
+#include "harness/run/pools.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Number;
+
+reports::Verdict expected_verdict(Expectation expect) {
+  switch (expect) {
+    case Expectation::pass:
+      return reports::Verdict::pass;
+    case Expectation::fail:
+      return reports::Verdict::fail;
+    case Expectation::invalid:
+      return reports::Verdict::invalid;
+    case Expectation::error:
+      break;
+  }
+  return reports::Verdict::error;
+}
+
+reports::Histogram histogram_of(const Histogram& histogram) {
+  return {.low = histogram.low,
+          .high = histogram.high,
+          .counts = histogram.counts,
+          .below = histogram.below,
+          .above = histogram.above};
+}
+
+reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn,
+                          std::size_t channel) {
+  const Subject& side = outcome.question.subjects[subject];
+  const std::size_t index = side.channels[channel];
+  const Summary& summary = drawn.summary();
+  const ChannelSummary& kept = summary.channels[index];
+  const stats::Moments& moments = kept.moments;
+  const ChannelDetails& details = kept.details();
+  const bool spread = moments.count > 1 && moments.m2 > 0;
+  reports::Sample sample{.estimator = side.estimator->listed,
+                         .plugin = side.estimator->entry->information.name,
+                         .parameters = side.estimator->parameters,
+                         .channel = side.setup->channels()[index].name,
+                         .stream = stream_text(drawn.pool()),
+                         .primaries = outcome.plan.primaries[subject],
+                         .secondaries = summary.count};
+  sample.nonzero = moments.nonzero;
+  sample.nonfinite = kept.nonfinite;
+  sample.cost = cost_of(summary);
+  // Another test on the same observations may have kept them: a record must not tell.
+  const bool costs = outcome.plan.method.keeps == Keeps::costs;
+  for (std::size_t i = 0; costs && i < details.with_cost.size(); ++i) {
+    const stats::JointMoments& joint = details.with_cost[i];
+    sample.with_cost.push_back({.kind = i == rays_cost ? "rays" : "samples",
+                                .mean = joint.cost.mean,
+                                .m2 = joint.cost.m2,
+                                .m11 = joint.m11,
+                                .m21 = joint.m21});
+  }
+  // The number of a cell is a name: it has no mean.
+  if (outcome.plan.method.keeps == Keeps::cells) return sample;
+  if (moments.count > 0) {
+    sample.mean = number(moments.mean);
+    sample.minimum = number(moments.minimum);
+    sample.maximum = number(moments.maximum);
+  }
+  if (moments.count > 1) sample.variance = number(moments.variance());
+  if (spread) {
+    sample.skewness = number(moments.skewness());
+    sample.kurtosis = number(moments.kurtosis());
+  }
+  sample.histogram = histogram_of(details.histogram);
+  if (spread && !drawn.pool().is_ready_made()) {
+    const std::span<const double> values = drawn.values(index);
+    sample.quantiles =
+        quantile_points(values.first(std::min<std::size_t>(values.size(), plotted_values)));
+  }
+  return sample;
+}
+
+/// The samples of the subjects that yielded all of theirs.
+std::vector<reports::Sample> samples_of(const TestWork& work) {
+  std::vector<reports::Sample> samples;
+  const TestOutcome& outcome = work.outcome;
+  const std::vector<Subject>& subjects = outcome.question.subjects;
+  const std::vector<Sample> all = work.samples();
+  if (has_image(outcome.question)) {
+    for (std::size_t subject = 0; subject < all.size(); ++subject) {
+      const Drawn* const drawn = all[subject].drawn();
+      if (drawn == nullptr) continue;
+      samples.push_back(subjects[subject].image ? image_sample(outcome, subject, *drawn)
+                                                : sample_of(outcome, subject, *drawn, 0));
+    }
+    return samples;
+  }
+  // All channels, also where one number is made of them.
+  for (std::size_t channel = 0; channel < subjects[0].channels.size(); ++channel) {
+    for (std::size_t subject = 0; subject < all.size(); ++subject) {
+      if (channel >= subjects[subject].channels.size()) continue;
+      const Drawn* const drawn = all[subject].drawn();
+      if (drawn != nullptr) samples.push_back(sample_of(outcome, subject, *drawn, channel));
+    }
+  }
+  return samples;
+}
+
+reports::Channel channel_of(const ChannelOutcome& outcome, bool adjusted, const Regions& regions) {
+  reports::Channel channel{.name = outcome.name,
+                           .statistic = number(outcome.at_null.statistic),
+                           .distribution = {.family = outcome.at_null.distribution.family,
+                                            .parameters = outcome.at_null.distribution.parameters},
+                           .p_value = probability(outcome.decision.log_p_claimed),
+                           .log10_p = log10_of(outcome.decision.log_p_claimed)};
+  if (adjusted) {
+    channel.p_adjusted = probability(outcome.log_p_adjusted);
+    channel.log10_p_adjusted = log10_of(outcome.log_p_adjusted);
+  }
+  if (regions.has_forbidden()) {
+    channel.p_pass = probability(outcome.decision.log_p_forbidden);
+    channel.log10_p_pass = log10_of(outcome.decision.log_p_forbidden);
+  }
+  channel.effect = outcome.effect;
+  if (outcome.reference) channel.reference = number(*outcome.reference);
+  return channel;
+}
+
+/// Of each look the p-values as of a single look: of the channel that speaks most against the
+/// claim, and of the one that is least excluded from the forbidden region.
+std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& regions) {
+  std::vector<reports::Look> looks;
+  const std::size_t taken = outcome.history.empty() ? 0 : outcome.history[0].log_p_claimed.size();
+  for (std::size_t k = 0; k < taken; ++k) {
+    double claimed = 0;
+    double forbidden = -std::numeric_limits<double>::infinity();
+    for (const ChannelHistory& history : outcome.history) {
+      claimed = std::min(claimed, history.log_p_claimed[k]);
+      forbidden = std::max(forbidden, history.log_p_forbidden[k]);
+    }
+    reports::Look look{.secondaries = outcome.plan.looks.sizes[k],
+                       .weight = outcome.plan.looks.weights[k],
+                       .log10_p = log10_of(claimed)};
+    if (regions.has_forbidden()) {
+      look.p_pass = probability(forbidden);
+      look.log10_p_pass = log10_of(forbidden);
+    }
+    looks.push_back(look);
+  }
+  return looks;
+}
+
+std::string over_text(const TestEntry& test) {
+  if (!test.over) return "";
+  std::string values;
+  for (const Value& value : test.over->values) {
+    values += (values.empty() ? "" : ", ") + value.text();
+  }
+  return fmt::format("{{{}: [{}]}}", test.over->parameter, values);
+}
+
+std::string reference_text(const TestEntry& test) {
+  if (test.reference) return to_string(*test.reference);
+  if (!test.reference_number) return "";
+  const Constant& number = *test.reference_number;
+  if (number.standard_error == 0) return fmt::format("{}", number.value);
+  return fmt::format("{} +- {}", number.value, number.standard_error);
+}
+
+std::string cost_text(const TestEntry& test) {
+  const QuantityName name = test.claim.left.name;
+  if (name != QuantityName::cost && name != QuantityName::efficiency) return "";
+  constexpr const char* kinds[] = {"rays", "samples", "seconds"};
+  return kinds[static_cast<int>(test.cost)];
+}
+
+Number margin(const Regions& regions) {
+  if (regions.relation == Relation::within) return regions.within;
+  return regions.detect ? Number(*regions.detect) : Number();
+}
+
+/// Whether the clock had a say in the numbers.
+bool is_timed(const TestWork& work) {
+  const std::optional<Budget>& budget = work.outcome.question.test->budget;
+  const bool of_suite = work.suite_budget != nullptr && work.suite_budget->seconds;
+  return work.outcome.plan.method.keeps == Keeps::blocks || (budget && budget->seconds) || of_suite;
+}
+
+/// Those that a test of the run has to do with.
+std::vector<reports::Statement> statements_of(const Suite& suite,
+                                              const std::vector<reports::Test>& ran) {
+  const auto has_run = [&](const std::string& name) {
+    return std::ranges::any_of(ran, [&](const reports::Test& test) { return test.name == name; });
+  };
+  std::vector<reports::Statement> statements;
+  for (const StatementEntry& entry : suite.statements) {
+    if (!std::ranges::any_of(entry.holds, has_run) && !std::ranges::any_of(entry.fails, has_run)) {
+      continue;
+    }
+    statements.push_back({.text = entry.text,
+                          .source = entry.source,
+                          .condition = entry.condition,
+                          .holds = entry.holds,
+                          .fails = entry.fails,
+                          .line = entry.where.line});
+  }
+  return statements;
+}
+
+/// What a suite says of a test.
+reports::Test head_of(const TestEntry& entry, const std::string& file) {
+  return {.name = entry.name,
+          .id = entry.id,
+          .claim = entry.claim.text,
+          .file = file,
+          .line = entry.where.line,
+          .tags = entry.tags,
+          .over = over_text(entry),
+          .reference = reference_text(entry),
+          .cost = cost_text(entry),
+          .expected = expected_verdict(entry.expect)};
+}
+
+reports::Test record_of_untested(const Untested& untested, const std::string& file) {
+  reports::Test test = head_of(*untested.test, file);
+  test.verdict = untested.verdict;
+  test.ok = test.verdict == test.expected;
+  test.message = untested.message;
+  return test;
+}
+
+std::string id_filter(const std::string& id) { return " --filter " + shell_quoted(id); }
+
+}  // namespace
+
+reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm) {
+  const TestOutcome& outcome = work.outcome;
+  const TestEntry& entry = *outcome.question.test;
+  const Regions& regions = outcome.plan.regions[0];
+  reports::Test test = head_of(entry, file);
+  test.verdict = outcome.verdict;
+  test.ok = test.verdict == test.expected;
+  test.method = outcome.plan.method.name;
+  const std::size_t worst = outcome.channels.empty() ? 0 : outcome.channels[0].index;
+  test.forced = !outcome.plan.gates_invalidate;
+  test.null_hypothesis = null_hypothesis(outcome.plan.method, outcome.question, worst);
+  const bool distance = !outcome.channels.empty() && outcome.channels[0].evidence.distance;
+  test.tail = distance ? "upper" : tail(regions);
+  test.alpha = outcome.place.share.alpha;
+  test.beta = outcome.place.share.beta;
+  test.detect = margin(regions);
+  test.allow = regions.allow;
+  test.power = outcome.power;
+  test.gates = outcome.plan.gates;
+  test.gates.insert(test.gates.end(), outcome.gates.begin(), outcome.gates.end());
+  test.samples = samples_of(work);
+  if (const std::optional<DrawnTest> drawn = harness::drawn(work)) {
+    for (const ChannelOutcome& channel : outcome.channels) {
+      test.channels.push_back(channel_of(channel, holm && outcome.place.inside, regions));
+      test.channels.back().laws = empirical_laws(*drawn, channel.index);
+    }
+    if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
+    add_image(*drawn, test);
+    add_cells(*drawn, test);
+  }
+  test.looks = looks_of(outcome, regions);
+  test.message = outcome.message;
+  return test;
+}
+
+reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
+                          const RunOptions& options) {
+  reports::Record record{.tool = this_tool(), .environment = this_environment(options.threads)};
+  record.seed = runs.empty() ? options.seed.value_or(1) : runs.front()->seed;
+  bool whole = true;
+  for (const auto& run : runs) {
+    reports::Suite suite{.name = run->suite.name,
+                         .file = run->suite.file,
+                         .about = run->suite.about,
+                         .seed = run->seed,
+                         .alpha = run->suite.alpha,
+                         .beta = run->suite.beta};
+    // In the order of the suite's file, in which both are.
+    auto untested = run->untested.begin();
+    const auto add_untested_before = [&](const TestEntry* next) {
+      for (; untested != run->untested.end() && (!next || untested->test < next); ++untested) {
+        suite.tests.push_back(record_of_untested(*untested, run->suite.file));
+      }
+    };
+    for (const TestWork& work : run->tests) {
+      add_untested_before(work.outcome.question.test);
+      suite.tests.push_back(record_of_test(work, run->suite.file, run->holm));
+      suite.tests.back().replay =
+          options.command.empty()
+              ? ""
+              : options.command + fmt::format(" --seed {}", run->seed) +
+                    (run->suite.file.empty() ? "" : id_filter(suite.tests.back().id));
+    }
+    add_untested_before(nullptr);
+    suite.statements = statements_of(run->suite, suite.tests);
+    suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
+    whole = whole && (run->holm);
+    add_pictures(*run, suite);
+    record.suites.push_back(std::move(suite));
+  }
+  if (!whole) record.note = partial_note;
+  if (options.shard) add_shard(runs, options, record);
+  return record;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "reports/record/record.h"
+
+namespace assay::harness {
+
+struct ReplayArguments {
+  std::string record;                             ///< RUN.json
+  std::string test;                               ///< id or name
+  std::optional<std::uint64_t> observation = {};  ///< one of them, else the whole test
+};
+/// A recorded test found in its record.
+struct Recorded {
+  const reports::Suite& suite;
+  const reports::Test& test;
+  std::uint64_t seed;
+};
+
+/// The test whose id or name the arguments give. InputError, with what was meant or which there
+/// are, where there is none or where several have that name.
+Recorded find_test(const reports::Record& record, const ReplayArguments& arguments);
+
+}  // namespace assay::harness

@@ -1,0 +1,410 @@
+#include "harness/record/replay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "estimators/catalogue.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/progress_terminal.h"
+#include "harness/base/record_file.h"
+#include "harness/base/shell.h"
+#include "harness/draws/draw_text.h"
+#include "harness/draws/sampler_setup.h"
+#include "harness/families/methods.h"
+#include "harness/plan/frozen.h"
+#include "harness/plan/rows.h"
+#include "harness/record/record_of.h"
+#include "harness/run/looks.h"
+#include "harness/run/pools.h"
+#include "harness/suite/suite_entries.h"
+#include "harness/suite/yaml.h"
+
+namespace assay::harness {
+namespace {
+
+/// A list of texts without the colon before each.
+Value unmarked(const Value& texts, const Location& where) {
+  std::vector<Value> items;
+  for (const Value& item : texts.items()) {
+    items.push_back(Value::scalar(item.text().substr(1), where));
+  }
+  return Value::list(std::move(items), where);
+}
+
+/// Canonical parameters ("name=value,…") as a suite would give them. Text parameters are written
+/// with a colon before them; null and a scalar's fallback stand for what was not given.
+Value parameters_of(const reports::Sample& sample, const Location& where) {
+  const std::vector<ParameterInformation>& declared =
+      find_plugin(sample.plugin, where).information.parameters;
+  std::vector<Value::Member> members;
+  if (sample.parameters.empty()) return Value::map({}, where);
+  for (const std::string& piece : split_outside_brackets(sample.parameters)) {
+    const std::size_t equals = piece.find('=');
+    const std::string name = piece.substr(0, equals);
+    Value value = read_flow(piece.substr(equals + 1), where);
+    const auto known = std::ranges::find(declared, name, &ParameterInformation::name);
+    if (known == declared.end() || value.kind() == Value::Kind::null) continue;
+    if (known->type == ParameterType::string) value = Value::scalar(value.text().substr(1), where);
+    const bool is_scalar = value.kind() == Value::Kind::scalar;
+    if (is_scalar && !known->fallback.empty() && value.text() == known->fallback) continue;
+    if (known->type == ParameterType::texts) value = unmarked(value, where);
+    members.emplace_back(name, std::move(value));
+  }
+  return Value::map(std::move(members), where);
+}
+
+/// What the claim needs besides itself.
+void read_keys(const reports::Test& recorded, TestEntry& test) {
+  const Location where{.file = recorded.file};
+  if (!recorded.over.empty()) test.over = read_sweep(read_flow(recorded.over, where));
+  if (!recorded.reference.empty()) {
+    read_reference(Value::scalar(recorded.reference, where), test);
+  }
+  if (!recorded.cost.empty()) test.cost = read_cost(Value::scalar(recorded.cost, where));
+}
+
+bool has_relative_effect(const Claim& claim) {
+  if (claim.left.slope) return false;
+  return claim.left.name == QuantityName::mean || claim.left.name == QuantityName::bias ||
+         claim.left.name == QuantityName::quantile;
+}
+
+/// Where the files lie that the suite names: in the folder of its file, seen from here or else
+/// from the record. Absolute, so that an error about a file says where it was looked for.
+std::string folder_of(const std::string& suite, const std::string& record) {
+  namespace fs = std::filesystem;
+  if (suite.empty()) return fs::current_path().string();  // a claim of the command line
+  const fs::path beside = fs::absolute(record).parent_path() / suite;
+  const fs::path file = fs::exists(suite) || !fs::exists(beside) ? fs::absolute(suite) : beside;
+  return file.parent_path().string();
+}
+
+/// The suite of this one test, rebuilt from the record alone.
+Suite suite_of(const Recorded& recorded, const std::string& record) {
+  Suite suite{.name = recorded.suite.name,
+              .file = recorded.suite.file,
+              .folder = folder_of(recorded.suite.file, record),
+              .alpha = recorded.suite.alpha,
+              .beta = recorded.suite.beta};
+  for (const reports::Sample& sample : recorded.test.samples) {
+    const auto known = std::ranges::find(suite.estimators, sample.estimator, &EstimatorEntry::name);
+    if (known != suite.estimators.end()) continue;
+    const Location where{.file = recorded.suite.file};
+    suite.estimators.push_back({.name = sample.estimator,
+                                .plugin = sample.plugin,
+                                .parameters = parameters_of(sample, where),
+                                .primaries = sample.primaries,
+                                .where = where});
+  }
+  TestEntry test{.name = recorded.test.name,
+                 .id = recorded.test.id,
+                 .claim = parse_claim(recorded.test.claim, {.file = recorded.suite.file}),
+                 .method = recorded.test.method};
+  read_keys(recorded.test, test);
+  // Margins are recorded on theta's scale; here they only tell whether means are compared in units
+  // of the reference. The plan has the numbers.
+  if (has_relative_effect(test.claim) && test.claim.relation != Relation::within) {
+    const bool relative =
+        !recorded.test.channels.empty() && recorded.test.channels[0].effect.relative;
+    if (recorded.test.detect) test.detect = Margin{*recorded.test.detect, relative};
+    if (recorded.test.allow) test.allow = Margin{*recorded.test.allow, relative};
+  }
+  test.where.file = recorded.suite.file;
+  suite.tests.push_back(std::move(test));
+  return suite;
+}
+
+/// The looks that were taken; a test of constants recorded none.
+stats::LookSchedule recorded_looks(const reports::Test& test) {
+  stats::LookSchedule looks;
+  for (const reports::Look& look : test.looks) {
+    looks.sizes.push_back(look.secondaries);
+    looks.weights.push_back(look.weight);
+  }
+  if (!looks.sizes.empty()) return looks;
+  return {{std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries}, {1}};
+}
+
+/// The plan as it was: nothing is chosen anew, so no pilot is drawn.
+Plan recorded_plan(const Question& question, const reports::Test& test) {
+  Plan plan{
+      .method = find_method(question, test.method),
+      .looks = recorded_looks(test),
+      .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U,
+      .symmetric = !test.image || test.image->symmetric,
+      .gates_invalidate = !test.forced};
+  // Of each channel the subjects in order.
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    const bool drawn = i < test.samples.size() &&
+                       test.samples[i].estimator == question.subjects[i].estimator->listed;
+    const std::string& name = question.subjects[i].estimator->listed;
+    const auto sample =
+        drawn ? test.samples.begin() + static_cast<std::ptrdiff_t>(i)
+              : std::find_if(test.samples.begin(), test.samples.end(),
+                             [&](const reports::Sample& s) { return s.estimator == name; });
+    plan.primaries.push_back(sample->primaries);
+  }
+  const Relation relation = question.test->claim.relation;
+  const bool within = relation == Relation::within;
+  Regions regions{.relation = relation, .allow = test.allow.value_or(0)};
+  if (within) {
+    regions.within = test.detect.value_or(0);
+  } else if (test.detect) {
+    regions.detect = *test.detect;
+  }
+  plan.regions.assign(question.channel_count(), regions);
+  return plan;
+}
+
+/// The test made ready to be drawn, with everything it refers to.
+struct Rebuilt {
+  Suite suite;
+  std::map<std::string, PreparedEstimator> estimators;
+  Pools pools;
+  TestWork work;
+};
+
+/// The pilots of the run as far as methods take from them: they depend on the seed and the
+/// estimators alone. Larger ones only choose methods and sizes.
+Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t seed) {
+  std::vector<const PreparedEstimator*> all;
+  for (const auto& [name, estimator] : rebuilt.estimators) all.push_back(&estimator);
+  const std::unique_ptr<Progress> progress = make_progress(false);
+  Pilots pilots =
+      run_pilots(all, {.seed = seed, .threads = 0, .draws = piloted_draws(question)}, *progress);
+  stop_if_interrupted();
+  if (const std::string why = where_pilots_stopped(question, pilots); !why.empty()) {
+    throw std::runtime_error(why);
+  }
+  return pilots;
+}
+
+/// What the record holds of the observations of a subject's channel; null where it holds nothing.
+const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
+                                   std::size_t subject, std::size_t channel) {
+  const Subject& side = question.subjects[subject];
+  if (std::ranges::find(side.channels, channel) == side.channels.end()) return nullptr;
+  // The samples of two subjects that are one estimator stand in the subjects' order.
+  auto earlier = std::ranges::count_if(
+      std::span(question.subjects).first(subject),
+      [&](const Subject& each) { return each.estimator->listed == side.estimator->listed; });
+  const std::string name = side.setup->channels()[channel].name;
+  for (const reports::Sample& sample : test.samples) {
+    const bool is_its = sample.estimator == side.estimator->listed &&
+                        (side.image.has_value() || sample.channel == name);
+    if (is_its && earlier-- == 0) return &sample;
+  }
+  return nullptr;
+}
+
+/// Data that were recorded elsewhere may have changed since.
+void require_same_rows(const Question& question, const Plan& plan, const Recorded& recorded,
+                       const std::string& record) {
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    const Subject& side = question.subjects[i];
+    const reports::Sample* then = recorded_of(recorded.test, question, i, side.channels[0]);
+    const auto now = side.setup->observations();
+    // A run is taken whole.
+    if (!now || !then || then->secondaries == *now) continue;
+    if (then->secondaries == side.secondaries(plan.most_secondaries())) continue;
+    throw InputError({.file = record},
+                     fmt::format("the test took {} observations of `{}`, of which there are now "
+                                 "{}: replay needs the data as they were",
+                                 then->secondaries, side.estimator->name, *now));
+  }
+}
+
+std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& record) {
+  auto rebuilt = std::make_unique<Rebuilt>();
+  rebuilt->suite = suite_of(recorded, record);
+  require_lasting_rows(rebuilt->suite, record);
+  rebuilt->estimators = prepare_all(rebuilt->suite);
+  Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
+  Plan plan = recorded_plan(question, recorded.test);
+  require_same_rows(question, plan, recorded, record);
+  if (takes_from_pilot(plan.method)) {
+    freeze(question, pilots_of(*rebuilt, question, recorded.seed), plan);
+  }
+  rebuilt->work.outcome = {
+      .question = std::move(question),
+      .place = {.inside = false,
+                .share = {.alpha = recorded.test.alpha.value_or(rebuilt->suite.alpha),
+                          .beta = recorded.test.beta.value_or(rebuilt->suite.beta)}},
+      .plan = std::move(plan)};
+  TestWork& work = rebuilt->work;
+  work.pools =
+      rebuilt->pools.for_question(work.outcome.question, work.outcome.plan, recorded.seed, {});
+  return rebuilt;
+}
+
+/// Says whether the value can be one of those recorded: they lie in a known range, and so many of
+/// them are not finite.
+bool print_against(const reports::Sample& sample, double value) {
+  if (!std::isfinite(value)) {
+    const bool same = sample.nonfinite > 0;
+    fmt::print("  {}\n",
+               same ? fmt::format("not finite, as {} of the {} recorded", sample.nonfinite,
+                                  sample.secondaries)
+                    : fmt::format("NOT as recorded: all {} were finite", sample.secondaries));
+    return same;
+  }
+  if (!sample.minimum || !sample.maximum) return true;
+  const bool same = *sample.minimum <= value && value <= *sample.maximum;
+  fmt::print("  {} [{}, {}], the range of the {} recorded\n",
+             same ? "lies in" : "NOT as recorded: lies outside", *sample.minimum, *sample.maximum,
+             sample.secondaries);
+  return same;
+}
+
+/// Whether nothing in the record contradicts the observation.
+bool print_observation(const TestWork& work, const reports::Test& recorded, std::uint64_t index) {
+  const Question& question = work.outcome.question;
+  if (index >= work.outcome.plan.most_secondaries()) {
+    throw InputError({}, fmt::format("observation {} was not drawn: the test used 0 to {}", index,
+                                     work.outcome.plan.most_secondaries() - 1));
+  }
+  bool same = true;
+  for (std::size_t i = 0; i < work.pools.size(); ++i) {
+    const Pool& pool = *work.pools[i];
+    const Subject& side = question.subjects[i];
+    const bool taken = index < side.secondaries(work.outcome.plan.most_secondaries());
+    if (pool.is_ready_made() || !taken) {
+      fmt::print("{}  has {}\n", side.estimator->name,
+                 taken ? "the moments of a run, not its observations" : "no such observation");
+      continue;
+    }
+    std::vector<double> values;
+    try {
+      values = draw_observation(*pool.setup(), pool.key(), pool.primaries(), index);
+    } catch (...) {
+      const Fault fault{.observation = index, .words = words_of(std::current_exception())};
+      throw std::runtime_error(fmt::format("`{}` stopped at {}",
+                                           question.subjects[i].estimator->name, to_string(fault)));
+    }
+    const std::vector<Channel> channels = pool.setup()->channels();
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      if (channels[c].name == cell_channel && values[c] == no_cell) continue;
+      fmt::print("{}.{}  observation {}: {}\n", side.estimator->name, channels[c].name, index,
+                 values[c]);
+      const reports::Sample* sample = recorded_of(recorded, question, i, c);
+      if (sample == nullptr || index >= sample->secondaries) continue;
+      same &= print_against(*sample, values[c]);
+    }
+    if (const auto* draws = dynamic_cast<const SamplerSetup*>(pool.setup().get())) {
+      fmt::print("  draw of `{}`: {}\n", draws->name(),
+                 draw_text(draws->sampler(), pool.key(), index));
+    }
+  }
+  return same;
+}
+
+std::string shown(const reports::Number& value) {
+  return value ? fmt::format("{}", *value) : "none";
+}
+
+bool same_line(const char* what, const reports::Number& now, const reports::Number& then,
+               const std::string& note = "") {
+  const bool same = now == then;
+  fmt::print("  {:<27} {}{}{}\n", what, shown(now), note,
+             same ? "" : fmt::format("   (recorded: {})", shown(then)));
+  return same;
+}
+
+/// Observations that are not finite, where there are any, now or in the record.
+bool same_nonfinite(const reports::Sample& now, const reports::Sample& then) {
+  const bool same = now.nonfinite == then.nonfinite;
+  if (same && now.nonfinite == 0) return true;
+  fmt::print("  {:<27} {}{}; mean and variance are of the others\n", "not finite", now.nonfinite,
+             same ? "" : fmt::format("   (recorded: {})", then.nonfinite));
+  return same;
+}
+
+/// The p-value itself beside its logarithm, where a double holds it.
+std::string as_probability(const reports::Number& log10_p) {
+  if (!log10_p || *log10_p < -300) return "";
+  return fmt::format("   (p = {:.3g})", std::pow(10, *log10_p));
+}
+
+/// Prints the numbers drawn now; whether they are the recorded ones to the last bit, but for what
+/// was made of seconds.
+bool print_comparison(const reports::Test& now, const reports::Test& then, bool timed) {
+  bool same = true;
+  if (then.verdict == reports::Verdict::invalid || then.verdict == reports::Verdict::error) {
+    fmt::print("{}, so the numbers below decide nothing: {}\n", reports::to_string(then.verdict),
+               then.message);
+  }
+  for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
+    fmt::print("{}.{}: {} secondaries of {} primaries\n", now.samples[i].estimator,
+               now.samples[i].channel, now.samples[i].secondaries, now.samples[i].primaries);
+    same &= same_nonfinite(now.samples[i], then.samples[i]);
+    // The number of a cell has neither mean nor variance.
+    if (now.samples[i].channel == cell_channel) continue;
+    same &= same_line("mean", now.samples[i].mean, then.samples[i].mean);
+    same &=
+        same_line("variance of an observation", now.samples[i].variance, then.samples[i].variance);
+  }
+  for (std::size_t i = 0; i < now.channels.size() && i < then.channels.size(); ++i) {
+    fmt::print("test {} on {}\n", now.method, now.channels[i].name);
+    const bool statistic =
+        same_line("statistic", now.channels[i].statistic, then.channels[i].statistic);
+    const reports::Number& log10_p = now.channels[i].log10_p;
+    const bool p = same_line(then.looks.size() > 1 ? "log10 p over the looks" : "log10 p", log10_p,
+                             then.channels[i].log10_p, as_probability(log10_p));
+    same &= timed || (statistic && p);
+  }
+  same &= now.channels.size() == then.channels.size() && now.samples.size() == then.samples.size();
+  return same;
+}
+
+/// Prints what is drawn now beside what was recorded; 0 where it is the same. std::runtime_error
+/// where a source can no longer be drawn.
+int replay(const Recorded& recorded, const ReplayArguments& arguments) {
+  const std::unique_ptr<Rebuilt> rebuilt = rebuild(recorded, arguments.record);
+  if (arguments.observation) {
+    return print_observation(rebuilt->work, recorded.test, *arguments.observation) ? 0 : 1;
+  }
+  const std::unique_ptr<Progress> progress = make_progress(false);
+  sample_in_looks({&rebuilt->work}, rebuilt->pools.all(), 0, *progress);
+  stop_if_interrupted();
+  const reports::Test now = record_of_test(rebuilt->work, recorded.suite.file, false);
+  fmt::print("{}\n{}\n", recorded.test.id, recorded.test.claim);
+  if (now.verdict == reports::Verdict::error && recorded.test.verdict != now.verdict) {
+    throw std::runtime_error(now.message);
+  }
+  const bool timed = rebuilt->work.outcome.plan.method.keeps == Keeps::blocks;
+  const bool same = print_comparison(now, recorded.test, timed);
+  fmt::print("{}\n", !same   ? "NOT the numbers recorded: another version, machine or input file?"
+                     : timed ? "the same observations as recorded; seconds do not repeat, and what "
+                               "is made of them differs"
+                             : "the same numbers as recorded");
+  return same ? 0 : 1;
+}
+
+}  // namespace
+
+int replay(const ReplayArguments& arguments) {
+  const reports::Record record = read_record(arguments.record);
+  const Recorded recorded = find_test(record, arguments);
+  if (recorded.test.samples.empty()) {
+    throw InputError(
+        {.file = arguments.record},
+        fmt::format("test `{}` recorded no samples: {}", recorded.test.id, recorded.test.message));
+  }
+  try {
+    return replay(recorded, arguments);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& fault) {
+    stop_if_interrupted();
+    fmt::print("error: {}\n", fault.what());
+    return 1;
+  }
+}
+
+}  // namespace assay::harness

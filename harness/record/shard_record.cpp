@@ -1,0 +1,111 @@
+#include "harness/record/shard_record.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "estimators/ready_made.h"
+#include "harness/base/shell.h"
+#include "harness/base/text_hash.h"
+#include "harness/record/picture.h"
+#include "harness/run/found_effect.h"
+#include "harness/run/holm_verdict.h"
+#include "harness/sampling/recorded_moments.h"
+
+namespace assay::harness {
+namespace {
+
+/// Of the suite's text and of the data that it names: what two shards must have in common.
+std::string digest_of(const SuiteRun& run) {
+  std::uint64_t hash = text_hash(run.suite.text);
+  for (const EstimatorEntry& entry : run.suite.estimators) {
+    const auto prepared = run.estimators.find(entry.name);
+    if (prepared == run.estimators.end()) continue;  // of a suite that is skipped
+    if (const auto rows = recorded::observations_digest(*prepared->second.setup)) {
+      hash = text_hash(fmt::format("{:016x}", *rows), hash);
+      continue;
+    }
+    const std::string file = prepared->second.setup->data_file();
+    if (file.empty()) continue;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    hash = text_hash(text, hash);
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+std::uint64_t position_of(const std::string& estimator, const Suite& suite) {
+  std::uint64_t position = 0;
+  while (suite.estimators[position].name != estimator) ++position;
+  return position;
+}
+
+reports::ShardPicture picture_of(const Picture& picture, const SuiteRun& run) {
+  const Pictured shown = pictured(picture, run);
+  reports::ShardPicture part{.position = position_of(shown.name, run.suite),
+                             .by_tests = !picture.own,
+                             .secondaries = shown_by(picture, run),
+                             .drawn = shown.drawn,
+                             .averaged = shown.averaged,
+                             .image = shown.image,
+                             .channels = {}};
+  for (const PicturedChannel& channel : shown.channels) {
+    part.channels.push_back({channel.name, channel.mean, recorded(channel.moments)});
+  }
+  return part;
+}
+
+std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
+  return static_cast<std::uint64_t>(&test - suite.tests.data());
+}
+
+reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
+  const FamilyMember member = member_of(outcome);
+  reports::ShardTest part{.position = position_of(*outcome.question.test, run.suite),
+                          .inside = outcome.place.inside,
+                          .weight = member.weight,
+                          .untested = member.untested,
+                          .log_p = member.log_p,
+                          .refuted = {},
+                          .compared = compared_by(outcome.question)};
+  if (!part.inside || !member.tested() || member.verdict == reports::Verdict::fail) return part;
+  for (const ChannelOutcome& channel : outcome.channels) {
+    part.refuted.push_back(refuted_effect_of(outcome, channel));
+  }
+  return part;
+}
+
+}  // namespace
+
+std::string options_text(const RunOptions& options) {
+  return options.command + options_text(options.selection);
+}
+
+void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOptions& options,
+               reports::Record& record) {
+  const auto [index, count] = *options.shard;
+  reports::Shard shard{
+      .index = index, .count = count, .options = options_text(options), .suites = {}};
+  for (const auto& run : runs) {
+    reports::ShardSuite suite{
+        .digest = digest_of(*run), .tests = run->suite.tests.size(), .pictures = {}, .results = {}};
+    for (const Picture& picture : run->pictures) {
+      suite.pictures.push_back(picture_of(picture, *run));
+    }
+    for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
+    for (const Untested& each : run->untested) {
+      suite.results.push_back({.position = position_of(*each.test, run->suite)});
+    }
+    // As the record has its tests.
+    std::ranges::sort(suite.results, {}, &reports::ShardTest::position);
+    shard.suites.push_back(std::move(suite));
+  }
+  record.shard = std::move(shard);
+  record.note = fmt::format(
+      "shard {} of {}: verdicts rest on each test's fixed share of alpha, without Holm's "
+      "adjustment over the suite, which `assay merge` makes from all shards",
+      index, count);
+}
+
+}  // namespace assay::harness

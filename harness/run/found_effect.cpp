@@ -1,0 +1,110 @@
+#include "harness/run/found_effect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/base/numbers.h"
+#include "harness/plan/sample_size.h"
+#include "harness/run/image_judge.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+/// What the detectable effect and the power are quoted for: the last look, or the one at which a
+/// budget ended the test.
+TestSize full_size(const TestOutcome& outcome) {
+  const stats::LookSchedule& looks = outcome.plan.looks;
+  const bool ended = outcome.verdict == Verdict::inconclusive;
+  const std::size_t look = ended ? outcome.look : looks.sizes.size() - 1;
+  return {.share = {.alpha = outcome.place.share.alpha * looks.weights[look],
+                    .beta = outcome.place.share.beta * looks.weights[look]},
+          .secondaries = looks.sizes[look]};
+}
+
+/// That of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
+double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel,
+                           bool refuted) {
+  const ErrorShare share = outcome.share();
+  if (!refuted && channel.regions.has_forbidden()) {
+    return 1 - 2 * share.beta;
+  }
+  const bool two_tails = channel.regions.two_sided() && !channel.evidence.distance;
+  return 1 - (two_tails ? 1 : 2) * share.alpha;
+}
+
+/// Of a claim with a factor the effect is that against so many times the second side.
+std::string quantity_of(const Evidence& evidence, double factor) {
+  std::string quantity = evidence.quantity;
+  if (factor != 1) {
+    quantity += fmt::format(" {} {:g} times the second",
+                            quantity.starts_with("ratio") ? "to" : "from", factor);
+  }
+  return evidence.ratio ? "ln(" + quantity + ")" : quantity;
+}
+
+reports::Effect effect_at(const Evidence& evidence, double confidence, double factor) {
+  const stats::Interval interval = evidence.interval(confidence);
+  const auto number = [](double value) {
+    return std::isfinite(value) ? reports::Number(value) : reports::Number();
+  };
+  return {.quantity = quantity_of(evidence, factor),
+          .estimate = number(evidence.estimate),
+          .low = number(interval.low),
+          .high = number(interval.high),
+          .confidence = confidence,
+          .relative = evidence.relative};
+}
+
+}  // namespace
+
+reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const bool refuted = outcome.verdict == Verdict::fail;
+  return effect_at(channel.evidence, deciding_confidence(outcome, channel, refuted),
+                   outcome.question.factor);
+}
+
+reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return effect_at(channel.evidence, deciding_confidence(outcome, channel, true),
+                   outcome.question.factor);
+}
+
+void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
+  for (ChannelOutcome& channel : outcome.channels) {
+    channel.effect = effect_of(outcome, channel);
+    if (channel.image) {
+      channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
+      continue;
+    }
+    const std::vector<ChannelData> data = data_of(test, channel.index);
+    PlannedChannel observed =
+        observed_channel(outcome.question, channel.regions, channel.index, data);
+    if (outcome.plan.method.name == "batch-means") {
+      // The deviations of independent values whose means are as uncertain.
+      const auto deviation = [&](std::size_t subject) {
+        return std::sqrt(static_cast<double>(outcome.secondaries(subject))) *
+               data[subject].moments.standard_error();
+      };
+      observed.standard_deviation = deviation(0);
+      if (outcome.question.of_two()) {
+        observed.other_deviation = std::abs(outcome.question.factor) * deviation(1);
+      }
+    }
+    channel.detectable =
+        detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
+    channel.finds_nothing =
+        !channel.detectable &&
+        finds_nothing(outcome.question, full_size(outcome), outcome.plan, observed);
+    const bool equivalence = channel.regions.relation == Relation::within;
+    if (!equivalence && !channel.regions.detect) continue;
+    const std::optional<double> power =
+        power_at(outcome.question, full_size(outcome), outcome.plan, observed,
+                 equivalence ? 0 : *channel.regions.detect);
+    if (power) outcome.power = std::min(*power, outcome.power.value_or(1));
+  }
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,344 @@
+#include "harness/run/narrate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "harness/plan/gate_text.h"
+#include "harness/plan/plan.h"
+#include "harness/theta/scale.h"
+#include "reports/words/effect.h"
+#include "reports/words/number.h"
+#include "stats/tails/tails.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+std::string p_text(double log_p) {
+  return "p = " + reports::p_text(std::exp(log_p), log_p / std::log(10.0));
+}
+
+/// Messages are read by programs too: their spaces are plain.
+std::string plain(std::string text) {
+  const std::string no_break = "\u00A0";
+  for (std::size_t at = text.find(no_break); at != std::string::npos; at = text.find(no_break, at))
+    text.replace(at, no_break.size(), " ");
+  return text;
+}
+
+/// "difference from the reference is +0.31 % [+0.12 %, +0.5 %] (99 % interval)".
+std::string finding(const reports::Effect& effect) {
+  // Of an exponent where one point alone differs from zero.
+  if (!effect.estimate) {
+    const std::string interval = reports::interval_text(effect);
+    return fmt::format(
+        "{} is no finite number{}", reports::effect_name(effect),
+        interval.empty() ? "" : fmt::format(" {} ({})", interval, reports::interval_name(effect)));
+  }
+  return fmt::format("{} is {}", reports::effect_name(effect), reports::named_effect_text(effect));
+}
+
+std::string finding(const ChannelOutcome& channel) { return finding(channel.effect); }
+
+std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return outcome.question.channel_count() > 1 ? " in channel " + channel.name : "";
+}
+
+const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
+  return *std::max_element(outcome.channels.begin(), outcome.channels.end(),
+                           [](const ChannelOutcome& a, const ChannelOutcome& b) {
+                             return a.decision.log_p_forbidden < b.decision.log_p_forbidden;
+                           });
+}
+
+/// Of two values of theta the one that is shown as the larger: of ratios near one, -14.3 % is less
+/// than +16.2 %, though its logarithm is as far from zero.
+double farther(double x, double y, const Evidence& evidence) {
+  constexpr double near = std::numbers::ln2;
+  const bool in_per_cent = evidence.ratio && std::abs(x) <= near && std::abs(y) <= near;
+  const auto size = [&](double theta) { return std::abs(in_per_cent ? std::expm1(theta) : theta); };
+  return size(x) > size(y) ? x : y;
+}
+
+/// The largest effect in the claim's forbidden direction that the interval holds.
+double excluded_beyond(const ChannelOutcome& channel) {
+  // An end that is no number lies at infinity.
+  const double low = channel.effect.low.value_or(-HUGE_VAL);
+  const double high = channel.effect.high.value_or(HUGE_VAL);
+  switch (channel.regions.relation) {
+    case Relation::at_most:
+    case Relation::less:
+      return high;
+    case Relation::at_least:
+    case Relation::greater:
+      return low;
+    case Relation::equal:
+    case Relation::within:
+      break;
+  }
+  return farther(low, high, channel.evidence);
+}
+
+/// The place of a channel among the references; nullopt but for a mean against a number.
+std::optional<std::size_t> reference_index(const TestOutcome& outcome,
+                                           const ChannelOutcome& channel) {
+  const Question& question = outcome.question;
+  if (question.kind != QuestionKind::mean_of_one) return {};
+  for (std::size_t i = 0; i < question.channel_count(); ++i) {
+    if (question.channel_name(i) == channel.name) return i;
+  }
+  return {};
+}
+
+/// The exponents or quantiles that speak against the claim and of which the interval excludes none,
+/// however far off; "" where there are none such.
+std::string what_is_not_excluded(const Question& question, const ChannelOutcome& channel) {
+  const bool no_low = !channel.effect.low || !std::isfinite(*channel.effect.low);
+  const bool no_high = !channel.effect.high || !std::isfinite(*channel.effect.high);
+  if (question.kind == QuestionKind::slope) return no_low && no_high ? "exponent" : "";
+  if (question.kind != QuestionKind::quantile) return "";
+  // A claim `<=` is refuted by a lower limit alone.
+  const bool low_counts = channel.regions.relation != Relation::at_least;
+  const bool high_counts = channel.regions.relation != Relation::at_most;
+  if (low_counts && no_low && high_counts && no_high) return "quantile";
+  if (low_counts && no_low) return "smaller quantile";
+  return high_counts && no_high ? "larger quantile" : "";
+}
+
+/// A distance has an end at 0 at least, unless even 0 is too large for these data.
+bool holds_no_effect(const ChannelOutcome& channel) {
+  return channel.evidence.distance && !channel.effect.low && !channel.effect.high;
+}
+
+/// An interval that decides a pass is narrower than one at the test's share of alpha, and may leave
+/// out what is claimed.
+std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const double edge = edge_of_claimed(channel.regions);
+  const bool above = channel.regions.relation != Relation::at_least && channel.effect.low &&
+                     *channel.effect.low > edge;
+  const bool below = channel.regions.relation != Relation::at_most && channel.effect.high &&
+                     *channel.effect.high < -edge;
+  // An image's interval is of the size of the difference, and no part of the verdict.
+  if (channel.image || (!above && !below)) return "no evidence against the claim";
+  return fmt::format("not enough evidence against the claim, {} where its share of alpha is {:.2g}",
+                     p_text(channel.decision.log_p_claimed), outcome.place.share.alpha);
+}
+
+std::string passed_by_empty_interval(const ChannelOutcome& channel) {
+  return fmt::format(
+      "no evidence against the claim; {} or more is excluded, {}; the data lie closer to the claim "
+      "than chance leads to expect, so that there is no {} interval",
+      reports::margin_text(*channel.regions.detect, channel.effect),
+      p_text(channel.decision.log_p_forbidden),
+      reports::confidence_text(channel.effect.confidence));
+}
+
+std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  if (channel.evidence.exact) return "as claimed: what never varies is compared exactly";
+  if (!channel.regions.has_forbidden()) {
+    std::string text = "no evidence against the claim";
+    if (channel.finds_nothing) {
+      return fmt::format(
+          "{}, nor could there be: in {} observations no difference that the range allows is found "
+          "with probability {:g}",
+          text, outcome.secondaries(), 1 - outcome.share().beta);
+    }
+    if (const std::string all = what_is_not_excluded(outcome.question, channel); !all.empty()) {
+      return fmt::format(
+          "{}; but these observations exclude no {} at all: take more of them, or say with "
+          "`detect` how far off it must not be",
+          text, all);
+    }
+    if (channel.detectable) {
+      // The same sum of squares in a few pixels, or of both signs, is seen by other cells: from
+      // other sizes on.
+      const char* how = outcome.question.kind == QuestionKind::image
+                            ? " that is the same all over the image"
+                            : " or more";
+      text += fmt::format("; {}{} would have been found with probability {:g}",
+                          reports::margin_text(*channel.detectable, channel.effect), how,
+                          1 - outcome.share().beta);
+    }
+    return text;
+  }
+  if (holds_no_effect(channel)) return passed_by_empty_interval(channel);
+  const double excluded = excluded_beyond(channel);
+  const std::string interval =
+      fmt::format("the {}{}", reports::interval_name(channel.effect), in_channel(outcome, channel));
+  const bool one_sided = !channel.regions.two_sided();
+  const double towards = channel.regions.relation == Relation::at_least ? -excluded : excluded;
+  if (one_sided && towards <= 0) {
+    return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
+                       reports::size_text(excluded, channel.effect), interval);
+  }
+  return fmt::format("{}; {} or more is excluded by {}", evidence_against(outcome, channel),
+                     reports::size_text(excluded, channel.effect), interval);
+}
+
+std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return fmt::format("shown: {}{}, {} against the contrary", finding(channel),
+                     in_channel(outcome, channel), p_text(channel.decision.log_p_forbidden));
+}
+
+std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  if (channel.image) {
+    return fmt::format(
+        "differs most at {}, {}; {}",
+        place_text(channel.image->family.winner, *outcome.question.subjects[0].image),
+        p_text(channel.decision.log_p_claimed), finding(channel));
+  }
+  const auto& most_against = channel.evidence.most_against;
+  return fmt::format("{}{}, {}{}", finding(channel), in_channel(outcome, channel),
+                     p_text(channel.decision.log_p_claimed),
+                     most_against ? most_against(edge_of_claimed(channel.regions)) : "");
+}
+
+/// In an alarm any estimate decides once the room between the margins holds a standard error
+/// z_alpha and z_beta times; in a proof it decides by how far it lies from the forbidden region,
+/// with one standard error to spare.
+struct Room {
+  double size = 0;
+  double standard_errors = 1;  ///< that it must hold
+};
+
+Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const auto z = [](double level) {
+    return stats::normal_quantile({stats::Tail::upper, std::log(level)});
+  };
+  const Regions& regions = channel.regions;
+  const ErrorShare share = outcome.share();
+  const double estimate = channel.evidence.estimate;
+  const double beyond = z(share.beta) + 1;
+  switch (regions.relation) {
+    case Relation::within:
+      return {regions.within - std::abs(estimate), beyond};
+    case Relation::less:
+      return {-estimate, beyond};
+    case Relation::greater:
+      return {estimate, beyond};
+    case Relation::equal:
+    case Relation::at_most:
+    case Relation::at_least:
+      break;
+  }
+  const double alpha = regions.two_sided() ? share.alpha / 2 : share.alpha;
+  return {regions.detect.value_or(0) - regions.allow, z(alpha) + z(share.beta)};
+}
+
+/// The standard error of the reference on theta's scale: what no number of samples takes away.
+double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const auto index = reference_index(outcome, channel);
+  if (!index) return 0;
+  const Constant& reference = outcome.question.references[*index];
+  const bool relative = is_relative(outcome.question, *index);
+  return reference.standard_error / (relative ? std::abs(reference.value) : 1);
+}
+
+/// So many times the secondaries, and what a `budget` counts.
+std::string times_as_many(const TestOutcome& outcome, double factor) {
+  const std::string text = sizes_text(outcome, factor) + " secondaries";
+  if (primaries_of_each(outcome.question, outcome.plan) == 1) return text;
+  const auto primaries =
+      static_cast<double>(primaries_of_look(outcome.question, outcome.plan, outcome.secondaries()));
+  return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
+}
+
+/// How many standard errors half an interval is whose ends each err with `tail`. With few
+/// observations t is far wider than the normal law that more of them will have.
+double interval_errors(const ChannelOutcome& channel, double tail) {
+  const stats::LogTail beyond{stats::Tail::upper, std::log(tail)};
+  const stats::Distribution law = channel.evidence.at(channel.evidence.estimate).distribution;
+  return law.family == "student-t" ? stats::student_t_quantile(beyond, law.parameters.at(0))
+                                   : stats::normal_quantile(beyond);
+}
+
+/// n grows with the square of how much narrower the interval must become.
+std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  if (channel.image) {
+    if (channel.image->wanted == 0) {
+      return "the estimate lies where the claim must not pass, yet not clearly so";
+    }
+    return fmt::format("about {} images would decide if the estimate stands",
+                       reports::human(channel.image->wanted, 2));
+  }
+  const double beta = outcome.share().beta;
+  const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
+  const double half = (interval.high - interval.low) / 2;
+  const Room room = room_of(outcome, channel);
+  if (outcome.plan.method.name == "betting") {
+    return "no number of samples would decide: without an upper bound on the values a larger mean "
+           "cannot be excluded; declare the range";
+  }
+  if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
+    return "the estimate lies where the claim must not pass, yet not clearly so";
+  }
+  // The standard errors of the samples must shrink to what the reference's leaves of the room.
+  const double fixed = reference_error(outcome, channel);
+  const double error = half / interval_errors(channel, beta);
+  const double sampled = error * error - fixed * fixed;
+  const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
+  if (!(wanted > 0)) {
+    return "no number of samples would decide: the reference's own error forbids it";
+  }
+  const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
+  return fmt::format("about {} would decide{}", times_as_many(outcome, factor),
+                     channel.regions.proof() ? " if the estimate stands" : "");
+}
+
+std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return fmt::format("{}{}: neither shown nor refuted; {}", finding(channel),
+                     in_channel(outcome, channel), what_would_decide(outcome, channel));
+}
+
+std::string told(const TestOutcome& outcome) {
+  const ChannelOutcome& worst = outcome.channels.front();
+  const ChannelOutcome& least = least_excluded(outcome);
+  const std::string& doubt = outcome.plan.caution;
+  const std::string caution = doubt.empty() ? "" : "; " + doubt;
+  switch (outcome.verdict) {
+    case Verdict::fail:
+      return failed(outcome, worst);
+    case Verdict::inconclusive:
+      return undecided(outcome, least) + caution;
+    case Verdict::pass:
+      return (least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least)) +
+             caution;
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+std::uint64_t earlier_look(std::span<const reports::Look> looks) {
+  if (looks.empty()) return 0;
+  const auto share_of_p = [](const reports::Look& look) {
+    return look.log10_p.value_or(0) - std::log10(look.weight);
+  };
+  const auto least = std::ranges::min_element(looks, {}, share_of_p);
+  const bool last = share_of_p(*least) == share_of_p(looks.back());
+  return last ? 0 : least->secondaries;
+}
+
+std::string narrate_holm(const HolmFinding& found) {
+  const std::string look =
+      found.earlier_look == 0
+          ? ""
+          : fmt::format(" (of the look at {} observations, the estimate of all)",
+                        reports::count_text(found.earlier_look));
+  return plain(fmt::format(
+      "{}{}, {}{} and after Holm {}: refuted by the share of alpha that the suite's other "
+      "refuted claims leave to it, not by its own, which the interval is for",
+      finding(found.effect), found.channel.empty() ? "" : " in channel " + found.channel,
+      p_text(found.log_p), look, p_text(found.log_p_adjusted)));
+}
+
+std::string narrate(const TestOutcome& outcome) {
+  return outcome.channels.empty() ? "" : plain(told(outcome));
+}
+
+}  // namespace assay::harness

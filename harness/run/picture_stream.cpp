@@ -1,0 +1,333 @@
+#include "harness/run/picture_stream.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "estimators/ready_made.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/parallel.h"
+#include "harness/image/image_flips.h"
+#include "harness/image/image_pair.h"
+#include "harness/image/image_uniform.h"
+#include "harness/plan/image_plan.h"
+#include "harness/theta/critical.h"
+#include "stats/images/image_row_distance.h"
+#include "stats/images/image_sums.h"
+#include "stats/pyramids/image_row_pyramid.h"
+
+namespace assay::harness {
+namespace {
+
+using Stack = stats::ImageStack<float>;
+using Pyramid = stats::RowPyramid<float>;
+
+constexpr std::size_t row_unit = Pyramid::row_unit;
+static_assert(row_unit % stats::RowCellTails::row_unit == 0 &&
+              row_unit % GroupedFlips<float>::row_unit == 0 &&
+              Pyramid::rows_before >= stats::RowCellTails::rows_beside &&
+              Pyramid::rows_ahead >= stats::RowCellTails::rows_beside);
+// Rows are read up to a multiple of so many: most files compress 16 of them together.
+constexpr std::size_t read_unit = 16;
+// Of what is taken at a time, where so few rows are enough.
+constexpr std::size_t most_texels = std::size_t{1} << 22;
+
+std::size_t rounded_up(std::size_t count, std::size_t unit) {
+  return (count + unit - 1) / unit * unit;
+}
+
+/// Rows that are taken at a time.
+std::size_t rows_at_a_time(const stats::ImageExtent& extent, std::size_t pictures) {
+  const std::size_t rows = most_texels / (extent.row() * pictures) / row_unit * row_unit;
+  return std::clamp(rows, row_unit, rounded_up(extent.height, row_unit));
+}
+
+std::size_t rows_there(const stats::ImageExtent& extent, std::size_t pictures) {
+  return std::min(rows_at_a_time(extent, pictures) + Pyramid::rows_before +
+                      rounded_up(Pyramid::rows_ahead, read_unit),
+                  extent.height);
+}
+
+std::uint64_t pictures_of(const Subject& side) { return side.setup->observations().value_or(0); }
+
+/// One side's pictures, as far as their rows are there.
+class Side {
+ public:
+  explicit Side(const Subject& side)
+      : setup_(*side.setup),
+        extent_(extent_of(*side.image)),
+        reader_(recorded::picture_rows(*side.setup)),
+        pictures_(pictures_of(side)),
+        size_(rows_there(extent_, 2 * pictures_) * extent_.row()),
+        texels_(std::make_unique_for_overwrite<float[]>(pictures_ * size_)),
+        seconds_(pictures_) {}
+
+  /// Lets go of rows before those of the range and reads on to its last.
+  void move_to(stats::RowRange rows) {
+    on_all_threads(pictures_, [&](std::size_t i) {
+      const double start = thread_seconds();
+      move_to(rows, i);
+      seconds_[i] += thread_seconds() - start;
+    });
+    there_ = rows;
+  }
+
+  Stack stack(std::size_t pictures) const {
+    Stack stack{extent_, {}, there_.elements(extent_)};
+    for (std::size_t i = 0; i < pictures; ++i) {
+      stack.images.emplace_back(texels_.get() + i * size_, stack.there.size());
+    }
+    return stack;
+  }
+  Stack stack() const { return stack(pictures_); }
+
+  double seconds() const {
+    double sum = 0;
+    for (const double seconds : seconds_) sum += seconds;
+    return sum;
+  }
+
+  /// Where among the rows that are there a number is not finite; "" where all are.
+  std::string not_finite() const {
+    const Stack rows = stack();
+    for (std::size_t i = 0; i < pictures_; ++i) {
+      const auto texels = rows.images[i];
+      const auto found = std::ranges::find_if_not(texels, [](float x) { return std::isfinite(x); });
+      if (found == texels.end()) continue;
+      const auto element = rows.there.first + static_cast<std::size_t>(found - texels.begin());
+      return fmt::format("`{}` is not finite at pixel {}",
+                         recorded::observation_place(setup_, {.index = i}),
+                         element_name(*setup_.image(), element));
+    }
+    return "";
+  }
+
+ private:
+  void move_to(stats::RowRange rows, std::size_t picture) {
+    float* const begin = texels_.get() + picture * size_;
+    const std::size_t kept = (there_.last - rows.first) * extent_.row();
+    std::memmove(begin, begin + (rows.first - there_.first) * extent_.row(), kept * sizeof(float));
+    if (rows.last == there_.last) return;
+    reader_->read(picture, {begin + kept, (rows.last - there_.last) * extent_.row()});
+  }
+
+  const Setup& setup_;
+  stats::ImageExtent extent_;
+  std::unique_ptr<recorded::PictureRows> reader_;
+  std::size_t pictures_;
+  std::size_t size_;  // texels of a picture that there is room for
+  std::unique_ptr<float[]> texels_;
+  std::vector<double> seconds_;
+  stats::RowRange there_;
+};
+
+/// What is taken of rows.
+class Looking {
+ public:
+  Looking(const Question& question, const FamilyPlace& place)
+      : question_(question),
+        place_(place),
+        extent_(extent_of(*question.subjects[0].image)),
+        pictures_(pictures_of(question.subjects[0])),
+        piloted_(usual_images(*question.subjects[0].setup, 1).value_or(0)),
+        sums_(extent_, pictures_) {
+    look_->pictures = pictures_;
+    look_->piloted = piloted_ = std::min<std::uint64_t>(piloted_, pictures_);
+    look_->z.resize(extent_.elements());
+    for (const Subject& subject : question.subjects) {
+      sides_.emplace_back(subject);
+      of_pictures_.emplace_back(pictures_);
+      of_channels_.emplace_back(pictures_ * extent_.channels);
+    }
+  }
+
+  StreamedPictures take_all(Progress& progress) {
+    try {
+      return {.pilots = take_rows(progress) ? pilots() : Pilots()};
+    } catch (const std::domain_error&) {  // of texels that are not finite, and of their sums
+      return {.fault = fault()};
+    } catch (const Unread& unread) {
+      StreamedPictures found;
+      found.pilots.add(pilot_name(question_.subjects[unread.side]), unread.fault);
+      return found;
+    }
+  }
+
+ private:
+  /// Thrown where a side's pictures cannot be read.
+  struct Unread {
+    std::size_t side;
+    Fault fault;
+  };
+
+  /// False where the user interrupts.
+  bool take_rows(Progress& progress) {
+    const std::size_t step = rows_at_a_time(extent_, 2 * pictures_);
+    for (std::size_t row = 0; row < extent_.height; row += step) {
+      const stats::RowRange rows{row, std::min(row + step, extent_.height)};
+      if (interrupted()) return false;
+      move_to(rows);
+      take(rows);
+      progress.advance(2 * pictures_ * rows.last / extent_.height);
+    }
+    return true;
+  }
+
+  std::string fault() const {
+    for (const Side& side : sides_) {
+      if (std::string found = side.not_finite(); !found.empty()) return found;
+    }
+    return "the squares of their numbers are too large";
+  }
+
+  /// After the last rows.
+  Pilots pilots() {
+    if (!sums_.sound()) throw std::domain_error("sums of pictures are not finite");
+    finish();
+    std::vector<ElementSums> sums = sums_.finish(of_pictures_);
+    Pilots pilots;
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      auto summary = std::make_shared<Summary>();
+      summary->count = pictures_;
+      summary->cost.samples = pictures_;
+      summary->seconds = sides_[s].seconds();
+      summary->elements = std::make_shared<const ElementSums>(std::move(sums[s]));
+      auto kept = std::make_shared<KeptObservations>();
+      kept->costs.assign(pictures_, Cost{.samples = 1});
+      kept->sums[pictures_] = summary;
+      Pilot pilot{.sums = std::move(summary), .kept = std::move(kept)};
+      pilot.look = look_;
+      pilots.add(pilot_name(question_.subjects[s]), std::move(pilot));
+    }
+    return pilots;
+  }
+
+  void move_to(stats::RowRange rows) {
+    const std::size_t ahead = rounded_up(rows.last + Pyramid::rows_ahead, read_unit);
+    const stats::RowRange there{rows.first - std::min(rows.first, Pyramid::rows_before),
+                                std::min(ahead, extent_.height)};
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      try {
+        sides_[s].move_to(there);
+      } catch (...) {
+        throw Unread{s, {.words = words_of(std::current_exception())}};
+      }
+    }
+  }
+
+  void take(stats::RowRange rows) {
+    const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
+    const stats::ImagePair<float> pair = stats::pair_of(stacks[0], stacks[1]);
+    if (rows.first == 0) begin(pair);
+    sums_.take(pair, rows);
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
+      stats::add_to_channel_sums(of_channels_[s], stacks[s], rows.elements(extent_),
+                                 on_all_threads);
+    }
+    distance_.take(pair, rows, on_all_threads);
+    pyramid_->take(pair, rows);
+    tails_->take(pilot_sides(), rows);
+    if (flips_) flips_->take(pair, rows);
+  }
+
+  void begin(const stats::ImagePair<float>& pair) {
+    const bool independent = std::ranges::all_of(
+        question_.subjects, [](const Subject& side) { return side.image->independent; });
+    pyramid_.emplace(pair, stats::PyramidOptions{
+                               .energy = independent, .z = look_->z, .for_each = on_all_threads});
+    tails_.emplace(pilot_sides(), smallest_level(question_, place_),
+                   stats::WeightsFrom::halves_of_the_test, on_all_threads);
+    if (!independent && flip_size(place_.share, pictures_)) flips_.emplace();
+  }
+
+  std::vector<stats::CellPilot> pilot_sides() const {
+    const auto replicates = static_cast<double>(usual_replicates(question_, pictures_));
+    return {{.stack = sides_[0].stack(piloted_), .factor = 1, .replicates = replicates},
+            {.stack = sides_[1].stack(piloted_), .factor = -1, .replicates = replicates}};
+  }
+
+  void finish() {
+    look_->distance = distance_.distance();
+    look_->family = pyramid_->family();
+    look_->tails = tails_->tails();
+    if (flips_) look_->flips = flips_->matrix();
+    look_->skewness = sums_.skewness();
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      look_->means.push_back(channel_means(of_channels_[s], extent_));
+      for (double& sum : of_pictures_[s]) sum /= static_cast<double>(extent_.elements());
+    }
+  }
+
+  const Question& question_;
+  const FamilyPlace& place_;
+  stats::ImageExtent extent_;
+  std::size_t pictures_;
+  std::size_t piloted_;
+  std::vector<Side> sides_;
+  std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
+  SumsOfTwo sums_;
+  std::vector<std::vector<double>> of_pictures_;  // sums, at last averages
+  std::vector<std::vector<double>> of_channels_;  // sums of each picture's
+  stats::RowDistance<float> distance_;
+  std::optional<Pyramid> pyramid_;
+  std::optional<stats::RowCellTails> tails_;
+  std::optional<GroupedFlips<float>> flips_;
+};
+
+bool is_streamed(const Subject& side, const Subject& other) {
+  const auto channels = recorded::unknown_channels(*side.setup);
+  return channels && *channels > most_kept_channels && side.image && !side.averages &&
+         side.channels.size() + 1 == *channels && pictures_of(side) == pictures_of(other) &&
+         pictures_of(side) >= stats::least_replicates;
+}
+
+bool is_about(const Question& question, const Subject& side) {
+  return std::ranges::any_of(
+      question.subjects, [&](const Subject& other) { return other.estimator == side.estimator; });
+}
+
+}  // namespace
+
+bool is_streamed(const Question& question) {
+  return question.kind == QuestionKind::image && question.of_two() && question.factor == 1 &&
+         question.offset == 0 && !plans_replicates(question) && !question.test->secondaries &&
+         !question.test->budget &&
+         question.subjects[0].estimator != question.subjects[1].estimator &&
+         is_streamed(question.subjects[0], question.subjects[1]) &&
+         is_streamed(question.subjects[1], question.subjects[0]);
+}
+
+std::vector<const Question*> streamed(const std::vector<Question>& questions,
+                                      const std::vector<bool>& chosen) {
+  std::vector<const Question*> found;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!chosen[i] || !is_streamed(questions[i])) continue;
+    const bool alone = std::ranges::all_of(questions, [&](const Question& other) {
+      return &other == &questions[i] || (!is_about(other, questions[i].subjects[0]) &&
+                                         !is_about(other, questions[i].subjects[1]));
+    });
+    if (alone) found.push_back(&questions[i]);
+  }
+  return found;
+}
+
+double streamed_bytes(const Subject& side) {
+  const stats::ImageExtent extent = extent_of(*side.image);
+  const std::size_t pictures = pictures_of(side);
+  return static_cast<double>(pictures * rows_there(extent, 2 * pictures) * extent.row() *
+                             sizeof(float));
+}
+
+StreamedPictures stream_pictures(const Question& question, const FamilyPlace& place,
+                                 Progress& progress) {
+  progress.begin("pictures", 2 * pictures_of(question.subjects[0]));
+  StreamedPictures found = Looking(question, place).take_all(progress);
+  progress.end();
+  return found;
+}
+
+}  // namespace assay::harness

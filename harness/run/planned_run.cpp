@@ -1,0 +1,293 @@
+#include "harness/run/planned_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "estimators/program_path.h"
+#include "estimators/ready_made.h"
+#include "harness/base/interrupt.h"
+#include "harness/families/methods.h"
+#include "harness/plan/frozen.h"
+#include "harness/plan/pilot_run.h"
+#include "harness/plan/plan.h"
+#include "harness/run/image_memory.h"
+#include "harness/run/picture_stream.h"
+#include "stats/images/image.h"
+
+namespace assay::harness {
+namespace {
+
+// For the suite's picture, of an estimator that no selected mean or variance claim draws.
+constexpr std::uint64_t picture_secondaries = 1000;
+constexpr std::uint64_t picture_primaries = 64;
+
+bool selected(const TestEntry& test, std::size_t index, const RunOptions& options) {
+  if (options.shard && index % options.shard->second != options.shard->first - 1) return false;
+  return selects(options.selection, test);
+}
+
+/// The suite's primaries are split over its tests by weight, whichever of them run: what a test may
+/// draw is then a function of the suite alone. Claims in seconds are timed on whole replicates.
+void share_budget(Suite& suite) {
+  if (!suite.budget || !suite.budget->primaries) return;
+  double weights = 0;
+  for (const TestEntry& test : suite.tests) weights += test.weight;
+  for (TestEntry& test : suite.tests) {
+    if (test.cost == CostKind::seconds) continue;
+    const auto share = static_cast<std::uint64_t>(static_cast<double>(*suite.budget->primaries) *
+                                                  test.weight / weights);
+    if (!test.budget) test.budget.emplace();
+    test.budget->primaries = std::min(test.budget->primaries.value_or(share), share);
+  }
+}
+
+/// The suite as this run wants it, before `--coarsen`.
+Suite adjusted(Suite suite, const RunOptions& options) {
+  if (options.alpha) suite.alpha = *options.alpha;
+  share_budget(suite);
+  return suite;
+}
+
+void coarsen(Suite& suite, const RunOptions& options) {
+  for (TestEntry& test : suite.tests) {
+    if (!test.detect) continue;
+    test.detect->value *= options.coarsen;
+    if (test.allow && test.detect->value <= test.allow->value) {
+      throw InputError(test.place_of("detect"),
+                       fmt::format("`--coarsen {:g}` brings `detect` down to `allow`; "
+                                   "`detect` must stay above it",
+                                   options.coarsen));
+    }
+  }
+}
+
+bool is_about(const Question& question, const std::string& estimator) {
+  return std::any_of(question.subjects.begin(), question.subjects.end(),
+                     [&](const Subject& s) { return s.estimator->listed == estimator; });
+}
+
+/// Whether estimators that no test is about are drawn too, for the picture of the whole suite: of
+/// the shards the first does.
+bool draws_idle(const std::vector<Question>& questions, const RunOptions& options) {
+  if (options.shard && options.shard->first != 1) return false;
+  return std::all_of(questions.begin(), questions.end(),
+                     [&](const Question& q) { return selects(options.selection, *q.test); });
+}
+
+/// Estimators that a set of questions is about, in the suite's order.
+std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& questions,
+                                              const std::vector<bool>& chosen, const SuiteRun& run,
+                                              const RunOptions& options) {
+  std::vector<const PreparedEstimator*> used;
+  const bool with_idle = draws_idle(questions, options);
+  for (const EstimatorEntry& entry : run.suite.estimators) {
+    const auto prepared = run.estimators.find(entry.name);
+    if (prepared == run.estimators.end()) continue;
+    const PreparedEstimator& estimator = prepared->second;
+    if (recorded::is_reference(*estimator.setup)) continue;  // nothing to draw
+    bool idle = true;
+    bool wanted = false;
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      if (!is_about(questions[i], entry.name)) continue;
+      idle = false;
+      wanted = wanted || chosen[i];
+    }
+    // Of a renderer that is started for each observation a picture is too dear a decoration.
+    const bool dear = recorded::keeps_files(*estimator.setup);
+    if (wanted || (idle && with_idle && !dear)) used.push_back(&estimator);
+  }
+  return used;
+}
+
+/// And the points of their sweeps.
+std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEstimator*> estimators,
+                                                  const std::vector<Question>& questions,
+                                                  const std::vector<bool>& chosen) {
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    for (const Subject& subject : questions[i].subjects) {
+      if (!chosen[i] || !subject.own || !known.insert(subject.own->name).second) continue;
+      estimators.push_back(subject.own.get());
+    }
+  }
+  return estimators;
+}
+
+/// The pilots of a suite's estimators: those of pictures that are taken rows after rows, then the
+/// others.
+Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
+               const std::vector<bool>& chosen, std::vector<const PreparedEstimator*> used,
+               const RunOptions& options, Progress& progress) {
+  const std::vector<FamilyPlace> place = places(run.suite, questions);
+  Pilots pilots;
+  for (const Question* const question : streamed(questions, chosen)) {
+    const auto index = static_cast<std::size_t>(question - questions.data());
+    StreamedPictures taken = stream_pictures(*question, place[index], progress);
+    stop_if_interrupted();
+    if (taken.pilots.empty()) {
+      require_memory(run.estimators, {}, available_bytes(), taken.fault);
+    }
+    if (!taken.pilots.empty()) {
+      std::erase_if(
+          used, [&](const PreparedEstimator* each) { return is_about(*question, each->listed); });
+    }
+    pilots.merge(std::move(taken.pilots));
+  }
+  if (used.empty()) return pilots;
+  pilots.merge(run_pilots(with_sweeps(used, questions, chosen),
+                          pilot_run_of(questions, chosen, run.seed, options.threads), progress));
+  return pilots;
+}
+
+/// Of the streams that the suite's tests draw of an estimator the first, selected or not.
+std::uint32_t first_copy(const std::vector<Question>& questions,
+                         const PreparedEstimator& estimator) {
+  std::optional<std::uint32_t> first;
+  for (const Question& question : questions) {
+    for (const Subject& subject : question.subjects) {
+      if (subject.estimator != &estimator || !subject.purpose.empty()) continue;
+      first = std::min(first.value_or(subject.copy), subject.copy);
+    }
+  }
+  return first.value_or(0);
+}
+
+void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
+                  const std::vector<const PreparedEstimator*>& used, const Primaries& primaries,
+                  const Pilots& pilots, Pools& pools) {
+  for (const PreparedEstimator* estimator : used) {
+    const auto found = primaries.find(estimator->name);
+    const std::uint64_t automatic = !estimator->nature().averages ? 1
+                                    : found != primaries.end()    ? found->second
+                                                                  : picture_primaries;
+    const auto pool = pools.for_picture({.estimator = *estimator,
+                                         .copy = first_copy(questions, *estimator),
+                                         .primaries = estimator->primaries.value_or(automatic)},
+                                        run.seed, pilots);
+    Picture picture{estimator, pool};
+    if (shown_by(picture, run) == 0) {
+      const bool image = estimator->setup->image().has_value();
+      picture.own = estimator->setup->observations().value_or(image ? stats::least_replicates
+                                                                    : picture_secondaries);
+      pool->request(*picture.own);
+    }
+    run.pictures.push_back(picture);
+  }
+}
+
+/// Whether the test runs, by its place in the suite's file.
+bool selected(const TestEntry& test, const SuiteRun& run, const RunOptions& options) {
+  return selected(test, static_cast<std::size_t>(&test - run.suite.tests.data()), options);
+}
+
+void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress& progress) {
+  std::erase_if(run.untested,
+                [&](const Untested& each) { return !selected(*each.test, run, options); });
+  const std::vector<Question>& questions = run.questions;
+  std::vector<bool> chosen;
+  for (const Question& each : questions) chosen.push_back(selected(*each.test, run, options));
+  if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
+  const std::vector<FamilyPlace> place = places(run.suite, questions);
+  const auto used = used_by(questions, chosen, run, options);
+  run.pilots = piloted(run, questions, chosen, used, options, progress);
+  const Pilots& pilots = run.pilots;
+  stop_if_interrupted();
+  const Primaries primaries = choose_primaries(questions, place, pilots);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!chosen[i]) continue;
+    Plan plan = plan_test(questions[i], place[i], pilots, primaries);
+    TestWork work{
+        .suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
+        .outcome = {.question = questions[i], .place = place[i], .plan = std::move(plan)}};
+    work.pools = pools.for_question(work.outcome.question, work.outcome.plan, run.seed, pilots);
+    run.tests.push_back(std::move(work));
+  }
+  plan_picture(run, questions, used, primaries, pilots, pools);
+}
+
+/// Why the suite's tests cannot run on this machine; "" where they can.
+std::string lack_of(const Suite& suite) {
+  for (const std::string& program : suite.needs) {
+    if (!program_path(program, suite.folder).empty()) continue;
+    return fmt::format("needs the program `{}`, which is not installed", program);
+  }
+  return "";
+}
+
+/// The estimators, and why others cannot be prepared. What an estimator refuses is the user's
+/// mistake; what else it throws is a fault of its own.
+std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
+  std::map<std::string, Fault> faults;
+  for (const EstimatorEntry& entry : run.suite.estimators) {
+    try {
+      run.estimators.emplace(entry.name, prepare(entry, run.suite.folder));
+    } catch (const InputError&) {
+      throw;
+    } catch (...) {
+      faults.emplace(entry.name, Fault{.words = words_of(std::current_exception())});
+    }
+  }
+  return faults;
+}
+
+/// Why a test has no question: a source that cannot be prepared; "" where all are.
+std::string unprepared(const TestEntry& test, const std::map<std::string, Fault>& faults) {
+  std::vector<Source> sources = sources_of(test.claim);
+  if (test.reference) sources.push_back(*test.reference);
+  for (const Source& source : sources) {
+    const auto fault = faults.find(source.estimator);
+    if (fault == faults.end()) continue;
+    return fmt::format("`{}` cannot be prepared: {}", source.estimator, to_string(fault->second));
+  }
+  return "";
+}
+
+void ask_test(SuiteRun& run, TestEntry& test, const std::map<std::string, Fault>& faults) {
+  std::string why = unprepared(test, faults);
+  try {
+    if (why.empty()) run.questions.push_back(ask_as_written(test, run.estimators, run.seed));
+  } catch (const InputError&) {
+    throw;
+  } catch (...) {  // at another value of a sweep
+    why = "an estimator cannot be prepared: " + words_of(std::current_exception());
+  }
+  if (!why.empty()) {
+    run.untested.push_back({&test, reports::Verdict::error, std::move(why)});
+  } else if (test.method) {
+    find_method(run.questions.back(), *test.method);
+  }
+}
+
+/// Everything a user may have got wrong is found here, before anything is sampled; but of a suite
+/// that is skipped nothing is prepared.
+std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options) {
+  auto run = std::make_unique<SuiteRun>();
+  run->suite = adjusted(suite, options);
+  run->seed = options.seed.value_or(suite.seed.value_or(1));
+  if (const std::string lack = lack_of(suite); !lack.empty()) {
+    for (const TestEntry& test : run->suite.tests) {
+      run->untested.push_back({&test, reports::Verdict::skipped, lack});
+    }
+    return run;
+  }
+  const std::map<std::string, Fault> faults = prepare_estimators(*run);
+  for (TestEntry& test : run->suite.tests) ask_test(*run, test, faults);
+  coarsen(run->suite, options);
+  const std::vector<bool> all(run->questions.size(), true);
+  require_memory(run->estimators, streamed(run->questions, all), available_bytes());
+  return run;
+}
+
+}  // namespace
+
+PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
+                    Progress& progress) {
+  PlannedRun planned;
+  for (const Suite& suite : suites) planned.suites.push_back(prepare_suite(suite, options));
+  for (auto& run : planned.suites) plan_suite(*run, options, planned.pools, progress);
+  return planned;
+}
+
+}  // namespace assay::harness

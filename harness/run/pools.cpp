@@ -1,0 +1,178 @@
+#include "harness/run/pools.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/draws/consistency_setup.h"
+
+namespace assay::harness {
+namespace {
+
+// The histogram spans this many standard deviations to each side, within the channel's range.
+constexpr double histogram_deviations = 5;
+
+struct Range {
+  double low;
+  double high;
+};
+
+/// Bounds of a histogram that holds both ends.
+ChannelPlan with_histogram(Range range) {
+  ChannelPlan plan{.keep = plotted_values};
+  if (!(range.low < range.high)) return plan;
+  plan.histogram_low = range.low;
+  plan.histogram_high = std::nextafter(range.high, std::numeric_limits<double>::infinity());
+  return plan;
+}
+
+Range expected_range(const Channel& channel, const stats::Moments& pilot, double averaged) {
+  const double reach = histogram_deviations * std::sqrt(pilot.variance() / averaged);
+  return {std::max({channel.low, pilot.minimum, pilot.mean - reach}),
+          std::min({channel.high, pilot.maximum, pilot.mean + reach})};
+}
+
+/// Of bounded data: read through once.
+std::vector<Range> data_ranges(const Setup& setup, std::uint64_t rows) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<Range> ranges(setup.channels().size(), {infinity, -infinity});
+  for (std::uint64_t row = 0; row < rows; ++row) {
+    const std::vector<double> values = draw_observation(setup, {}, 1, row);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) continue;
+      ranges[i] = {std::min(ranges[i].low, values[i]), std::max(ranges[i].high, values[i])};
+    }
+  }
+  return ranges;
+}
+
+std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
+  if (const auto* consistency = dynamic_cast<const ConsistencySetup*>(&setup)) {
+    return {{.cells = 1 + consistency->cells().size()}, {}};
+  }
+  std::vector<ChannelPlan> plan;
+  for (const Marginal& marginal : setup.marginals()) {
+    plan.push_back(with_histogram({marginal.low, marginal.high}));
+  }
+  plan.push_back({});
+  return plan;
+}
+
+std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimator& estimator,
+                                        const Pilots& pilots) {
+  std::vector<ChannelPlan> plan;
+  // An image is drawn as maps: no histogram of each pixel.
+  if (pool.is_ready_made() || pool.setup()->image()) return {};
+  const std::vector<Channel> channels = pool.setup()->channels();
+  if (const auto rows = pool.setup()->observations()) {
+    for (const Range& range : data_ranges(*pool.setup(), *rows)) {
+      plan.push_back(with_histogram(range));
+    }
+    return plan;
+  }
+  const Pilot* const pilot = pilots.find(estimator.name);  // a replay has none
+  const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (pilot == nullptr || pilot->moments(i).count < 2) {
+      plan.push_back({.keep = plotted_values});
+    } else {
+      plan.push_back(with_histogram(expected_range(channels[i], pilot->moments(i), averaged)));
+    }
+  }
+  return plan;
+}
+
+/// Counts draws in the cells of their density: those of the pool's own set-up, which its workers
+/// write the numbers of; the subject's may be another of an equal sampler. Where the density cannot
+/// be had the plan says so, or the look.
+void count_cells(const Subject& side, Pool& pool) {
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*pool.setup());
+  if (dynamic_cast<const ConsistencySetup*>(&draws) != nullptr) return;
+  try {
+    pool.plans()[side.channels[0]].cells = draws.density_cells().cells.size();
+  } catch (const NoDensity&) {
+  } catch (const std::domain_error&) {
+  }
+}
+
+void keep_for(const Method& method, const Subject& side, Pool& pool) {
+  if (method.keeps == Keeps::costs) {
+    for (const std::size_t channel : side.channels) pool.plans()[channel].with_cost = true;
+  }
+  if (method.keeps == Keeps::group_variances) pool.keep_group_variances(side.channels);
+  if (method.keeps == Keeps::blocks) pool.keep_blocks();
+  if (method.keeps == Keeps::cells) count_cells(side, pool);
+}
+
+}  // namespace
+
+std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t seed,
+                                          const Pilots& pilots) {
+  const StreamKey key = key_of(wanted.estimator, seed, wanted.copy, wanted.purpose);
+  const Identity identity{wanted.estimator.entry->information.name,
+                          wanted.estimator.parameters,
+                          wanted.estimator.folder,
+                          wanted.purpose,
+                          key.bits,
+                          wanted.primaries};
+  std::shared_ptr<Pool>& pool = pools_[identity];
+  if (pool) return pool;
+  pool = std::make_shared<Pool>(wanted.setup, key, wanted.primaries);
+  const Pilot* const pilot = pilots.find(wanted.estimator.name);
+  const auto rows = wanted.setup->observations();
+  if (rows && pilot != nullptr && pilot->kept && pilot->kept->size() == *rows) {
+    pool->take_known(pilot->kept);
+  }
+  // It is not asked again, which may take another time-out.
+  if (const Fault* fault = pilots.fault(wanted.estimator.name, wanted.purpose)) pool->fail(*fault);
+  const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());
+  pool->plan(draws != nullptr ? sampler_plan(*draws)
+                              : estimator_plan(*pool, wanted.estimator, pilots));
+  all_.push_back(pool);
+  return pool;
+}
+
+std::vector<std::shared_ptr<Pool>> Pools::for_question(const Question& question, const Plan& plan,
+                                                       std::uint64_t seed, const Pilots& pilots) {
+  std::vector<std::shared_ptr<Pool>> pools;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    pools.push_back(for_subject(question, subject, plan, seed, pilots));
+  }
+  return pools;
+}
+
+std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t subject,
+                                         const Plan& plan, std::uint64_t seed,
+                                         const Pilots& pilots) {
+  const Subject& side = question.subjects[subject];
+  const std::shared_ptr<Pool> pool = find_or_make({.estimator = *side.estimator,
+                                                   .setup = side.setup,
+                                                   .purpose = side.purpose,
+                                                   .copy = side.copy,
+                                                   .primaries = plan.primaries[subject]},
+                                                  seed, pilots);
+  if (plan.method.keeps == Keeps::values || plan.method.keeps == Keeps::points) {
+    for (const std::size_t channel : side.channels) {
+      std::uint64_t& keep = pool->plans()[channel].keep;
+      keep = std::max(keep, plan.most_secondaries());
+    }
+  }
+  if (plan.method.keeps == Keeps::images) pool->keep_observations(plan.most_secondaries());
+  // A mutant's first, which was_activated holds against its original's.
+  if (side.estimator->original && side.purpose.empty()) pool->keep_observations(1);
+  keep_for(plan.method, side, *pool);
+  for (const std::uint64_t size : plan.looks.sizes) pool->mark(side.secondaries(size));
+  return pool;
+}
+
+std::shared_ptr<Pool> Pools::for_picture(const Shown& picture, std::uint64_t seed,
+                                         const Pilots& pilots) {
+  return find_or_make({.estimator = picture.estimator,
+                       .setup = picture.estimator.setup,
+                       .purpose = "",
+                       .copy = picture.copy,
+                       .primaries = picture.primaries},
+                      seed, pilots);
+}
+
+}  // namespace assay::harness

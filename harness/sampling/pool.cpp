@@ -1,0 +1,378 @@
+#include "harness/sampling/pool.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+#include "estimators/flush_denormals.h"
+#include "estimators/ready_made.h"
+#include "harness/base/parallel.h"
+#include "harness/sampling/group_variance.h"
+#include "harness/sampling/kept_sums.h"
+#include "harness/sampling/recorded_run.h"
+
+namespace assay::harness {
+namespace {
+
+// A block is some milliseconds of work at a microsecond a primary: long against the cost of handing
+// it out, short against a run.
+constexpr std::uint64_t primaries_per_block = 16384;
+constexpr std::uint64_t least_block = 8;
+constexpr std::uint64_t most_block = 4096;
+constexpr std::uint64_t most_observations = std::numeric_limits<std::uint64_t>::max();
+
+std::vector<stats::Moments> moments_of(std::span<const ChannelSummary> channels) {
+  std::vector<stats::Moments> moments;
+  for (const ChannelSummary& channel : channels) moments.push_back(channel.moments);
+  return moments;
+}
+
+bool stays(const Setup& setup) {
+  return as_recorded_run(setup) == nullptr && setup.image() && setup.observations();
+}
+
+const Summary* ready_made(const Setup& setup) {
+  const RecordedRun* run = as_recorded_run(setup);
+  return run == nullptr ? nullptr : &run->summary();
+}
+
+std::size_t channels_of(const Setup& setup) {
+  const std::optional<std::size_t> unknown = recorded::unknown_channels(setup);
+  return unknown ? *unknown : setup.channels().size();
+}
+
+ObservationCost counted(const Cost& cost) {
+  return {static_cast<double>(cost.rays()), static_cast<double>(cost.samples)};
+}
+
+/// Takes the observations of a block into its sums, in order. Some wait, and then some channels of
+/// all of them are taken before the next: drawing need not wait for a value to be summed, nor do
+/// the sums of a picture leave the cache at every observation. Each channel's sums are as if its
+/// values had been taken one by one.
+class Intake {
+ public:
+  explicit Intake(std::vector<ChannelSummary>& channels)
+      : channels_(channels),
+        most_rows_(
+            std::clamp<std::size_t>(at_a_time / std::max<std::size_t>(channels.size(), 1), 1, 32)),
+        rows_(most_rows_ * channels.size()) {}
+
+  /// Where an observation may be drawn.
+  std::span<double> row() {
+    return std::span(rows_).subspan(filled_ * channels_.size(), channels_.size());
+  }
+
+  /// An observation drawn in row(), or one that stays where it is until the end of the block.
+  void take(std::span<const double> values, std::uint64_t index, const ObservationCost& cost) {
+    waiting_.push_back({values, index, cost});
+    if (values.data() != row().data()) return;
+    if (++filled_ == most_rows_) take_waiting();
+  }
+
+  void take_waiting() {
+    for (std::size_t first = 0; first < channels_.size(); first += at_a_time) {
+      const std::size_t last = std::min(first + at_a_time, channels_.size());
+      for (const Waiting& each : waiting_) {
+        for (std::size_t c = first; c < last; ++c) {
+          add_observation(channels_[c], each.values[c], each.index, each.cost);
+        }
+      }
+    }
+    waiting_.clear();
+    filled_ = 0;
+  }
+
+ private:
+  struct Waiting {
+    std::span<const double> values;
+    std::uint64_t index;
+    ObservationCost cost;
+  };
+
+  static constexpr std::size_t at_a_time = 512;
+
+  std::vector<ChannelSummary>& channels_;
+  std::size_t most_rows_;
+  std::size_t filled_ = 0;
+  std::vector<double> rows_;
+  std::vector<Waiting> waiting_;
+};
+
+/// Observations below it have channels whose values are kept.
+std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
+  std::uint64_t most = 0;
+  for (const ChannelPlan& channel : plan) most = std::max(most, channel.keep);
+  return most;
+}
+
+}  // namespace
+
+std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries) {
+  const std::optional<ImageShape> image = setup.image();
+  return image ? primaries * image->elements() : primaries;
+}
+
+std::uint64_t block_size_of(std::uint64_t primaries) {
+  return std::bit_floor(std::clamp(primaries_per_block / primaries, least_block, most_block));
+}
+
+Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries)
+    : setup_(std::move(setup)),
+      ready_made_(ready_made(*setup_)),
+      key_(key),
+      primaries_(primaries),
+      block_size_(block_size_of(primaries_of_observation(*setup_, primaries))),
+      channels_(channels_of(*setup_)),
+      sums_later_(stays(*setup_)),
+      kept_observations_(sums_later_ ? *setup_->observations() : 0) {}
+
+std::vector<ChannelPlan>& Pool::plans() {
+  plan_.resize(channels_);
+  return plan_;
+}
+
+Summary Pool::no_sums() const { return sums_later_ ? Summary() : Summary(channels_, plan_); }
+
+void Pool::mark(std::uint64_t count) {
+  const bool known = !prefixes_.try_emplace(count, std::make_shared<const Summary>()).second;
+  if (!known && count <= drawn()) throw std::logic_error("a prefix was marked after it was drawn");
+}
+
+void Pool::request(std::uint64_t count) {
+  mark(count);
+  if (!is_ready_made()) requested_ = std::max(requested_, count);
+}
+
+Sample Pool::sample(std::uint64_t count) const {
+  // Moments of a run live as long as their set-up.
+  if (is_ready_made()) return Drawn(*this, count, {setup_, ready_made_});
+  if (count <= drawn()) return Drawn(*this, count, prefixes_.at(count));
+  if (fault_) return *fault_;
+  throw std::logic_error("observations were asked for before they were drawn");
+}
+
+double Pool::seconds() const {
+  if (is_ready_made()) return ready_made_->seconds;
+  const auto beyond = prefixes_.upper_bound(drawn());
+  return beyond == prefixes_.begin() ? 0 : std::prev(beyond)->second->seconds;
+}
+
+std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
+  if (is_ready_made()) return {};
+  if (values_.empty()) return {};
+  const std::vector<double>& kept = values_.at(channel);
+  return {kept.data(), std::min<std::size_t>(kept.size(), count)};
+}
+
+Observations Pool::observations(std::uint64_t count) const { return all_kept().range(0, count); }
+
+std::uint64_t Pool::block_end(std::uint64_t first) const {
+  return std::min(
+      {first + block_size_, most_marked(), setup_->observations().value_or(most_observations)});
+}
+
+/// A picture goes from its file to where it is kept.
+void Pool::keep_picture(Estimator& estimator, std::uint64_t index, Block& block) const {
+  const std::size_t elements = channels_ - 1;
+  KeptObservations& kept = block.observations;
+  if (kept.texels.empty()) {
+    kept.texels.push_back(std::make_unique_for_overwrite<float[]>(block.size * elements));
+  }
+  const std::span<float> picture(kept.texels[0].get() + kept.pictures.size() * elements, elements);
+  recorded::read_picture(estimator, index, picture, block.whole.cost);
+  kept.pictures.emplace_back(picture);
+}
+
+/// One observation, kept where that was asked for: in `out`, or where it stays. A picture that is
+/// summed later is not widened.
+std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
+                                      std::span<double> out, Block& block) const {
+  if (known_ && index < known_->size()) {
+    block.whole.cost += known_->costs[index];
+    return sums_later_ ? std::span<const double>() : known_->whole(index, out);
+  }
+  const bool kept = !known_ && index < kept_observations_;
+  // Counted where the sum stands: to load as a whole what an estimator has just stored in parts
+  // would hold up every observation.
+  Cost before;
+  if (kept) before = block.whole.cost;
+  std::span<const double> drawn = out;
+  if (kept && recorded::unknown_channels(*setup_)) {
+    keep_picture(estimator, index, block);
+  } else {
+    Stream random(key_, index);
+    estimator.secondary(random, primaries_, out, block.whole.cost);
+    if (kept) drawn = block.observations.values.emplace_back(out.begin(), out.end());
+  }
+  if (kept) block.observations.costs.push_back(block.whole.cost - before);
+  return drawn;
+}
+
+Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
+                       std::uint64_t last) const {
+  const std::uint64_t values_kept = sums_later_ ? 0 : most_kept(plan_);
+  Block block{.whole = no_sums(),
+              .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
+              .observations = {},
+              .partial = {},
+              .fault = {},
+              .size = last - first};
+  std::vector<double> unsummed(sums_later_ && !recorded::unknown_channels(*setup_) ? channels_ : 0);
+  Intake intake(block.whole.channels);
+  auto mark = prefixes_.upper_bound(first);
+  Estimator* source = nullptr;
+  const auto seconds = [&source] {
+    return thread_seconds() + (source == nullptr ? 0 : source->seconds_elsewhere());
+  };
+  double start = seconds();
+  std::uint64_t index = first;
+  GroupVariance groups(sums_later_ ? std::vector<std::size_t>() : grouped_channels_);
+  const bool counts_costs = !sums_later_ && std::ranges::any_of(plan_, [](const ChannelPlan& each) {
+    return each.with_cost;
+  });
+  ObservationCost cost{};
+  const FlushDenormals flush;
+  try {
+    source = &estimator();
+    start = seconds();
+    source->announce({.key = key_, .first = first, .last = last});
+    for (; index < last; ++index) {
+      Cost before;
+      if (counts_costs) before = block.whole.cost;
+      const std::span<double> out = sums_later_ ? std::span(unsummed) : intake.row();
+      const std::span<const double> drawn = observe(*source, index, out, block);
+      if (counts_costs) cost = counted(block.whole.cost - before);
+      if (!sums_later_) intake.take(drawn, index, cost);
+      for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
+        if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);
+      }
+      if (const auto variance = groups.add(drawn)) block.whole.group_variances.add(*variance);
+      ++block.whole.count;
+      if (mark != prefixes_.end() && index + 1 == mark->first) {
+        intake.take_waiting();
+        block.partial.emplace_back(mark->first, block.whole);
+        block.partial.back().second.seconds = seconds() - start;
+        ++mark;
+      }
+    }
+  } catch (...) {
+    block.fault = {.observation = index, .words = words_of(std::current_exception())};
+  }
+  intake.take_waiting();
+  block.whole.seconds = seconds() - start;
+  return block;
+}
+
+/// The first observations, summed once for all pools that share them.
+std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Summary& drawn) {
+  const auto shared = all_kept().sums.find(count);
+  if (shared != all_kept().sums.end()) return shared->second;
+  auto summed = std::make_shared<Summary>(drawn);
+  summed->channels = sums_of_kept(observations(count));
+  if (!known_) kept_->sums[count] = summed;
+  return summed;
+}
+
+/// Of kept observations, as draw() takes it of those that go: what is kept beside moments.
+void Pool::take_details(Summary& summary) const {
+  std::vector<std::size_t> detailed;
+  for (std::size_t c = 0; c < plan_.size(); ++c) {
+    if (plan_[c].has_details()) detailed.push_back(c);
+  }
+  Summary empty(channels_, plan_);
+  for (const std::size_t c : detailed) {
+    summary.channels[c].rare = std::move(empty.channels[c].rare);
+  }
+  GroupVariance groups(grouped_channels_);
+  std::vector<double> out(channels_);
+  for (std::uint64_t index = 0; index < summary.count; ++index) {
+    const std::span<const double> values = all_kept().whole(index, out);
+    const ObservationCost cost = counted(all_kept().costs[index]);
+    for (const std::size_t c : detailed) {
+      if (!std::isfinite(values[c])) continue;
+      add_details(summary.channels[c].rare.made(), values[c], cost);
+    }
+    if (const auto variance = groups.add(values)) summary.group_variances.add(*variance);
+  }
+}
+
+/// Of kept observations the values of channels that are asked for by themselves.
+void Pool::keep_values() {
+  const std::uint64_t most = std::min(most_kept(plan_), drawn());
+  if (values_taken_ >= most) return;  // room for a whole picture is not made for nothing
+  std::vector<double> out(channels_);
+  values_.resize(channels_);
+  for (; values_taken_ < most; ++values_taken_) {
+    const std::span<const double> values = all_kept().whole(values_taken_, out);
+    for (std::size_t c = 0; c < plan_.size(); ++c) {
+      if (values_taken_ < plan_[c].keep) values_[c].push_back(values[c]);
+    }
+  }
+}
+
+void Pool::end_drawing() {
+  if (!sums_later_) return;
+  keep_values();
+  const bool plain =
+      grouped_channels_.empty() && std::ranges::none_of(plan_, &ChannelPlan::has_details);
+  for (auto& [count, prefix] : prefixes_) {
+    if (count > drawn() || count == 0 || !prefix->channels.empty()) continue;
+    std::shared_ptr<const Summary> sums = sums_of_first(count, *prefix);
+    if (!plain) {
+      auto with_details = std::make_shared<Summary>(*sums);
+      take_details(*with_details);
+      sums = std::move(with_details);
+    }
+    prefix = std::move(sums);
+  }
+}
+
+/// The block that begins at observation `first`.
+void Pool::keep_block(const Summary& block, std::uint64_t first) {
+  const auto channels = [&] {
+    return sums_later_ ? moments_of(sums_of_kept(all_kept().range(first, first + block.count)))
+                       : moments_of(block.channels);
+  };
+  blocks_.push_back({.count = block.count,
+                     .channels = block.count == 0 ? std::vector<stats::Moments>() : channels(),
+                     .seconds = block.seconds});
+}
+
+void Pool::fold(Block&& block) {
+  if (!started_) {
+    running_ = no_sums();
+    if (most_kept(plan_) > 0 && !sums_later_) values_.resize(channels_);
+    started_ = true;
+  }
+  if (fault_) return;
+  for (auto& [count, partial] : block.partial) {
+    auto prefix = std::make_shared<Summary>(running_);
+    prefix->append(partial);
+    prefixes_.at(count) = std::move(prefix);
+  }
+  const std::uint64_t before = running_.count;
+  running_.append(block.whole);
+  for (std::size_t c = 0; c < values_.size(); ++c) {
+    values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
+  }
+  kept_->append(std::move(block.observations));
+  if (keeps_blocks_) keep_block(block.whole, before);
+  fault_ = std::move(block.fault);
+}
+
+std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,
+                                     std::uint64_t index) {
+  const FlushDenormals flush;
+  std::vector<double> out(setup.channels().size());
+  Stream random(key, index);
+  Cost cost;
+  setup.make()->secondary(random, primaries, out, cost);
+  return out;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,107 @@
+#include "harness/sampling/prepare.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "estimators/catalogue.h"
+#include "harness/sampling/recorded_run.h"
+
+namespace assay::harness {
+namespace {
+
+std::shared_ptr<const Setup> set_up(const Entry& entry, Parameters& parameters) {
+  const bool of_run = entry.information.name == "recorded" && parameters.given("run");
+  std::shared_ptr<const Setup> setup =
+      of_run ? std::shared_ptr<const Setup>(read_recorded_run(parameters))
+             : entry.prepare(parameters);
+  parameters.require_all_read();
+  return setup;
+}
+
+/// The part of a mutant's parameters that its original knows.
+Value only(const Value& given, const std::vector<std::string>& names) {
+  std::vector<Value::Member> kept;
+  for (const Value::Member& member : given.members()) {
+    if (std::find(names.begin(), names.end(), member.first) != names.end()) kept.push_back(member);
+  }
+  return Value::map(std::move(kept), given.where());
+}
+
+/// Of moments of an earlier run the primaries are the run's.
+void use_recorded_run(const RecordedRun& run, PreparedEstimator& prepared) {
+  if (prepared.primaries.value_or(run.primaries()) != run.primaries()) {
+    throw InputError(prepared.where, fmt::format("the moments of `{}` are of {} primaries each: "
+                                                 "leave `primaries` out",
+                                                 prepared.name, run.primaries()));
+  }
+  prepared.primaries = run.primaries();
+  prepared.entry = &run.entry();
+}
+
+}  // namespace
+
+Nature PreparedEstimator::nature() const {
+  return setup->nature().value_or(
+      Nature{.averages = entry->information.averages, .bias = entry->information.bias});
+}
+
+std::vector<std::string> parameter_names(const Information& information) {
+  std::vector<std::string> names;
+  for (const ParameterInformation& parameter : information.parameters) {
+    if (parameter.shapes_draws) names.push_back(parameter.name);
+  }
+  return names;
+}
+
+PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder) {
+  const Entry& plugin = find_plugin(entry.plugin, entry.where);
+  Parameters parameters(entry.plugin, plugin.information.parameters, entry.parameters, folder);
+  PreparedEstimator prepared{
+      .name = entry.name,
+      .listed = entry.name,
+      .entry = &plugin,
+      .setup = set_up(plugin, parameters),
+      .parameters = parameters.canonical(),
+      .folder = std::filesystem::weakly_canonical(folder).string(),
+      .key_plugin = entry.plugin,
+      .key_parameters = parameters.canonical(parameter_names(plugin.information)),
+      .primaries = entry.primaries,
+      .original = nullptr,
+      .where = entry.where,
+      .given = entry.parameters};
+  if (const RecordedRun* run = as_recorded_run(*prepared.setup)) {
+    use_recorded_run(*run, prepared);
+  } else if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
+    throw InputError(
+        entry.where,
+        fmt::format("`{}` has its observations ready made: leave `primaries` out", entry.plugin));
+  }
+  if (!plugin.information.original.empty()) {
+    const Entry& original = find_plugin(plugin.information.original, entry.where);
+    const std::vector<std::string> names = parameter_names(original.information);
+    Parameters theirs(original.information.name, original.information.parameters,
+                      only(entry.parameters, names), folder);
+    prepared.original = set_up(original, theirs);
+    prepared.key_plugin = original.information.name;
+    prepared.key_parameters = theirs.canonical(names);
+  }
+  return prepared;
+}
+
+std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite) {
+  std::map<std::string, PreparedEstimator> prepared;
+  for (const EstimatorEntry& entry : suite.estimators) {
+    prepared.emplace(entry.name, prepare(entry, suite.folder));
+  }
+  return prepared;
+}
+
+StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::uint32_t copy,
+                 const std::string& purpose) {
+  const std::string plugin =
+      purpose.empty() ? estimator.key_plugin : estimator.key_plugin + "#" + purpose;
+  return stream_key(seed, plugin, estimator.key_parameters, copy);
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,271 @@
+#include "harness/sampling/recorded_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+
+#include "estimators/catalogue.h"
+#include "harness/base/record_file.h"
+#include "harness/sampling/prepare.h"
+#include "harness/suite/suite.h"
+#include "harness/suite/yaml.h"
+#include "reports/formats/read_json.h"
+
+namespace assay::harness {
+namespace {
+
+/// Samples of the estimator in one test.
+struct Kept {
+  std::vector<const reports::Sample*> channels = {};
+  std::uint32_t copy = 0;
+
+  auto worth() const {
+    return std::tuple(channels.size(), !channels[0]->with_cost.empty(), channels[0]->secondaries);
+  }
+};
+
+bool is_of_moments(QuantityName name) {
+  switch (name) {
+    case QuantityName::mean:
+    case QuantityName::bias:
+    case QuantityName::variance:
+    case QuantityName::total_variance:
+    case QuantityName::worst_variance:
+    case QuantityName::efficiency:
+    case QuantityName::cost:
+      return true;
+    case QuantityName::quantile:
+    case QuantityName::distribution:
+    case QuantityName::integral:
+    case QuantityName::inconsistency:
+      break;
+  }
+  return false;
+}
+
+/// Those of a list of canonical parameters.
+std::string only(const std::string& parameters, const std::vector<std::string>& names) {
+  std::string kept;
+  for (const std::string& piece : split_outside_brackets(parameters)) {
+    const std::string name = piece.substr(0, piece.find('='));
+    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
+    kept += (kept.empty() ? "" : ",") + piece;
+  }
+  return kept;
+}
+
+/// Whose stream a sample is from, and the canonical parameters that shape it: a mutant's are its
+/// original's.
+std::pair<std::string, std::string> stream_of(const reports::Sample& sample) {
+  for (const Entry& entry : catalogue()) {
+    if (entry.information.name != sample.plugin) continue;
+    const std::string& original = entry.information.original;
+    const Entry& source = original.empty() ? entry : find_plugin(original, {});
+    return {source.information.name, only(sample.parameters, parameter_names(source.information))};
+  }
+  return {sample.plugin, sample.parameters};
+}
+
+/// What a test kept of the estimator; nothing where it is about something else, or where it cannot
+/// be told which of two sources of one name a sample is of.
+std::optional<Kept> kept_in(const reports::Test& test, const std::string& estimator) {
+  if (!test.over.empty() || test.image) return std::nullopt;
+  const Claim claim = parse_claim(test.claim, {.file = test.file});
+  const std::vector<Source> sources = sources_of(claim);
+  const auto named = [&](const Source& source) { return source.estimator == estimator; };
+  if (!is_of_moments(claim.left.name) || claim.left.slope) return std::nullopt;
+  if (std::count_if(sources.begin(), sources.end(), named) != 1) return std::nullopt;
+  Kept kept;
+  std::set<std::string> channels;
+  for (const reports::Sample& sample : test.samples) {
+    if (sample.estimator != estimator) continue;
+    if (sample.nonfinite > 0 || !sample.mean || !sample.variance) return std::nullopt;
+    if (channels.insert(sample.channel).second) kept.channels.push_back(&sample);
+  }
+  if (kept.channels.empty()) return std::nullopt;
+  // Of two sources of one stream the second has the copy.
+  const bool second = !named(sources.front());
+  for (const reports::Sample& other : test.samples) {
+    const bool same_stream = other.estimator == sources.front().estimator &&
+                             stream_of(other) == stream_of(*kept.channels[0]);
+    if (second && same_stream) kept.copy = 1;
+  }
+  return kept;
+}
+
+stats::Moments moments_of(const reports::Sample& sample) {
+  const double n = static_cast<double>(sample.secondaries);
+  stats::Moments moments{.count = sample.secondaries,
+                         .mean = *sample.mean,
+                         .m2 = *sample.variance * (n - 1),
+                         .minimum = sample.minimum.value_or(*sample.mean),
+                         .maximum = sample.maximum.value_or(*sample.mean),
+                         .nonzero = sample.nonzero};
+  const double spread = moments.m2 / n;
+  moments.m3 = sample.skewness.value_or(0) * n * std::pow(spread, 1.5);
+  moments.m4 = sample.kurtosis.value_or(0) * n * spread * spread;
+  return moments;
+}
+
+Cost cost_of(const reports::Cost& recorded) {
+  Cost cost;
+  cost.camera_rays = recorded.camera_rays;
+  cost.closest_hit_rays = recorded.closest_hit_rays;
+  cost.shadow_rays = recorded.shadow_rays;
+  cost.samples = recorded.samples;
+  return cost;
+}
+
+constexpr const char* kinds[] = {"rays", "samples"};
+
+/// Values with their costs of one kind; nothing where they are not known.
+std::optional<stats::JointMoments> joint_of(const reports::Sample& sample, CountedCost kind) {
+  stats::JointMoments joint{.x = moments_of(sample), .cost = {}};
+  joint.cost.count = sample.secondaries;
+  for (const reports::CostMoments& kept : sample.with_cost) {
+    if (kept.kind != kinds[kind]) continue;
+    joint.cost.mean = kept.mean;
+    joint.cost.m2 = kept.m2;
+    joint.m11 = kept.m11;
+    joint.m21 = kept.m21;
+    return joint;
+  }
+  const Cost cost = cost_of(sample.cost);
+  const std::uint64_t total = kind == rays_cost ? cost.rays() : cost.samples;
+  joint.cost.mean = static_cast<double>(total) / static_cast<double>(sample.secondaries);
+  if (total % sample.secondaries != 0) return std::nullopt;
+  return joint;
+}
+
+RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite) {
+  const reports::Sample& first = *kept.channels[0];
+  RecordedRun::Contents contents{.primaries = first.primaries};
+  contents.knows_cost.fill(true);
+  contents.summary.count = first.secondaries;
+  contents.summary.cost = cost_of(first.cost);
+  contents.summary.seconds = first.cost.seconds;
+  for (const reports::Sample* sample : kept.channels) {
+    contents.channels.push_back(sample->channel);
+    ChannelSummary& channel = contents.summary.channels.emplace_back();
+    channel.moments = moments_of(*sample);
+    for (const CountedCost kind : {rays_cost, samples_cost}) {
+      const auto joint = joint_of(*sample, kind);
+      contents.knows_cost[kind] = contents.knows_cost[kind] && joint;
+      channel.rare.made().with_cost.push_back(joint.value_or(stats::JointMoments()));
+    }
+  }
+  for (const reports::EstimatorSummary& row : suite.estimators) {
+    if (row.name == first.estimator) contents.averages = row.variance_of == "primary";
+  }
+  if (first.plugin != "recorded") {
+    const auto [plugin, parameters] = stream_of(first);
+    contents.stream = stream_key(suite.seed, plugin, parameters, kept.copy);
+  }
+  return contents;
+}
+
+/// The estimators of a record that tests drew.
+std::vector<std::string> names_in(const reports::Record& record) {
+  std::set<std::string> names;
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      for (const reports::Sample& sample : test.samples) names.insert(sample.estimator);
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+std::string wanted_estimator(Parameters& parameters, const std::vector<std::string>& names) {
+  const std::string name = parameters.string("estimator");
+  if (names.empty()) parameters.refuse("run", "is a record without observations");
+  if (!parameters.given("estimator")) {
+    if (names.size() == 1) return names[0];
+    parameters.refuse("run", "has several estimators; choose one by `estimator`: " + quoted(names));
+  }
+  if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  parameters.refuse("estimator", "`" + name + "` is none of the run's" +
+                                     did_you_mean(name, names, "there is: " + quoted(names)));
+}
+
+reports::Record read(Parameters& parameters) {
+  const std::string file = parameters.file("run");
+  try {
+    return read_record(file);
+  } catch (const reports::ReadError& error) {
+    parameters.refuse("run", fmt::format("is no record of a run: {}", error.what()));
+  } catch (const InputError& error) {
+    parameters.refuse("run", fmt::format("is `{}`: {}", file, error.message()));
+  }
+}
+
+}  // namespace
+
+RecordedRun::RecordedRun(Contents contents)
+    : contents_(std::move(contents)), entry_(find_plugin("recorded", {})) {
+  entry_.information.averages = contents_.averages;
+}
+
+std::vector<Channel> RecordedRun::channels() const {
+  std::vector<Channel> channels;
+  for (const std::string& name : contents_.channels) channels.push_back({.name = name});
+  return channels;
+}
+
+std::unique_ptr<Estimator> RecordedRun::make() const {
+  throw std::logic_error("a recorded run has moments, not observations");
+}
+
+bool RecordedRun::knows_cost(CostKind kind) const {
+  if (kind == CostKind::seconds) return false;
+  return contents_.knows_cost[kind == CostKind::rays ? rays_cost : samples_cost];
+}
+
+const RecordedRun* as_recorded_run(const Setup& setup) {
+  return dynamic_cast<const RecordedRun*>(&setup);
+}
+
+std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
+  const Entry& recorded = find_plugin("recorded", {});
+  for (const ParameterInformation& declared : recorded.information.parameters) {
+    const std::string& other = declared.name;
+    if (other == "run" || other == "estimator") continue;
+    parameters.string(other);
+    if (parameters.given(other)) {
+      parameters.refuse(other, "is of rows of a file: give it, or `run`, not both");
+    }
+  }
+  const reports::Record record = read(parameters);
+  const std::string name = wanted_estimator(parameters, names_in(record));
+  std::optional<Kept> best;
+  const reports::Suite* of = nullptr;
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      std::optional<Kept> kept = kept_in(test, name);
+      if (!kept) continue;
+      if (of != nullptr && of != &suite) {
+        parameters.refuse("estimator", fmt::format("`{}` stands in two suites of the run, `{}` and "
+                                                   "`{}`; record them apart",
+                                                   name, of->name, suite.name));
+      }
+      of = &suite;
+      if (!best || best->worth() < kept->worth()) best = std::move(kept);
+    }
+  }
+  if (!best) {
+    parameters.refuse(
+        "estimator", fmt::format("`{}` has no moments in the run: they are kept by tests of a "
+                                 "claim on its mean, variance, cost or efficiency, unless it is an "
+                                 "image or not all its values were finite",
+                                 name));
+  }
+  RecordedRun::Contents contents = contents_of(*best, *of);
+  contents.file = parameters.file("run");
+  return std::make_shared<const RecordedRun>(std::move(contents));
+}
+
+}  // namespace assay::harness

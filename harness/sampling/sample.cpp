@@ -1,0 +1,42 @@
+#include "harness/sampling/sample.h"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "estimators/value.h"
+#include "harness/sampling/pool.h"
+
+namespace assay::harness {
+
+std::string to_string(const Fault& fault) {
+  return fault.observation ? fmt::format("observation {}: {}", *fault.observation, fault.words)
+                           : fault.words;
+}
+
+std::string words_of(const std::exception_ptr& thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const InputError& error) {
+    const std::string place = assay::to_string(error.where());
+    return place.empty() ? error.message() : place + ": " + error.message();
+  } catch (const std::bad_alloc&) {
+    return "there is not enough memory (std::bad_alloc)";
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "it threw something that is no std::exception";
+  }
+}
+
+std::span<const double> Drawn::values(std::size_t channel) const {
+  return pool_->values(channel, count_);
+}
+
+Observations Drawn::observations(std::uint64_t most) const {
+  return pool_->observations(std::min(count_, most));
+}
+
+std::span<const BlockSums> Drawn::blocks() const { return pool_->blocks(); }
+
+}  // namespace assay::harness

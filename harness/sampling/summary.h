@@ -1,0 +1,149 @@
+#pragma once
+
+// What is kept of many observations: moments, a histogram, counts of cells. Mergeable and of fixed
+// size.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "estimators/cost.h"
+#include "harness/sampling/element_sums.h"
+#include "stats/basics/joint_moments.h"
+#include "stats/basics/moments.h"
+
+namespace assay::harness {
+
+/// Counts in equal bins of [low, high); what lies outside is counted at its side.
+struct Histogram {
+  double low = 0;
+  double high = 0;
+  std::vector<std::uint64_t> counts = {};
+  std::uint64_t below = 0;
+  std::uint64_t above = 0;
+
+  void add(double value) {
+    if (value < low) {
+      ++below;
+    } else if (value >= high) {
+      ++above;
+    } else {
+      const auto bins = static_cast<double>(counts.size());
+      const auto bin = static_cast<std::size_t>((value - low) / (high - low) * bins);
+      ++counts[bin < counts.size() ? bin : counts.size() - 1];
+    }
+  }
+  void merge(const Histogram& other);
+};
+
+/// What to keep of one channel.
+struct ChannelPlan {
+  double histogram_low = 0;  ///< equal bounds: no histogram
+  double histogram_high = 0;
+  std::uint64_t keep = 0;  ///< the values of the first `keep` observations are stored
+  std::size_t cells = 0;   ///< the channel's values are cell numbers 0 … cells - 1 to be counted
+  bool with_cost = false;  ///< keep the joint moments of value and cost
+
+  bool has_histogram() const { return histogram_low < histogram_high; }
+  /// Whether more is kept of the channel's sums than moments.
+  bool has_details() const { return has_histogram() || cells != 0 || with_cost; }
+};
+
+inline constexpr std::size_t histogram_bins = 60;
+
+/// What is kept of a channel beside its moments.
+struct ChannelDetails {
+  Histogram histogram = {};
+  std::vector<std::uint64_t> cells = {};
+  std::vector<stats::JointMoments> with_cost = {};  ///< by CountedCost, where they are kept
+};
+
+inline const ChannelDetails& no_details() {
+  static const ChannelDetails none;
+  return none;
+}
+
+/// The details of a channel that has any, copied with it: the millions of channels of an image have
+/// none and take no room for them.
+class RareDetails {
+ public:
+  RareDetails() = default;
+  RareDetails(const RareDetails& other)
+      : details_(other ? std::make_unique<ChannelDetails>(*other) : nullptr) {}
+  RareDetails(RareDetails&&) noexcept = default;
+  RareDetails& operator=(RareDetails other) noexcept {
+    details_ = std::move(other.details_);
+    return *this;
+  }
+  ~RareDetails() = default;
+
+  explicit operator bool() const { return details_ != nullptr; }
+  const ChannelDetails& operator*() const { return *details_; }
+  /// Made where there are none yet.
+  ChannelDetails& made() {
+    if (!details_) details_ = std::make_unique<ChannelDetails>();
+    return *details_;
+  }
+
+ private:
+  std::unique_ptr<ChannelDetails> details_;
+};
+
+/// One channel of a run of consecutive observations.
+struct ChannelSummary {
+  stats::Moments moments = {};  ///< of the finite values
+  std::uint64_t nonfinite = 0;
+  std::uint64_t first_nonfinite = std::numeric_limits<std::uint64_t>::max();
+  RareDetails rare = {};
+
+  /// Empty ones where there are none.
+  const ChannelDetails& details() const { return rare ? *rare : no_details(); }
+};
+
+/// What an observation cost, as far as it is counted: the index of a channel's joint moments.
+enum CountedCost : std::size_t { rays_cost, samples_cost, counted_costs };
+using ObservationCost = std::array<double, counted_costs>;
+
+/// Observations [0, count) of a pool, or those of one block.
+struct Summary {
+  std::uint64_t count = 0;
+  std::vector<ChannelSummary> channels = {};
+  /// In place of `channels`: of pictures that were read once, rows after rows.
+  std::shared_ptr<const ElementSums> elements = {};
+  stats::Moments group_variances = {};  ///< of whole groups, where they are kept (GroupVariance)
+  Cost cost = {};
+  double seconds = 0;  ///< CPU seconds of drawing
+
+  /// Of no observations yet. Without a plan nothing but moments is kept.
+  explicit Summary(std::size_t count_of_channels = 0, std::span<const ChannelPlan> plan = {});
+  /// Appends the observations that follow: in block order, so that the result is a function of the
+  /// blocks and not of who drew them.
+  void append(const Summary& next);
+
+  stats::Moments moments(std::size_t channel) const {
+    return elements ? elements->moments(channel) : channels[channel].moments;
+  }
+  const ChannelDetails& details(std::size_t channel) const {
+    return elements ? no_details() : channels[channel].details();
+  }
+};
+
+/// Takes a finite value and what its observation cost.
+void add_details(ChannelDetails& details, double value, const ObservationCost& cost);
+
+/// Takes one channel's value of observation `index` into the summary.
+inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index,
+                            const ObservationCost& cost = {}) {
+  if (!(value - value == 0)) {  // not finite
+    if (summary.nonfinite++ == 0) summary.first_nonfinite = index;
+  } else {
+    summary.moments.add(value);
+    if (summary.rare) add_details(summary.rare.made(), value, cost);
+  }
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "harness/suite/suite.h"
+
+namespace assay::harness {
+
+/// The only test of `suite_of_claim`: its estimators are not looked up.
+TestEntry test_of_claim(const CheckArguments& arguments);
+
+}  // namespace assay::harness

@@ -1,0 +1,114 @@
+#include "harness/suite/selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "estimators/text_pattern.h"
+#include "harness/base/shell.h"
+#include "harness/suite/suite_keys.h"
+
+namespace assay::harness {
+namespace {
+
+bool excludes(const std::string& filter) { return filter.starts_with("-"); }
+
+bool has_tag(const TestEntry& test, const std::vector<std::string>& tags) {
+  return std::ranges::any_of(
+      tags, [&](const std::string& tag) { return std::ranges::count(test.tags, tag) > 0; });
+}
+
+bool passes(const std::vector<std::string>& filters, const std::string& id) {
+  bool any_includes = false;
+  bool included = false;
+  for (const std::string& filter : filters) {
+    if (excludes(filter)) {
+      if (matches(std::string_view(filter).substr(1), id)) return false;
+    } else {
+      any_includes = true;
+      included = included || matches(filter, id);
+    }
+  }
+  return included || !any_includes;
+}
+
+std::vector<const TestEntry*> selected(const std::vector<Suite>& suites,
+                                       const Selection& selection) {
+  std::vector<const TestEntry*> found;
+  for (const Suite& suite : suites) {
+    for (const TestEntry& test : suite.tests) {
+      if (selects(selection, test)) found.push_back(&test);
+    }
+  }
+  return found;
+}
+
+/// The first few, each on a line of its own.
+std::string few_of(const std::vector<std::string>& ids) {
+  constexpr std::size_t most = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, ids.size()); ++i) text += "    " + ids[i] + "\n";
+  if (ids.size() > most) {
+    text += fmt::format("    … {} more; `assay list tests` has all\n", ids.size() - most);
+  }
+  return text;
+}
+
+std::string unknown_tag(const std::vector<Suite>& suites, const std::string& tag) {
+  std::set<std::string> known;
+  for (const TestEntry* test : selected(suites, {})) {
+    known.insert(test->tags.begin(), test->tags.end());
+  }
+  if (known.contains(tag)) return "";
+  const std::vector<std::string> tags(known.begin(), known.end());
+  return fmt::format(
+      "--tag {}: no test has this tag{}\n", shell_quoted(tag),
+      tags.empty() ? ", nor any; `tags: [slow]` in a test gives it one" : suggestion(tag, tags));
+}
+
+std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter) {
+  std::vector<std::string> ids;
+  for (const TestEntry* test : selected(suites, {})) ids.push_back(test->id);
+  const auto matched = [&](const std::string& glob) {
+    std::vector<std::string> found;
+    for (const std::string& id : ids) {
+      if (matches(glob, id)) found.push_back(id);
+    }
+    return found;
+  };
+  if (!matched(filter).empty()) return "";
+  std::string text = fmt::format("--filter {} matches no test\n", shell_quoted(filter));
+  std::vector<std::string> near = matched("*" + filter + "*");
+  if (near.empty() && !nearest(filter, ids).empty()) near = {nearest(filter, ids)};
+  text += "  it must match a whole id, suite/name, where * and ? are wild; ";
+  return text + (near.empty() ? "ids here:\n" + few_of(ids) : "near it:\n" + few_of(near));
+}
+
+}  // namespace
+
+bool selects(const Selection& selection, const TestEntry& test) {
+  return (selection.tags.empty() || has_tag(test, selection.tags)) &&
+         passes(selection.filters, test.id);
+}
+
+std::string options_text(const Selection& selection) {
+  std::string text;
+  for (const std::string& filter : selection.filters) text += " --filter " + shell_quoted(filter);
+  for (const std::string& tag : selection.tags) text += " --tag " + shell_quoted(tag);
+  return text;
+}
+
+std::string unmatched(const std::vector<Suite>& suites, const Selection& selection) {
+  for (const std::string& tag : selection.tags) {
+    if (std::string text = unknown_tag(suites, tag); !text.empty()) return text;
+  }
+  for (const std::string& filter : selection.filters) {
+    if (excludes(filter)) continue;
+    if (std::string text = unmatched_filter(suites, filter); !text.empty()) return text;
+  }
+  if (!selected(suites, selection).empty()) return "";
+  return fmt::format("no test is left by{}\n", options_text(selection));
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,147 @@
+#pragma once
+
+// A suite file, read and checked: data only, nothing is sampled or prepared here.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimators/value.h"
+#include "harness/language/claim.h"
+
+namespace assay::harness {
+
+enum class Expectation { pass, fail, invalid, error };
+
+/// An entry of `estimators:`.
+struct EstimatorEntry {
+  std::string name = {};
+  std::string plugin = {};
+  Value parameters = {};                        ///< a map; plugin and primaries are taken out
+  std::optional<std::uint64_t> primaries = {};  ///< nullopt: auto, chosen from the pilot
+  Location where = {};
+};
+
+/// The most a test may cost: primaries, or CPU seconds.
+struct Budget {
+  std::optional<std::uint64_t> primaries = {};
+  std::optional<double> seconds = {};
+};
+
+/// A parameter and the values it takes: `over: {primaries: [8, 16, 32]}`.
+struct Sweep {
+  std::string parameter = {};
+  std::vector<Value> values = {};
+};
+
+enum class CostKind { rays, samples, seconds };
+
+/// An entry of `tests:`.
+struct TestEntry {
+  std::string name = {};  ///< default: the claim
+  std::string id = {};    ///< suite file's stem, slash, name
+  Claim claim = {};
+  std::optional<Margin> detect = {};
+  bool detect_by_default = false;  ///< nobody wrote it (ask_as_written)
+  std::optional<Margin> allow = {};
+  double weight = 1;
+  std::optional<std::string> method = {};         ///< `test:`: forced
+  std::optional<std::uint64_t> secondaries = {};  ///< fixed instead of planned
+  std::optional<Budget> budget = {};
+  std::optional<Sweep> over = {};
+  std::optional<Source> reference = {};           ///< `reference:`, an estimator
+  std::optional<Constant> reference_number = {};  ///< `reference:`, a number
+  CostKind cost = CostKind::rays;
+  Expectation expect = Expectation::pass;
+  std::vector<std::string> tags = {};
+  Location where = {};
+  std::map<std::string, Location, std::less<>> keys = {};  ///< where each that is given stands
+
+  /// Of a key, or of the test where it is not given.
+  const Location& place_of(std::string_view key) const {
+    const auto found = keys.find(key);
+    return found == keys.end() ? where : found->second;
+  }
+};
+
+/// An entry of `statements:`: what somebody claims, and the tests that answer it.
+struct StatementEntry {
+  std::string text = {};
+  std::string source = {};
+  std::string condition = {};           ///< completes "only if"; of one with both lists
+  std::vector<std::string> holds = {};  ///< names of tests whose expected verdicts show it true
+  std::vector<std::string> fails = {};  ///< of those that show it false, or where it is
+  Location where = {};
+};
+
+struct Suite {
+  std::string name = {};
+  std::string about = {};
+  std::string file = {};    ///< as given by the user
+  std::string stem = {};    ///< "luminaire" of suites/luminaire.yaml
+  std::string text = {};    ///< of the file
+  std::string folder = {};  ///< what relative file names are relative to
+  double alpha = 0.01;
+  double beta = 0.01;
+  std::optional<std::uint64_t> seed = {};
+  /// Programs; where one of them is missing, its tests are skipped.
+  std::vector<std::string> needs = {};
+  /// Of all tests together; see README.md of the suites.
+  std::optional<Budget> budget = {};
+  Value scenes =
+      {};  ///< map of `scenes:`, for --set; their names are already replaced in `estimators`
+  std::vector<EstimatorEntry> estimators = {};
+  std::vector<TestEntry> tests = {};
+  std::vector<StatementEntry> statements = {};
+};
+
+/// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite:
+/// syntax, an unknown, duplicate or misspelt key, a wrong type, a merge key, an estimator a claim
+/// names and the suite lacks, a plugin that does not exist, a duplicate test name, `detect` not
+/// above `allow`, … Parameters of plugins are checked when they are prepared. Named scenes of
+/// `scenes:` are put in place of their names.
+Suite load_suite(const std::string& file);
+
+/// The suite of a single claim from the command line. Each of `estimators` is
+/// "NAME=PLUGIN[,key=value]…" with YAML flow values; a plugin named in the claim needs none.
+struct CheckArguments {
+  std::string claim;
+  std::vector<std::string> estimators = {};
+  std::optional<std::string> detect = {};
+  std::optional<std::string> allow = {};
+  std::optional<std::string> method = {};
+  std::optional<std::uint64_t> primaries = {};
+  std::optional<std::uint64_t> secondaries = {};
+  double alpha = 0.01;
+  std::optional<std::string> over = {};       ///< YAML flow, as in a suite
+  std::optional<std::string> reference = {};  ///< an estimator or a number
+  std::optional<std::string> cost = {};
+  std::optional<std::string> budget = {};
+};
+Suite suite_of_claim(const CheckArguments&);
+
+/// `--set estimator.key=value`: replaces or adds a parameter of an estimator in every suite that
+/// has it; InputError when none has.
+void set_parameter(std::vector<Suite>& suites, const std::string& assignment);
+
+/// The entry that "NAME=PLUGIN[,key=value]…" describes.
+EstimatorEntry parse_estimator_option(const std::string& text);
+
+/// An entry for each estimator a claim names, in order: of `options` as above where one has that
+/// name, else a plugin of that name with its defaults. `primaries`, when given, is everybody's.
+std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
+                                          const std::vector<std::string>& options,
+                                          std::optional<std::uint64_t> primaries);
+
+/// The sources a claim names, left to right.
+std::vector<Source> sources_of(const Claim& claim);
+
+/// The line of the file with a caret under the column, or "" where the file cannot be read: what
+/// is printed under an InputError.
+std::string excerpt(const Location&);
+
+}  // namespace assay::harness

@@ -1,0 +1,342 @@
+#include "harness/suite/suite_entries.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimators/catalogue.h"
+#include "harness/suite/suite_keys.h"
+
+namespace assay::harness {
+
+namespace {
+
+std::vector<std::string> parameter_names(const Entry& plugin) {
+  std::vector<std::string> names{"plugin", "primaries"};
+  for (const ParameterInformation& p : plugin.information.parameters) names.push_back(p.name);
+  return names;
+}
+
+/// Whether the file has the text in one piece where the value says that it begins.
+bool stands_in_one_piece(const Document& document, const Value& value, const std::string& text) {
+  const std::string_view line = document.line(value.where().line);
+  const auto at = static_cast<std::size_t>(std::max(value.where().column, 1)) - 1;
+  return at < line.size() && line.substr(at).starts_with(text);
+}
+
+std::string without_line_ends(std::string text) {
+  std::ranges::replace(text, '\n', ' ');
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+Margin read_margin(const Value& value, std::string_view what) {
+  return parse_margin(value.string(what), value.where(), what);
+}
+
+double read_seconds(std::string_view text, const Value& value) {
+  return positive_number(Value::scalar(std::string(text), value.where()),
+                         "the seconds of `budget`");
+}
+
+void require_increasing(const Sweep& sweep) {
+  double last = 0;
+  for (const Value& value : sweep.values) {
+    const double number = positive_number(value, "a value of `over`");
+    if (number <= last) throw InputError(value.where(), "the values of `over` must ascend");
+    last = number;
+  }
+}
+
+std::vector<std::string> read_tags(const Value& value) {
+  if (value.kind() != Value::Kind::list) {
+    throw InputError(value.where(), "`tags` must be a list: `tags: [slow, images]`");
+  }
+  std::vector<std::string> tags;
+  for (const Value& tag : value.items()) tags.push_back(one_line(tag, "a tag"));
+  return tags;
+}
+
+void read_sampling(const Document& document, const Keys& keys, TestEntry& test) {
+  if (const Value* v = keys.find("test")) {
+    test.method = method_names()[choice(*v, "`test`", method_names())];
+  }
+  if (const Value* v = keys.find("secondaries")) {
+    test.secondaries = count_from(*v, "`secondaries`", 2);
+  }
+  if (const Value* v = keys.find("budget")) test.budget = read_budget(document, *v);
+  if (const Value* v = keys.find("over")) test.over = read_sweep(*v);
+  if (const Value* v = keys.find("reference")) read_reference(*v, test);
+  if (const Value* v = keys.find("cost")) test.cost = read_cost(*v);
+}
+
+bool is_about(const Claim& claim, std::initializer_list<QuantityName> names) {
+  return std::ranges::find(names, claim.left.name) != names.end();
+}
+
+bool is_proof(Relation relation) {
+  return relation == Relation::less || relation == Relation::greater ||
+         relation == Relation::within;
+}
+
+using Refuse = std::function<void(const char* key, const std::string& why)>;
+
+void check_margins(const TestEntry& test, const Refuse& refuse) {
+  if (test.detect && test.detect->value == 0) {
+    refuse("detect", "`detect` must be above 0: it is the effect that must not pass, as `1%`");
+  }
+  if (test.detect && test.claim.relation == Relation::within) {
+    refuse("detect",
+           "`within` says how far off the claim must not be: `detect` has no meaning beside it; "
+           "leave it out");
+  }
+  if (test.allow && is_proof(test.claim.relation)) {
+    refuse("allow",
+           fmt::format("`allow` has no meaning with `{}`: what is claimed must be shown in "
+                       "full",
+                       to_string(test.claim.relation)));
+  }
+  const bool comparable =
+      test.detect && test.allow && test.detect->relative == test.allow->relative;
+  if (test.detect && test.allow && test.allow->value > 0 && !comparable) {
+    refuse("allow", fmt::format("`detect` ({}) and `allow` ({}) must both be in per cent or both "
+                                "absolute",
+                                to_string(*test.detect), to_string(*test.allow)));
+  }
+  if (comparable && test.allow->value >= test.detect->value) {
+    refuse("allow", fmt::format("`detect` ({}) must be above `allow` ({})", to_string(*test.detect),
+                                to_string(*test.allow)));
+  }
+}
+
+/// Error rates and seeds belong to the run.
+void refuse_levels(const Document& document, const Value& test) {
+  for (const char* key : {"alpha", "beta", "seed"}) {
+    const Value* found = test.find(key);
+    if (!found) continue;
+    throw InputError(document.key(*found),
+                     fmt::format("`{}` is the suite's, so that no test can choose its own; put it "
+                                 "at the top of the file",
+                                 key));
+  }
+}
+
+}  // namespace
+
+Budget read_short_budget(const Value& value) {
+  const std::string_view text = value.text();
+  try {
+    if (text.ends_with('s')) return {{}, read_seconds(text.substr(0, text.size() - 1), value)};
+    return {count_from(value, "`budget`", 1), {}};
+  } catch (const InputError&) {
+    throw InputError(
+        value.where(),
+        fmt::format(
+            "`budget` must be a number of primaries (1e7), of seconds (ten minutes are 600s), "
+            "or a map of both, but it is `{}`",
+            text));
+  }
+}
+
+Budget read_budget(const Document& document, const Value& value) {
+  if (value.kind() == Value::Kind::scalar) return read_short_budget(value);
+  const Keys keys(document, value, "a budget", {"primaries", "seconds"});
+  Budget budget;
+  if (const Value* v = keys.find("primaries")) {
+    budget.primaries = count_from(*v, "the primaries of `budget`", 1);
+  }
+  if (const Value* v = keys.find("seconds")) {
+    budget.seconds = positive_number(*v, "the seconds of `budget`");
+  }
+  if (!budget.primaries && !budget.seconds) {
+    throw InputError(value.where(), "a budget needs `primaries` or `seconds`");
+  }
+  return budget;
+}
+
+const std::vector<std::string>& method_names() {
+  static const std::vector<std::string> names{"t",
+                                              "welch",
+                                              "skewness-corrected-t",
+                                              "binomial",
+                                              "bounded",
+                                              "batch-means",
+                                              "betting",
+                                              "tost",
+                                              "F",
+                                              "chi-square",
+                                              "log-variance",
+                                              "ks",
+                                              "anderson-darling",
+                                              "two-part-ks",
+                                              "chi-square-two-sample",
+                                              "chi-square-fit",
+                                              "log-cost",
+                                              "log-efficiency",
+                                              "replicates",
+                                              "log-total-variance",
+                                              "quantile",
+                                              "slope",
+                                              "image"};
+  return names;
+}
+
+Sweep read_sweep(const Value& value) {
+  const bool one = value.kind() == Value::Kind::map && value.members().size() == 1;
+  if (!one || value.members()[0].second.kind() != Value::Kind::list) {
+    throw InputError(value.where(),
+                     "`over` is one parameter and its values: `over: {primaries: [8, 16, 32]}`");
+  }
+  const auto& [parameter, values] = value.members()[0];
+  Sweep sweep{.parameter = parameter, .values = values.items()};
+  if (sweep.values.size() < 2) {
+    throw InputError(values.where(), "a slope needs at least two values in `over`");
+  }
+  require_increasing(sweep);
+  if (parameter == "primaries") {
+    for (const Value& count : sweep.values) count_from(count, "a number of primaries", 1);
+  }
+  return sweep;
+}
+
+/// `reference: trusted`, `reference: 6.36` or `reference: 6.36 +- 0.01`.
+void read_reference(const Value& value, TestEntry& test) {
+  const std::string text = one_line(value, "`reference`");
+  if (text.find_first_of("0123456789") != text.find_first_not_of(" +-.")) {
+    test.reference = parse_source(text, value.where());
+    return;
+  }
+  const std::size_t error = text.find("+-");
+  const auto number = [&](const std::string& part) {
+    const std::size_t end = part.find_last_not_of(' ');
+    const std::size_t begin = part.find_first_not_of(' ');
+    const std::string bare = begin == std::string::npos ? "" : part.substr(begin, end - begin + 1);
+    return Value::scalar(bare, value.where()).number("a number of `reference`");
+  };
+  Constant reference{.value = number(text.substr(0, error))};
+  if (error != std::string::npos) reference.standard_error = number(text.substr(error + 2));
+  if (!std::isfinite(reference.value) || !(reference.standard_error >= 0) ||
+      std::isinf(reference.standard_error)) {
+    throw InputError(value.where(), "`reference` must be finite, and its error not negative");
+  }
+  test.reference_number = reference;
+}
+
+CostKind read_cost(const Value& value) {
+  return static_cast<CostKind>(choice(value, "`cost`", {"rays", "samples", "seconds"}));
+}
+
+const Value& scene_or(const Value& value, const Value& scenes) {
+  const Value* scene = value.kind() == Value::Kind::scalar ? scenes.find(value.text()) : nullptr;
+  return scene ? *scene : value;
+}
+
+std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view what) {
+  if (value.kind() == Value::Kind::scalar && value.text() == "auto") return {};
+  return count_from(value, what, 1);
+}
+
+EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
+                              const Value& scenes) {
+  if (name.find('{') != std::string::npos) {
+    throw InputError(document.key(value),
+                     fmt::format("a `: ` is missing before the `{{` of `{}`", name));
+  }
+  if (!is_estimator_name(name)) {
+    throw InputError(document.key(value),
+                     fmt::format("`{}` cannot name an estimator: a letter, then letters, digits, "
+                                 "`_`, `-` and `/`",
+                                 name));
+  }
+  if (value.kind() != Value::Kind::map) {
+    throw InputError(
+        value.where(),
+        fmt::format("the estimator `{}` must be a map, as in `{{plugin: family/name}}`", name));
+  }
+  const Value* plugin = value.find("plugin");
+  if (!plugin) {
+    throw InputError(value.where(), fmt::format("`{0}` needs the key `plugin`, as in `{0}: "
+                                                "{{plugin: luminaire/area}}`",
+                                                name));
+  }
+  const Entry& entry = find_plugin(plugin->string("`plugin`"), plugin->where());
+  const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()),
+                  parameter_names(entry));
+  EstimatorEntry estimator{.name = name,
+                           .plugin = plugin->text(),
+                           .parameters = {},
+                           .primaries = {},
+                           .where = document.key(value)};
+  if (const Value* v = keys.find("primaries")) {
+    estimator.primaries = read_primaries(*v, "`primaries`");
+  }
+  std::vector<Value::Member> parameters;
+  for (const auto& [key, given] : value.members()) {
+    if (key == "plugin" || key == "primaries") continue;
+    parameters.emplace_back(key, key == "scene" ? scene_or(given, scenes) : given);
+  }
+  estimator.parameters = Value::map(std::move(parameters), value.where());
+  return estimator;
+}
+
+Claim read_claim(const Document& document, const Value& value) {
+  const std::string text = without_line_ends(value.string("`claim`"));
+  try {
+    return parse_claim(text, value.where());
+  } catch (const InputError& e) {
+    if (stands_in_one_piece(document, value, text)) throw;
+    const int column = e.where().column - value.where().column + 1;
+    throw InputError(value.where(),
+                     fmt::format("{} (character {} of `{}`)", e.message(), column, text));
+  }
+}
+
+TestEntry read_test(const Document& document, const Value& value) {
+  if (value.kind() != Value::Kind::map) {
+    throw InputError(value.where(),
+                     "a test is a map of keys and values, as in `- claim: mean(area) == analytic`");
+  }
+  refuse_levels(document, value);
+  const Keys keys(document, value, "a test",
+                  {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
+                   "over", "reference", "cost", "expect", "tags"});
+  TestEntry test{
+      .claim = read_claim(document, keys.require("claim", "claim: mean(area) == analytic")),
+      .where = value.where()};
+  for (const auto& [key, given] : value.members()) test.keys[key] = keys.where(given);
+  const Value* name = keys.find("name");
+  test.name = name ? one_line(*name, "`name`") : test.claim.text;
+  if (const Value* v = keys.find("detect")) test.detect = read_margin(*v, "`detect`");
+  if (const Value* v = keys.find("allow")) test.allow = read_margin(*v, "`allow`");
+  if (const Value* v = keys.find("weight")) test.weight = positive_number(*v, "`weight`");
+  if (const Value* v = keys.find("expect")) {
+    test.expect =
+        static_cast<Expectation>(choice(*v, "`expect`", {"pass", "fail", "invalid", "error"}));
+  }
+  if (const Value* v = keys.find("tags")) test.tags = read_tags(*v);
+  read_sampling(document, keys, test);
+  check_test(test);
+  return test;
+}
+
+void check_test(const TestEntry& test) {
+  const auto refuse = [&](const char* key, const std::string& why) {
+    throw InputError(test.place_of(key), why);
+  };
+  check_margins(test, refuse);
+  const Claim& claim = test.claim;
+  if (claim.left.slope && !test.over) {
+    refuse("claim", "a slope needs `over`: `over: {primaries: [8, 16, 32]}`");
+  }
+  if (!claim.left.slope && test.over) refuse("over", "`over` has no meaning but for `slope(…)`");
+  using enum QuantityName;
+  if ((test.reference || test.reference_number) && !is_about(claim, {bias, efficiency})) {
+    refuse("reference", "`reference` has no meaning but for `bias` and `efficiency`");
+  }
+  if (test.cost != CostKind::rays && !is_about(claim, {cost, efficiency})) {
+    refuse("cost", "`cost` has no meaning but for `cost` and `efficiency`");
+  }
+}
+
+}  // namespace assay::harness

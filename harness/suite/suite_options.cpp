@@ -1,0 +1,281 @@
+// Suites from the command line: `assay check`, `--estimator`, `--set`.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "estimators/catalogue.h"
+#include "harness/base/shell.h"
+#include "harness/suite/claim_entry.h"
+#include "harness/suite/suite.h"
+#include "harness/suite/suite_entries.h"
+#include "harness/suite/suite_keys.h"
+#include "harness/suite/yaml.h"
+
+namespace assay::harness {
+
+namespace {
+
+/// `text` before and after the first `separator`; nullopt without one.
+std::optional<std::pair<std::string, std::string>> cut(const std::string& text, char separator) {
+  const std::size_t at = text.find(separator);
+  if (at == std::string::npos) return {};
+  return std::pair{text.substr(0, at), text.substr(at + 1)};
+}
+
+void require_parameter(const std::string& plugin, const std::string& key, const Location& where) {
+  std::vector<std::string> names;
+  for (const auto& parameter : find_plugin(plugin, where).information.parameters) {
+    names.push_back(parameter.name);
+  }
+  names.push_back("primaries");
+  if (std::ranges::find(names, key) != names.end()) return;
+  throw InputError(where,
+                   fmt::format("{} has no parameter `{}`{}", plugin, key, suggestion(key, names)));
+}
+
+/// The map with one member replaced or added.
+Value with_member(const Value& map, const std::string& key, const Value& value) {
+  std::vector<Value::Member> members = map.members();
+  const auto found = std::ranges::find(members, key, &Value::Member::first);
+  if (found == members.end()) {
+    members.emplace_back(key, value);
+  } else {
+    found->second = value;
+  }
+  return Value::map(std::move(members), map.where());
+}
+
+void assign(EstimatorEntry& estimator, const std::string& key, const Value& value) {
+  require_parameter(estimator.plugin, key, value.where());
+  if (key == "primaries") {
+    estimator.primaries = read_primaries(value, "`primaries`");
+  } else {
+    estimator.parameters = with_member(estimator.parameters, key, value);
+  }
+}
+
+/// One piece of --set.
+struct Assignment {
+  std::string estimator;
+  std::string key;
+  Value value;
+};
+
+Assignment parse_assignment(const std::string& piece) {
+  const Location where{"--set " + piece, 0, 0};
+  const auto sides = cut(piece, '=');
+  const auto path = sides ? cut(sides->first, '.') : std::nullopt;
+  if (!path || path->first.empty() || path->second.empty()) {
+    throw InputError(where,
+                     "expected estimator.key=value; a value with commas stands in brackets "
+                     "or quotes");
+  }
+  return {path->first, path->second, read_flow(sides->second, where)};
+}
+
+void assign_everywhere(std::vector<Suite>& suites, const Assignment& assignment) {
+  std::vector<std::string> names;
+  bool found = false;
+  for (Suite& suite : suites) {
+    for (EstimatorEntry& estimator : suite.estimators) {
+      names.push_back(estimator.name);
+      if (estimator.name != assignment.estimator) continue;
+      found = true;
+      const bool scene = assignment.key == "scene";
+      assign(estimator, assignment.key,
+             scene ? scene_or(assignment.value, suite.scenes) : assignment.value);
+    }
+  }
+  if (found) return;
+  throw InputError(assignment.value.where(),
+                   fmt::format("no suite has an estimator `{}`{}", assignment.estimator,
+                               suggestion(assignment.estimator, names)));
+}
+
+std::optional<EstimatorEntry> entry_named(const std::vector<EstimatorEntry>& entries,
+                                          const std::string& name) {
+  for (const EstimatorEntry& entry : entries) {
+    if (entry.name == name) return entry;
+  }
+  return {};
+}
+
+std::vector<EstimatorEntry> parse_options(const std::vector<std::string>& options) {
+  std::vector<EstimatorEntry> entries;
+  for (const std::string& option : options) {
+    EstimatorEntry entry = parse_estimator_option(option);
+    if (entry_named(entries, entry.name)) {
+      throw InputError(entry.where, fmt::format("a second estimator named `{}`", entry.name));
+    }
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+EstimatorEntry plugin_itself(const Source& source) {
+  const Entry& plugin = find_plugin(source.estimator, source.where);
+  return {.name = source.estimator,
+          .plugin = plugin.information.name,
+          .parameters = Value::map({}, source.where),
+          .primaries = {},
+          .where = source.where};
+}
+
+EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>& given) {
+  if (const auto entry = entry_named(given, source.estimator)) return *entry;
+  std::vector<std::string> names;
+  for (const EstimatorEntry& entry : given) names.push_back(entry.name);
+  const std::string near = nearest(source.estimator, names);
+  if (near.empty()) return plugin_itself(source);
+  throw InputError(source.where, fmt::format("no --estimator is named `{}`; did you mean `{}`?",
+                                             source.estimator, near));
+}
+
+void refuse_unused(const std::vector<EstimatorEntry>& given,
+                   const std::vector<EstimatorEntry>& used) {
+  std::vector<std::string> names;
+  for (const EstimatorEntry& each : used) names.push_back("`" + each.name + "`");
+  for (const EstimatorEntry& entry : given) {
+    if (entry_named(used, entry.name)) continue;
+    throw InputError(entry.where,
+                     fmt::format("`{0}` is used nowhere, only {1}: write `{0}` in its place, or "
+                                 "leave the option out",
+                                 entry.name, listed(names)));
+  }
+}
+
+/// The keys of a test that stand beside its claim, from options of the same names.
+class TestOptions {
+ public:
+  explicit TestOptions(TestEntry& test) : test_(test) {}
+
+  void margin(const char* key, const std::optional<std::string>& text,
+              std::optional<Margin>& margin) {
+    if (!text) return;
+    margin = parse_margin(*text, {}, std::string("--") + key);
+    margin->where = place(key, *text);
+  }
+
+  /// The text of the option with its place; nullopt where it is not given.
+  std::optional<Value> value(const char* key, const std::optional<std::string>& text) {
+    if (!text) return {};
+    return Value::scalar(*text, place(key, *text));
+  }
+
+  const Location& place(const char* key, const std::string& text) {
+    return test_.keys[key] = {fmt::format("--{} {}", key, text), 0, 0};
+  }
+
+ private:
+  TestEntry& test_;
+};
+
+void read_options(const CheckArguments& arguments, TestEntry& test) {
+  TestOptions options(test);
+  options.margin("detect", arguments.detect, test.detect);
+  options.margin("allow", arguments.allow, test.allow);
+  if (arguments.method) {
+    options.place("test", *arguments.method);
+    test.method =
+        method_names()[choice(Value::scalar(*arguments.method), "--test", method_names())];
+  }
+  if (arguments.secondaries) {
+    options.place("secondaries", fmt::format("{}", *arguments.secondaries));
+    test.secondaries = arguments.secondaries;
+  }
+  if (arguments.over) {
+    test.over = read_sweep(read_flow(*arguments.over, options.place("over", *arguments.over)));
+  }
+  if (const auto given = options.value("reference", arguments.reference)) {
+    read_reference(*given, test);
+  }
+  if (const auto given = options.value("cost", arguments.cost)) test.cost = read_cost(*given);
+  if (const auto given = options.value("budget", arguments.budget)) {
+    test.budget = read_short_budget(*given);
+  }
+}
+
+}  // namespace
+
+void set_parameter(std::vector<Suite>& suites, const std::string& assignment) {
+  for (const std::string& piece : split_outside_brackets(assignment)) {
+    assign_everywhere(suites, parse_assignment(piece));
+  }
+}
+
+EstimatorEntry parse_estimator_option(const std::string& text) {
+  const Location where{"--estimator " + text, 0, 0};
+  const std::vector<std::string> pieces = split_outside_brackets(text);
+  const auto head = cut(pieces[0], '=');
+  if (!head) {
+    throw InputError(where, fmt::format("the plugin needs a name, which the claim uses: "
+                                        "`--estimator {}`",
+                                        shell_quoted("x=" + text)));
+  }
+  if (!is_estimator_name(head->first)) {
+    throw InputError(where, fmt::format("`{}` cannot name an estimator: a letter, then letters, "
+                                        "digits, `_`, `-` and `/`",
+                                        head->first));
+  }
+  EstimatorEntry entry{.name = head->first,
+                       .plugin = find_plugin(head->second, where).information.name,
+                       .parameters = Value::map({}, where),
+                       .primaries = {},
+                       .where = where};
+  std::vector<std::string> seen;
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    const auto sides = cut(pieces[i], '=');
+    if (!sides) {
+      throw InputError(where, fmt::format("`{}` is not key=value; a value with commas stands in "
+                                          "brackets or quotes",
+                                          pieces[i]));
+    }
+    if (std::ranges::find(seen, sides->first) != seen.end()) {
+      throw InputError(where, fmt::format("`{}` is given twice", sides->first));
+    }
+    seen.push_back(sides->first);
+    assign(entry, sides->first, read_flow(sides->second, where));
+  }
+  return entry;
+}
+
+std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
+                                          const std::vector<std::string>& options,
+                                          std::optional<std::uint64_t> primaries) {
+  const std::vector<EstimatorEntry> given = parse_options(options);
+  std::vector<EstimatorEntry> used;
+  for (const Source& source : sources) {
+    if (entry_named(used, source.estimator)) continue;
+    used.push_back(entry_for(source, given));
+    if (primaries) used.back().primaries = primaries;
+  }
+  refuse_unused(given, used);
+  return used;
+}
+
+TestEntry test_of_claim(const CheckArguments& arguments) {
+  const Location where{"claim", 1, 1};
+  TestEntry test{.claim = parse_claim(arguments.claim, where), .where = where};
+  test.name = test.claim.text;
+  test.id = "check/" + test.name;
+  read_options(arguments, test);
+  check_test(test);
+  return test;
+}
+
+Suite suite_of_claim(const CheckArguments& arguments) {
+  TestEntry test = test_of_claim(arguments);
+  Suite suite;
+  suite.name = "check";
+  suite.stem = "check";
+  suite.folder = ".";
+  suite.alpha = arguments.alpha;
+  std::vector<Source> sources = sources_of(test.claim);
+  if (test.reference) sources.push_back(*test.reference);
+  suite.estimators = estimators_of(sources, arguments.estimators, arguments.primaries);
+  suite.tests.push_back(std::move(test));
+  return suite;
+}
+
+}  // namespace assay::harness

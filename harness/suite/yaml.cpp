@@ -1,0 +1,345 @@
+#include "harness/suite/yaml.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "harness/base/text_file.h"
+
+namespace assay::harness {
+
+namespace {
+
+constexpr std::size_t deepest = 64;
+
+constexpr std::string_view no_aliases =
+    "anchors and aliases are not read; write the value out, or name a scene under `scenes:`";
+
+/// yaml-cpp's messages name the state of its scanner; these say what to do.
+std::string readable(const std::string& message) {
+  struct Translation {
+    std::string_view terse, plain;
+  };
+  static const std::array translations{
+      Translation{YAML::ErrorMsg::FLOW_END, "a closing bracket that was never opened"},
+      Translation{YAML::ErrorMsg::END_OF_MAP_FLOW,
+                  "a `{` is not closed, or a comma is missing before this"},
+      Translation{YAML::ErrorMsg::END_OF_SEQ_FLOW,
+                  "a `[` is not closed, or a comma is missing before this"},
+      Translation{YAML::ErrorMsg::END_OF_MAP,
+                  "expected a key of the map here; is the indentation "
+                  "that of the other keys, and the line `key: value`?"},
+      Translation{
+          YAML::ErrorMsg::END_OF_SEQ,
+          "expected another `- ` item here; indent all items alike, and all keys of an item"},
+      Translation{YAML::ErrorMsg::MAP_VALUE,
+                  "a `:` cannot stand here; indent all keys of a map alike, and put text that "
+                  "contains `: ` in quotes"},
+      Translation{YAML::ErrorMsg::MAP_KEY, "a key cannot stand here"},
+      Translation{YAML::ErrorMsg::BLOCK_ENTRY, "a `- ` item cannot stand here"},
+      Translation{YAML::ErrorMsg::TAB_IN_INDENTATION, "indent with spaces, not with a tab"},
+      Translation{YAML::ErrorMsg::EOF_IN_SCALAR, "a quote is opened and never closed"},
+      Translation{YAML::ErrorMsg::DOC_IN_SCALAR, "a quote is opened and never closed"},
+      Translation{YAML::ErrorMsg::UNKNOWN_ANCHOR, no_aliases},
+      Translation{YAML::ErrorMsg::UNKNOWN_TOKEN,
+                  "text cannot begin with this character; put it in quotes"},
+  };
+  for (const Translation& t : translations) {
+    if (message.find(t.terse) != std::string::npos) return std::string(t.plain);
+  }
+  return "not YAML: " + message;
+}
+
+}  // namespace
+
+/// Receives yaml-cpp's events, in which tags, anchors and repeated keys are still visible.
+class DocumentBuilder final : public YAML::EventHandler {
+ public:
+  explicit DocumentBuilder(Document& document) : document_(document) {}
+
+  bool complete() const { return complete_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (complete_) refuse(place(mark), "a second document; put each in a file of its own");
+  }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
+    if (open_.empty()) refuse(place(mark), "there is nothing here");
+    Frame& frame = open_.back();
+    if (frame.map && !frame.key) refuse(place(mark), "a key is missing before the `:`");
+    if (frame.map) refuse_without_value(frame);
+    refuse(dash_before(mark), "a list item without a value");
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse_alias(mark); }
+  void OnAnchor(const YAML::Mark& mark, const std::string&) override { refuse_alias(mark); }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                const std::string& text) override {
+    refuse_tag(mark, tag);
+    const bool plain = tag == "?";
+    if (!open_.empty() && open_.back().map && !open_.back().key) return key(mark, text, plain);
+    add(Value::scalar(text, plain ? place(mark) : content(mark)));
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    open(mark, tag, false);
+  }
+  void OnSequenceEnd() override {
+    Frame frame = close();
+    add(Value::list(std::move(frame.items), frame.where));
+  }
+
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    open(mark, tag, true);
+  }
+  void OnMapEnd() override {
+    Frame frame = close();
+    add(Value::map(std::move(frame.members), frame.where));
+  }
+
+ private:
+  /// A list or map whose end has not come yet.
+  struct Frame {
+    bool map = false;
+    Location where;
+    std::vector<Value> items = {};
+    std::vector<Value::Member> members = {};
+    std::map<std::string, Location, std::less<>> seen = {};
+    std::optional<std::string> key = {};
+    Location key_place = {};
+  };
+
+  Location place(const YAML::Mark& mark) const {
+    return {document_.file_, mark.line + 1, mark.column + 1};
+  }
+
+  /// yaml-cpp reports a missing item where the next token is; the dash stands on the line before,
+  /// blank lines and comments apart.
+  Location dash_before(const YAML::Mark& mark) const {
+    for (int number = mark.line; number >= 1; --number) {
+      const std::string_view line = document_.line(number);
+      const std::size_t last = line.find_last_not_of(' ');
+      const std::size_t first = line.find_first_not_of(' ');
+      if (last == std::string_view::npos || line[first] == '#') continue;
+      if (line[last] != '-') break;
+      return {document_.file_, number, static_cast<int>(last) + 1};
+    }
+    return document_.at_most_last(mark.line + 1, mark.column + 1);
+  }
+
+  /// Where the characters of a quoted or block scalar begin.
+  Location content(const YAML::Mark& mark) const {
+    Location where = place(mark);
+    const std::string_view line = document_.line(where.line);
+    const auto at = static_cast<std::size_t>(mark.column);
+    if (at >= line.size()) return where;
+    if (line[at] == '"' || line[at] == '\'') ++where.column;
+    if (line[at] != '|' && line[at] != '>') return where;
+    const std::size_t text = document_.line(where.line + 1).find_first_not_of(' ');
+    if (text == std::string_view::npos) return where;
+    return {where.file, where.line + 1, static_cast<int>(text) + 1};
+  }
+
+  void key(const YAML::Mark& mark, const std::string& text, bool plain) {
+    Frame& frame = open_.back();
+    const Location where = place(mark);
+    if (plain && text == "<<") refuse(where, "merge keys `<<` are not read; write the keys out");
+    if (text.empty()) refuse(where, "a key is missing before the `:`");
+    const auto [first, unseen] = frame.seen.emplace(text, where);
+    if (!unseen) {
+      refuse(where, fmt::format("duplicate key `{}`; it is already given at {}:{}", text,
+                                first->second.line, first->second.column));
+    }
+    frame.key = text;
+    frame.key_place = where;
+  }
+
+  void open(const YAML::Mark& mark, const std::string& tag, bool map) {
+    refuse_tag(mark, tag);
+    if (!open_.empty() && open_.back().map && !open_.back().key) {
+      refuse(place(mark), "a key must be text, not a list or a map");
+    }
+    if (open_.size() == deepest) refuse(place(mark), "nested deeper than 64 levels");
+    open_.push_back({.map = map, .where = place(mark)});
+  }
+
+  Frame close() {
+    Frame frame = std::move(open_.back());
+    open_.pop_back();
+    return frame;
+  }
+
+  void add(Value value) {
+    if (open_.empty()) {
+      document_.root_ = std::move(value);
+      complete_ = true;
+      return;
+    }
+    Frame& frame = open_.back();
+    if (!frame.map) return frame.items.push_back(std::move(value));
+    document_.keys_[{value.where().line, value.where().column}] = frame.key_place;
+    frame.members.emplace_back(std::move(*frame.key), std::move(value));
+    frame.key.reset();
+  }
+
+  /// In `{claim: quantile(a, 0.5) == 1}` YAML ends the claim at its comma and takes the rest for a
+  /// key: the brackets of the two tell.
+  [[noreturn]] void refuse_without_value(const Frame& frame) const {
+    const auto open_brackets = [](const std::string& text) {
+      return std::ranges::count(text, '(') - std::ranges::count(text, ')');
+    };
+    const Value::Member* before = frame.members.empty() ? nullptr : &frame.members.back();
+    const bool cut = before && before->second.kind() == Value::Kind::scalar &&
+                     open_brackets(before->second.text()) > 0 && open_brackets(*frame.key) < 0;
+    if (!cut) refuse(frame.key_place, fmt::format("`{}` has no value", *frame.key));
+    refuse(frame.key_place,
+           fmt::format("inside {{…}} a comma ends the value of `{0}`; quote the {0}: `{0}: \"{1}, "
+                       "{2}\"`",
+                       before->first, before->second.text(), *frame.key));
+  }
+
+  void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
+    if (tag.empty() || tag == "?" || tag == "!") return;
+    refuse(place(mark), fmt::format("the tag `{}` is not read; leave it out", tag));
+  }
+
+  [[noreturn]] void refuse_alias(const YAML::Mark& mark) const {
+    refuse(place(mark), std::string(no_aliases));
+  }
+
+  [[noreturn]] void refuse(const Location& where, const std::string& why) const {
+    throw InputError(where, why);
+  }
+
+  Document& document_;
+  std::vector<Frame> open_;
+  bool complete_ = false;
+};
+
+namespace {
+
+void refuse_tabs(const std::vector<std::string>& lines, const std::string& file) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t at = lines[i].find_first_not_of(' ');
+    const bool tab = at != std::string_view::npos && lines[i][at] == '\t';
+    if (tab && lines[i].find_first_not_of(" \t") != std::string_view::npos) {
+      throw InputError({file, static_cast<int>(i) + 1, static_cast<int>(at) + 1},
+                       "indent with spaces, not with a tab");
+    }
+  }
+}
+
+}  // namespace
+
+Document::Document(std::string file, std::string_view text) : file_(std::move(file)) {
+  require_utf8(text, file_);
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  for (const std::string_view line : lines_of(text)) lines_.emplace_back(line);
+  refuse_tabs(lines_, file_);
+  // yaml-cpp takes the end of the text for a closing quote when it comes right after a line end; a
+  // comment there takes that away.
+  std::istringstream in(std::string(text) + "\n#");
+  DocumentBuilder builder(*this);
+  try {
+    YAML::Parser parser(in);
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const YAML::Exception& e) {
+    throw InputError(at_most_last(e.mark.line + 1, e.mark.column + 1), readable(e.msg));
+  }
+  if (!builder.complete()) throw InputError({file_, 1, 1}, "the file is empty");
+}
+
+Location Document::at_most_last(int line, int column) const {
+  const int last = std::max(static_cast<int>(lines_.size()), 1);
+  if (line <= last) return {file_, line, column};
+  return {file_, last, static_cast<int>(this->line(last).size()) + 1};
+}
+
+Location Document::key(const Value& member) const {
+  const auto found = keys_.find({member.where().line, member.where().column});
+  return found == keys_.end() ? member.where() : found->second;
+}
+
+std::string_view Document::line(int number) const {
+  const auto index = static_cast<std::size_t>(number) - 1;
+  return number < 1 || index >= lines_.size() ? std::string_view{} : lines_[index];
+}
+
+Document read_yaml_file(const std::string& file) { return {file, read_text_file(file)}; }
+
+Document read_yaml_text(std::string_view text, const std::string& file) { return {file, text}; }
+
+namespace {
+
+Value moved_to(const Value& value, const Location& where) {
+  std::vector<Value> items;
+  for (const Value& item : value.items()) items.push_back(moved_to(item, where));
+  std::vector<Value::Member> members;
+  for (const auto& [key, member] : value.members()) {
+    members.emplace_back(key, moved_to(member, where));
+  }
+  switch (value.kind()) {
+    case Value::Kind::null:
+      return {};
+    case Value::Kind::scalar:
+      return Value::scalar(value.text(), where);
+    case Value::Kind::list:
+      return Value::list(std::move(items), where);
+    case Value::Kind::map:
+      return Value::map(std::move(members), where);
+  }
+  return {};
+}
+
+}  // namespace
+
+Value read_flow(std::string_view text, const Location& where) {
+  if (text.find('\n') != std::string_view::npos) throw InputError(where, "a value is one line");
+  if (text.find_first_not_of(' ') == std::string_view::npos) {
+    throw InputError(where, "a value is missing after the `=`");
+  }
+  // Standard input, not a list: nothing follows.
+  if (text == "-") return Value::scalar("-", where);
+  try {
+    return moved_to(read_yaml_text(text, "").root(), where);
+  } catch (const InputError& e) {
+    throw InputError(where, fmt::format("`{}`: {}", text, e.message()));
+  }
+}
+
+std::vector<std::string> split_outside_brackets(std::string_view text) {
+  std::vector<std::string> pieces(1);
+  int depth = 0;
+  char quote = 0;
+  bool escaped = false;
+  for (const char c : text) {
+    if (quote) {
+      if (c == quote && !escaped) quote = 0;
+      escaped = quote == '"' && c == '\\' && !escaped;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '[' || c == '{') {
+      ++depth;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    } else if (c == ',' && depth <= 0) {
+      pieces.emplace_back();
+      continue;
+    }
+    pieces.back() += c;
+  }
+  return pieces;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,36 @@
+#include "harness/theta/critical.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/theta/decision.h"
+#include "stats/tails/tails.h"
+
+namespace assay::harness {
+
+double critical_value(double alpha, bool two_sided) {
+  return stats::normal_quantile({stats::Tail::upper, std::log(two_sided ? alpha / 2 : alpha)});
+}
+
+double smallest_share(const Question& question, double share) {
+  const TestEntry& test = *question.test;
+  const bool planned = test.detect || test.claim.relation == Relation::within;
+  return planned && !test.secondaries ? share / most_looks : share;
+}
+
+double smallest_level(const Question& question, const FamilyPlace& place) {
+  return smallest_share(question, place.share.alpha);
+}
+
+bool two_sided(const Question& question) {
+  return Regions{.relation = question.test->claim.relation}.two_sided();
+}
+
+stats::ShapeLimits shape_limits(double critical) {
+  const double log_tail = stats::normal_tails(critical).upper;
+  const double nearer = stats::normal_quantile({stats::Tail::upper, log_tail + std::log(1.25)});
+  const double inflation = critical / nearer;
+  return {.excess_kurtosis = std::min(0.2, 2 * (inflation * inflation - 1)), .level_factor = 1.25};
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,65 @@
+#pragma once
+
+// From evidence about theta to p-values of the claimed and of the forbidden region, and a verdict.
+//
+//   relation  claimed region C        forbidden region F
+//   ==        abs(theta) <= allow     abs(theta) >= detect     alarm
+//   <=        theta <= allow          theta >= detect          alarm   (>= mirrored)
+//   <         theta < 0               theta >= 0               proof   (> mirrored)
+//   within x  abs(theta) < x          abs(theta) >= x          proof
+
+#include <optional>
+
+#include "harness/language/claim.h"
+#include "harness/theta/evidence.h"
+#include "harness/theta/family.h"
+#include "reports/record/record.h"
+
+namespace assay::harness {
+
+/// Margins on theta itself. Of `<` and `>`, `detect` is only the advantage planned for.
+struct Regions {
+  Relation relation = Relation::equal;
+  double allow = 0;
+  std::optional<double> detect = {};
+  double within = 0;
+
+  bool proof() const;
+  bool two_sided() const;
+  /// Whether there is a forbidden region that a pass must exclude.
+  bool has_forbidden() const { return proof() || detect.has_value(); }
+  /// Whether the claim names a margin of its own.
+  bool has_margin() const {
+    return allow != 0 || detect.has_value() || relation == Relation::within;
+  }
+};
+
+/// Natural logarithm of the p-value of "theta in C".
+double log_p_claimed(const Evidence& evidence, const Regions& regions);
+
+/// Natural logarithm of the p-value of "theta in F"; 0 where there is no F.
+double log_p_forbidden(const Evidence& evidence, const Regions& regions);
+
+/// Where C ends above 0: at theta = 0, `allow` or the margin of `within`. A theta that cannot be
+/// negative, as a distance, has no other end.
+double edge_of_claimed(const Regions& regions);
+
+/// Which tail of the statistic speaks against C.
+std::string tail(const Regions& regions);
+
+/// Share of the errors one channel may spend.
+struct ErrorShare {
+  double alpha = 0;
+  double beta = 0;
+};
+
+/// Fail, pass or inconclusive of a claim whose channels have these p-values.
+struct ChannelDecision {
+  double log_p_claimed = 0;
+  double log_p_forbidden = 0;
+  bool rejected = false;  ///< "theta in C", at the fixed share or by Holm
+};
+reports::Verdict decide(const std::vector<ChannelDecision>& channels, const Regions& regions,
+                        double beta);
+
+}  // namespace assay::harness

@@ -1,0 +1,86 @@
+#include "reports/formats/base64.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace assay::reports {
+namespace {
+
+constexpr std::string_view digits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+std::optional<std::uint32_t> value_of(char digit) {
+  const std::size_t value = digits.find(digit);
+  if (value == std::string_view::npos) return std::nullopt;
+  return static_cast<std::uint32_t>(value);
+}
+
+/// Of the last group, how many characters are padding; npos where there are more than two.
+std::size_t padding_of(std::string_view text) {
+  std::size_t padding = 0;
+  while (padding < 2 && padding < text.size() && text[text.size() - 1 - padding] == '=') ++padding;
+  return padding;
+}
+
+}  // namespace
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0U);
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= count ? digits[group >> (18 - 6 * k) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text) {
+  if (text.size() % 4 != 0) return std::nullopt;
+  const std::size_t padding = padding_of(text);
+  const std::string_view data = text.substr(0, text.size() - padding);
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  std::uint32_t group = 0;
+  std::uint32_t bits = 0;
+  for (const char digit : data) {
+    const auto value = value_of(digit);
+    if (!value) return std::nullopt;
+    group = (group << 6 | *value) & 0xffff;
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes.push_back(static_cast<std::uint8_t>(group >> bits & 0xff));
+  }
+  return bytes;
+}
+
+std::vector<std::uint8_t> bytes_of(std::span<const float> values) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(values.size() * sizeof(float));
+  for (const float value : values) {
+    const auto word = std::bit_cast<std::uint32_t>(value);
+    for (int shift = 0; shift < 32; shift += 8) {
+      bytes.push_back(static_cast<std::uint8_t>(word >> shift & 0xff));
+    }
+  }
+  return bytes;
+}
+
+std::vector<float> floats_of(std::span<const std::uint8_t> bytes) {
+  std::vector<float> values;
+  values.reserve(bytes.size() / sizeof(float));
+  for (std::size_t i = 0; i + 4 <= bytes.size(); i += 4) {
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      word |= static_cast<std::uint32_t>(bytes[i + k]) << (8 * k);
+    }
+    values.push_back(std::bit_cast<float>(word));
+  }
+  return values;
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,37 @@
+#pragma once
+
+// What the ledger of nights says, in the same words in every format.
+
+#include <string>
+#include <vector>
+
+#include "reports/record/record.h"
+
+namespace assay::reports {
+
+/// "2 ledger alarms"; empty where there is none.
+std::string alarm_count(const Record&);
+
+/// "Ledger nightly.ledger, budget 0.003 a suite: 2 alarms in 57 series".
+std::string ledger_title(const Ledger&);
+
+/// "luminaire/mean(area) == analytic", with the channel where the test has several.
+std::string series_name(const Ledger&, const LedgerSeries&);
+
+/// E = exp(log_e) in two to four digits, also far beyond a double's range.
+std::string e_text(const Number& log_e);
+
+/// "12 nights since 2026-11-10: relative difference +0.031 % +- 0.005 %, E = 1.3e+05, alarm at
+/// 667".
+std::string series_sentence(const LedgerSeries&);
+
+/// Of an alarm: since when, and when theta moved most likely; empty for the others.
+std::string alarm_sentence(const LedgerSeries&);
+
+/// What is said of all series without an alarm in one sentence: how many, and which stands highest.
+std::string quiet_sentence(const Ledger&);
+
+/// Notes on what this run added, those of several series in one sentence.
+std::vector<std::string> ledger_notes(const Ledger&);
+
+}  // namespace assay::reports

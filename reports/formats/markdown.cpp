@@ -1,0 +1,193 @@
+#include "reports/formats/markdown.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/formats/ledger.h"
+#include "reports/words/describe.h"
+#include "reports/words/kill_matrix.h"
+#include "reports/words/number.h"
+#include "reports/words/statement_text.h"
+#include "reports/words/text.h"
+#include "reports/words/verdict.h"
+
+namespace assay::reports {
+namespace {
+
+constexpr std::size_t cell_limit = 300;
+constexpr std::size_t paragraph_limit = 4000;
+
+std::string cell(const std::string& text, std::size_t limit = cell_limit) {
+  return escape_markdown(cap(clean(text), limit));
+}
+
+// A fence that the text cannot close.
+std::string code_block(const std::string& text) {
+  std::size_t longest = 0, run = 0;
+  for (const char c : text) {
+    run = c == '`' ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  const std::string fence(std::max<std::size_t>(3, longest + 1), '`');
+  return fmt::format("{}sh\n{}\n{}\n", fence, text, fence);
+}
+
+std::string problem(const Test& test) {
+  std::string out =
+      fmt::format("### {} {}: {}\n\n", mark(outcome(test)), verdict_text(test), cell(test.name));
+  for (const auto& [label, sentence] : facts(test))
+    out += fmt::format("- {}: {}\n", label, cell(sentence, paragraph_limit));
+  if (const std::string where = place(test); !where.empty())
+    out += fmt::format("- where: {}\n", cell(where));
+  if (!test.replay.empty())
+    out += fmt::format("\n{}", code_block(cap(one_line(test.replay), paragraph_limit)));
+  return out + "\n";
+}
+
+std::string row(const Test& test) {
+  return fmt::format("| {} {} | {} | {} | {} | {} |\n", mark(outcome(test)), verdict_text(test),
+                     cell(test.name), cell(key_number(test)), cell(cost_text(total_cost(test))),
+                     duration(total_cost(test).seconds));
+}
+
+std::string suite_heading(const Suite& suite) {
+  std::string out = fmt::format("## {}\n\n", cell(suite.name));
+  if (!suite.about.empty()) out += cell(suite.about, paragraph_limit) + "\n\n";
+  return out + cell(levels_text(suite)) + "\n\n" +
+         "| verdict | test | effect [interval] | cost | CPU time |\n|---|---|---|---|---|\n";
+}
+
+// Which method sees which defect.
+std::string kill_section(const Suite& suite) {
+  const KillMatrix matrix = kill_matrix(suite);
+  if (!is_worth_showing(matrix)) return {};
+  std::string out = fmt::format("### Which method sees which defect\n\n{}\n\n{}\n\n| mutant |",
+                                cell(kill_totals(suite, matrix), paragraph_limit),
+                                cell(kill_matrix_legend, paragraph_limit));
+  std::string rule = "|---|";
+  for (const std::string& method : matrix.methods) {
+    out += fmt::format(" {} |", cell(method));
+    rule += "---|";
+  }
+  out += "\n" + rule + "\n";
+  for (const KillRow& row : matrix.rows) {
+    out += fmt::format("| {} |", cell(suite.estimators[row.mutant].name));
+    for (const auto& one : row.cells)
+      out += fmt::format(" {} |", one ? cell(short_text(suite, *one)) : "");
+    out += "\n";
+  }
+  return out + "\n";
+}
+
+// Pieces up to a limit that leaves room for the note on what is missing.
+class Page {
+ public:
+  explicit Page(std::size_t limit) : limit_(limit > note_room ? limit - note_room : 0) {}
+
+  bool add(const std::string& piece) {
+    if (text_.size() + piece.size() > limit_) return false;
+    text_ += piece;
+    return true;
+  }
+  std::string take() { return std::move(text_); }
+
+  static constexpr std::size_t note_room = 256;
+
+ private:
+  std::string text_;
+  std::size_t limit_;
+};
+
+std::string title(const Record& record) {
+  const std::string alarm = alarm_count(record);
+  std::string out =
+      fmt::format("# {}{}{}\n\n", tally_sentence(tally(record)), alarm.empty() ? "" : "; ", alarm);
+  out += cell(fmt::format("{} {} {}, seed {}, {}", record.tool.name, record.tool.version,
+                          record.tool.commit, record.seed, record.started)) +
+         "\n\n";
+  if (const std::string verdicts = verdict_counts(record); !verdicts.empty())
+    out += cell(verdicts + ". " + error_rates(record)) + "\n\n";
+  if (!record.note.empty()) out += cell(record.note, paragraph_limit) + "\n\n";
+  return out;
+}
+
+std::string ledger_section(const Ledger& ledger) {
+  std::string out = fmt::format("## {}\n\n", cell(ledger_title(ledger)));
+  for (const LedgerSeries& series : ledger.series) {
+    if (!series.alarm) continue;
+    out += fmt::format("- {} **alarm** {}: {}; {}\n", mark(Outcome::failed),
+                       cell(series_name(ledger, series)),
+                       cell(series_sentence(series), paragraph_limit),
+                       cell(alarm_sentence(series), paragraph_limit));
+  }
+  if (const std::string text = quiet_sentence(ledger); !text.empty())
+    out += fmt::format("- {}\n", cell(text, paragraph_limit));
+  for (const std::string& note : ledger_notes(ledger))
+    out += fmt::format("- {}\n", cell(note, paragraph_limit));
+  return out + "\n";
+}
+
+// What the suites' statements are answered.
+std::string statements_section(const Record& record) {
+  if (statement_count(record) == 0) return {};
+  std::string out = fmt::format(
+      "## Statements\n\n{}\n\n| statement | answer | tests that answer it |\n|---|---|---|\n",
+      cell(statement_totals(record)));
+  for (const Suite& suite : record.suites) {
+    for (const Statement& statement : suite.statements) {
+      const bool both = !statement.holds.empty() && !statement.fails.empty();
+      std::string tests = findings(suite, statement.holds);
+      if (both) tests = "it holds: " + tests + ". It does not: ";
+      tests += findings(suite, statement.fails);
+      out +=
+          fmt::format("| {} ({}) | **{}** | {} |\n", cell(statement.text), cell(statement.source),
+                      cell(whole_answer(suite, statement)), cell(tests, 4 * cell_limit));
+    }
+  }
+  return out + "\n";
+}
+
+int add_problems(const Record& record, Outcome kind, Page& page) {
+  int missing = 0;
+  for (const Suite& suite : record.suites) {
+    for (const Test& test : suite.tests) {
+      if (outcome(test) == kind && !page.add(problem(test))) ++missing;
+    }
+  }
+  return missing;
+}
+
+int add_table(const Suite& suite, Page& page) {
+  if (suite.tests.empty()) return 0;
+  if (!page.add(suite_heading(suite))) return static_cast<int>(suite.tests.size());
+  int missing = 0;
+  for (const Test& test : suite.tests) {
+    if (!page.add(row(test))) ++missing;
+  }
+  page.add("\n");
+  if (const std::string text = kill_section(suite); !page.add(text)) ++missing;
+  return missing;
+}
+
+}  // namespace
+
+std::string markdown(const Record& record, std::size_t limit) {
+  Page page(limit);
+  page.add(title(record));
+  const bool statements = page.add(statements_section(record));
+  if (!record.ledger.file.empty()) page.add(ledger_section(record.ledger));
+  int problems = add_problems(record, Outcome::failed, page);
+  problems += add_problems(record, Outcome::inconclusive, page);
+  int rows = statements ? 0 : static_cast<int>(statement_count(record));
+  for (const Suite& suite : record.suites) rows += add_table(suite, page);
+  std::string out = page.take();
+  if (problems > 0 || rows > 0)
+    out += fmt::format(
+        "\nCut to fit: {} descriptions and {} table rows are missing here; the JSON "
+        "record has them all.\n",
+        problems, rows);
+  return out;
+}
+
+}  // namespace assay::reports

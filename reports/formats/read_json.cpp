@@ -1,0 +1,249 @@
+#include "reports/formats/read_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "reports/formats/base64.h"
+#include "reports/record/fields.h"
+
+namespace assay::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void fail(const std::string& place, const std::string& sentence) {
+  throw ReadError(place.empty() ? sentence : place + ": " + sentence);
+}
+
+[[noreturn]] void wrong_type(const std::string& place, const char* wanted, const Json& node) {
+  // Only a scalar is shown: printing recurses, and nesting may be as deep as the file is long.
+  std::string found = node.type_name();
+  if (node.is_primitive()) found = node.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (found.size() > 60) found = "a long " + std::string(node.type_name());
+  fail(place, fmt::format("should be {}, but is {}", wanted, found));
+}
+
+template <class T>
+void read(const Json& node, const std::string& place, T& value);
+
+// Reads the members of one object; finish() then refuses what was not asked for.
+class Reader {
+ public:
+  Reader(const Json& object, std::string place) : object_(object), place_(std::move(place)) {
+    if (!object_.is_object()) wrong_type(place_, "an object", object_);
+  }
+
+  template <class T>
+  void operator()(const char* key, T& value) {
+    const auto found = object_.find(key);
+    if (found == object_.end()) fail(place_, fmt::format("the key \"{}\" is missing", key));
+    known_.insert(key);
+    read(*found, place_.empty() ? key : place_ + "." + key, value);
+  }
+
+  template <class T>
+  void repeated(const char* key, const T&) {
+    T unused{};
+    (*this)(key, unused);
+  }
+
+  void finish() const {
+    for (const auto& item : object_.items()) {
+      if (!known_.contains(item.key()))
+        fail(place_, fmt::format("the key \"{}\" is unknown", item.key()));
+    }
+  }
+
+ private:
+  const Json& object_;
+  std::string place_;
+  std::set<std::string> known_;
+};
+
+bool special_number(const Json& node, double& value) {
+  if (!node.is_string()) return false;
+  const auto& text = node.get_ref<const std::string&>();
+  using Limits = std::numeric_limits<double>;
+  if (text == "NaN") value = Limits::quiet_NaN();
+  if (text == "Infinity") value = Limits::infinity();
+  if (text == "-Infinity") value = -Limits::infinity();
+  return text == "NaN" || text == "Infinity" || text == "-Infinity";
+}
+
+void leaf(const Json& node, const std::string& place, double& value) {
+  if (special_number(node, value)) return;
+  if (!node.is_number()) wrong_type(place, "a number", node);
+  value = node.get<double>();
+}
+
+void leaf(const Json& node, const std::string& place, Number& value) {
+  value.reset();
+  if (node.is_null()) return;
+  double number = 0;
+  if (!node.is_number() && !special_number(node, number))
+    wrong_type(place, "a number or null", node);
+  leaf(node, place, number);
+  value = number;
+}
+
+void leaf(const Json& node, const std::string& place, std::string& value) {
+  if (!node.is_string()) wrong_type(place, "text", node);
+  value = node.get<std::string>();
+}
+
+void leaf(const Json& node, const std::string& place, Texels& value) {
+  if (!node.is_string()) wrong_type(place, "base64 of 32-bit floats", node);
+  const auto bytes = from_base64(node.get_ref<const std::string&>());
+  if (!bytes || bytes->size() % sizeof(float) != 0) {
+    fail(place, "should be base64 of 32-bit floats");
+  }
+  value.values = floats_of(*bytes);
+}
+
+template <class T>
+void leaf(const Json& node, const std::string& place, std::optional<T>& value) {
+  value.reset();
+  if (node.is_null()) return;
+  T held{};
+  read(node, place, held);
+  value = std::move(held);
+}
+
+void leaf(const Json& node, const std::string& place, bool& value) {
+  if (!node.is_boolean()) wrong_type(place, "true or false", node);
+  value = node.get<bool>();
+}
+
+void leaf(const Json& node, const std::string& place, std::uint64_t& value) {
+  if (!node.is_number_unsigned()) wrong_type(place, "a whole number from 0", node);
+  value = node.get<std::uint64_t>();
+}
+
+void leaf(const Json& node, const std::string& place, int& value) {
+  if (!node.is_number_integer() || node.get<double>() > std::numeric_limits<int>::max() ||
+      node.get<double>() < std::numeric_limits<int>::min())
+    wrong_type(place, "a whole number", node);
+  value = node.get<int>();
+}
+
+void leaf(const Json& node, const std::string& place, Verdict& value) {
+  static constexpr std::array all = {Verdict::pass,    Verdict::fail,  Verdict::inconclusive,
+                                     Verdict::invalid, Verdict::error, Verdict::skipped};
+  for (const Verdict verdict : all) {
+    if (node == to_string(verdict)) {
+      value = verdict;
+      return;
+    }
+  }
+  wrong_type(place, "pass, fail, inconclusive, invalid, error or skipped", node);
+}
+
+template <class T>
+void leaf(const Json& node, const std::string& place, std::vector<T>& values) {
+  if (!node.is_array()) wrong_type(place, "an array", node);
+  values.clear();
+  values.reserve(node.size());
+  for (const Json& item : node) {
+    T value{};
+    read(item, fmt::format("{}[{}]", place, values.size()), value);
+    values.push_back(std::move(value));
+  }
+}
+
+template <class T>
+void read(const Json& node, const std::string& place, T& value) {
+  if constexpr (requires(Reader & r) { fields(r, value); }) {
+    Reader reader(node, place);
+    fields(reader, value);
+    reader.finish();
+  } else {
+    leaf(node, place, value);
+  }
+}
+
+// Refuses a key that stands twice in an object: a parser would silently take the last.
+class RepeatedKeys {
+ public:
+  bool operator()(int, Json::parse_event_t event, Json& value) {
+    if (event == Json::parse_event_t::object_start) open_.emplace_back();
+    if (event == Json::parse_event_t::object_end) open_.pop_back();
+    if (event == Json::parse_event_t::key) {
+      const auto key = value.get<std::string>();
+      if (!open_.back().insert(key).second)
+        fail("", fmt::format("the key \"{}\" stands twice in one object", key));
+    }
+    return true;
+  }
+
+ private:
+  std::vector<std::set<std::string>> open_;
+};
+
+std::string place_in(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  const std::size_t start = before.rfind('\n');
+  const std::size_t column = before.size() - (start == std::string_view::npos ? 0 : start + 1) + 1;
+  return fmt::format("line {}, column {}", line, column);
+}
+
+Json parse(std::string_view text) {
+  RepeatedKeys repeated;
+  try {
+    return Json::parse(text.begin(), text.end(), std::ref(repeated));
+  } catch (const Json::parse_error& error) {
+    if (error.byte >= text.size()) fail("", "not a whole JSON text: it ends too early");
+    fail("", fmt::format("not JSON: syntax error at {}", place_in(text, error.byte)));
+  } catch (const Json::out_of_range&) {
+    fail("", "not readable: a number is out of a double's range");
+  }
+}
+
+void check_version(const Json& root) {
+  if (!root.is_object() || !root.contains("schema"))
+    fail("", "not a record of assay: the key \"schema\" is missing");
+  const Json& version = root["schema"];
+  if (version != schema_version)
+    fail("schema",
+         fmt::format("written with version {} of the record, this program reads {}",
+                     version.is_number() ? version.dump() : version.type_name(), schema_version));
+}
+
+/// A map has a number for each element.
+void check_maps(const Record& record) {
+  for (const Suite& suite : record.suites) {
+    for (const Test& test : suite.tests) {
+      for (const Map& map : test.maps) {
+        const std::size_t wanted = map.width * map.height * map.components.size();
+        if (map.texels.values.size() == wanted) continue;
+        fail("maps", fmt::format("{} of \"{}\" should have {} numbers, but has {}", map.name,
+                                 test.id, wanted, map.texels.values.size()));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Record read_json(std::string_view text, std::string_view file_name) {
+  try {
+    const Json root = parse(text);
+    check_version(root);
+    Record record;
+    read(root, "", record);
+    check_maps(record);
+    return record;
+  } catch (const ReadError& error) {
+    throw ReadError(fmt::format("{}: {}", file_name, error.what()));
+  }
+}
+
+}  // namespace assay::reports

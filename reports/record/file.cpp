@@ -1,0 +1,102 @@
+#include "reports/record/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace assay::reports {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, int error) {
+  throw std::runtime_error(
+      fmt::format("cannot write {}: {}", path.string(), std::generic_category().message(error)));
+}
+
+// An open file; a temporary one is removed unless it was kept.
+class Output {
+ public:
+  Output(fs::path file, int flags, fs::path target)
+      : file_(std::move(file)),
+        target_(std::move(target)),
+        descriptor_(::open(file_.c_str(), flags | O_WRONLY | O_CLOEXEC, 0666)),
+        temporary_((flags & O_EXCL) != 0) {
+    if (descriptor_ < 0) fail(target_, errno);
+  }
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+  ~Output() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (temporary_) ::unlink(file_.c_str());
+  }
+
+  void write(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t written = ::write(descriptor_, text.data(), text.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(target_, errno);
+      text.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
+  void close() {
+    if (temporary_ && ::fsync(descriptor_) != 0) fail(target_, errno);
+    // A network file system may report only here that the disk is full.
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail(target_, errno);
+  }
+
+  void rename() {
+    if (::rename(file_.c_str(), target_.c_str()) != 0) fail(target_, errno);
+    temporary_ = false;
+  }
+
+ private:
+  fs::path file_;
+  fs::path target_;
+  int descriptor_;
+  bool temporary_;
+};
+
+// A name that no other process takes; a left-over of a killed process with our id is replaced.
+fs::path temporary_beside(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  fs::path name = folder / fmt::format(".assay-{}.tmp", ::getpid());
+  ::unlink(name.c_str());
+  return name;
+}
+
+fs::path behind_links(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_symlink(fs::symlink_status(path, ignored))) return path;
+  const fs::path target = fs::weakly_canonical(path, ignored);
+  return ignored ? path : target;
+}
+
+}  // namespace
+
+void write_whole(const fs::path& path, std::string_view text) {
+  const fs::path target = behind_links(path);
+  std::error_code ignored;
+  const fs::file_status status = fs::status(target, ignored);
+  if (fs::is_directory(status)) fail(path, EISDIR);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    Output direct(target, 0, path);
+    direct.write(text);
+    direct.close();
+    return;
+  }
+  Output output(temporary_beside(target), O_CREAT | O_EXCL, target);
+  output.write(text);
+  output.close();
+  output.rename();
+}
+
+}  // namespace assay::reports

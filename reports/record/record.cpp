@@ -1,0 +1,138 @@
+#include "reports/record/record.h"
+
+#include <map>
+#include <tuple>
+
+namespace assay::reports {
+namespace {
+
+/// Draws that samples and estimators' rows share are counted once, as far as the longest reaches.
+class Draws {
+ public:
+  template <class Source>
+  void add(const Source& source) {
+    Longest& longest =
+        longest_[{source.plugin, source.parameters, source.stream, source.primaries}];
+    if (source.secondaries >= longest.secondaries) longest = {source.secondaries, source.cost};
+  }
+
+  std::vector<Cost> costs() const {
+    std::vector<Cost> costs;
+    for (const auto& [draws, longest] : longest_) costs.push_back(longest.cost);
+    return costs;
+  }
+
+ private:
+  struct Longest {
+    std::uint64_t secondaries = 0;
+    Cost cost;
+  };
+  std::map<std::tuple<std::string, std::string, std::string, std::uint64_t>, Longest> longest_;
+};
+
+}  // namespace
+
+const char* to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "pass";
+    case Verdict::fail:
+      return "fail";
+    case Verdict::inconclusive:
+      return "inconclusive";
+    case Verdict::invalid:
+      return "invalid";
+    case Verdict::error:
+      return "error";
+    case Verdict::skipped:
+      break;
+  }
+  return "skipped";
+}
+
+Outcome outcome(const Test& test) {
+  if (test.verdict == Verdict::skipped) return Outcome::skipped;
+  if (test.ok) return Outcome::passed;
+  return test.verdict == Verdict::inconclusive ? Outcome::inconclusive : Outcome::failed;
+}
+
+Tally tally(const Suite& suite) {
+  Tally result;
+  for (const Test& test : suite.tests) {
+    switch (outcome(test)) {
+      case Outcome::passed:
+        ++result.passed;
+        break;
+      case Outcome::failed:
+        ++result.failed;
+        break;
+      case Outcome::inconclusive:
+        ++result.inconclusive;
+        break;
+      case Outcome::skipped:
+        ++result.skipped;
+        break;
+    }
+  }
+  return result;
+}
+
+Tally tally(const Record& record) {
+  Tally result;
+  for (const Suite& suite : record.suites) {
+    const Tally part = tally(suite);
+    result.passed += part.passed;
+    result.failed += part.failed;
+    result.inconclusive += part.inconclusive;
+    result.skipped += part.skipped;
+  }
+  return result;
+}
+
+int alarms(const Ledger& ledger) {
+  int count = 0;
+  for (const LedgerSeries& series : ledger.series) count += series.alarm;
+  return count;
+}
+
+Record without_times(Record record) {
+  record.started.clear();
+  record.seconds = 0;
+  record.environment.threads = 0;
+  for (Suite& suite : record.suites) {
+    for (EstimatorSummary& estimator : suite.estimators) estimator.cost.seconds = 0;
+    for (Test& test : suite.tests) {
+      for (Sample& sample : test.samples) sample.cost.seconds = 0;
+    }
+  }
+  return record;
+}
+
+Cost total_cost(const std::vector<Cost>& costs) {
+  Cost sum;
+  for (const Cost& cost : costs) {
+    sum.camera_rays += cost.camera_rays;
+    sum.closest_hit_rays += cost.closest_hit_rays;
+    sum.shadow_rays += cost.shadow_rays;
+    sum.samples += cost.samples;
+    sum.seconds += cost.seconds;
+  }
+  return sum;
+}
+
+Cost total_cost(const Test& test) {
+  Draws draws;
+  for (const Sample& sample : test.samples) draws.add(sample);
+  return total_cost(draws.costs());
+}
+
+std::vector<Cost> costs_of_draws(const Suite& suite) {
+  Draws draws;
+  for (const EstimatorSummary& estimator : suite.estimators) draws.add(estimator);
+  for (const Test& test : suite.tests) {
+    for (const Sample& sample : test.samples) draws.add(sample);
+  }
+  return draws.costs();
+}
+
+}  // namespace assay::reports

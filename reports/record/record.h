@@ -1,0 +1,373 @@
+#pragma once
+
+// The record of a run: plain data that every report is a pure function of. Versioned; its JSON form
+// is described by record.schema.json. A number that does not exist is std::nullopt (JSON null) and
+// `message` says why. Quantities carry the unit of the estimator's output unless stated.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reports/record/record_image.h"
+#include "reports/record/record_ledger.h"
+
+namespace assay::reports {
+
+inline constexpr int schema_version = 1;
+
+/// What a claim's test answers (design: verdicts). `skipped` was not run (another shard's).
+enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };
+const char* to_string(Verdict);
+
+struct Tool {
+  std::string name = "assay";
+  std::string version;
+  std::string commit;
+  bool operator==(const Tool&) const = default;
+};
+
+struct Environment {
+  std::string compiler;
+  std::string cpu;
+  std::string isa;  ///< instruction set that rays were traced with; their bits depend on it
+  int threads = 0;
+  bool operator==(const Environment&) const = default;
+};
+
+struct Cost {
+  std::uint64_t camera_rays = 0;
+  std::uint64_t closest_hit_rays = 0;
+  std::uint64_t shadow_rays = 0;
+  std::uint64_t samples = 0;
+  double seconds = 0;  ///< CPU seconds of drawing
+  bool operator==(const Cost&) const = default;
+};
+
+/// Counts of observations in equal bins over [low, high); the rest below and above.
+struct Histogram {
+  double low = 0;
+  double high = 0;
+  std::vector<std::uint64_t> counts;
+  std::uint64_t below = 0;
+  std::uint64_t above = 0;
+  bool operator==(const Histogram&) const = default;
+};
+
+/// Points of a normal quantile plot: theoretical standard normal quantile, observed value.
+struct QuantilePoint {
+  double normal;
+  double observed;
+  bool operator==(const QuantilePoint&) const = default;
+};
+
+/// How the cost of an observation varies with its value: m2, m11 and m21 are sums over the
+/// observations of (c - mean c)^2, (x - mean x)(c - mean c) and (x - mean x)^2 (c - mean c).
+struct CostMoments {
+  std::string kind;  ///< rays, samples
+  double mean = 0, m2 = 0, m11 = 0, m21 = 0;
+  bool operator==(const CostMoments&) const = default;
+};
+
+/// Observations of one channel of one estimator, as one test saw them.
+struct Sample {
+  std::string estimator;  ///< its name in the suite
+  std::string plugin;
+  std::string parameters;  ///< canonical text
+  std::string channel;
+  /// 16 hexadecimal digits. Samples of one plugin, parameters, stream and number of primaries are
+  /// the same draws, or the longer of them begins with the shorter.
+  std::string stream;
+  std::uint64_t primaries = 0;
+  std::uint64_t secondaries = 0;
+  Number mean, variance, skewness, kurtosis, minimum, maximum;  ///< of secondary estimates
+  std::uint64_t nonzero = 0;
+  std::uint64_t nonfinite = 0;
+  Histogram histogram;
+  std::vector<QuantilePoint> quantiles;
+  Cost cost;
+  std::vector<CostMoments> with_cost;  ///< where a claim on a cost or an efficiency kept them
+  bool operator==(const Sample&) const = default;
+};
+
+/// A number with its interval at `confidence`.
+struct Estimate {
+  Number value, low, high;
+  bool operator==(const Estimate&) const = default;
+};
+
+/// theta of the claim: what it is, its estimate and interval.
+struct Effect {
+  std::string quantity;  ///< "relative difference of means", "ln variance ratio", …
+  Number estimate, low, high;
+  double confidence = 0;
+  bool relative = false;  ///< in units of the reference: shown in per cent
+  bool operator==(const Effect&) const = default;
+};
+
+/// An assumption checked. state: green, amber, red.
+struct Gate {
+  std::string name;
+  Number value;
+  Number limit;
+  std::string state;
+  bool operator==(const Gate&) const = default;
+};
+
+struct Distribution {
+  std::string family;  ///< of the statistic under the null hypothesis
+  std::vector<double> parameters;
+  bool operator==(const Distribution&) const = default;
+};
+
+/// An empirical distribution function at one of its values, what the law it is drawn from may be
+/// there, and what the claimed law is.
+struct LawPoint {
+  double value = 0;
+  double observed = 0;  ///< part of the values up to here
+  double low = 0;       ///< of the band
+  double high = 0;
+  Number law;  ///< null where two samples are compared
+  bool operator==(const LawPoint&) const = default;
+};
+
+/// The empirical law of one sample: with probability `confidence` all of its band's points hold the
+/// law that the sample was drawn from.
+struct EmpiricalLaw {
+  std::string source;  ///< the estimator's name
+  double confidence = 0;
+  std::vector<LawPoint> points;
+  bool operator==(const EmpiricalLaw&) const = default;
+};
+
+/// The numbers of one channel of a claim.
+struct Channel {
+  std::string name;
+  Number statistic;
+  Distribution distribution;
+  Number p_value;  ///< of the null hypothesis; may underflow to the least double, see log10_p
+  Number log10_p;
+  Number p_adjusted;  ///< Holm over the family; null outside it (mutants, filtered runs)
+  Number p_pass;      ///< p-value of "theta lies in the forbidden region"
+  Number log10_p_adjusted, log10_p_pass;  ///< of these two, which may underflow as well
+  Effect effect;
+  Number reference;  ///< what the mean is marked against in the histogram, if a number
+  std::vector<EmpiricalLaw> laws;  ///< of a claim about laws of one coordinate: one or two
+  bool operator==(const Channel&) const = default;
+};
+
+/// One look: what the first so many observations say by themselves. The test's own p-value is the
+/// smallest over the looks of p over the look's weight.
+struct Look {
+  std::uint64_t secondaries = 0;
+  double weight = 1;  ///< its share of the test's alpha and beta
+  Number log10_p;
+  Number p_pass;
+  Number log10_p_pass;
+  bool operator==(const Look&) const = default;
+};
+
+struct Test {
+  std::string name;
+  std::string id;  ///< suite file's stem, slash, name
+  std::string claim;
+  std::string file;
+  int line = 0;
+  std::vector<std::string> tags;
+  std::string over, reference, cost;  ///< these keys of the test, as replay needs them; "" if unset
+  Verdict verdict = Verdict::skipped;
+  Verdict expected = Verdict::pass;
+  bool ok = false;
+  std::string method;   ///< design: method names
+  bool forced = false;  ///< by name: red gates on the data are shown and do not invalidate
+  std::string null_hypothesis;
+  std::string tail;  ///< "two-sided", "upper", "lower"
+  Number alpha;      ///< this test's share of the suite's alpha
+  Number beta;
+  Number detect, allow;  ///< as margins on theta (same unit as effect)
+  Number detectable;     ///< least effect found with probability 1 - beta at this n
+  Number power;          ///< at `detect` (planned)
+  std::vector<Look> looks;
+  std::vector<Gate> gates;
+  std::vector<Sample> samples;
+  std::vector<Channel> channels;  ///< the worst first; never empty once tested
+  std::optional<Image> image;
+  std::vector<Map> maps;  ///< of an image
+  std::string message;    ///< what a reader needs to know: what was excluded, or what would decide
+  std::string replay;     ///< command that gives the same numbers again
+  bool operator==(const Test&) const = default;
+};
+
+/// One channel of an estimator for the suite's picture.
+struct EstimatorChannel {
+  std::string name;
+  Estimate mean;
+  Estimate variance;  ///< of one primary estimate where it averages, else of the secondary
+  Number reference;   ///< analytic mean
+  Number reference_variance;
+  bool operator==(const EstimatorChannel&) const = default;
+};
+
+/// An estimator of a suite with everything drawn from it.
+struct EstimatorSummary {
+  std::string name;
+  std::string plugin;
+  std::string parameters;
+  std::string bias;      ///< bias class
+  std::string original;  ///< of a mutant
+  std::string defect;    ///< of a mutant
+  std::string stream;    ///< as in Sample
+  std::uint64_t primaries = 0;
+  std::uint64_t secondaries = 0;
+  double confidence = 0;  ///< of the intervals in channels
+  std::string
+      variance_of;  ///< what `variance` in channels is of: "primary", "secondary", or not said
+  std::vector<EstimatorChannel> channels;
+  Cost cost;
+  bool operator==(const EstimatorSummary&) const = default;
+};
+
+/// Where a pair of estimators of a suite stands at its alpha: descriptive, not part of the family.
+struct Comparison {
+  std::string first, second, channel;
+  Number mean_p;                          ///< Welch, two-sided
+  Number variance_p;                      ///< log-variance ratio, two-sided
+  Number log10_mean_p, log10_variance_p;  ///< of the same, which may underflow
+  bool means_differ = false;              ///< after Holm over the pairs of the suite
+  bool variances_differ = false;
+  Number variance_ratio;  ///< first over second, a primary each
+  bool operator==(const Comparison&) const = default;
+};
+
+/// What somebody claims, and the tests of the suite that answer it, by their names. The answer is
+/// not part of the record: it follows from the verdicts (reports/statements.h).
+struct Statement {
+  std::string text;
+  std::string source;              ///< who says it, and where
+  std::string condition;           ///< completes "only if"; empty but where both lists have tests
+  std::vector<std::string> holds;  ///< tests whose expected verdicts show that it is true
+  std::vector<std::string> fails;  ///< tests whose expected verdicts show that it is not
+  int line = 0;                    ///< in the suite's file
+  bool operator==(const Statement&) const = default;
+};
+
+struct Suite {
+  std::string name;
+  std::string file;
+  std::string about;
+  std::uint64_t seed = 0;  ///< of this suite's streams
+  double alpha = 0;
+  double beta = 0;
+  bool timed = false;  ///< seconds decided something: exempt from bit identity
+  std::vector<EstimatorSummary> estimators;
+  std::vector<Comparison> comparisons;
+  std::vector<Test> tests;
+  std::vector<Statement> statements;
+  bool operator==(const Suite&) const = default;
+};
+
+/// One-pass moments of the finite values of a channel: m2, m3 and m4 are sums of powers of
+/// deviations from the mean, and `rest` is what rounding took from the mean.
+struct Moments {
+  std::uint64_t count = 0;
+  double mean = 0, m2 = 0, m3 = 0, m4 = 0;
+  double minimum = 0, maximum = 0;
+  std::uint64_t nonzero = 0;
+  double rest = 0;
+  bool operator==(const Moments&) const = default;
+};
+
+struct ShardChannel {
+  std::string name;
+  Number reference;  ///< analytic mean
+  Moments moments;
+  bool operator==(const ShardChannel&) const = default;
+};
+
+/// What lies behind an estimator of a shard's suite, at the same place in `Suite::estimators`.
+struct ShardPicture {
+  std::uint64_t position = 0;     ///< in the suite's file
+  bool by_tests = false;          ///< a test drew it; else it was drawn for the picture alone
+  std::uint64_t secondaries = 0;  ///< asked for
+  bool drawn = false;             ///< false: the estimator threw
+  double averaged = 1;            ///< primaries that an observation averages
+  bool image = false;
+  std::vector<ShardChannel> channels;  ///< none of an image
+  bool operator==(const ShardPicture&) const = default;
+};
+
+/// What Holm's method over the whole suite needs of a test, at the same place in `Suite::tests`.
+struct ShardTest {
+  std::uint64_t position = 0;         ///< in the suite's file
+  bool inside = false;                ///< of the family; mutants and expected failures are not
+  double weight = 0;                  ///< of one channel, of the family's weights, which sum to 1
+  std::uint64_t untested = 0;         ///< channels without a p-value
+  std::vector<double> log_p;          ///< natural logarithms, of the test's channels in their order
+  std::vector<Effect> refuted;        ///< their effects, should Holm refute the claim
+  std::vector<std::string> compared;  ///< the two estimators of a claim about two
+  bool operator==(const ShardTest&) const = default;
+};
+
+struct ShardSuite {
+  std::string digest;       ///< of the suite's file and the data files it names
+  std::uint64_t tests = 0;  ///< in the suite's file
+  std::vector<ShardPicture> pictures;
+  std::vector<ShardTest> results;
+  bool operator==(const ShardSuite&) const = default;
+};
+
+/// What makes a run one part of several, and what joining the parts takes.
+struct Shard {
+  std::uint64_t index = 1;  ///< from 1
+  std::uint64_t count = 1;
+  std::string options;             ///< the command without seed, shard and reports
+  std::vector<ShardSuite> suites;  ///< in the record's order
+  bool operator==(const Shard&) const = default;
+};
+
+struct Record {
+  int schema = schema_version;
+  Tool tool;
+  Environment environment;
+  std::uint64_t seed = 0;
+  std::string started;  ///< UTC, ISO 8601
+  double seconds = 0;
+  std::string note;  ///< "filtered: verdicts rest on fixed shares" and the like
+  std::vector<Suite> suites;
+  Ledger ledger;
+  std::optional<Shard> shard;  ///< none: a whole run, or shards merged
+  bool operator==(const Record&) const = default;
+};
+
+/// What a test's verdict and expectation together mean for the run.
+enum class Outcome {
+  passed,        ///< ok
+  failed,        ///< not ok: fail, invalid, error, or an expectation not met
+  inconclusive,  ///< undecided, whatever was expected
+  skipped        ///< not run
+};
+Outcome outcome(const Test&);
+
+/// Tests by outcome: what the last line of the console and the exit code are made of.
+struct Tally {
+  int passed = 0;
+  int failed = 0;
+  int inconclusive = 0;  ///< counted as skipped in the last line
+  int skipped = 0;
+};
+Tally tally(const Suite&);
+Tally tally(const Record&);
+
+/// The record without what differs between two runs of the same suite, seed and program: `started`,
+/// every `seconds`, and `environment.threads`. Two runs agree when these are equal byte for byte.
+Record without_times(Record);
+
+/// What a test cost: the same draws once, though each of their channels has a sample.
+Cost total_cost(const Test&);
+
+/// What the suite's tests and the rows of its estimators cost, without pilots: the same draws once.
+std::vector<Cost> costs_of_draws(const Suite&);
+Cost total_cost(const std::vector<Cost>&);
+
+}  // namespace assay::reports

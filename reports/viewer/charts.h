@@ -1,0 +1,52 @@
+#pragma once
+
+// The pictures of the HTML report, each a piece of inline SVG; empty where there is nothing to
+// draw.
+
+#include <string>
+#include <vector>
+
+#include "reports/record/record.h"
+#include "reports/words/kill_matrix.h"
+
+namespace assay::reports {
+
+/// The estimators of a suite that have a channel, one row each, as bars from zero with their
+/// intervals: the means (red) and the variances (blue); exact values as dashed lines. Variances
+/// whose values span more than a factor 50 are drawn on a logarithmic axis, which says so.
+std::string mean_bars(const Suite& suite, const std::string& channel);
+std::string variance_bars(const Suite& suite, const std::string& channel);
+
+/// Where each pair of a suite's estimators stands in one channel: above the diagonal whether the
+/// means agree, below it whose variance is smaller. The first 40 estimators.
+std::string pair_matrix(const Suite& suite, const std::string& channel);
+inline constexpr std::size_t most_in_matrix = 40;
+
+/// Mutants against methods (reports/kill_matrix.h): cells shaded by the samples that killed the
+/// mutant, a step a decade, each with its text; empty where no mutant was tested by two methods.
+std::string kill_chart(const Suite& suite, const KillMatrix& matrix);
+
+/// A test's effect against none, `allow` and `detect`: one interval a channel, the first 40. A
+/// logarithm of a ratio is drawn as the ratio.
+std::string interval_chart(const Test&);
+inline constexpr std::size_t most_in_interval_chart = 40;
+
+/// The same for a table row: the worst channel alone, no labels.
+std::string interval_sketch(const Test&);
+
+/// Observations of one or two sources with the reference marked: counts per bin for one source,
+/// densities for two. What lies outside the bins is said at the ends.
+struct Observations {
+  std::vector<const Sample*> samples;  ///< one or two
+  Number reference;
+};
+std::string histogram_chart(const Observations&);
+
+/// Normal quantile plot: a sample from a normal law follows the line mean + standard deviation * z.
+std::string quantile_chart(const Sample&);
+
+/// Empirical distribution functions within their bands, one or two, and the law that was claimed of
+/// one.
+std::string law_chart(const Channel&);
+
+}  // namespace assay::reports

@@ -1,0 +1,62 @@
+#pragma once
+
+// What a test's numbers say, in the same words in every format.
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reports/record/record.h"
+
+namespace assay::reports {
+
+/// The samples of the worst channel, and those of estimators that have none of its name.
+std::vector<const Sample*> worst_samples(const Test&);
+
+/// Observations of all sources together, those of one that has a sample for each of several
+/// channels counted once.
+std::uint64_t observations(const Test&);
+
+/// Whether the test's numbers mean what they say: not where an assumption of theirs does not hold.
+bool is_evidence(const Test&);
+
+/// The number of a test that a reader looks for first: the worst channel's effect with its named
+/// interval, else the p-value that the verdict rests on; empty where nothing was tested.
+std::string key_number(const Test&);
+
+/// "1.05 M rays", or samples where no ray was traced.
+std::string cost_text(const Cost&);
+/// The same of many draws, with the samples of those that traced none: "64.0 k rays and 40.0 M
+/// samples without rays".
+std::string cost_text(std::vector<Cost>);
+std::uint64_t rays(const Cost&);
+
+/// "suites/triangle.yaml:14".
+std::string place(const Test&);
+
+/// Canonical parameters for people, without the quotes that tell text from numbers.
+std::string parameters_text(const std::string& canonical);
+
+/// human(), or "none" for a number of data that were never finite.
+std::string data_text(const Number& value);
+
+/// The first sentence of the message, or what the verdict says by itself: a report's one line.
+std::string headline(const Test&);
+
+/// A label and a sentence.
+using Fact = std::pair<std::string, std::string>;
+
+/// Everything that a reader of a verdict needs, in reading order: claim, null hypothesis, estimate,
+/// p-values, margins, expectation, channels, assumptions, message. Without place and replay
+/// command.
+std::vector<Fact> facts(const Test&);
+
+/// The same facts as lines "label: sentence", with place and replay command: for formats that show
+/// plain text.
+std::string plain_text(const Test&);
+
+/// "alpha 0.01 (false alarms), beta 0.01 (misses), seed 1".
+std::string levels_text(const Suite& suite);
+
+}  // namespace assay::reports

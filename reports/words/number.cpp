@@ -1,0 +1,133 @@
+#include "reports/words/number.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+namespace assay::reports {
+namespace {
+
+constexpr const char* no_break_space = "\u00A0";
+
+std::string non_finite(double value) {
+  if (std::isnan(value)) return "NaN";
+  return value > 0 ? "Infinity" : "-Infinity";
+}
+
+}  // namespace
+
+std::string round_trip(double value) {
+  if (!std::isfinite(value)) return non_finite(value);
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::string human(double value, int digits) {
+  if (!std::isfinite(value)) return non_finite(value);
+  if (value == 0) return "0";
+  std::string text = fmt::format("{:.{}g}", value, digits);
+  // 1000 in two digits is not 1e+03.
+  if (text.find("e+0") == std::string::npos || std::abs(value) >= 1e6) return text;
+  return fmt::format("{:.0f}", std::strtod(text.c_str(), nullptr));
+}
+
+std::string human(Number value) { return value ? human(*value) : no_number; }
+
+std::string percent(double fraction) {
+  if (!std::isfinite(fraction)) return non_finite(fraction);
+  return human(100 * fraction, 3) + no_break_space + "%";
+}
+
+std::string confidence_text(double confidence) {
+  if (!(confidence > 0 && confidence < 1)) return percent(confidence);
+  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(1 - confidence))) - 2);
+  return fmt::format("{:.{}f}{}%", 100 * confidence, decimals, no_break_space);
+}
+
+std::string with_sign(double value, bool relative) {
+  const std::string text = magnitude(value, relative);
+  return value > 0 ? "+" + text : text;
+}
+
+std::string magnitude(double value, bool relative) {
+  return relative ? percent(value) : human(value);
+}
+
+std::string scientific(double log10_value) {
+  if (!std::isfinite(log10_value)) return log10_value < 0 ? "0" : non_finite(log10_value);
+  // Nobody reads the digits of such an exponent.
+  if (log10_value < -1e6) return "below 1e-1000000";
+  if (log10_value > 1e6) return "above 1e1000000";
+  double exponent = std::floor(log10_value);
+  double mantissa = std::pow(10.0, log10_value - exponent);
+  // 9.96e-5 must not be printed as 10.0e-5.
+  if (mantissa >= 9.95) {
+    mantissa = 1;
+    ++exponent;
+  }
+  return fmt::format("{:.1f}e{:.0f}", mantissa, exponent);
+}
+
+std::string p_text(Number p, Number log10_p) {
+  // What cannot be under the claim has the least logarithm there is, of 300 digits.
+  if (log10_p && std::isfinite(*log10_p) && *log10_p < -1e6) return "below 1e-1000000";
+  if (log10_p && std::isfinite(*log10_p) && *log10_p < -4) return scientific(*log10_p);
+  if (!p) return log10_p ? p_text(std::pow(10.0, *log10_p), std::nullopt) : no_number;
+  if (!std::isfinite(*p)) return non_finite(*p);
+  // What underflowed is stored as the least number there is, or as zero.
+  if (*p >= 0 && *p < std::numeric_limits<double>::min()) return "below 1e-307";
+  if (*p < 1e-4) return *p < 0 ? human(*p, 2) : scientific(std::log10(*p));
+  // Two digits would turn 0.9996 into 1: a p-value near one is itself a finding.
+  return *p > 0.99 && *p < 1 ? fmt::format("1 - {:.1g}", 1 - *p) : fmt::format("{:.2g}", *p);
+}
+
+std::string count_text(std::uint64_t count) {
+  if (count < 10000) return fmt::format("{}", count);
+  static constexpr std::array<const char*, 6> prefixes = {"k", "M", "G", "T", "P", "E"};
+  double scaled = static_cast<double>(count) / 1000;
+  std::size_t prefix = 0;
+  while (scaled >= 999.5 && prefix + 1 < prefixes.size()) {
+    scaled /= 1000;
+    ++prefix;
+  }
+  return fmt::format("{:.{}f}{}{}", scaled,
+                     scaled < 9.995   ? 2
+                     : scaled < 99.95 ? 1
+                                      : 0,
+                     no_break_space, prefixes[prefix]);
+}
+
+std::string counted(std::uint64_t count, const char* singular, const char* plural) {
+  return fmt::format("{}{}{}", count_text(count), no_break_space, count == 1 ? singular : plural);
+}
+
+std::string grouped(std::uint64_t count) {
+  const std::string digits = fmt::format("{}", count);
+  std::string result;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) result += no_break_space;
+    result += digits[i];
+  }
+  return result;
+}
+
+std::string duration(double seconds) {
+  if (!std::isfinite(seconds)) return non_finite(seconds);
+  if (seconds == 0) return "0\u00A0s";
+  if (seconds < 1) return human(1000 * seconds, 3) + no_break_space + "ms";
+  if (seconds < 60) return human(seconds, 3) + no_break_space + "s";
+  const double whole = std::round(seconds);
+  if (whole < 3600)
+    return fmt::format("{:.0f}\u00A0min\u00A0{:.0f}\u00A0s", std::floor(whole / 60),
+                       std::fmod(whole, 60));
+  return fmt::format("{:.0f}\u00A0h\u00A0{:.0f}\u00A0min", std::floor(whole / 3600),
+                     std::floor(std::fmod(whole, 3600) / 60));
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,55 @@
+#pragma once
+
+// Numbers as a reader wants them. Every function is locale-independent.
+
+#include <cstdint>
+#include <string>
+
+#include "reports/record/record.h"
+
+namespace assay::reports {
+
+/// What stands where a number does not exist.
+inline constexpr const char* no_number = "n/a";
+
+/// The shortest decimal form that reads back as the same double; NaN, Infinity, -Infinity.
+std::string round_trip(double value);
+
+/// Rounded to `digits` significant digits (default 4), without trailing zeros: 0.4811, 12350,
+/// 1.235e+07, 3.2e-05.
+std::string human(double value, int digits = 4);
+std::string human(Number value);
+
+/// A fraction as per cent with three significant digits: 0.00312 gives "0.312 %".
+std::string percent(double fraction);
+
+/// A confidence as per cent with as many decimals as tell it from 100: 0.99 gives "99 %", 0.999825
+/// gives "99.98 %".
+std::string confidence_text(double confidence);
+
+/// human() or percent(), with a sign always: +0.31 %.
+std::string with_sign(double value, bool relative);
+
+/// human() or percent(): a margin on an effect.
+std::string magnitude(double value, bool relative);
+
+/// 10 to this power with two significant digits, also far beyond a double's range: "2.3e-1205".
+std::string scientific(double log10_value);
+
+/// A p-value with two significant digits. Below 1e-4 it is made from log10_p when that is given,
+/// since p itself may have underflowed: p = 0, log10_p = -1204.64 gives "2.3e-1205".
+std::string p_text(Number p, Number log10_p);
+
+/// A count: 1048576 gives "1.05 M", below 10 000 all digits.
+std::string count_text(std::uint64_t count);
+
+/// A count with its noun: "1 primary", "12.5 k primaries".
+std::string counted(std::uint64_t count, const char* singular, const char* plural);
+
+/// A count with all digits, in threes: 1048576 gives "1 048 576" (no-break spaces).
+std::string grouped(std::uint64_t count);
+
+/// A duration: "0 s", "4.1 ms", "12.3 s", "2 min 5 s", "3 h 20 min".
+std::string duration(double seconds);
+
+}  // namespace assay::reports

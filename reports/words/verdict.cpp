@@ -1,0 +1,137 @@
+#include "reports/words/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "reports/words/number.h"
+
+namespace assay::reports {
+namespace {
+
+template <class Visitor>
+void for_each_test(const Record& record, Visitor visit) {
+  for (const Suite& suite : record.suites) {
+    for (const Test& test : suite.tests) visit(test);
+  }
+}
+
+std::string of_tests(int some, int total) {
+  return fmt::format("{} of {}", some, counted(static_cast<std::uint64_t>(total), "test", "tests"));
+}
+
+}  // namespace
+
+std::string outcome_word(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::passed:
+      return "ok";
+    case Outcome::failed:
+      return "not ok";
+    case Outcome::inconclusive:
+      return "undecided";
+    case Outcome::skipped:
+      break;
+  }
+  return "not run";
+}
+
+std::string mark(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::passed:
+      return "✓";
+    case Outcome::failed:
+      return "✗";
+    case Outcome::inconclusive:
+      return "?";
+    case Outcome::skipped:
+      break;
+  }
+  return "–";
+}
+
+std::string verdict_text(const Test& test) {
+  const std::string verdict = to_string(test.verdict);
+  if (test.verdict == Verdict::skipped) return verdict;
+  if (test.verdict != test.expected)
+    return test.expected == Verdict::pass
+               ? verdict
+               : fmt::format("{}, but {} expected", verdict, to_string(test.expected));
+  // A verdict can be the expected one for the wrong reason; the message tells it.
+  if (!test.ok) return verdict + ", yet not ok";
+  return test.expected == Verdict::pass ? verdict : verdict + " (as expected)";
+}
+
+std::string tally_sentence(const Tally& tally) {
+  const int total = tally.passed + tally.failed + tally.inconclusive + tally.skipped;
+  if (total == 0) return "No test ran";
+  if (tally.failed > 0) return of_tests(tally.failed, total) + " not ok";
+  if (tally.inconclusive > 0)
+    return of_tests(tally.inconclusive, total) + " undecided, none not ok";
+  if (total == 1) return tally.skipped > 0 ? "The test was not run" : "The test is ok";
+  if (tally.skipped == total) return fmt::format("None of {} tests was run", total);
+  if (tally.skipped > 0)
+    return fmt::format("{} ok, {} not run", of_tests(tally.passed, total), tally.skipped);
+  return fmt::format("All {} tests ok", total);
+}
+
+std::string last_line_note(const Record& record) {
+  bool needed = false;
+  for_each_test(record, [&](const Test& test) {
+    const bool as_named = test.verdict == Verdict::skipped ||
+                          (test.ok ? test.verdict == Verdict::pass : test.verdict == Verdict::fail);
+    needed = needed || !as_named;
+  });
+  return needed ? "Counted below: ok as passed, not ok as failed, undecided and not run as skipped."
+                : "";
+}
+
+std::string verdict_counts(const Record& record) {
+  // By urgency, the plain pass before what was expected to fail, then by their words.
+  std::map<std::tuple<int, bool, std::string>, int> counts;
+  for_each_test(record, [&](const Test& test) {
+    ++counts[{urgency(test), test.verdict != Verdict::pass, verdict_text(test)}];
+  });
+  std::string out;
+  for (const auto& [key, count] : counts)
+    out += fmt::format("{}{}\u00A0{}", out.empty() ? "" : "; ", count, std::get<2>(key));
+  return out;
+}
+
+std::string error_rates(const Record& record) {
+  double alpha = 0, beta = 0;
+  bool planned = false;
+  for (const Suite& suite : record.suites) {
+    if (suite.tests.empty()) continue;
+    alpha += suite.alpha;
+    beta = std::max(beta, suite.beta);
+    for (const Test& test : suite.tests) planned = planned || test.detect.has_value();
+  }
+  if (!(alpha > 0)) return {};
+  std::string text = fmt::format(
+      "If every claim were true, some test would fail by chance with probability {} at most.",
+      human(alpha));
+  if (planned && beta > 0)
+    text += fmt::format(
+        " A claim that is off by its \"detect\" or more passes with probability {} at most.",
+        human(beta));
+  return text;
+}
+
+int urgency(const Test& test) {
+  switch (outcome(test)) {
+    case Outcome::failed:
+      return 0;
+    case Outcome::inconclusive:
+      return 1;
+    case Outcome::skipped:
+      return 2;
+    case Outcome::passed:
+      break;
+  }
+  return 3;
+}
+
+}  // namespace assay::reports

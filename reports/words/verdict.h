@@ -1,0 +1,39 @@
+#pragma once
+
+// Verdicts, outcomes and what a run concluded, in the same words in every format.
+
+#include <string>
+
+#include "reports/record/record.h"
+
+namespace assay::reports {
+
+/// "ok", "not ok", "undecided", "not run".
+std::string outcome_word(Outcome);
+
+/// ✓ ✗ ? – : the same in one column.
+std::string mark(Outcome);
+
+/// The verdict with what was expected of it, where that is not pass: "fail (as expected)",
+/// "pass, but fail expected".
+std::string verdict_text(const Test&);
+
+/// How many tests had which outcome, as a sentence for a title.
+std::string tally_sentence(const Tally&);
+
+/// What passed, failed and skipped count in the console's last line, where these are not the
+/// verdicts of the same names; else empty.
+std::string last_line_note(const Record&);
+
+/// How many tests had which verdict, the urgent ones first: "1 pass, but fail expected; 57 pass; 20
+/// fail (as expected)".
+std::string verdict_counts(const Record&);
+
+/// What the verdicts of a run may be relied on for: its error rates.
+std::string error_rates(const Record&);
+
+/// Where a test stands in lists that begin with what needs a look: not ok, undecided, not run,
+/// ok.
+int urgency(const Test&);
+
+}  // namespace assay::reports

@@ -1,0 +1,290 @@
+#include "stats/basics/adaptive_quadrature.h"
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <limits>
+
+#include "stats/basics/check.h"
+
+namespace assay::stats {
+namespace {
+
+using Rule = boost::math::quadrature::gauss<double, AdaptiveQuadrature::nodes>;
+
+// So near to the end of a part that a border of panels lies outside, rounding included.
+constexpr double nudge = 1e-9;
+// A jump of J in a part makes its halves err by up to .105 J times the width, and by as little as a
+// ninth of that the polynomials through their nodes depart from the density at their ends times
+// blind_share.
+constexpr double jump_share = 9 * AdaptiveQuadrature::blind_share;
+// Next to a pole x^-a, of which halving leaves a part at 0 however deep, the rule misses less than
+// so many times what it finds there up to a = .94; the density at its end tells nothing of it.
+constexpr double most_of_a_pole = 16;
+constexpr std::size_t low_end = AdaptiveQuadrature::nodes;
+constexpr std::size_t high_end = low_end + 1;
+
+AdaptiveQuadrature::Places places_in(Span span) {
+  AdaptiveQuadrature::Places places;
+  const double half = span.width() / 2;
+  std::transform(AdaptiveQuadrature::node_places().begin(), AdaptiveQuadrature::node_places().end(),
+                 places.begin(), [&](double node) { return span.middle() + half * node; });
+  places[low_end] = span.low + nudge * span.width();
+  places[high_end] = span.high - nudge * span.width();
+  return places;
+}
+
+// Of the nodes, in the order of node_places().
+const std::array<double, AdaptiveQuadrature::nodes>& node_weights() {
+  static const std::array<double, AdaptiveQuadrature::nodes> weights = [] {
+    std::array<double, AdaptiveQuadrature::nodes> all{Rule::weights()[0]};
+    for (std::size_t i = 1; i < Rule::weights().size(); ++i) {
+      all[2 * i - 1] = all[2 * i] = Rule::weights()[i];
+    }
+    return all;
+  }();
+  return weights;
+}
+
+// What the polynomial through the values at the nodes is at the part's lower end, as their weights;
+// the nodes lie symmetrically, so that those at t stand for -t at the upper one.
+const std::array<double, AdaptiveQuadrature::nodes>& weights_at_end() {
+  static const std::array<double, AdaptiveQuadrature::nodes> weights = [] {
+    const auto& t = AdaptiveQuadrature::node_places();
+    std::array<double, AdaptiveQuadrature::nodes> all{};
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      all[i] = 1;
+      for (std::size_t j = 0; j < t.size(); ++j) {
+        if (j != i) all[i] *= (-1 - t[j]) / (t[i] - t[j]);
+      }
+    }
+    return all;
+  }();
+  return weights;
+}
+
+// Mass that a jump may add or take, also beyond the outermost nodes, where neither a part nor its
+// halves look: the density at the ends is then not what the nodes go on to.
+double unseen(Span span, const AdaptiveQuadrature::Values& at) {
+  double low = at[low_end].value - weights_at_end()[0] * at[0].value;
+  double high = at[high_end].value - weights_at_end()[0] * at[0].value;
+  for (std::size_t i = 1; i < AdaptiveQuadrature::nodes; i += 2) {
+    const double near = weights_at_end()[i];
+    const double far = weights_at_end()[i + 1];
+    low -= near * at[i].value + far * at[i + 1].value;
+    high -= far * at[i].value + near * at[i + 1].value;
+  }
+  return jump_share * span.width() * (std::abs(low) + std::abs(high));
+}
+
+AdaptiveQuadrature::Sampled sampled_in(Span span, const AdaptiveQuadrature::Values& at) {
+  AdaptiveQuadrature::Sampled found{.ends = {at[low_end].value, at[high_end].value}};
+  for (std::size_t i = 0; i < AdaptiveQuadrature::nodes; ++i) {
+    const double weight = span.width() / 2 * node_weights()[i];
+    found.parts[i] = weight * at[i].value;
+    found.integral =
+        found.integral + Integral{found.parts[i], weight * at[i].error, weight * at[i].error};
+  }
+  found.integral.error += unseen(span, at);
+  return found;
+}
+
+/// What two halves say of a part, and how far the part itself was from it.
+Integral from_halves(Integral whole, Integral one, Integral two) {
+  const Integral sum = one + two;
+  return {sum.value, std::max(std::abs(sum.value - whole.value), sum.error), sum.given};
+}
+
+bool is_good(const Integral& sum, double tolerance) { return sum.error - sum.given <= tolerance; }
+
+/// Of a part that is halved no further, though its error is above the tolerance.
+Integral given_up(Integral sum) {
+  if (sum.value > 0) sum.error = std::min(sum.error, sum.given + most_of_a_pole * sum.value);
+  return sum;
+}
+
+}  // namespace
+
+// A part of a line. Its integral is what its halves say, or the sum of theirs where it was halved.
+struct AdaptiveQuadrature::Part {
+  double x;
+  Span span;
+  Integral whole;  // by its own nodes
+  int depth;
+  Integral integral = {};
+  std::size_t halves = 0;  // where the first of them stands, behind their part; 0: it has none
+};
+
+// Parts whose densities are asked for together.
+class AdaptiveQuadrature::Level {
+ public:
+  void add(double x, Span span) {
+    const Places at = places_in(span);
+    x_.insert(x_.end(), at.size(), x);
+    y_.insert(y_.end(), at.begin(), at.end());
+  }
+  void ask(const PlaneValues& density) {
+    densities_.resize(y_.size());
+    density(x_, y_, densities_);
+  }
+  /// Of the part that was added as this one.
+  std::span<const double, nodes + 2> densities(std::size_t part) const {
+    return std::span(densities_).subspan(part * (nodes + 2)).first<nodes + 2>();
+  }
+
+ private:
+  std::vector<double> x_;
+  std::vector<double> y_;
+  std::vector<double> densities_;
+};
+
+AdaptiveQuadrature::Values AdaptiveQuadrature::counted(
+    std::span<const double, nodes + 2> densities) {
+  Values values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double density = densities[i];
+    if (!(density >= 0 && density <= std::numeric_limits<double>::max())) {
+      check::non_negative({"AdaptiveQuadrature", "density"}, density);
+    }
+    largest_ = std::max(largest_, density);
+    values[i] = {density, 0};
+  }
+  used_ += values.size();
+  return values;
+}
+
+AdaptiveQuadrature::Sampled AdaptiveQuadrature::sampled(const Function& function, Span span) {
+  return sampled_in(span, function(places_in(span)));
+}
+
+Integral AdaptiveQuadrature::once(const Function& function, Span span) {
+  return sampled(function, span).integral;
+}
+
+const std::array<double, AdaptiveQuadrature::nodes>& AdaptiveQuadrature::node_places() {
+  static const std::array<double, nodes> places = [] {
+    std::array<double, nodes> all{};
+    const auto& upper = Rule::abscissa();
+    for (std::size_t i = 1; i < upper.size(); ++i) {
+      all[2 * i - 1] = -upper[i];
+      all[2 * i] = upper[i];
+    }
+    return all;
+  }();
+  return places;
+}
+
+Integral AdaptiveQuadrature::over(const Function& function, Span span) {
+  return refined(function, span, once(function, span), limits_.deepest_bisection);
+}
+
+Integral AdaptiveQuadrature::refined(const Function& function, Span span, Integral whole,
+                                     int depth) {
+  const auto [first, second] = span.halves();
+  const Integral one = once(function, first);
+  const Integral two = once(function, second);
+  const Integral sum = from_halves(whole, one, two);
+  if (is_good(sum, limits_.tolerance)) return sum;
+  if (depth <= 0 || exhausted()) return given_up(sum);
+  return refined(function, first, one, depth - 1) + refined(function, second, two, depth - 1);
+}
+
+// Looks at the halves of the parts from `first` on and puts those behind all parts whose own halves
+// must be looked at.
+void AdaptiveQuadrature::halve(const PlaneValues& density, std::vector<Part>& parts,
+                               std::size_t first, bool ended) {
+  const std::size_t last = parts.size();
+  Level level;
+  for (std::size_t i = first; i < last; ++i) {
+    for (const Span& half : parts[i].span.halves()) level.add(parts[i].x, half);
+  }
+  level.ask(density);
+  for (std::size_t i = first; i < last; ++i) {
+    const auto [low, high] = parts[i].span.halves();
+    const std::size_t place = 2 * (i - first);
+    const Integral one = sampled_in(low, counted(level.densities(place))).integral;
+    const Integral two = sampled_in(high, counted(level.densities(place + 1))).integral;
+    const int depth = parts[i].depth;
+    parts[i].integral = from_halves(parts[i].whole, one, two);
+    if (is_good(parts[i].integral, limits_.tolerance)) continue;
+    if (depth <= 0 || ended) {
+      parts[i].integral = given_up(parts[i].integral);
+      continue;
+    }
+    parts[i].halves = parts.size();
+    parts.push_back({.x = parts[i].x, .span = low, .whole = one, .depth = depth - 1});
+    parts.push_back({.x = parts[i].x, .span = high, .whole = two, .depth = depth - 1});
+  }
+}
+
+// Nothing where a level would use up the evaluations, or is larger than is worth keeping: a density
+// that is rough everywhere is halved without end.
+std::optional<std::vector<Integral>> AdaptiveQuadrature::side_by_side(const PlaneValues& density,
+                                                                      std::span<const Line> lines) {
+  constexpr std::size_t most_of_a_level = std::size_t{1} << 20;
+  const bool ended = exhausted();
+  Level wholes;
+  for (const Line& line : lines) wholes.add(line.x, line.y);
+  wholes.ask(density);
+  std::vector<Part> parts;
+  for (const Line& line : lines) {
+    const Values at = counted(wholes.densities(parts.size()));
+    parts.push_back({.x = line.x,
+                     .span = line.y,
+                     .whole = sampled_in(line.y, at).integral,
+                     .depth = limits_.deepest_bisection});
+  }
+  for (std::size_t first = 0, last = 0; first < parts.size(); first = last) {
+    last = parts.size();
+    const std::size_t places = 2 * nodes * (last - first);
+    if (!ended && (places > most_of_a_level || used_ + places >= limits_.evaluations)) return {};
+    halve(density, parts, first, ended);
+  }
+  // Halves stand behind what they are halves of.
+  std::vector<Integral> integrals(lines.size());
+  for (std::size_t i = parts.size(); i-- > 0;) {
+    const std::size_t halves = parts[i].halves;
+    if (halves > 0) parts[i].integral = parts[halves].integral + parts[halves + 1].integral;
+    if (i < lines.size()) integrals[i] = parts[i].integral;
+  }
+  return integrals;
+}
+
+std::vector<Integral> AdaptiveQuadrature::along(const PlaneValues& density,
+                                                std::span<const Line> lines) {
+  const bool ended = exhausted();
+  const std::uint64_t used = used_;
+  const double largest = largest_;
+  if (const auto together = side_by_side(density, lines); together && (ended || !exhausted())) {
+    return *together;
+  }
+  // Where the evaluations are used up on the way, who gets the last of them is a matter of order.
+  used_ = used;
+  largest_ = largest;
+  std::vector<Integral> integrals(lines.size());
+  std::ranges::transform(lines, integrals.begin(), [&](const Line& line) {
+    const auto at_x = [&](std::span<const double> y, std::span<double> values) {
+      const std::vector<double> x(y.size(), line.x);
+      density(x, y, values);
+    };
+    return over(of(at_x), line.y);
+  });
+  return integrals;
+}
+
+std::vector<Span> cut(Span span, Span whole, std::size_t panels) {
+  std::vector<Span> parts;
+  double low = span.low;
+  const double width = whole.width() / static_cast<double>(panels);
+  const double slack = 1e-12 * whole.width();
+  for (std::size_t k = 1; k < panels; ++k) {
+    const double border = whole.low + width * static_cast<double>(k);
+    if (border <= span.low + slack || border >= span.high - slack) continue;
+    parts.push_back({low, border});
+    low = border;
+  }
+  parts.push_back({low, span.high});
+  return parts;
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,246 @@
+#include "stats/cells/adaptive_cells.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <queue>
+#include <span>
+
+#include "stats/basics/check.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr int most_halvings = 48;
+// Places at which a cell is looked at to find the side to halve.
+constexpr std::size_t looks_a_side = 16;
+
+enum class Along { x, y };
+
+// What is asked of a density, cell by cell.
+struct Questions {
+  std::function<Integral(const PlaneCell&)> integral;
+  std::function<std::optional<Along>(const PlaneCell&, int halvings)> side;
+  std::function<bool()> exhausted;
+};
+
+bool can_be_halved(const Span& span) {
+  return span.low < span.middle() && span.middle() < span.high;
+}
+
+std::array<PlaneCell, 2> halves_of(const PlaneCell& cell, Along along) {
+  if (along == Along::x) return {{{cell.x.halves()[0], cell.y}, {cell.x.halves()[1], cell.y}}};
+  return {{{cell.x, cell.y.halves()[0]}, {cell.x, cell.y.halves()[1]}}};
+}
+
+// The heaviest cell is halved, then the heaviest of what there is then, and so on.
+class Halving {
+ public:
+  Halving(const PlaneGrid& grid, std::span<const Integral> masses, const Questions& ask)
+      : grid_(grid), ask_(ask) {
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      add({.cell = grid.cell(i), .mass = masses[i], .grid_cell = i});
+    }
+  }
+
+  void halve_until(double most) {
+    while (!heaviest_.empty() && heaviest_.top().mass > most) {
+      const std::size_t number = heaviest_.top().number;
+      heaviest_.pop();
+      if (known_[number].halvings < most_halvings && !halve(number)) return;
+    }
+  }
+
+  AdaptiveCells numbered() const {
+    AdaptiveCells found;
+    found.cells.grid = grid_;
+    for (std::size_t i = 0; i < grid_.size(); ++i) found.cells.parts.push_back(number(i, found));
+    return found;
+  }
+
+ private:
+  struct Known {
+    PlaneCell cell;
+    Integral mass;
+    std::size_t grid_cell = 0;
+    int halvings = 0;
+    Along along = Along::x;
+    std::size_t halves = 0;  // where its halves are, 0 where it has none
+  };
+  struct Candidate {
+    double mass;
+    std::size_t number;
+    // Of two that weigh the same the first.
+    bool operator<(const Candidate& other) const {
+      return mass != other.mass ? mass < other.mass : number > other.number;
+    }
+  };
+
+  void add(const Known& known) {
+    heaviest_.push({.mass = known.mass.value, .number = known_.size()});
+    known_.push_back(known);
+  }
+
+  // A cell with no number between its ends stays whole. False where halving takes more evaluations
+  // than are left: numbers that the last of them had to do for would be worse than the whole's.
+  bool halve(std::size_t number) {
+    const Known whole = known_[number];
+    const std::optional<Along> along = ask_.side(whole.cell, whole.halvings);
+    if (!along) return true;
+    const auto [lower, upper] = halves_of(whole.cell, *along);
+    const Integral one = ask_.integral(lower);
+    const Integral two = ask_.integral(upper);
+    if (ask_.exhausted()) return false;
+    known_[number].along = *along;
+    known_[number].halves = known_.size();
+    add({.cell = lower, .mass = one, .grid_cell = whole.grid_cell, .halvings = whole.halvings + 1});
+    add({.cell = upper, .mass = two, .grid_cell = whole.grid_cell, .halvings = whole.halvings + 1});
+    return true;
+  }
+
+  HalvedCells::Part number(std::size_t cell, AdaptiveCells& found) const {
+    const Known& known = known_[cell];
+    if (known.halves == 0) return whole(known, found);
+    const std::size_t number_of_it = found.cells.halves.size();
+    const PlaneCell& upper = known_[known.halves + 1].cell;
+    const bool along_x = known.along == Along::x;
+    found.cells.halves.push_back(
+        {.along_x = along_x, .border = along_x ? upper.x.low : upper.y.low});
+    const HalvedCells::Part one = number(known.halves, found);
+    const HalvedCells::Part two = number(known.halves + 1, found);
+    found.cells.halves[number_of_it].parts = {one, two};
+    return {.whole = false, .number = number_of_it};
+  }
+
+  static HalvedCells::Part whole(const Known& known, AdaptiveCells& found) {
+    const HalvedCells::Part part{.whole = true, .number = found.cells.size()};
+    found.cells.cells.push_back(known.cell);
+    found.cells.grid_cells.push_back(known.grid_cell);
+    found.mass.probability.push_back(known.mass.value);
+    found.mass.error.push_back(known.mass.error);
+    found.mass.total += known.mass.value;
+    found.mass.total_error += known.mass.error;
+    return part;
+  }
+
+  const PlaneGrid& grid_;
+  const Questions& ask_;
+  std::vector<Known> known_;
+  std::priority_queue<Candidate> heaviest_;
+};
+
+AdaptiveCells halved(const PlaneGrid& grid, std::span<const Integral> masses, double largest_share,
+                     const Questions& ask) {
+  double total = 0;
+  for (const Integral& mass : masses) total += mass.value;
+  Halving halving(grid, masses, ask);
+  halving.halve_until(largest_share * std::max(total, 1.0));
+  return halving.numbered();
+}
+
+// The standard deviation of where the mass is along one side, in units of the side.
+double spread(std::span<const double, looks_a_side> masses) {
+  double total = 0;
+  double mean = 0;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    total += masses[i];
+    mean += masses[i] * (static_cast<double>(i) + .5);
+  }
+  mean /= total;
+  double sum = 0;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    const double distance = static_cast<double>(i) + .5 - mean;
+    sum += masses[i] * distance * distance;
+  }
+  return std::sqrt(sum / total) / static_cast<double>(masses.size());
+}
+
+// The side along which the mass of a cell lies closer together, as a share of the side; nothing
+// where there is little between them.
+std::optional<Along> narrower_along(const PlaneDensity& density, const PlaneCell& cell) {
+  constexpr std::size_t n = looks_a_side;
+  std::vector<double> x;
+  std::vector<double> y;
+  for (std::size_t i = 0; i < n * n; ++i) {
+    const auto share = [](std::size_t k) {
+      return (static_cast<double>(k) + .5) / static_cast<double>(n);
+    };
+    x.push_back(cell.x.low + share(i / n) * cell.x.width());
+    y.push_back(cell.y.low + share(i % n) * cell.y.width());
+  }
+  std::vector<double> values(n * n);
+  density.values(x, y, values);
+  std::array<double, n> along_x{};
+  std::array<double, n> along_y{};
+  for (std::size_t i = 0; i < n * n; ++i) {
+    along_x[i / n] += values[i];
+    along_y[i % n] += values[i];
+  }
+  const double of_x = spread(along_x);
+  const double of_y = spread(along_y);
+  if (of_x < .9 * of_y) return Along::x;
+  if (of_y < .9 * of_x) return Along::y;
+  return std::nullopt;
+}
+
+void check_share(double largest_share) {
+  check::unit({"adaptive_cells", "largest_share"}, largest_share);
+  check::positive({"adaptive_cells", "largest_share"}, largest_share);
+}
+
+}  // namespace
+
+AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
+                             double largest_share, QuadratureLimits limits) {
+  check_share(largest_share);
+  check::positive({"adaptive_cells", "tolerance"}, limits.tolerance);
+  CellQuadrature rule(density, limits);
+  const std::vector<Integral> masses = integrals_over(grid, rule);
+  // The other half of one that shows no density has some.
+  const auto integral = [&](const PlaneCell& cell) {
+    const Integral mass = rule.over(cell);
+    if (mass.value > 0) return mass;
+    Integral beside = rule.beside_support(cell);
+    beside.error += hidden_beside_support(cell, rule.densest());
+    return beside;
+  };
+  const auto side = [&](const PlaneCell& cell, int halvings) -> std::optional<Along> {
+    const bool x = can_be_halved(cell.x);
+    const bool y = can_be_halved(cell.y);
+    if (x && y) {
+      return narrower_along(density, cell).value_or(halvings % 2 == 0 ? Along::x : Along::y);
+    }
+    if (x || y) return x ? Along::x : Along::y;
+    return std::nullopt;
+  };
+  return halved(grid, masses, largest_share, {.integral = integral, .side = side, .exhausted = [&] {
+                                                return rule.exhausted();
+                                              }});
+}
+
+AdaptiveCells adaptive_cells(const std::vector<double>& borders, const LineDensity& density,
+                             double largest_share, QuadratureLimits limits) {
+  check_share(largest_share);
+  check::positive({"adaptive_cells", "tolerance"}, limits.tolerance);
+  const PlaneGrid grid{.x_borders = borders, .y_borders = {0, 1}};
+  check_borders(grid);
+  const Span whole{borders.front(), borders.back()};
+  AdaptiveQuadrature rule(limits);
+  const AdaptiveQuadrature::Function along = rule.of(density.values);
+  const auto integral = [&](const PlaneCell& cell) {
+    Integral sum;
+    for (const Span& part : cut(cell.x, whole, density.panels)) sum = sum + rule.over(along, part);
+    return sum;
+  };
+  std::vector<Integral> masses;
+  for (std::size_t i = 0; i < grid.size(); ++i) masses.push_back(integral(grid.cell(i)));
+  return halved(
+      grid, masses, largest_share,
+      {.integral = integral,
+       .side = [](const PlaneCell& cell,
+                  int) { return can_be_halved(cell.x) ? std::optional(Along::x) : std::nullopt; },
+       .exhausted = [&] { return rule.exhausted(); }});
+}
+
+}  // namespace assay::stats

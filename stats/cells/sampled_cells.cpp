@@ -1,0 +1,71 @@
+#include "stats/cells/sampled_cells.h"
+
+#include <algorithm>
+#include <span>
+
+#include "stats/basics/check.h"
+
+namespace assay::stats {
+namespace {
+
+using Points = std::span<PlanePoint>;
+
+/// Values at which the sorted ones are cut into about equal parts; none before the smallest, none
+/// twice.
+template <class Coordinate>
+std::vector<double> borders(Points sorted, std::size_t parts, Coordinate coordinate) {
+  std::vector<double> all;
+  double last = coordinate(sorted.front());
+  for (std::size_t k = 1; k < parts; ++k) {
+    const double value = coordinate(sorted[k * sorted.size() / parts]);
+    if (value > last) all.push_back(value);
+    last = value;
+  }
+  return all;
+}
+
+std::size_t part(const std::vector<double>& borders, double value) {
+  return static_cast<std::size_t>(std::upper_bound(borders.begin(), borders.end(), value) -
+                                  borders.begin());
+}
+
+double first_of(const PlanePoint& point) { return point.first; }
+double second_of(const PlanePoint& point) { return point.second; }
+
+}  // namespace
+
+std::size_t SampledCells::index(PlanePoint point) const {
+  const std::size_t band = part(band_borders, point.first);
+  return before[band] + part(cut_borders[band], point.second);
+}
+
+SampledCells sampled_cells(std::vector<PlanePoint> points, CellNumbers numbers) {
+  check::at_least({"sampled_cells", "points"}, points.size(), 1);
+  check::at_least({"sampled_cells", "bands"}, numbers.bands, 1);
+  check::at_least({"sampled_cells", "cuts"}, numbers.cuts, 1);
+  for (const PlanePoint& point : points) {
+    check::finite({"sampled_cells", "first coordinate"}, point.first);
+    check::finite({"sampled_cells", "second coordinate"}, point.second);
+  }
+  std::sort(points.begin(), points.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  SampledCells cells{
+      .band_borders = borders(points, numbers.bands, first_of), .cut_borders = {}, .before = {}};
+  std::size_t behind = 0;
+  auto begin = points.begin();
+  for (std::size_t band = 0; band <= cells.band_borders.size(); ++band) {
+    const auto end = band == cells.band_borders.size()
+                         ? points.end()
+                         : std::find_if(begin, points.end(), [&](const auto& p) {
+                             return p.first >= cells.band_borders[band];
+                           });
+    std::sort(begin, end, [](const auto& a, const auto& b) { return a.second < b.second; });
+    cells.cut_borders.push_back(borders(Points(begin, end), numbers.cuts, second_of));
+    cells.before.push_back(behind);
+    behind += cells.cut_borders.back().size() + 1;
+    begin = end;
+  }
+  return cells;
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,259 @@
+#include "stats/gates/assumption_gates.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "stats/basics/check.h"
+#include "stats/basics/errors.h"
+#include "stats/gates/log_variance_level.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr double false_red = 1e-4;
+constexpr double green_factor = 1.25;
+constexpr double red_factor = 2;
+constexpr double kurtosis_limit = 0.2;
+constexpr double dominance_limit = 0.5;
+
+GateState state_of(const Gate& gate, double green_up_to) {
+  if (gate.value <= green_up_to) return GateState::green;
+  return gate.low > gate.limit ? GateState::red : GateState::amber;
+}
+
+double upper_z(double probability) { return normal_quantile({Tail::upper, std::log(probability)}); }
+
+// ---- Normal-data quantiles of g1 and b2
+
+// The b2 - 3 that normal samples of n exceed with probability 1e-4: Anscombe & Glynn (1983), n
+// >= 20.
+double normal_kurtosis_quantile(double n) {
+  if (n < 20) return std::numeric_limits<double>::infinity();
+  const double mean = 3 * (n - 1) / (n + 1);
+  const double variance = 24 * n * (n - 2) * (n - 3) / ((n + 1) * (n + 1) * (n + 3) * (n + 5));
+  const double skewness = 6 * (n * n - 5 * n + 2) / ((n + 7) * (n + 9)) *
+                          std::sqrt(6 * (n + 3) * (n + 5) / (n * (n - 2) * (n - 3)));
+  const double a = 6 + 8 / skewness * (2 / skewness + std::sqrt(1 + 4 / (skewness * skewness)));
+  const double c = 1 - 2 / (9 * a) - upper_z(false_red) * std::sqrt(2 / (9 * a));
+  if (c <= 0) return std::numeric_limits<double>::infinity();
+  const double x = ((1 - 2 / a) / (c * c * c) - 1) / std::sqrt(2 / (a - 4));
+  return mean + x * std::sqrt(variance) - 3;
+}
+
+// ---- How much wider g1 and b2 spread for a gamma law of given shape
+
+// Standardised moments 3 to 8 of a gamma law, from its cumulants kappa_r = (r - 1)! (g / 2)^(r -
+// 2).
+std::array<double, 9> gamma_moments(double skewness) {
+  std::array<double, 9> kappa{};
+  std::array<double, 9> mu{};
+  double factorial = 1;
+  for (std::size_t r = 2; r <= 8; ++r) {
+    factorial *= r > 2 ? static_cast<double>(r - 1) : 1;
+    kappa[r] = factorial * std::pow(skewness / 2, static_cast<double>(r) - 2);
+  }
+  // mu_r = sum_j C(r - 1, j - 1) kappa_j mu_(r - j), with mu_0 = 1 and mu_1 = kappa_1 = 0.
+  mu[0] = 1;
+  for (std::size_t r = 2; r <= 8; ++r) {
+    double binomial = static_cast<double>(r - 1);  // C(r - 1, 1) for j = 2
+    for (std::size_t j = 2; j <= r; ++j) {
+      mu[r] += binomial * kappa[j] * mu[r - j];
+      binomial *= static_cast<double>(r - j) / static_cast<double>(j);
+    }
+  }
+  return mu;
+}
+
+// sqrt(n Var(g1) / 6), delta method; 6 is the normal law's.
+double skewness_widening(double skewness) {
+  const auto mu = gamma_moments(skewness);
+  const double g = mu[3];
+  const double variance = mu[6] - 6 * mu[4] + 9 + g * g * (9 * mu[4] + 35) / 4 - 3 * g * mu[5];
+  return std::sqrt(variance / 6);
+}
+
+// sqrt(n Var(b2) / 24), likewise; the gamma law of excess kurtosis k has skewness sqrt(2 k / 3).
+double kurtosis_widening(double excess) {
+  const auto mu = gamma_moments(std::sqrt(2 * excess / 3));
+  const double variance = mu[8] - mu[4] * mu[4] + 16 * mu[3] * mu[3] * (1 + mu[4]) +
+                          4 * mu[4] * mu[4] * (mu[4] - 1) - 8 * mu[3] * mu[5] -
+                          4 * mu[4] * (mu[6] - mu[4]);
+  return std::sqrt(variance / 24);
+}
+
+// ---- Skewness of a contrast
+
+// One sample's share in 2a = (1/3) sum psi^3 / (sum psi^2)^1.5, and what normal data would make of
+// it.
+struct SkewnessPart {
+  double value = 0;
+  double allowance = 0;
+};
+
+SkewnessPart skewness_part(const Moments& x, double variance_share, double cube) {
+  if (x.m2 == 0) return {};
+  const double n = static_cast<double>(x.count);
+  const double weight = variance_share * std::sqrt(variance_share) / (3 * std::sqrt(n));
+  const double boundary = 3 * std::sqrt(n) * std::log(red_factor) / cube;
+  const double allowance = normal_skewness_quantile(n, false_red) * skewness_widening(boundary);
+  return {weight * x.skewness(), weight * allowance};
+}
+
+Gate skewness_gate_of(SkewnessPart first, SkewnessPart second, double cube) {
+  const double size = std::abs(first.value - second.value);
+  const double low = std::max(0.0, size - std::hypot(first.allowance, second.allowance));
+  Gate gate{"level factor by skewness", std::exp(std::min(size * cube, 700.0)),
+            std::exp(std::min(low * cube, 700.0)), red_factor, GateState::green};
+  gate.state = state_of(gate, green_factor);
+  return gate;
+}
+
+double checked_cube(double critical_value) {
+  check::positive({"skewness_gate", "critical_value"}, critical_value);
+  return critical_value * critical_value * critical_value;
+}
+
+// Largest deviation over s a sample of n can show at `probability`, n times the tail of one
+// residual.
+double grubbs(double n, double probability) {
+  const double t = student_t_quantile({Tail::upper, std::log(probability / (2 * n))}, n - 2);
+  return (n - 1) / std::sqrt(n) / std::sqrt(1 + (n - 2) / t / t);
+}
+
+std::uint64_t whole_up(const char* function, double value) {
+  if (!(value < 0x1p53)) check::fail({function, "primaries needed"}, value, "below 2^53");
+  return static_cast<std::uint64_t>(std::max(1.0, std::ceil(value)));
+}
+
+void check_shape(const char* function, PrimaryShape shape) {
+  check::finite({function, "skewness"}, shape.skewness);
+  check::finite({function, "excess_kurtosis"}, shape.excess_kurtosis);
+}
+
+}  // namespace
+
+double normal_skewness_quantile(double n, double probability) {
+  if (n < 8) return std::numeric_limits<double>::infinity();
+  const double beta2 =
+      3 * (n * n + 27 * n - 70) * (n + 1) * (n + 3) / ((n - 2) * (n + 5) * (n + 7) * (n + 9));
+  const double w2 = std::sqrt(2 * (beta2 - 1)) - 1;
+  const double delta = 1 / std::sqrt(0.5 * std::log(w2));
+  const double alpha = std::sqrt(2 / (w2 - 1));
+  const double y = alpha * std::sinh(upper_z(probability / 2) / delta);
+  return y * std::sqrt(6 * (n - 2) / ((n + 1) * (n + 3)));
+}
+
+PrimaryShape primary_shape(const Moments& pilot) {
+  return {pilot.skewness(), pilot.kurtosis() - 3};
+}
+
+std::uint64_t primaries_for_variance(PrimaryShape shape, ShapeLimits limits) {
+  check_shape("primaries_for_variance", shape);
+  check::positive({"primaries_for_variance", "limit"}, limits.excess_kurtosis);
+  return whole_up("primaries_for_variance", shape.excess_kurtosis / limits.excess_kurtosis);
+}
+
+std::uint64_t primaries_for_mean(PrimaryShape shape, PlannedTest test, ShapeLimits limits) {
+  check_shape("primaries_for_mean", shape);
+  check::at_least({"primaries_for_mean", "secondaries"}, test.secondaries, 2);
+  const double cube = checked_cube(test.critical_value);
+  if (!(limits.level_factor > 1)) {
+    check::fail({"primaries_for_mean", "level_factor"}, limits.level_factor, "above 1");
+  }
+  const double root = std::abs(shape.skewness) * cube / (3 * std::log(limits.level_factor));
+  return whole_up("primaries_for_mean", root * root / static_cast<double>(test.secondaries));
+}
+
+Gate predicted_kurtosis_gate(PrimaryShape shape, std::uint64_t primaries, ShapeLimits limits) {
+  check_shape("predicted_kurtosis_gate", shape);
+  check::at_least({"predicted_kurtosis_gate", "primaries"}, primaries, 1);
+  const double value = shape.excess_kurtosis / static_cast<double>(primaries);
+  Gate gate{"excess kurtosis", value, value, limits.excess_kurtosis, GateState::green};
+  gate.state = state_of(gate, limits.excess_kurtosis);
+  return gate;
+}
+
+Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, PlannedTest test,
+                             ShapeLimits limits) {
+  check_shape("predicted_skewness_gate", shape);
+  check::at_least({"predicted_skewness_gate", "primaries"}, primaries, 1);
+  check::at_least({"predicted_skewness_gate", "secondaries"}, test.secondaries, 2);
+  const double total = static_cast<double>(primaries) * static_cast<double>(test.secondaries);
+  const double exponent =
+      std::abs(shape.skewness) * checked_cube(test.critical_value) / (3 * std::sqrt(total));
+  const double value = std::exp(std::min(exponent, 700.0));
+  Gate gate{"level factor by skewness", value, value, limits.level_factor, GateState::green};
+  gate.state = state_of(gate, limits.level_factor);
+  return gate;
+}
+
+Gate skewness_gate(const Moments& x, double critical_value) {
+  check::at_least({"skewness_gate", "count"}, x.count, 2);
+  if (x.m2 == 0) throw ZeroVariance("skewness_gate: zero variance");
+  const double cube = checked_cube(critical_value);
+  return skewness_gate_of(skewness_part(x, 1, cube), {}, cube);
+}
+
+Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value) {
+  check::finite({"skewness_gate", "scale"}, scale);
+  const double cube = checked_cube(critical_value);
+  const double vx = x.variance() / static_cast<double>(x.count);
+  const double vy = scale * scale * y.variance() / static_cast<double>(y.count);
+  if (vx + vy == 0) throw ZeroVariance("skewness_gate: zero variance in both samples");
+  SkewnessPart of_y = skewness_part(y, vy / (vx + vy), cube);
+  of_y.value = std::copysign(1, scale) * of_y.value;
+  return skewness_gate_of(skewness_part(x, vx / (vx + vy), cube), of_y, cube);
+}
+
+Gate log_mean_gate(const Moments& positive, double critical_value, const std::string& of) {
+  check::at_least({"log_mean_gate", "count"}, positive.count, 2);
+  check::positive({"log_mean_gate", "mean"}, positive.mean);
+  check::positive({"log_mean_gate", "critical_value"}, critical_value);
+  if (positive.m2 == 0) throw ZeroVariance("log_mean_gate: zero variance");
+  const double cube = checked_cube(critical_value);
+  const LogMeanSlope slope =
+      log_mean_slope({.variation = positive.standard_deviation() / positive.mean,
+                      .skewness = positive.skewness()});
+  SkewnessPart part = skewness_part(positive, 1, cube);
+  part.value = slope.value / std::sqrt(static_cast<double>(positive.count));
+  part.allowance *= slope.share_of_skewness;
+  Gate gate = skewness_gate_of(part, {}, cube);
+  gate.name = "level factor of the mean " + of;
+  return gate;
+}
+
+Gate dominance_gate(const Moments& x) {
+  check::at_least({"dominance_gate", "count"}, x.count, 3);
+  if (x.m2 == 0) throw ZeroVariance("dominance_gate: zero variance");
+  const double n = static_cast<double>(x.count);
+  const double largest = std::max(x.maximum - x.mean, x.mean - x.minimum);
+  const double value = largest / (x.standard_deviation() * std::sqrt(n));
+  const double limit = std::max(dominance_limit, grubbs(n, false_red) / std::sqrt(n));
+  Gate gate{"largest deviation", value, value, limit, GateState::green};
+  gate.state = state_of(gate, std::max(dominance_limit, grubbs(n, 0.05) / std::sqrt(n)));
+  return gate;
+}
+
+Gate kurtosis_gate(const Moments& x) {
+  check::at_least({"kurtosis_gate", "count"}, x.count, 4);
+  const double value = x.kurtosis() - 3;
+  const double allowance =
+      normal_kurtosis_quantile(static_cast<double>(x.count)) * kurtosis_widening(kurtosis_limit);
+  Gate gate{"excess kurtosis", value, std::max(value - allowance, -2.0), kurtosis_limit,
+            GateState::green};
+  gate.state = state_of(gate, kurtosis_limit);
+  return gate;
+}
+
+double kurtosis_upper_limit(const Moments& x) {
+  check::at_least({"kurtosis_upper_limit", "count"}, x.count, 4);
+  constexpr double z = 1.6448536269514722;  // the normal law's upper quantile at .05
+  const double excess = x.kurtosis() - 3;
+  const double error = std::sqrt(24 / static_cast<double>(x.count));
+  return std::max(0.0, excess + z * error * kurtosis_widening(std::max(0.0, excess)));
+}
+
+}  // namespace assay::stats

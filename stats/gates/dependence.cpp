@@ -1,0 +1,97 @@
+#include "stats/gates/dependence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/basics/check.h"
+#include "stats/basics/errors.h"
+#include "stats/gates/normal_test.h"
+
+namespace assay::stats {
+namespace {
+
+// A checked sequence with its mean and n c_0.
+class Sequence {
+ public:
+  Sequence(const char* function, std::span<const double> values, std::size_t fewest)
+      : values_(values) {
+    check::at_least({function, "count"}, values.size(), fewest);
+    Moments moments;
+    for (const double value : values) {
+      check::finite({function, "value"}, value);
+      moments.add(value);
+    }
+    if (moments.m2 == 0) throw ZeroVariance(std::string(function) + ": zero variance");
+    mean_ = moments.mean;
+    sum_of_squares_ = moments.m2;
+  }
+
+  double correlation(std::size_t lag) const {
+    double sum = 0;
+    for (std::size_t t = lag; t < values_.size(); ++t) {
+      sum += (values_[t] - mean_) * (values_[t - lag] - mean_);
+    }
+    return sum / sum_of_squares_;
+  }
+
+ private:
+  std::span<const double> values_;
+  double mean_ = 0;
+  double sum_of_squares_ = 0;
+};
+
+}  // namespace
+
+double autocorrelation(std::span<const double> values, std::size_t lag) {
+  return Sequence("autocorrelation", values, std::max<std::size_t>(2, lag + 1)).correlation(lag);
+}
+
+TestResult lag_one_test(std::span<const double> values) {
+  const double r = Sequence("lag_one_test", values, 4).correlation(1);
+  const double n = static_cast<double>(values.size());
+  const double variance = (n * n * n * n - 4 * n * n * n + 3 * n * n + 4 * n - 4) /
+                          ((n + 1) * n * n * (n - 1) * (n - 1));
+  return normal_test({r + 1 / n, std::sqrt(variance)});
+}
+
+double effective_sample_size(std::span<const double> values) {
+  const Sequence sequence("effective_sample_size", values, 4);
+  const double n = static_cast<double>(values.size());
+  double sum = 0;
+  double previous = 2;  // no pair of correlations is larger
+  for (std::size_t m = 0; 2 * m + 1 < values.size(); ++m) {
+    const double pair = sequence.correlation(2 * m) + sequence.correlation(2 * m + 1);
+    if (pair <= 0) break;
+    previous = std::min(previous, pair);
+    sum += previous;
+  }
+  return std::min(n / std::max(2 * sum - 1, 1 / n), n * std::log10(n));
+}
+
+std::size_t default_batch(std::size_t n) {
+  auto root = static_cast<std::size_t>(std::sqrt(static_cast<double>(n)));
+  while (root * root > n) --root;
+  return root;
+}
+
+Moments batch_means(std::span<const double> values, std::size_t length) {
+  check::at_least({"batch_means", "length"}, length, 1);
+  const std::size_t batches = values.size() / length;
+  check::at_least({"batch_means", "batches"}, batches, 2);
+  Moments means;
+  for (std::size_t b = 0; b < batches; ++b) {
+    Moments batch;
+    for (const double value : values.subspan(b * length, length)) {
+      check::finite({"batch_means", "value"}, value);
+      batch.add(value);
+    }
+    means.add(batch.mean);
+  }
+  return means;
+}
+
+double batch_variance(std::span<const double> values, std::size_t length) {
+  return static_cast<double>(length) * batch_means(values, length).variance();
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,148 @@
+#include "stats/gates/independence_gates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "stats/basics/check.h"
+#include "stats/basics/errors.h"
+#include "stats/gates/dependence.h"
+#include "stats/gates/lagged_correlation.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr double false_red = 5e-5;
+constexpr double false_amber = 0.01;
+constexpr double false_allowance = 0.05;
+// Correlations cost up to the square of their number.
+constexpr std::size_t most_correlated = 8192;
+
+GateState state_of(double value, double green_up_to, double limit) {
+  if (value > limit) return GateState::red;
+  return value > green_up_to ? GateState::amber : GateState::green;
+}
+
+double upper_z(double probability) { return normal_quantile({Tail::upper, std::log(probability)}); }
+
+// 0 where there is none. The correlations of values with an autocorrelation time spread about 0 by
+// the root of it more.
+std::size_t farthest_correlated(std::span<const double> values, double time) {
+  const std::vector<LaggedCorrelation> all = lagged_correlations(values);
+  if (all.empty()) return 0;
+  const double limit = upper_z(false_red / static_cast<double>(all.size()));
+  const double beyond_chance = limit * std::sqrt(std::max(1.0, time));
+  std::size_t farthest = 0;
+  for (const LaggedCorrelation& each : all) {
+    if (each.z > beyond_chance) farthest = each.lag;
+  }
+  return farthest;
+}
+
+/// Between batches against within them.
+struct BatchRatio {
+  double value;
+  FDegrees degrees;
+
+  double quantile(double p) const { return f_quantile({Tail::upper, std::log(p)}, degrees); }
+};
+
+BatchRatio batch_ratio(std::span<const double> values, std::size_t length) {
+  check::at_least({"batch_gate", "count"}, values.size(), 9);
+  const Moments means = batch_means(values, length);
+  const std::size_t used = length * means.count;
+  Moments all;
+  for (const double value : values.first(used)) all.add(value);
+  const double b = static_cast<double>(length);
+  const double within = all.m2 - b * means.m2;
+  const FDegrees degrees{.numerator = static_cast<double>(means.count - 1),
+                         .denominator = static_cast<double>(used - means.count)};
+  if (all.m2 == 0) throw ZeroVariance("batch_gate: zero variance");
+  // Batches that are constant within themselves leave nothing to divide by: as dependent as can be.
+  const double ratio = within > 0 ? b * means.variance() / (within / degrees.denominator)
+                                  : std::numeric_limits<double>::infinity();
+  return {.value = ratio, .degrees = degrees};
+}
+
+}  // namespace
+
+Gate lag_one_gate(std::span<const double> values) {
+  const double z = lag_one_test(values).statistic;
+  const double r = autocorrelation(values, 1);
+  const double n = static_cast<double>(values.size());
+  // z = (r + 1/n) / deviation: the limit is the r of the same sign that is as far out.
+  const double deviation = z == 0 ? 1 / std::sqrt(n) : (r + 1 / n) / z;
+  const double sign = z < 0 ? -1 : 1;
+  Gate gate{.name = "correlation of successive values", .value = r, .low = r};
+  gate.limit = sign * upper_z(false_red / 2) * deviation - 1 / n;
+  gate.state = state_of(std::abs(z), upper_z(false_amber / 2), upper_z(false_red / 2));
+  return gate;
+}
+
+Gate batch_gate(std::span<const double> values) {
+  const BatchRatio batches = batch_ratio(values, default_batch(values.size()));
+  Gate gate{.name = "variance of batch means", .value = batches.value, .low = batches.value};
+  gate.limit = batches.quantile(false_red);
+  gate.state = state_of(batches.value, batches.quantile(false_amber), gate.limit);
+  return gate;
+}
+
+Gate lagged_gate(std::span<const double> values) {
+  const std::vector<LaggedCorrelation> all = lagged_correlations(values);
+  Gate gate{.name = "correlation of values some steps apart"};
+  if (all.empty()) return gate;
+  const LaggedCorrelation worst = worst_of(all);
+  const auto limit = [&](double probability) {
+    return upper_z(probability / (2 * static_cast<double>(all.size())));
+  };
+  gate.value = worst.correlation;
+  gate.low = worst.correlation;
+  gate.limit = worst.z == 0 ? 0 : worst.correlation * limit(false_red) / std::abs(worst.z);
+  gate.state = state_of(std::abs(worst.z), limit(false_amber), limit(false_red));
+  return gate;
+}
+
+double autocorrelation_time(std::span<const double> values) {
+  check::at_least({"autocorrelation_time", "count"}, values.size(), 4);
+  const std::size_t length = 1 + (values.size() - 1) / most_correlated;
+  const auto time = [](std::span<const double> sequence) {
+    return static_cast<double>(sequence.size()) / effective_sample_size(sequence);
+  };
+  if (length == 1) return time(values);
+  std::vector<double> averaged;
+  Moments all;
+  for (std::size_t first = 0; first + length <= values.size(); first += length) {
+    Moments batch;
+    for (const double value : values.subspan(first, length)) batch.add(value);
+    averaged.push_back(batch.mean);
+    all.merge(batch);
+  }
+  return time(averaged) * batch_variance(values, length) / all.variance();
+}
+
+double allowance_for_dependence(std::span<const double> values) {
+  const std::size_t n = values.size();
+  bool doubtful = lag_one_test(values).statistic > upper_z(false_allowance);
+  double factor = 1;
+  for (const std::size_t length : {default_batch(n), n / 10}) {
+    if (length < default_batch(n)) continue;
+    const BatchRatio batches = batch_ratio(values, length);
+    if (batches.value <= batches.quantile(false_allowance)) continue;
+    doubtful = true;
+    factor = std::max(factor, batches.value);
+  }
+  return doubtful ? std::max(factor, autocorrelation_time(values)) : 1;
+}
+
+std::size_t sufficient_batch(std::span<const double> values) {
+  const double time = autocorrelation_time(values);
+  const std::size_t length =
+      std::max({default_batch(values.size()), static_cast<std::size_t>(std::ceil(10 * time)),
+                5 * farthest_correlated(values, time)});
+  const std::size_t batches = std::max<std::size_t>(1, values.size() / length);
+  return values.size() / batches;
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,74 @@
+#include "stats/images/image.h"
+
+#include <algorithm>
+#include <string>
+
+#include "stats/basics/check.h"
+
+namespace assay::stats::check {
+namespace {
+
+void extent_of(const char* function, const ImageExtent& extent) {
+  at_least({function, "width"}, extent.width, 1);
+  at_least({function, "height"}, extent.height, 1);
+  at_least({function, "channels"}, extent.channels, 1);
+}
+
+void size_of(Argument argument, std::size_t size, const ImageExtent& extent) {
+  if (size != extent.elements()) {
+    fail(argument, size, "width x height x channels = " + std::to_string(extent.elements()));
+  }
+}
+
+}  // namespace
+
+void replicates(const char* function, std::size_t count) {
+  if (count < least_replicates) {
+    fail({function, "replicates"}, count,
+         "at least " + std::to_string(least_replicates) +
+             ": each element's variance comes from them alone, and with fewer degrees of freedom "
+             "no difference is significant among thousands of elements");
+  }
+}
+
+template <class Real>
+void image_stack(const char* function, const ImageStack<Real>& stack) {
+  extent_of(function, stack.extent);
+  replicates(function, stack.images.size());
+  const std::size_t elements = stack.extent.elements();
+  const std::size_t last = std::min(stack.there.last, elements);
+  for (const auto& image : stack.images) {
+    if (image.size() + stack.there.first == last) continue;
+    size_of({function, "size of an image"}, image.size(), stack.extent);
+    fail({function, "size of an image"}, image.size(), "the number of elements that are there");
+  }
+}
+
+template void image_stack(const char*, const ImageStack<float>&);
+template void image_stack(const char*, const ImageStack<double>&);
+
+void image_reference(const char* function, const ImageReference& reference) {
+  extent_of(function, reference.extent);
+  size_of({function, "size of the reference"}, reference.value.size(), reference.extent);
+  if (reference.standard_error.empty()) return;
+  size_of({function, "size of the standard errors"}, reference.standard_error.size(),
+          reference.extent);
+}
+
+double reference_error(const char* function, const ImageReference& reference, std::size_t element) {
+  if (reference.standard_error.empty()) return 0;
+  const double error = reference.standard_error[element];
+  non_negative({function, "standard error of the reference"}, error);
+  return error;
+}
+
+void same_extent(const char* function, const ImageExtent& a, const ImageExtent& b) {
+  if (a == b) return;
+  const auto text = [](const ImageExtent& e) {
+    return std::to_string(e.width) + " x " + std::to_string(e.height) + " x " +
+           std::to_string(e.channels);
+  };
+  fail({function, "extent of the second image"}, text(b), "that of the first, " + text(a));
+}
+
+}  // namespace assay::stats::check

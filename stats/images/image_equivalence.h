@@ -1,0 +1,75 @@
+#pragma once
+
+#include "stats/basics/for_each.h"
+#include "stats/images/image.h"
+#include "stats/tails/test_result.h"
+
+namespace assay::stats {
+
+// Squared norms of the bias E a - E b of two images, without the noise of their means, which
+// ||mean a - mean b||^2 alone would add:
+//   U = sum over elements w ((mean a - mean b)^2 - va - vb),    E U = sum w (E a - E b)^2
+// with va, vb the squared errors of the means, or se^2 of a reference. U may be negative.
+// The standard error is the jackknife over replicates (Efron & Stein 1981: on average not too
+// small), each stack's replicates left out in turn; correlated elements are in it. Degrees: the
+// smaller count of replicates, less one. A reference's own error is subtracted; the variance that
+// it adds is with_reference_error's (image_reference_error.h). All throw std::domain_error as
+// welch_z does.
+struct SquaredBias {
+  double estimate = 0;
+  double standard_error = 0;
+  double degrees = 0;
+};
+
+// w = 1.
+template <class Real>
+SquaredBias squared_bias(const ImageStack<Real>& a, const ImageStack<Real>& b);
+template <class Real>
+SquaredBias squared_bias(const ImageStack<Real>& a, const ImageReference& b);
+
+// Relative mean squared error: w = 1 / (elements (b^2 + constant)), b the mean of the second image
+// or the reference, never of both. constant > 0, in squared units of the image.
+template <class Real>
+SquaredBias relative_bias(const ImageStack<Real>& a, const ImageStack<Real>& b, double constant);
+template <class Real>
+SquaredBias relative_bias(const ImageStack<Real>& a, const ImageReference& b, double constant);
+
+// Student's interval around the estimate. Throws for a confidence outside (0, 1).
+Interval squared_bias_interval(const SquaredBias& bias, double confidence);
+
+// The squared bias beside the squared norm that a margin is relative to, N = sum (mean b^2 - vb),
+// unbiased for ||E b||^2, with the jackknife's covariance of the two.
+struct ImageDistance {
+  double squared_bias = 0;
+  double squared_norm = 0;
+  double bias_variance = 0;
+  double norm_variance = 0;
+  double covariance = 0;
+  double degrees = 0;
+};
+
+// Throw std::domain_error as welch_z does.
+template <class Real>
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b,
+                             const ForEach& for_each = one_by_one);
+template <class Real>
+ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b,
+                             const ForEach& for_each = one_by_one);
+
+// The same with a norm that is a number without error: a margin in units of its root.
+ImageDistance with_norm(ImageDistance distance, double squared_norm);
+
+// Null hypothesis: ||E a - E b||^2 >= squared_margin N. Statistic: (U - squared_margin N) / its
+// jackknife standard error; Student's t. log_p_lower is the p-value: small when the images are
+// equivalent within the margin. log_p_upper tests ||E a - E b||^2 <= squared_margin N. Asymptotic.
+// A negative squared margin is no hypothesis of images, but ends of intervals of U / N may lie
+// there. ZeroVariance for a zero standard error.
+TestResult squared_margin_test(const ImageDistance& distance, double squared_margin);
+
+// The same for ||E a - E b|| >= margin ||E b||. Throws for a margin that is not positive.
+template <class Real>
+TestResult image_equivalence(const ImageStack<Real>& a, const ImageStack<Real>& b, double margin);
+template <class Real>
+TestResult image_equivalence(const ImageStack<Real>& a, const ImageReference& b, double margin);
+
+}  // namespace assay::stats

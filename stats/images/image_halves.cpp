@@ -1,0 +1,135 @@
+#include "stats/images/image_halves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "stats/images/image_moments.h"
+
+namespace assay::stats {
+namespace {
+
+// Mean and squared standard error of every element over every other replicate.
+struct HalfMoments {
+  std::vector<double> mean;
+  std::vector<double> squared_error;
+};
+
+std::size_t half_count(std::size_t replicates, std::size_t half) {
+  return (replicates + 1 - half) / halves;
+}
+
+template <class Real>
+HalfMoments half_moments(const ImageStack<Real>& stack, std::size_t half, ElementRange range,
+                         const ForEach& for_each) {
+  constexpr std::size_t at_a_time = std::size_t{1} << 15;
+  HalfMoments moments{std::vector<double>(range.size()), std::vector<double>(range.size())};
+  const double n = static_cast<double>(half_count(stack.images.size(), half));
+  for_each((range.size() + at_a_time - 1) / at_a_time, [&](std::size_t i) {
+    const std::size_t done = i * at_a_time;
+    const std::size_t size = std::min(at_a_time, range.size() - done);
+    const std::span<double> errors = std::span(moments.squared_error).subspan(done, size);
+    moments_of_range(stack, range.first + done,
+                     {std::span(moments.mean).subspan(done, size), errors}, {half, halves});
+    for (double& m2 : errors) m2 /= n * (n - 1);
+  });
+  return moments;
+}
+
+// Means over 3 elements along rows or columns, fewer at the edge.
+struct Line {
+  std::size_t size;
+  std::size_t stride;
+};
+void smooth_line(std::vector<double>& values, std::size_t first, Line line) {
+  double before = 0;
+  for (std::size_t i = 0; i < line.size; ++i) {
+    double& value = values[first + i * line.stride];
+    double sum = value;
+    double count = 1;
+    if (i > 0) {
+      sum += before;
+      ++count;
+    }
+    if (i + 1 < line.size) {
+      sum += values[first + (i + 1) * line.stride];
+      ++count;
+    }
+    before = value;
+    value = sum / count;
+  }
+}
+
+std::vector<double> smoothed(const ImageExtent& extent, std::vector<double> values) {
+  const std::size_t row = extent.width * extent.channels;
+  for (std::size_t y = 0; y < extent.height; ++y) {
+    for (std::size_t c = 0; c < extent.channels; ++c) {
+      smooth_line(values, y * row + c, {extent.width, extent.channels});
+    }
+  }
+  for (std::size_t i = 0; i < row; ++i) smooth_line(values, i, {extent.height, row});
+  return values;
+}
+
+// The reference leaves the difference, and its error joins the variance. It joins no weight: where
+// the reference is bright by chance its error is large, and the sums would lean to the dark.
+void add_reference(const ImageReference& reference, Half& half) {
+  for (std::size_t i = 0; i < half.difference.size(); ++i) {
+    const double error = check::reference_error("image_pyramid", reference, half.first + i);
+    half.difference[i] -= reference.value[half.first + i];
+    half.variance[i] += error * error;
+  }
+}
+
+template <class Real>
+Half half_of(const ImagePair<Real>& pair, std::size_t half, RowRange rows,
+             const ForEach& for_each) {
+  const ImageExtent& extent = pair.a.extent;
+  const ElementRange range = rows.elements(extent);
+  const ImageExtent part{extent.width, rows.last - rows.first, extent.channels};
+  HalfMoments a = half_moments(pair.a, half, range, for_each);
+  Half result{range.first, std::move(a.mean), std::move(a.squared_error), {}, {}};
+  if (pair.b != nullptr) {
+    const HalfMoments b = half_moments(*pair.b, half, range, for_each);
+    for (std::size_t i = 0; i < b.mean.size(); ++i) {
+      result.difference[i] -= b.mean[i];
+      result.variance[i] += b.squared_error[i];
+    }
+  }
+  result.varied.reserve(range.size());
+  for (const double variance : result.variance) result.varied.push_back(variance > 0);
+  result.weight = steadied(part, result.variance);
+  if (pair.reference != nullptr) add_reference(*pair.reference, result);
+  for (std::size_t i = 0; i < result.weight.size(); ++i) {
+    result.weight[i] = result.varied[i] ? 1 / std::sqrt(result.weight[i]) : 0;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance) {
+  std::vector<double> steady = smoothed(extent, variance);
+  for (std::size_t i = 0; i < steady.size(); ++i) steady[i] = std::midpoint(steady[i], variance[i]);
+  return steady;
+}
+
+RowRange with_neighbours(RowRange rows, const ImageExtent& extent) {
+  return {rows.first - std::min<std::size_t>(rows.first, 1),
+          std::min(rows.last + 1, extent.height)};
+}
+
+template <class Real>
+std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
+                                   const ForEach& for_each) {
+  std::array<Half, halves> both;
+  const RowRange wider = with_neighbours(rows, pair.a.extent);
+  for_each(halves, [&](std::size_t half) { both[half] = half_of(pair, half, wider, for_each); });
+  return both;
+}
+
+template std::array<Half, halves> halves_of(const ImagePair<float>&, RowRange, const ForEach&);
+template std::array<Half, halves> halves_of(const ImagePair<double>&, RowRange, const ForEach&);
+
+}  // namespace assay::stats

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "stats/images/image.h"
+#include "stats/images/image_moments.h"
+#include "stats/tails/test_result.h"
+
+namespace assay::stats {
+
+// Element by element, null hypothesis: E a = E b, variances free (Welch 1947; welch_t.h):
+//   T  = (mean a - mean b) / sqrt(va + vb),   v = m2 / (n (n - 1)), or se^2 of a reference
+//   nu = (va + vb)^2 / (va^2 / (na - 1) + vb^2 / (nb - 1)),   a reference's term being 0
+// and z with the normal tail of T (t_to_z.h): z > 0 where a is brighter. Where neither side
+// varies there is no T: equal constants have z = 0 and do not count as tested; different constants
+// have z = +-infinity, a certain difference.
+struct WelchCounts {
+  std::size_t tested = 0;
+  std::size_t equal_constants = 0;
+  std::size_t different_constants = 0;
+
+  void merge(const WelchCounts& other);
+};
+
+// z of the elements [first, first + z.size()). One thread; ranges are independent of each other.
+// All throw std::domain_error: extents that differ, fewer than 16 replicates (image.h), a range
+// beyond the image, non-finite values (naming the element). `a` and `b` may differ in count.
+template <class Real>
+WelchCounts welch_z(const ImageStack<Real>& a, const ImageStack<Real>& b, std::size_t first,
+                    std::span<double> z);
+template <class Real>
+WelchCounts welch_z(const ImageStack<Real>& a, const ImageReference& b, std::size_t first,
+                    std::span<double> z);
+WelchCounts welch_z(const ImageMoments& a, const ImageMoments& b, std::size_t first,
+                    std::span<double> z);
+WelchCounts welch_z(const ImageMoments& a, const ImageReference& b, std::size_t first,
+                    std::span<double> z);
+
+// One element's T and its exact tails. Throws ZeroVariance where neither side varies.
+template <class Real>
+TestResult welch_element(const ImageStack<Real>& a, const ImageStack<Real>& b, std::size_t element);
+template <class Real>
+TestResult welch_element(const ImageStack<Real>& a, const ImageReference& b, std::size_t element);
+
+}  // namespace assay::stats

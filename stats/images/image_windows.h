@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stats/images/image.h"
+
+namespace assay::stats {
+
+struct Rectangle {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+
+  friend bool operator==(const Rectangle&, const Rectangle&) = default;
+};
+
+// Which sums of an image are looked at. Level `size` has the cells of a grid of that size, the last
+// ones cut off at the edge (aligned), and all whole cells at steps of size / 4 that are not of the
+// grid (shifted): a block of that size anywhere overlaps one of them by 49/64 or more. Sizes are 1,
+// 2, 4, … and the whole image. Beside them the whole image with alternating signs, by column, by
+// row and as a checkerboard: what defects of interleaved samplers and threads look like, and what
+// every even-sized cell cancels.
+enum class Grid { aligned, shifted, alternating };
+
+struct WindowGroup {
+  std::uint32_t size = 1;
+  Grid grid = Grid::aligned;
+  double share = 0;  // of the level; all groups together have `share` of window_groups
+  std::vector<Rectangle> windows;
+};
+
+// The groups and their shares: one for every level and two for the whole image, half of it each for
+// a level's aligned and its shifted cells; the three alternating sums .025. The measured reasons
+// are in README.md.
+// Windows of sizes below `listed`, but for the whole image, are not listed: there are millions.
+std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share,
+                                       std::uint32_t listed = 1);
+
+// How many cells of that size the aligned grid has.
+std::size_t aligned_cells(const ImageExtent& extent, std::uint32_t size);
+
+// Sums over rectangles of one channel by a summed-area table (Crow 1984), in double.
+class WindowSums {
+ public:
+  explicit WindowSums(const ImageExtent& extent);
+
+  // values[y * width + x] of one channel.
+  void load(std::span<const double> values);
+
+  // The sum of window `index` of a group.
+  double of(const WindowGroup& group, std::size_t index) const;
+  double of_all() const { return table_.back(); }
+
+ private:
+  double of(const Rectangle& window) const;
+
+  std::size_t width_;
+  std::vector<double> table_;   // (width + 1) x (height + 1)
+  double alternating_[3] = {};  // by column, by row, checkerboard
+};
+
+}  // namespace assay::stats

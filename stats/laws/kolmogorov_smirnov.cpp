@@ -1,0 +1,217 @@
+#include "stats/laws/kolmogorov_smirnov.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "stats/basics/check.h"
+#include "stats/laws/supremum_bound.h"
+#include "stats/tails/kolmogorov.h"
+#include "stats/tails/special.h"
+
+namespace assay::stats {
+namespace {
+
+void check_sorted(std::span<const double> values) {
+  check::at_least({"ks_distance", "sample size"}, values.size(), 1);
+  // NaN fails every comparison, so an ordered range with finite ends is finite throughout.
+  const bool ordered = std::adjacent_find(values.begin(), values.end(), [](double a, double b) {
+                         return !(a <= b);
+                       }) == values.end();
+  if (!ordered)
+    throw std::domain_error("ks_distance: sample must be sorted ascending, without NaN");
+  check::finite({"ks_distance", "smallest value"}, values.front());
+  check::finite({"ks_distance", "largest value"}, values.back());
+}
+
+double law_value(const std::function<double(double)>& cdf, double x) {
+  const double value = cdf(x);
+  check::unit({"ks_distance", "cdf"}, value);
+  return value;
+}
+
+// Of the law that has these probabilities up to each value, and these below it.
+OneSampleDistance largest_gap(std::span<const double> sorted, std::span<const double> at,
+                              std::span<const double> before) {
+  const double n = static_cast<double>(sorted.size());
+  OneSampleDistance result{0, sorted.size(), sorted.front()};
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const double x = sorted[i];
+    const double above = static_cast<double>(i + 1) / n - at[i];
+    const double below = before[i] - static_cast<double>(i) / n;
+    // Within a run of equal values only the last step of F_n counts above, only the first below.
+    const bool last = i + 1 == sorted.size() || sorted[i + 1] != x;
+    const bool first = i == 0 || sorted[i - 1] != x;
+    const double here = std::max(last ? above : 0, first ? below : 0);
+    if (here > result.distance) result = {here, sorted.size(), x};
+  }
+  result.distance = std::min(result.distance, 1.0);
+  return result;
+}
+
+TestResult result_of(double distance, Distribution law, SmirnovTail tail) {
+  return {distance, std::move(law), 0, tail.log_p, tail.exactness};
+}
+
+// ln of Hoeffding's bound on the probability of a deviation `gap` of a mean (or of a difference).
+double log_hoeffding(double gap, double effective_size) {
+  return gap > 0 ? special::clamp_log(-2 * effective_size * gap * gap) : 0;
+}
+
+double effective_size(const LatticeDistance& lattice) {
+  const double m = static_cast<double>(lattice.m);
+  const double n = static_cast<double>(lattice.n);
+  return m / (m + n) * n;
+}
+
+// Solves excess(delta) = 0 for an increasing excess that is negative at low and positive at high.
+template <class Function>
+double crossing(const Function& excess, double low, double high) {
+  std::uintmax_t iterations = 100;
+  const auto ends = boost::math::tools::toms748_solve(
+      excess, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);
+  return std::midpoint(ends.first, ends.second);
+}
+
+template <class Distance>
+Interval interval(const Distance& distance, double observed, double confidence) {
+  check::inside_unit({"ks_interval", "confidence"}, confidence);
+  const double log_tail = std::log((1 - confidence) / 2);
+  // "Delta <= low" is just rejected; "Delta >= high" is just rejected.
+  const auto low_excess = [&](double delta) {
+    return ks_margin(distance, delta).log_p_upper - log_tail;
+  };
+  const auto high_excess = [&](double delta) {
+    return log_tail - ks_margin(distance, delta).log_p_lower;
+  };
+  const double top = std::nextafter(1.0, 0.0);
+  const double low = low_excess(0) >= 0 ? 0 : crossing(low_excess, 0, std::min(observed, top));
+  const double high =
+      high_excess(top) <= 0 ? 1 : crossing(high_excess, std::min(observed, top), top);
+  return {low, high, confidence};
+}
+
+void check_null(double null_distance) {
+  if (!(null_distance >= 0 && null_distance < 1)) {
+    check::fail({"ks_margin", "null_distance"}, null_distance, "in [0, 1)");
+  }
+}
+
+}  // namespace
+
+std::vector<double> probabilities(std::span<const double> sorted, const ContinuousLaw& law) {
+  std::vector<double> at;
+  if (law.of_sorted) {
+    at = law.of_sorted(sorted);
+    for (const double value : at) check::unit({"ks_distance", "cdf"}, value);
+    return at;
+  }
+  at.reserve(sorted.size());
+  for (const double x : sorted) at.push_back(law_value(law.cdf, x));
+  return at;
+}
+
+OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law) {
+  check_sorted(sorted);
+  const std::vector<double> at = probabilities(sorted, law);
+  if (!law.left_limit) return largest_gap(sorted, at, at);
+  return largest_gap(sorted, at, probabilities(sorted, {.cdf = law.left_limit}));
+}
+
+OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at) {
+  check_sorted(sorted);
+  if (at.of_values.size() != sorted.size()) {
+    check::fail({"ks_distance", "number of probabilities"},
+                static_cast<double>(at.of_values.size()), "that of the values");
+  }
+  for (const double value : at.of_values) check::unit({"ks_distance", "probability"}, value);
+  return largest_gap(sorted, at.of_values, at.of_values);
+}
+
+TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const double> sorted_y) {
+  check_sorted(sorted_x);
+  check_sorted(sorted_y);
+  const std::uint64_t m = sorted_x.size();
+  const std::uint64_t n = sorted_y.size();
+  const std::uint64_t common = std::gcd(m, n);
+  const auto up = static_cast<std::int64_t>(n / common);
+  const auto down = static_cast<std::int64_t>(m / common);
+  if (static_cast<double>(up) * static_cast<double>(m) > 0x1p62) {
+    check::fail({"ks_distance", "lcm of the sample sizes"},
+                static_cast<double>(up) * static_cast<double>(m), "at most 2^62");
+  }
+  std::size_t i = 0;
+  std::size_t j = 0;
+  std::int64_t gap = 0;
+  std::int64_t largest = 0;
+  TwoSampleDistance result{{0, m, n}, sorted_x.front(), 0};
+  while (i < m && j < n) {
+    const double x = sorted_x[i];
+    const double y = sorted_y[j];
+    const double value = std::min(x, y);
+    // Without ties one of the two advances by one: branch-free, as the order is unpredictable.
+    const bool take_x = x <= y;
+    const bool take_y = y <= x;
+    i += take_x;
+    j += take_y;
+    gap += (take_x ? up : 0) - (take_y ? down : 0);
+    result.ties += take_x && take_y;
+    while (i < m && sorted_x[i] == value) ++i, gap += up, ++result.ties;
+    while (j < n && sorted_y[j] == value) ++j, gap -= down, ++result.ties;
+    const std::int64_t size = gap < 0 ? -gap : gap;
+    if (size > largest) {
+      largest = size;
+      result.location = value;
+    }
+  }
+  // Beyond the end of one sample the gap only shrinks to zero: its largest size was just seen.
+  result.lattice.steps = static_cast<std::uint64_t>(largest);
+  return result;
+}
+
+TestResult kolmogorov_smirnov(const OneSampleDistance& distance) {
+  const LogTails tails = kolmogorov_tails(distance.distance, distance.n);
+  return result_of(distance.distance, {"kolmogorov", {static_cast<double>(distance.n)}},
+                   {tails.upper, Exactness::exact});
+}
+
+TestResult kolmogorov_smirnov(const TwoSampleDistance& distance) {
+  const auto& lattice = distance.lattice;
+  return result_of(distance.distance(),
+                   {"smirnov", {static_cast<double>(lattice.m), static_cast<double>(lattice.n)}},
+                   smirnov_upper_tail(lattice));
+}
+
+TestResult ks_margin(const OneSampleDistance& distance, double null_distance) {
+  check_null(null_distance);
+  const double excess = std::max(0.0, distance.distance - null_distance);
+  const double size = static_cast<double>(distance.n);
+  return {distance.distance,
+          {"bound", {}},
+          log_hoeffding(null_distance - distance.distance, size),
+          kolmogorov_tails(excess, distance.n).upper,
+          Exactness::exact};
+}
+
+TestResult ks_margin(const TwoSampleDistance& distance, double null_distance) {
+  check_null(null_distance);
+  const double observed = distance.distance();
+  const auto& lattice = distance.lattice;
+  const double upper = log_two_suprema_bound(observed - null_distance, {lattice.m, lattice.n});
+  return {observed,
+          {"bound", {}},
+          log_hoeffding(null_distance - observed, effective_size(lattice)),
+          upper,
+          Exactness::exact};
+}
+
+Interval ks_interval(const OneSampleDistance& distance, double confidence) {
+  return interval(distance, distance.distance, confidence);
+}
+
+Interval ks_interval(const TwoSampleDistance& distance, double confidence) {
+  return interval(distance, distance.distance(), confidence);
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "stats/laws/supremum_bound.h"
+#include "stats/planning/planning.h"
+#include "stats/planning/power.h"
+#include "stats/tails/kolmogorov.h"
+#include "stats/tails/smirnov.h"
+
+namespace assay::stats {
+namespace {
+
+void check_plan(const char* function, const DistancePlan& plan) {
+  planning::check_rates(function, plan.rates);
+  if (!(plan.allow >= 0 && plan.allow < 1)) {
+    check::fail({function, "allow"}, plan.allow, "in [0, 1)");
+  }
+  check::positive({function, "allocation"}, plan.allocation);
+}
+
+TwoSizes sizes_of(const DistancePlan& plan, double n) {
+  const auto second = static_cast<std::uint64_t>(std::max(1.0, std::round(n * plan.allocation)));
+  return {static_cast<std::uint64_t>(n), second};
+}
+
+// Smallest lattice distance of two samples that the law rejects, a step beyond 1 when none.
+double two_sample_critical(double log_alpha, TwoSizes sizes) {
+  const std::uint64_t steps = std::lcm(sizes.m, sizes.n);
+  std::uint64_t low = 0;
+  std::uint64_t high = steps + 1;
+  while (high - low > 1) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    (smirnov_upper_tail({middle, sizes.m, sizes.n}).log_p <= log_alpha ? high : low) = middle;
+  }
+  return static_cast<double>(high) / static_cast<double>(steps);
+}
+
+double two_sample_margin_critical(double log_alpha, TwoSizes sizes) {
+  const auto excess = [&](double gap) { return log_alpha - log_two_suprema_bound(gap, sizes); };
+  double high = 1;
+  while (excess(high) < 0) high *= 2;
+  std::uintmax_t iterations = 100;
+  return boost::math::tools::toms748_solve(
+             excess, 0.0, high, boost::math::tools::eps_tolerance<double>(30), iterations)
+      .second;
+}
+
+// d_alpha: the distance above `allow` from which the test rejects.
+double found_critical_distance(const DistancePlan& plan, double n) {
+  const TwoSizes sizes = sizes_of(plan, n);
+  const double log_alpha = std::log(plan.rates.alpha);
+  if (!plan.two_samples) return kolmogorov_upper_quantile(log_alpha, sizes.m);
+  return plan.allow == 0 ? two_sample_critical(log_alpha, sizes)
+                         : two_sample_margin_critical(log_alpha, sizes);
+}
+
+// The same, which takes up to milliseconds, and is asked for twice in a row: for the detectable
+// distance and for the power.
+double critical_distance(const DistancePlan& plan, double n) {
+  using Key = std::tuple<double, bool, bool, double, double>;
+  thread_local std::optional<std::pair<Key, double>> last;
+  const Key key{plan.rates.alpha, plan.two_samples, plan.allow == 0, n, plan.allocation};
+  if (!last || last->first != key) last = {key, found_critical_distance(plan, n)};
+  return last->second;
+}
+
+// The observations of one sample that are worth as many: m n / (m + n) of two.
+double effective(const DistancePlan& plan, double n) {
+  return plan.two_samples ? n * plan.allocation / (1 + plan.allocation) : n;
+}
+
+double check_distance_size(const char* function, double n) {
+  if (!(n >= 1) || n > planning::most_samples) check::fail({function, "n"}, n, "in [1, 2^53]");
+  return std::floor(n);
+}
+
+double power_bound(const DistancePlan& plan, double n, double distance) {
+  const double gap = distance - plan.allow - critical_distance(plan, n);
+  return gap > 0 ? -std::expm1(-2 * effective(plan, n) * gap * gap) : 0;
+}
+
+void check_plan(const char* function, const FitPlan& plan) {
+  planning::check_rates(function, plan.rates);
+  check::positive({function, "degrees_of_freedom"}, plan.degrees_of_freedom);
+  check::non_negative({function, "allow"}, plan.allow);
+}
+
+class FitPower {
+ public:
+  FitPower(const FitPlan& plan, double n)
+      : plan_(plan),
+        n_(n),
+        critical_(noncentral_chi_square_quantile({Tail::upper, std::log(plan.rates.alpha)},
+                                                 noncentral(plan.allow))) {}
+
+  double at(double effect) const { return std::exp(tails(effect).upper); }
+
+  // The effect with a power of 1 - beta, nearly: the power's normal score is all but linear in it,
+  // as if X2 were normal with mean nu + l and variance 2 nu + 4 l at noncentrality l.
+  double about() const {
+    const double z = planning::z_upper(plan_.rates.beta);
+    const double nu = plan_.degrees_of_freedom;
+    const double beyond = critical_ - nu;
+    const double wanted = beyond + 2 * z * z + z * std::sqrt(2 * nu + 4 * beyond + 4 * z * z);
+    const double guess = std::sqrt(wanted / n_);
+    const double spread = std::sqrt(2 * nu + 4 * wanted);
+    const auto score = [&](double effect) {
+      return planning::score_of_miss(std::exp(tails(effect).lower)) - z;
+    };
+    return planning::secant_root(
+        score, {.root = guess, .slope = 2 * n_ * guess * (1 - 2 * z / spread) / spread});
+  }
+
+ private:
+  Noncentral noncentral(double effect) const {
+    return {plan_.degrees_of_freedom, n_ * effect * effect};
+  }
+  LogTails tails(double effect) const {
+    return noncentral_chi_square_tails(critical_, noncentral(effect));
+  }
+
+  FitPlan plan_;
+  double n_;
+  double critical_;
+};
+
+void check_fit_size(const char* function, double n) {
+  if (!(n >= 1) || n > planning::most_samples) check::fail({function, "n"}, n, "in [1, 2^53]");
+}
+
+}  // namespace
+
+double ks_power_bound(const DistancePlan& plan, double n, double distance) {
+  check_plan("ks_power_bound", plan);
+  check::unit({"ks_power_bound", "distance"}, distance);
+  return power_bound(plan, check_distance_size("ks_power_bound", n), distance);
+}
+
+double ks_detectable(const DistancePlan& plan, double n) {
+  check_plan("ks_detectable", plan);
+  const double size = check_distance_size("ks_detectable", n);
+  const double miss = std::sqrt(-std::log(plan.rates.beta) / (2 * effective(plan, size)));
+  const double distance = plan.allow + critical_distance(plan, size) + miss;
+  return distance <= 1 ? distance : std::numeric_limits<double>::infinity();
+}
+
+std::optional<std::uint64_t> ks_sample_size(const DistancePlan& plan, double detect) {
+  check_plan("ks_sample_size", plan);
+  planning::check_effect("ks_sample_size", plan.allow, detect);
+  check::unit({"ks_sample_size", "detect"}, detect);
+  const double scale = plan.two_samples ? (1 + plan.allocation) / plan.allocation : 1;
+  const double root =
+      std::sqrt(std::log(2 / plan.rates.alpha) / 2) + std::sqrt(-std::log(plan.rates.beta) / 2);
+  const double gap = detect - plan.allow;
+  const double guess = scale * (root / gap) * (root / gap);
+  if (guess > planning::most_samples) return std::nullopt;
+  // Massart's bound in place of d_alpha, which is at most that: enough, a few in a thousand more
+  // than the exact law asks for, and its quantile takes milliseconds.
+  if (!plan.two_samples) return static_cast<std::uint64_t>(std::ceil(guess));
+  const auto enough = [&](double n) { return power_bound(plan, n, detect) >= 1 - plan.rates.beta; };
+  return planning::smallest_sample(enough, guess, 1);
+}
+
+double chi_square_fit_power(const FitPlan& plan, double n, double effect) {
+  check_plan("chi_square_fit_power", plan);
+  check_fit_size("chi_square_fit_power", n);
+  check::non_negative({"chi_square_fit_power", "effect"}, effect);
+  return FitPower(plan, n).at(effect);
+}
+
+double chi_square_fit_detectable(const FitPlan& plan, double n) {
+  check_plan("chi_square_fit_detectable", plan);
+  check_fit_size("chi_square_fit_detectable", n);
+  const FitPower power(plan, n);
+  const auto enough = [&](double effect) { return power.at(effect) >= 1 - plan.rates.beta; };
+  return planning::smallest_effect(enough, plan.allow, 1 / std::sqrt(n), power.about());
+}
+
+std::optional<std::uint64_t> chi_square_fit_sample_size(const FitPlan& plan, double detect) {
+  check_plan("chi_square_fit_sample_size", plan);
+  planning::check_effect("chi_square_fit_sample_size", plan.allow, detect);
+  const double z = planning::z_upper(plan.rates.alpha) + planning::z_upper(plan.rates.beta);
+  const double gap = detect - plan.allow;
+  const double guess = (z * z + z * std::sqrt(2 * plan.degrees_of_freedom)) / (gap * gap);
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) { return FitPower(plan, n).at(detect) >= 1 - plan.rates.beta; };
+  return planning::smallest_sample(enough, guess, 1);
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,251 @@
+#include "stats/laws/quantile_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "stats/basics/check.h"
+#include "stats/planning/planning.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check_sorted(const char* function, std::span<const double> sorted) {
+  check::at_least({function, "values"}, sorted.size(), 1);
+  check::finite({function, "smallest value"}, sorted.front());
+  check::finite({function, "largest value"}, sorted.back());
+  if (!std::is_sorted(sorted.begin(), sorted.end())) {
+    check::fail({function, "values"}, sorted.size(), "sorted ascending");
+  }
+}
+
+// The smallest k with P(K <= k) > e^log_level: the lower critical count, by bisection.
+std::uint64_t smallest_kept(Trials trials, double log_level) {
+  std::uint64_t low = 0;
+  std::uint64_t high = trials.trials;
+  while (low < high) {
+    const std::uint64_t middle = std::midpoint(low, high);
+    if (binomial_lower(middle, trials) > log_level) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return low;
+}
+
+std::uint64_t largest_kept(Trials trials, double log_level) {
+  return trials.trials - smallest_kept({trials.trials, 1 - trials.probability}, log_level);
+}
+
+double sample_quantile(std::span<const double> sorted, double probability) {
+  return sorted[sample_quantile_rank(sorted.size(), probability)];
+}
+
+// ln of Fisher's combination of two independent p-values: c (1 - ln c).
+double log_fisher(double log_product) {
+  constexpr double lowest = std::numeric_limits<double>::lowest();
+  if (log_product <= lowest) return lowest;
+  return std::min(0.0, log_product + std::log1p(-log_product));
+}
+
+struct Transform {
+  double scale;
+  double offset;
+
+  double operator()(double y) const { return scale * y + offset; }
+};
+
+struct Side {
+  std::span<const double> values;
+  Transform map;
+
+  std::uint64_t below(double v) const {
+    return static_cast<std::uint64_t>(
+        std::partition_point(values.begin(), values.end(), [&](double y) { return map(y) < v; }) -
+        values.begin());
+  }
+  std::uint64_t at_most(double v) const {
+    return static_cast<std::uint64_t>(
+        std::partition_point(values.begin(), values.end(), [&](double y) { return map(y) <= v; }) -
+        values.begin());
+  }
+};
+
+// The largest product over v of P(so many of `lower` below v), which falls with v, and P(so few of
+// `upper` up to v), which rises. The counts below v step just after an observation and those up to
+// v at one, so the largest is taken at an observation of either; a range of observations cannot
+// exceed the first factor at its start times the second at its end, which prunes the search.
+class LargestProduct {
+ public:
+  LargestProduct(const Side& lower, const Side& upper, double probability)
+      : lower_(lower), upper_(upper), probability_(probability) {
+    for (const double y : lower.values) splits_.push_back(lower.map(y));
+    const auto middle = static_cast<std::ptrdiff_t>(splits_.size());
+    for (const double y : upper.values) splits_.push_back(upper.map(y));
+    std::inplace_merge(splits_.begin(), splits_.begin() + middle, splits_.end());
+  }
+
+  double logarithm() {
+    search(0, splits_.size() - 1);
+    return largest_;
+  }
+
+ private:
+  double first(std::size_t i) const {
+    return binomial_upper(lower_.below(splits_[i]), {lower_.values.size(), probability_});
+  }
+  double second(std::size_t i) const {
+    return binomial_lower(upper_.at_most(splits_[i]), {upper_.values.size(), probability_});
+  }
+  void search(std::size_t begin, std::size_t end) {
+    if (first(begin) + second(end) <= largest_) return;
+    const std::size_t middle = std::midpoint(begin, end);
+    largest_ = std::max(largest_, first(middle) + second(middle));
+    if (middle > begin) search(begin, middle - 1);
+    if (middle < end) search(middle + 1, end);
+  }
+
+  const Side& lower_;
+  const Side& upper_;
+  double probability_;
+  std::vector<double> splits_;
+  double largest_ = -infinity;
+};
+
+// ln p of "Q(lower) >= Q(upper)".
+double log_p_below(const Side& lower, const Side& upper, double probability) {
+  return log_fisher(LargestProduct(lower, upper, probability).logarithm());
+}
+
+void check_contrast(const QuantileContrast& contrast) {
+  check::inside_unit({"quantile_compare", "probability"}, contrast.probability);
+  check::positive({"quantile_compare", "scale"}, contrast.scale);
+  check::finite({"quantile_compare", "offset"}, contrast.offset);
+}
+
+}  // namespace
+
+QuantileCounts count_around(std::span<const double> sorted, double value) {
+  check_sorted("count_around", sorted);
+  check::finite({"count_around", "value"}, value);
+  const Side side{sorted, {1, 0}};
+  return {side.below(value), side.at_most(value), sorted.size()};
+}
+
+TestResult quantile_test(const QuantileCounts& counts, double probability) {
+  check::at_least({"quantile_test", "n"}, counts.n, 1);
+  check::inside_unit({"quantile_test", "probability"}, probability);
+  check::at_least({"quantile_test", "values up to v"}, counts.at_most, counts.below);
+  check::at_least({"quantile_test", "n"}, counts.n, counts.at_most);
+  const double n = static_cast<double>(counts.n);
+  const Trials trials{counts.n, probability};
+  const double share = static_cast<double>(counts.below + counts.at_most) / 2 / n;
+  return {probability - share,
+          {"binomial", {n, probability}},
+          binomial_upper(counts.below, trials),
+          binomial_lower(counts.at_most, trials),
+          Exactness::exact};
+}
+
+Interval quantile_interval(std::span<const double> sorted, double probability, double confidence) {
+  check_sorted("quantile_interval", sorted);
+  check::inside_unit({"quantile_interval", "probability"}, probability);
+  check::inside_unit({"quantile_interval", "confidence"}, confidence);
+  const Trials trials{sorted.size(), probability};
+  const double log_level = std::log((1 - confidence) / 2);
+  const std::uint64_t fewest = smallest_kept(trials, log_level);
+  const std::uint64_t most = largest_kept(trials, log_level);
+  return {fewest == 0 ? -infinity : sorted[fewest - 1],
+          most == trials.trials ? infinity : sorted[most], confidence};
+}
+
+TestResult quantile_compare(std::span<const double> sorted_x, std::span<const double> sorted_y,
+                            QuantileContrast contrast) {
+  check_sorted("quantile_compare", sorted_x);
+  check_sorted("quantile_compare", sorted_y);
+  check_contrast(contrast);
+  const double q = contrast.probability;
+  const Side x{sorted_x, {1, 0}};
+  const Side y{sorted_y, {contrast.scale, contrast.offset}};
+  const double difference = sample_quantile(sorted_x, q) - y.map(sample_quantile(sorted_y, q));
+  return {difference, {"bound", {}}, log_p_below(x, y, q), log_p_below(y, x, q), Exactness::exact};
+}
+
+Interval quantile_difference_interval(std::span<const double> sorted_x,
+                                      std::span<const double> sorted_y, double probability,
+                                      double confidence) {
+  check::inside_unit({"quantile_difference_interval", "confidence"}, confidence);
+  const double log_level = std::log((1 - confidence) / 2);
+  check::inside_unit({"quantile_difference_interval", "probability"}, probability);
+  check_sorted("quantile_difference_interval", sorted_x);
+  check_sorted("quantile_difference_interval", sorted_y);
+  const Side x{sorted_x, {1, 0}};
+  const auto moved = [&](double offset) { return Side{sorted_y, {1, offset}}; };
+  const auto rejected_above = [&](double offset) {
+    return log_p_below(x, moved(offset), probability) <= log_level;
+  };
+  const auto rejected_below = [&](double offset) {
+    return log_p_below(moved(offset), x, probability) <= log_level;
+  };
+  const double middle =
+      sample_quantile(sorted_x, probability) - sample_quantile(sorted_y, probability);
+  // Further apart than any two values: nothing can be more extreme.
+  const double reach = sorted_x.back() - sorted_x.front() + sorted_y.back() - sorted_y.front() + 1;
+  const auto end = [&](const auto& rejected, double outside) {
+    if (!rejected(outside)) return std::copysign(infinity, outside - middle);
+    double inside = middle;
+    while (true) {
+      const double between = std::midpoint(inside, outside);
+      if (between == inside || between == outside) return inside;
+      (rejected(between) ? outside : inside) = between;
+    }
+  };
+  return {end(rejected_below, middle - reach), end(rejected_above, middle + reach), confidence};
+}
+
+std::optional<std::uint64_t> quantile_sample_size(const QuantilePlan& plan) {
+  planning::check_rates("quantile_sample_size", plan.rates);
+  check::inside_unit({"quantile_sample_size", "allow"}, plan.allow);
+  check::inside_unit({"quantile_sample_size", "detect"}, plan.detect);
+  if (plan.detect == plan.allow) {
+    check::fail({"quantile_sample_size", "detect"}, plan.detect, "different from allow");
+  }
+  // Too many values below v, or by symmetry too few.
+  const bool many = plan.detect > plan.allow;
+  const double null = many ? plan.allow : 1 - plan.allow;
+  const double truth = many ? plan.detect : 1 - plan.detect;
+  const double log_level = planning::log_tail_level(plan.rates);
+  const auto enough = [&](double size) {
+    const auto n = static_cast<std::uint64_t>(size);
+    const std::uint64_t critical = largest_kept({n, null}, log_level) + 1;
+    if (critical > n) return false;
+    return binomial_upper(critical, {n, truth}) >= std::log1p(-plan.rates.beta);
+  };
+  const double z =
+      normal_quantile(planning::critical_tail(plan.rates)) * std::sqrt(null * (1 - null)) +
+      planning::z_upper(plan.rates.beta) * std::sqrt(truth * (1 - truth));
+  const double guess = z * z / (truth - null) / (truth - null);
+  if (guess > planning::most_samples) return std::nullopt;
+  return planning::smallest_sample(enough, guess, 1);
+}
+
+double quantile_standard_deviation(double probability, double density) {
+  check::inside_unit({"quantile_standard_deviation", "probability"}, probability);
+  check::positive({"quantile_standard_deviation", "density"}, density);
+  return std::sqrt(probability * (1 - probability)) / density;
+}
+
+std::size_t sample_quantile_rank(std::size_t count, double probability) {
+  check::at_least({"sample_quantile_rank", "count"}, count, 1);
+  const double n = static_cast<double>(count);
+  // .29 * 100 is 28.999999999999996.
+  return static_cast<std::size_t>(std::min(n - 1, std::floor(probability * n * (1 + 1e-14))));
+}
+
+}  // namespace assay::stats

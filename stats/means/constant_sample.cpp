@@ -1,0 +1,69 @@
+#include "stats/means/constant_sample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "stats/basics/check.h"
+#include "stats/basics/golden_section.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr const char* function_name = "log_p_constant";
+constexpr double probability_zero = std::numeric_limits<double>::lowest();
+
+void check_arguments(const ConstantSample& sample, const Reference& reference) {
+  check::at_least({function_name, "count"}, sample.count, 1);
+  check::finite({function_name, "value"}, sample.value);
+  check::finite({function_name, "reference"}, reference.value);
+  check::non_negative({function_name, "standard error"}, reference.standard_error);
+  if (!(sample.low <= sample.value && sample.value <= sample.high)) {
+    check::fail({function_name, "value"}, sample.value, "in the declared range");
+  }
+}
+
+// The two ways in which a constant and a reference may differ though the claim holds.
+struct Difference {
+  double size = 0;   // d of the header
+  double reach = 0;  // from the constant to the end of the range on the reference's side
+  double error = 0;
+  double count = 0;
+
+  // ln P(no other value in `count`), if these values move the mean by `shift`.
+  double log_unseen(double shift) const {
+    if (shift >= reach) return shift > 0 ? probability_zero : 0;
+    return count * std::log1p(-shift / reach);
+  }
+  // With the reference `errors` of its standard errors off.
+  double log_p(double errors) const {
+    const double shift = std::max(0.0, size - errors * error);
+    const double off = std::min(0.0, std::numbers::ln2 + normal_tails(errors).upper);
+    return std::max(probability_zero, log_unseen(shift) + off);
+  }
+};
+
+double largest_log_p(const Difference& difference) {
+  const double least = std::max(0.0, (difference.size - difference.reach) / difference.error);
+  const auto log_p = [&](double errors) { return difference.log_p(errors); };
+  return golden_section(log_p, least, difference.size / difference.error).largest;
+}
+
+}  // namespace
+
+double log_p_constant(const ConstantSample& sample, const Reference& reference) {
+  check_arguments(sample, reference);
+  const double size = std::abs(reference.value - sample.value);
+  const bool above = reference.value > sample.value;
+  const Difference difference{
+      .size = size,
+      .reach = above ? sample.high - sample.value : sample.value - sample.low,
+      .error = reference.standard_error,
+      .count = static_cast<double>(sample.count)};
+  if (size == 0) return 0;
+  return difference.error > 0 ? largest_log_p(difference) : difference.log_unseen(size);
+}
+
+}  // namespace assay::stats

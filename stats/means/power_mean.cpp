@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "stats/planning/planning.h"
+#include "stats/planning/power.h"
+#include "stats/tails/special.h"
+
+namespace assay::stats {
+namespace {
+
+using planning::critical_tail;
+using planning::z_upper;
+
+struct Studentised {
+  double standard_error;
+  double degrees;
+};
+
+// P(reject), null region |theta| <= allow or theta <= allow.
+class Power {
+ public:
+  Power(const Studentised& scale, const ErrorRates& rates)
+      : scale_(scale),
+        rates_(rates),
+        critical_(student_t_quantile(critical_tail(rates), scale.degrees)) {}
+
+  double at(EffectPlan effect) const { return with_far(near(effect), effect); }
+
+  // Whether it is 1 - beta or more. Far from the question the tail on the other side, a fifth of
+  // the work and never above its level alpha / 2, need not be known.
+  bool suffices_at(EffectPlan effect) const {
+    constexpr double rounding = 1e-9;
+    const double power = near(effect);
+    const double wanted = 1 - rates_.beta;
+    if (power >= wanted || power + rates_.alpha / 2 + rounding < wanted) return power >= wanted;
+    return with_far(power, effect) >= wanted;
+  }
+
+  // The effect with a power of 1 - beta, nearly: the power's normal score is all but linear in it,
+  // (d - t (1 - 1 / 4 nu)) / sqrt(1 + t^2 / 2 nu) at noncentrality d (Johnson & Welch 1940).
+  double about(double allow) const {
+    const double z = z_upper(rates_.beta);
+    const double spread = std::sqrt(1 + critical_ * critical_ / (2 * scale_.degrees));
+    const double noncentrality = critical_ * (1 - 1 / (4 * scale_.degrees)) + z * spread;
+    const auto score = [&](double effect) { return score_at({allow, effect}) - z; };
+    return planning::secant_root(score, {.root = allow + noncentrality * scale_.standard_error,
+                                         .slope = 1 / (spread * scale_.standard_error)});
+  }
+
+ private:
+  // Power is monotone in it, and 1 to the last digit a hundred critical values away; farther out
+  // nothing is left of the integrals but rounding.
+  double noncentrality(double effect) const {
+    const double most = 100 * std::max(1.0, std::abs(critical_));
+    return std::clamp(effect / scale_.standard_error, -most, most);
+  }
+  double near(EffectPlan effect) const {
+    const double up = noncentrality(effect.detect - effect.allow);
+    return std::exp(noncentral_t_tails(critical_, {scale_.degrees, up}).upper);
+  }
+  double far(EffectPlan effect) const {
+    if (!rates_.two_sided) return 0;
+    const double down = noncentrality(effect.detect + effect.allow);
+    return std::exp(noncentral_t_tails(-critical_, {scale_.degrees, down}).lower);
+  }
+  double with_far(double power, EffectPlan effect) const {
+    return std::min(power + far(effect), 1.0);
+  }
+  double score_at(EffectPlan effect) const {
+    const double up = noncentrality(effect.detect - effect.allow);
+    const double near = noncentral_t_tails(critical_, {scale_.degrees, up}).lower;
+    return planning::score_of_miss(std::exp(near) - far(effect));
+  }
+
+  Studentised scale_;
+  ErrorRates rates_;
+  double critical_;
+};
+
+Studentised scale_of(const MeanPlan& plan, double n) {
+  const double own = plan.standard_deviation * plan.standard_deviation / n;
+  const double total = own + plan.reference_standard_error * plan.reference_standard_error;
+  return {std::sqrt(total), (n - 1) * (total / own) * (total / own)};
+}
+
+Studentised scale_of(const TwoMeansPlan& plan, double n_x) {
+  const double n_y = n_x * plan.allocation;
+  const double vx = plan.standard_deviation_x * plan.standard_deviation_x / n_x;
+  const double vy = plan.standard_deviation_y * plan.standard_deviation_y / n_y;
+  const double total = vx + vy;
+  return {std::sqrt(total), total * total / (vx * vx / (n_x - 1) + vy * vy / (n_y - 1))};
+}
+
+void check_plan(const char* function, const MeanPlan& plan) {
+  planning::check_rates(function, plan.rates);
+  check::positive({function, "standard_deviation"}, plan.standard_deviation);
+  check::non_negative({function, "allow"}, plan.allow);
+  check::non_negative({function, "reference_standard_error"}, plan.reference_standard_error);
+}
+
+void check_plan(const char* function, const TwoMeansPlan& plan) {
+  planning::check_rates(function, plan.rates);
+  check::positive({function, "standard_deviation_x"}, plan.standard_deviation_x);
+  check::positive({function, "standard_deviation_y"}, plan.standard_deviation_y);
+  check::positive({function, "allocation"}, plan.allocation);
+  check::non_negative({function, "allow"}, plan.allow);
+}
+
+void check_size(const char* function, double n) {
+  if (!(n > 1) || !std::isfinite(n)) check::fail({function, "n"}, n, "above 1 and finite");
+}
+
+template <class Plan>
+double detectable(const char* function, const Plan& plan, double n) {
+  check_plan(function, plan);
+  check_size(function, n);
+  const Studentised scale = scale_of(plan, n);
+  const Power power(scale, plan.rates);
+  const auto enough = [&](double effect) { return power.suffices_at({plan.allow, effect}); };
+  return planning::smallest_effect(enough, plan.allow, scale.standard_error,
+                                   power.about(plan.allow));
+}
+
+double z_sum(const ErrorRates& rates) {
+  return normal_quantile(critical_tail(rates)) + z_upper(rates.beta);
+}
+
+// What t needs beyond the normal formula: z_alpha^2 / 2 (Guenther 1981), nearly exact.
+double beyond_normal(const ErrorRates& rates) {
+  const double z = normal_quantile(critical_tail(rates));
+  return z * z / 2;
+}
+
+}  // namespace
+
+double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRates rates) {
+  planning::check_rates("normal_sample_size", rates);
+  planning::check_effect("normal_sample_size", effect.allow, effect.detect);
+  check::positive({"normal_sample_size", "standard_deviation"}, standard_deviation);
+  const double ratio = z_sum(rates) * standard_deviation / (effect.detect - effect.allow);
+  return ratio * ratio;
+}
+
+double student_t_power(const MeanPlan& plan, double n, double effect) {
+  check_plan("student_t_power", plan);
+  check_size("student_t_power", n);
+  check::finite({"student_t_power", "effect"}, effect);
+  return Power(scale_of(plan, n), plan.rates).at({plan.allow, effect});
+}
+
+double student_t_detectable(const MeanPlan& plan, double n) {
+  return detectable("student_t_detectable", plan, n);
+}
+
+std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double detect) {
+  check_plan("student_t_sample_size", plan);
+  planning::check_effect("student_t_sample_size", plan.allow, detect);
+  // In the limit of many samples only the reference's own error is left.
+  const double gap = detect - plan.allow;
+  const double attainable = gap / z_sum(plan.rates);
+  const double own =
+      attainable * attainable - plan.reference_standard_error * plan.reference_standard_error;
+  if (own <= 0) return std::nullopt;
+  const double guess = plan.standard_deviation * plan.standard_deviation / own;
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) {
+    return Power(scale_of(plan, n), plan.rates).suffices_at({plan.allow, detect});
+  };
+  return planning::smallest_sample(enough, guess + beyond_normal(plan.rates), 2);
+}
+
+double welch_power(const TwoMeansPlan& plan, double n_x, double effect) {
+  check_plan("welch_power", plan);
+  check_size("welch_power", std::min(n_x, n_x * plan.allocation));
+  check::finite({"welch_power", "effect"}, effect);
+  return Power(scale_of(plan, n_x), plan.rates).at({plan.allow, effect});
+}
+
+double welch_detectable(const TwoMeansPlan& plan, double n_x) {
+  return detectable("welch_detectable", plan, n_x);
+}
+
+std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double detect) {
+  check_plan("welch_sample_size", plan);
+  planning::check_effect("welch_sample_size", plan.allow, detect);
+  const double sd =
+      std::hypot(plan.standard_deviation_x, plan.standard_deviation_y / std::sqrt(plan.allocation));
+  const double guess = normal_sample_size(sd, {plan.allow, detect}, plan.rates);
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) {
+    return Power(scale_of(plan, n), plan.rates).suffices_at({plan.allow, detect});
+  };
+  const double minimum = std::max(2.0, std::ceil(2 / plan.allocation));
+  return planning::smallest_sample(enough, guess, minimum);
+}
+
+// int_0^{s_max} [Phi((margin - effect) / se - t s) - Phi(-(margin + effect) / se + t s)] f(s) ds
+// with nu s^2 ~ chi-square(nu), se = sigma / sqrt(n) and s_max = margin / (t se), where the
+// acceptance region of the mean is empty. (The difference of two noncentral t tails goes negative
+// instead.)
+double equivalence_power(const EquivalencePlan& plan, double n, double effect) {
+  planning::check_rates("equivalence_power", {plan.alpha, plan.beta, false});
+  check::positive({"equivalence_power", "standard_deviation"}, plan.standard_deviation);
+  check::positive({"equivalence_power", "margin"}, plan.margin);
+  check::finite({"equivalence_power", "effect"}, effect);
+  check_size("equivalence_power", n);
+  const double degrees = n - 1;
+  const double half = degrees / 2;
+  const double se = plan.standard_deviation / std::sqrt(n);
+  const double t = student_t_quantile({Tail::upper, std::log(plan.alpha)}, degrees);
+  const auto integrand = [&](double s) {
+    if (s <= 0) return 0.0;
+    const double density = 2 * std::exp(special::log_gamma_prefix(half, half * s * s)) / s;
+    const double high = (plan.margin - effect) / se - t * s;
+    const double low = -(plan.margin + effect) / se + t * s;
+    return density *
+           (std::erfc(low / std::numbers::sqrt2) - std::erfc(high / std::numbers::sqrt2)) / 2;
+  };
+  const double log_outside = std::log(1e-18);
+  const double first =
+      std::sqrt(chi_square_quantile({Tail::lower, log_outside}, degrees) / degrees);
+  const double most = std::sqrt(chi_square_quantile({Tail::upper, log_outside}, degrees) / degrees);
+  const double last = std::min(plan.margin / (t * se), most);
+  if (!(last > first)) return 0;
+  return std::clamp(boost::math::quadrature::gauss_kronrod<double, 31>::integrate(integrand, first,
+                                                                                  last, 12, 1e-12),
+                    0.0, 1.0);
+}
+
+std::optional<std::uint64_t> equivalence_sample_size(const EquivalencePlan& plan, double effect) {
+  check::finite({"equivalence_sample_size", "effect"}, effect);
+  check::positive({"equivalence_sample_size", "margin"}, plan.margin);
+  if (!(std::abs(effect) < plan.margin)) return std::nullopt;
+  const double gap = plan.margin - std::abs(effect);
+  const double guess =
+      normal_sample_size(plan.standard_deviation, {0, gap},
+                         {plan.alpha, effect == 0 ? plan.beta / 2 : plan.beta, false});
+  if (guess > planning::most_samples) return std::nullopt;
+  const auto enough = [&](double n) { return equivalence_power(plan, n, effect) >= 1 - plan.beta; };
+  return planning::smallest_sample(enough, guess, 2);
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,229 @@
+#include "stats/means/skewness_corrected_t.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "stats/basics/check.h"
+#include "stats/basics/errors.h"
+#include "stats/basics/interval_end.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+// Hall's transformation with a = skewness of the mean / 6, and its inverse. Neither divides by a.
+double transformed(double t, double a) {
+  const double b = a * t;
+  return t * (1 + 2 * b + 4 * b * b / 3) + a;
+}
+
+double untransformed(double h, double a) {
+  const double root = std::cbrt(1 + 6 * a * (h - a));
+  return 3 * (h - a) / (root * root + root + 1);  // (root - 1) / (2 a)
+}
+
+struct Law {
+  double standard_error = 0;
+  double degrees = 0;
+  double a = 0;
+};
+
+Law law_of(const Moments& x, Reference reference) {
+  const TestResult plain = student_t(x, reference);  // checks its arguments
+  const double n = static_cast<double>(x.count);
+  const double error = reference.standard_error;
+  const double influence = x.m2 / n / n + error * error;
+  const double share = x.m2 / n / n / influence;
+  return {std::hypot(x.standard_error(), error), plain.distribution.parameters[0],
+          share * std::sqrt(share) * x.skewness() / (6 * std::sqrt(n))};
+}
+
+// One sample's part in the variance of a contrast: factor^2 M2 / n^2.
+double influence_variance(const Moments& x, double factor) {
+  const double n = static_cast<double>(x.count);
+  return factor * factor * (x.m2 / n) / n;
+}
+
+double skewness_or_zero(const Moments& x) { return x.m2 > 0 ? x.skewness() : 0; }
+
+Law law_of(const Moments& x, const Moments& y, double scale) {
+  const TestResult plain = welch_t(x, y, {scale, 0});  // checks its arguments
+  const double nx = static_cast<double>(x.count);
+  const double ny = static_cast<double>(y.count);
+  const double of_x = influence_variance(x, 1);
+  const double of_y = influence_variance(y, scale);
+  const double px = of_x / (of_x + of_y);
+  const double py = of_y / (of_x + of_y);
+  const double skewness = px * std::sqrt(px / nx) * skewness_or_zero(x) -
+                          std::copysign(py * std::sqrt(py / ny), scale) * skewness_or_zero(y);
+  const double variance = x.variance() / nx + scale * scale * y.variance() / ny;
+  return {std::sqrt(variance), plain.distribution.parameters[0], skewness / 6};
+}
+
+TestResult result_of(double difference, const Law& law) {
+  const double h = transformed(difference / law.standard_error, law.a);
+  if (!std::isfinite(h)) {
+    check::fail({"skewness_corrected_t", "transformed statistic"}, h, "finite");
+  }
+  const LogTails tails = student_t_tails(h, law.degrees);
+  return {h, {"student-t", {law.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
+}
+
+Interval interval_of(double difference, const Law& law, double confidence) {
+  const double h = student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, law.degrees);
+  return {difference - law.standard_error * untransformed(h, law.a),
+          difference - law.standard_error * untransformed(-h, law.a), confidence};
+}
+
+// ---- Intervals of a ratio
+
+// How far E x - ratio E y = 0 is beyond its critical value: negative where it is not rejected.
+struct Excess {
+  const Moments& x;
+  const Moments& y;
+  double confidence;
+
+  double operator()(double ratio) const {
+    const Law law = law_of(x, y, ratio);
+    const double h = transformed(contrast_of_means(x, y, {ratio, 0}) / law.standard_error, law.a);
+    return std::abs(h) -
+           student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, law.degrees);
+  }
+};
+
+// ---- What the correction leaves
+
+// The sums of corrected_level_factor.
+struct Residue {
+  double a = 0;
+  double kurtosis = 0;  // k
+  double inverse = 0;   // e
+  double square = 0;    // f
+};
+
+struct Part {
+  double share = 0;
+  double count = 1;
+  double excess_kurtosis = 0;
+};
+
+void add_part(Residue& residue, const Part& part) {
+  const double each = part.share * part.share / part.count;
+  residue.kurtosis += each * part.excess_kurtosis;
+  residue.inverse += each;
+  residue.square += each * part.share / part.count;
+}
+
+double factor_of(const Residue& r, double x) {
+  const double a = std::abs(r.a);
+  const double cube = x * x * x;
+  const double even = std::max(0.0, x * cube * (r.kurtosis / 4 - 44 * a * a / 3));
+  const double odd = a * cube * (16.5 * r.inverse + 121.5 * a * a) * (1 + x * x / 24);
+  return std::exp(std::min(even + odd + cube * cube * r.square / 3, 700.0));
+}
+
+double excess_or_zero(const Moments& x) { return x.m2 > 0 ? x.kurtosis() - 3 : 0; }
+
+double lower_excess(const Moments& x) {
+  return x.m2 > 0 && x.count >= 4 ? kurtosis_gate(x).low : -2;
+}
+
+using ExcessKurtosis = double (*)(const Moments&);
+
+Residue residue_of(const Moments& x, Reference reference, ExcessKurtosis excess) {
+  const Law law = law_of(x, reference);
+  const double of_x = influence_variance(x, 1);
+  const double error = reference.standard_error;
+  Residue residue{law.a};
+  add_part(residue, {of_x / (of_x + error * error), static_cast<double>(x.count), excess(x)});
+  return residue;
+}
+
+Residue residue_of(const Moments& x, const Moments& y, double scale, ExcessKurtosis excess) {
+  const Law law = law_of(x, y, scale);
+  const double of_x = influence_variance(x, 1);
+  const double of_y = influence_variance(y, scale);
+  Residue residue{law.a};
+  add_part(residue, {of_x / (of_x + of_y), static_cast<double>(x.count), excess(x)});
+  add_part(residue, {of_y / (of_x + of_y), static_cast<double>(y.count), excess(y)});
+  return residue;
+}
+
+double checked_factor(const Residue& residue, double critical_value) {
+  check::positive({"corrected_level_factor", "critical_value"}, critical_value);
+  return factor_of(residue, critical_value);
+}
+
+Gate gate_of(double value, double low) {
+  Gate gate{"level factor after correction", value, low, 2, GateState::amber};
+  if (value <= 1.25)
+    gate.state = GateState::green;
+  else if (low > gate.limit)
+    gate.state = GateState::red;
+  return gate;
+}
+
+}  // namespace
+
+TestResult skewness_corrected_t(const Moments& x, Reference null_mean) {
+  return result_of(x.mean_less(null_mean.value), law_of(x, null_mean));
+}
+
+Interval skewness_corrected_t_interval(const Moments& x, Reference reference, double confidence) {
+  check::inside_unit({"skewness_corrected_t_interval", "confidence"}, confidence);
+  return interval_of(x.mean_less(reference.value), law_of(x, reference), confidence);
+}
+
+TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value) {
+  check::finite({"skewness_corrected_welch", "offset"}, null_value.offset);
+  return result_of(contrast_of_means(x, y, null_value), law_of(x, y, null_value.scale));
+}
+
+Interval skewness_corrected_welch_interval(const Moments& x, const Moments& y, double confidence) {
+  check::inside_unit({"skewness_corrected_welch_interval", "confidence"}, confidence);
+  return interval_of(contrast_of_means(x, y, {}), law_of(x, y, 1), confidence);
+}
+
+Interval skewness_corrected_ratio_interval(const Moments& x, const Moments& y, double confidence) {
+  // Throws for bad arguments, and is unbounded where y is not separated from zero.
+  const Interval plain = welch_ratio_interval(x, y, confidence);
+  if (std::isinf(plain.low) || std::isinf(plain.high)) return plain;
+  const Excess excess{x, y, confidence};
+  const double centre = x.mean / y.mean;
+  const double step = law_of(x, y, centre).standard_error / std::abs(y.mean);
+  return {interval_end(excess, centre, -step) - 1, interval_end(excess, centre, step) - 1,
+          confidence};
+}
+
+double corrected_level_factor(const Moments& x, Reference null_mean, double critical_value) {
+  return checked_factor(residue_of(x, null_mean, excess_or_zero), critical_value);
+}
+
+double corrected_level_factor(const Moments& x, const Moments& y, double scale,
+                              double critical_value) {
+  return checked_factor(residue_of(x, y, scale, excess_or_zero), critical_value);
+}
+
+double corrected_level_factor(PrimaryShape shape, PlannedMean plan) {
+  check::finite({"corrected_level_factor", "skewness"}, shape.skewness);
+  check::finite({"corrected_level_factor", "excess_kurtosis"}, shape.excess_kurtosis);
+  check::at_least({"corrected_level_factor", "count"}, plan.count, 2);
+  const double n = static_cast<double>(plan.count);
+  Residue residue{shape.skewness / (6 * std::sqrt(n))};
+  add_part(residue, {1, n, shape.excess_kurtosis});
+  return checked_factor(residue, plan.critical_value);
+}
+
+Gate residual_skewness_gate(const Moments& x, Reference null_mean, double critical_value) {
+  return gate_of(corrected_level_factor(x, null_mean, critical_value),
+                 checked_factor(residue_of(x, null_mean, lower_excess), critical_value));
+}
+
+Gate residual_skewness_gate(const Moments& x, const Moments& y, double scale,
+                            double critical_value) {
+  return gate_of(corrected_level_factor(x, y, scale, critical_value),
+                 checked_factor(residue_of(x, y, scale, lower_excess), critical_value));
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,85 @@
+#include "stats/means/uncertain_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "stats/basics/check.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr double share_of_references = 0.1;
+constexpr int places_a_reference = 9;
+constexpr double precision = 1e-9;  // of ln p
+
+using LogP = std::function<double(std::span<const double>)>;
+
+std::vector<double> places(const UncertainReference& reference, double errors) {
+  const auto [value, error] = reference.known;
+  if (error == 0) return {value};
+  std::vector<double> all;
+  for (int i = 0; i < places_a_reference; ++i) {
+    const double share = 2.0 * i / (places_a_reference - 1) - 1;
+    all.push_back(value + share * errors * error);
+  }
+  all.push_back(std::clamp(reference.turn, all.front(), all[places_a_reference - 1]));
+  return all;
+}
+
+// The largest over all places of the references from this one on.
+double largest(const LogP& log_p, std::span<const std::vector<double>> all,
+               std::vector<double>& at) {
+  if (at.size() == all.size()) return log_p(at);
+  double most = -std::numeric_limits<double>::infinity();
+  for (const double place : all[at.size()]) {
+    at.push_back(place);
+    most = std::max(most, largest(log_p, all, at));
+    at.pop_back();
+  }
+  return most;
+}
+
+// The largest ln p where the references may be, at this level of the whole.
+double largest_at(const LogP& log_p, std::span<const UncertainReference> references,
+                  double log_level) {
+  const double log_miss =
+      log_level + std::log(share_of_references / 2 / static_cast<double>(references.size()));
+  const double errors = normal_quantile({Tail::upper, log_miss});
+  std::vector<std::vector<double>> all;
+  for (const UncertainReference& reference : references) all.push_back(places(reference, errors));
+  std::vector<double> at;
+  return largest(log_p, all, at);
+}
+
+}  // namespace
+
+double log_p_over_references(const LogP& log_p, std::span<const UncertainReference> references) {
+  bool exact = true;
+  std::vector<double> known;
+  for (const UncertainReference& reference : references) {
+    check::finite({"log_p_over_references", "standard error"}, reference.known.standard_error);
+    check::non_negative({"log_p_over_references", "standard error"},
+                        reference.known.standard_error);
+    exact = exact && reference.known.standard_error == 0;
+    known.push_back(reference.known.value);
+  }
+  const double at_known = log_p(known);
+  if (exact) return at_known;
+  const double for_sample = std::log1p(-share_of_references);
+  const auto rejects = [&](double log_level) {
+    return largest_at(log_p, references, log_level) <= log_level + for_sample;
+  };
+  double rejected = 0;
+  double kept = std::min(at_known - for_sample, 0.0);
+  if (!rejects(rejected)) return 0;
+  while (rejected - kept > precision * std::max(1.0, -kept)) {
+    const double middle = kept + (rejected - kept) / 2;
+    (rejects(middle) ? rejected : kept) = middle;
+  }
+  return rejected;
+}
+
+}  // namespace assay::stats

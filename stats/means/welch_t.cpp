@@ -1,0 +1,108 @@
+#include "stats/means/welch_t.h"
+
+#include <cmath>
+#include <limits>
+
+#include "stats/basics/check.h"
+#include "stats/basics/errors.h"
+#include "stats/basics/interval_end.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+struct Scale {
+  double standard_error;
+  double degrees;
+};
+
+void check_samples(const char* function, const Moments& x, const Moments& y) {
+  check::at_least({function, "count of x"}, x.count, 2);
+  check::at_least({function, "count of y"}, y.count, 2);
+  check::finite({function, "mean of x"}, x.mean);
+  check::finite({function, "mean of y"}, y.mean);
+}
+
+Scale scale_of(const char* function, const Moments& x, const Moments& y, double factor) {
+  const double vx = x.variance() / static_cast<double>(x.count);
+  const double vy = factor * factor * y.variance() / static_cast<double>(y.count);
+  const double total = vx + vy;
+  if (total == 0) throw ZeroVariance(std::string(function) + ": zero variance in both samples");
+  // Shares of the variance, so that tiny variances do not underflow when squared.
+  const double share_x = vx / total;
+  const double share_y = vy / total;
+  const double degrees = 1 / (share_x * share_x / static_cast<double>(x.count - 1) +
+                              share_y * share_y / static_cast<double>(y.count - 1));
+  return {std::sqrt(total), degrees};
+}
+
+double critical_value(double confidence, double degrees) {
+  return student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, degrees);
+}
+
+// How far E x - ratio E y = 0 is beyond its critical value: negative inside the interval.
+struct Excess {
+  const Moments& x;
+  const Moments& y;
+  double confidence;
+
+  double operator()(double ratio) const {
+    const Scale scale = scale_of("welch_ratio_interval", x, y, ratio);
+    const double t = contrast_of_means(x, y, {ratio, 0}) / scale.standard_error;
+    return std::abs(t) - critical_value(confidence, scale.degrees);
+  }
+};
+
+}  // namespace
+
+double contrast_of_means(const Moments& x, const Moments& y, Contrast contrast) {
+  // What rounding takes from the product and from the difference (Dekker 1971, Knuth's two-sum).
+  const double product = contrast.scale * y.mean;
+  const double of_product = std::fma(contrast.scale, y.mean, -product);
+  const double difference = x.mean - product;
+  const double back = difference - x.mean;
+  const double of_difference = (x.mean - (difference - back)) - (product + back);
+  const double rest = x.rest - contrast.scale * y.rest;
+  return (difference - contrast.offset) + (of_difference - of_product + rest);
+}
+
+TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value) {
+  check_samples("welch_t", x, y);
+  check::finite({"welch_t", "scale"}, null_value.scale);
+  check::finite({"welch_t", "offset"}, null_value.offset);
+  const Scale scale = scale_of("welch_t", x, y, null_value.scale);
+  const double t = contrast_of_means(x, y, null_value) / scale.standard_error;
+  const LogTails tails = student_t_tails(t, scale.degrees);
+  return {t, {"student-t", {scale.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
+}
+
+Interval welch_t_interval(const Moments& x, const Moments& y, double confidence) {
+  check_samples("welch_t_interval", x, y);
+  check::inside_unit({"welch_t_interval", "confidence"}, confidence);
+  const Scale scale = scale_of("welch_t_interval", x, y, 1);
+  const double half = critical_value(confidence, scale.degrees) * scale.standard_error;
+  const double centre = contrast_of_means(x, y, {});
+  return {centre - half, centre + half, confidence};
+}
+
+Interval welch_ratio_interval(const Moments& x, const Moments& y, double confidence) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  check_samples("welch_ratio_interval", x, y);
+  check::inside_unit({"welch_ratio_interval", "confidence"}, confidence);
+  const Interval unbounded{-infinity, infinity, confidence};
+  const double ny = static_cast<double>(y.count);
+  if (y.mean == 0) return unbounded;
+  if (y.m2 > 0) {
+    // The limit of the statistic for a large ratio is the one-sample t of y against 0.
+    const double t = std::abs(y.mean) / std::sqrt(y.variance() / ny);
+    if (t <= critical_value(confidence, ny - 1)) return unbounded;
+  }
+  const double centre = x.mean / y.mean;
+  const double step =
+      scale_of("welch_ratio_interval", x, y, centre).standard_error / std::abs(y.mean);
+  const Excess excess{x, y, confidence};
+  return {interval_end(excess, centre, -step) - 1, interval_end(excess, centre, step) - 1,
+          confidence};
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "stats/basics/check.h"
+#include "stats/planning/power.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats::planning {
+
+// Internal: what every method's planning shares.
+
+inline void check_rates(const char* function, const ErrorRates& rates) {
+  check::inside_unit({function, "alpha"}, rates.alpha);
+  check::inside_unit({function, "beta"}, rates.beta);
+}
+
+// ln of the level of one tail.
+inline double log_tail_level(const ErrorRates& rates) {
+  return std::log(rates.two_sided ? rates.alpha / 2 : rates.alpha);
+}
+
+inline LogTail critical_tail(const ErrorRates& rates) {
+  return {Tail::upper, log_tail_level(rates)};
+}
+
+inline double z_upper(double probability) {
+  return normal_quantile({Tail::upper, std::log(probability)});
+}
+
+// The normal score of a power whose complement this is, finite also where it rounds to 0 or 1.
+inline double score_of_miss(double miss) { return z_upper(std::clamp(miss, 1e-300, 1 - 1e-15)); }
+
+constexpr double most_samples = 0x1p53;
+
+// The smallest whole n >= minimum at which `enough(n)`, which must be monotone; galloping from a
+// guess, which is often exact: every step four times the last.
+template <class Enough>
+std::optional<std::uint64_t> smallest_sample(const Enough& enough, double guess, double minimum) {
+  double n = std::max(minimum, std::floor(guess));
+  double step = 1;
+  double low = minimum - 1;  // not enough, as far as is known
+  double high = n;
+  if (enough(n)) {
+    while (high > minimum) {
+      const double next = std::max(minimum, high - step);
+      if (!enough(next)) {
+        low = next;
+        break;
+      }
+      high = next;
+      step *= 4;
+    }
+  } else {
+    for (low = n; !enough(high = low + step); step *= 4) {
+      low = high;
+      if (high > most_samples) return std::nullopt;
+    }
+  }
+  while (high - low > 1) {
+    const double middle = std::floor((low + high) / 2);
+    (enough(middle) ? high : low) = middle;
+  }
+  return static_cast<std::uint64_t>(high);
+}
+
+struct Bracket {
+  double low = 0;  // not enough
+  double high = 0;
+};
+
+// Around the smallest x > from at which `enough(x)`, to 1e-12 relative; infinite when there is
+// none.
+template <class Enough>
+Bracket effect_bracket(const Enough& enough, double from, double first_step) {
+  Bracket found{from, from + first_step};
+  for (double step = first_step; !enough(found.high); found.high = from + step) {
+    found.low = found.high;
+    step *= 2;
+    if (!(from + step < 1e300)) {
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      return {infinity, infinity};
+    }
+  }
+  while (found.high - found.low > 1e-12 * found.high) {
+    const double middle = std::midpoint(found.low, found.high);
+    if (middle == found.low || middle == found.high) break;
+    (enough(middle) ? found.high : found.low) = middle;
+  }
+  return found;
+}
+
+template <class Enough>
+double smallest_effect(const Enough& enough, double from, double first_step) {
+  return effect_bracket(enough, from, first_step).high;
+}
+
+// The same, bit by bit, where a good guess is known: the bracket that halving would end with if the
+// guess were right is looked at first, two questions in place of forty.
+template <class Enough>
+double smallest_effect(const Enough& enough, double from, double first_step, double guess) {
+  const Bracket likely = effect_bracket([guess](double x) { return x >= guess; }, from, first_step);
+  const bool right = std::isfinite(likely.high) && enough(likely.high) &&
+                     (likely.low == from || !enough(likely.low));
+  return right ? likely.high : smallest_effect(enough, from, first_step);
+}
+
+// Near a root, and the slope there, as far as they are known without looking.
+struct Guess {
+  double root = 0;
+  double slope = 1;
+};
+
+// Where a nearly linear increasing function is zero, by secants: each is off by a small part of the
+// product of the last two steps. Some number where they do not get there.
+template <class Function>
+double secant_root(const Function& function, Guess guess) {
+  double before = guess.root;
+  double old = function(before);
+  double step = -old / guess.slope;
+  double at = before + step;
+  double previous = 1e-3 * std::abs(at);
+  for (int round = 0; round < 8 && !(std::abs(step * previous) <= 1e-13 * at * at); ++round) {
+    const double value = function(at);
+    previous = std::exchange(step, -value * step / (value - old));
+    old = value;
+    at += step;
+  }
+  return at;
+}
+
+inline void check_effect(const char* function, double allow, double detect) {
+  check::non_negative({function, "allow"}, allow);
+  check::finite({function, "detect"}, detect);
+  if (!(detect > allow)) check::fail({function, "detect"}, detect, "above allow");
+}
+
+}  // namespace assay::stats::planning

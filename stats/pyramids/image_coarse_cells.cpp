@@ -1,0 +1,145 @@
+#include "stats/pyramids/image_coarse_cells.h"
+
+#include <algorithm>
+
+#include "stats/pyramids/image_welch_cells.h"
+
+namespace assay::stats {
+namespace {
+
+void add(WelchCells& cells, std::size_t window, double value, double inverse_count) {
+  const double delta = value - cells.mean[window];
+  cells.mean[window] += delta * inverse_count;
+  cells.m2[window] += delta * (value - cells.mean[window]);
+}
+
+using Groups = std::vector<WindowGroup>;
+
+// Cells of groups that are not fine, as rectangles of blocks
+// (image_fine_cells.h), all channels and images alike.
+Groups coarse_groups(const Groups& groups) {
+  Groups coarse = groups;
+  const auto blocks = [](std::uint32_t end) { return static_cast<std::uint32_t>(blocks_of(end)); };
+  for (WindowGroup& group : coarse) {
+    if (is_fine(group) || group.size == 1) group.windows.clear();
+    for (Rectangle& window : group.windows) {
+      const std::uint32_t x = window.x / block_side;
+      const std::uint32_t y = window.y / block_side;
+      window = {x, y, blocks(window.x + window.width) - x, blocks(window.y + window.height) - y};
+    }
+  }
+  return coarse;
+}
+
+template <class Visit>
+void for_each_window(const Groups& groups, const Visit& visit) {
+  std::size_t window = 0;
+  for (const WindowGroup& group : groups) {
+    for (std::size_t i = 0; i < group.windows.size(); ++i) visit(group, i, window++);
+  }
+}
+
+std::size_t count_windows(const Groups& groups) {
+  std::size_t count = 0;
+  for (const WindowGroup& group : groups) count += group.windows.size();
+  return count;
+}
+
+// The sums of one channel's cells from those of blocks.
+class CoarseSums {
+ public:
+  CoarseSums(const ImageExtent& extent, std::size_t channel)
+      : channels_(extent.channels),
+        channel_(channel),
+        sums_(extent),
+        values_(extent.width * extent.height) {}
+
+  void load(const BlockSums& image) {
+    image_ = &image;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      values_[i] = image.blocks[i * channels_ + channel_];
+    }
+    sums_.load(values_);
+  }
+  double of(const WindowGroup& group, std::size_t index) const {
+    if (group.grid == Grid::alternating) {
+      return image_->alternating[channel_ * alternations + index];
+    }
+    return sums_.of(group, index);
+  }
+  // Of all elements in the window, those that alternate too.
+  double total_of(const WindowGroup& group, std::size_t index) const {
+    return group.grid == Grid::alternating ? sums_.of_all() : sums_.of(group, index);
+  }
+
+ private:
+  std::size_t channels_;
+  std::size_t channel_;
+  WindowSums sums_;
+  std::vector<double> values_;
+  const BlockSums* image_ = nullptr;
+};
+
+// Of one channel's windows, all groups in a row.
+WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std::size_t channel) {
+  WelchCells moments;
+  moments.start(count_windows(groups));
+  CoarseSums sums(coarse.extent, channel);
+  for (std::size_t h = 0; h < halves; ++h) {
+    for (std::size_t side = 0; side < sides_of_pair; ++side) {
+      const std::vector<BlockSums>& images = coarse.images[h][side];
+      if (images.empty()) continue;
+      double count = 0;
+      for (const BlockSums& image : images) {
+        sums.load(image);
+        const double inverse = 1 / ++count;
+        for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+          add(moments, window, sums.of(group, i), inverse);
+        });
+      }
+      sums.load(coarse.varied[h]);
+      for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+        // The sum did not vary; what is left is the rounding of larger sums that it was taken from.
+        if (sums.total_of(group, i) == 0) moments.m2[window] = 0;
+      });
+      moments.finish_part(count, side == 0 ? 0.5 : -0.5);
+    }
+  }
+  if (coarse.squared_error.blocks.empty()) return moments;
+  sums.load(coarse.squared_error);
+  for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+    if (moments.variance[window] == 0) return;
+    moments.variance[window] += std::max(sums.total_of(group, i), 0.0);
+  });
+  return moments;
+}
+
+// `groups` in elements, `coarse` the same in blocks.
+void offer_windows(std::vector<BestCell>& best, const Groups& groups, const Groups& coarse,
+                   const WelchCells& moments, std::size_t channel) {
+  for_each_window(coarse, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+    // Of two images, constants that differ were found before.
+    if (!moments.varied(window)) return;
+    const bool alternating = group.grid == Grid::alternating;
+    const auto g = static_cast<std::size_t>(&group - coarse.data());
+    ImageFinding candidate{alternating ? ImageStatistic::alternating : ImageStatistic::window,
+                           group.size,
+                           groups[g].windows[i],
+                           channel,
+                           0,
+                           0,
+                           0};
+    if (alternating) candidate.alternation = static_cast<Alternation>(i);
+    offer(best[g], candidate, moments.value(window));
+  });
+}
+
+}  // namespace
+
+void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::size_t channel,
+                        std::vector<BestCell>& best) {
+  const Groups in_blocks = coarse_groups(groups);
+  offer_windows(best, groups, in_blocks, window_moments(coarse, in_blocks, channel), channel);
+}
+
+}  // namespace assay::stats

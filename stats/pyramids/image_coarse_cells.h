@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "stats/images/image_windows.h"
+#include "stats/pyramids/image_best_cell.h"
+#include "stats/pyramids/image_fine_cells.h"
+
+namespace assay::stats {
+
+// Internal to image_pyramid: offers the cells of one channel that are not fine,
+// and the sums with alternating signs, to the best of their groups, from the
+// sums over blocks.
+void offer_coarse_cells(const CoarseImages& coarse, const std::vector<WindowGroup>& groups,
+                        std::size_t channel, std::vector<BestCell>& best);
+
+}  // namespace assay::stats

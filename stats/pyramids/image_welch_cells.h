@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "stats/tails/t_to_z.h"
+
+namespace assay::stats {
+
+// Internal to image_pyramid: Welch's statistic of the mean difference of many cells. Replicates
+// come in parts, the halves of either side: each has means and variances of its own, and the
+// difference is the sum over the parts of factor * mean.
+struct WelchCells {
+  // Of the part under way: mean and sum of squared deviations of each cell's sums (Welford 1962).
+  std::vector<double> mean;
+  std::vector<double> m2;
+  // Of the parts that are done.
+  std::vector<double> effect;              // of a - b, averaged over the halves
+  std::vector<double> variance;            // its squared standard error
+  std::vector<double> reciprocal_degrees;  // sum of variance_g^2 / (n_g - 1) over the parts
+
+  void start(std::size_t cells);
+  // The replicates that came since the last call are a part, whose mean enters with this factor.
+  void finish_part(double count, double factor);
+
+  // Sums that did not vary have no variance and no value.
+  bool varied(std::size_t cell) const { return variance[cell] > 0; }
+  StudentValue value(std::size_t cell) const;
+};
+
+}  // namespace assay::stats

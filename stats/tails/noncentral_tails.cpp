@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "stats/basics/check.h"
+#include "stats/basics/golden_section.h"
+#include "stats/tails/special.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+// Terms this far (in logarithm) below the largest are left out: e^-46 = 1e-20.
+constexpr double negligible = 46;
+
+// ---- Noncentral chi-square: a Poisson mixture of central laws
+
+// P(X >= x) = sum_j Poisson(j; ncp/2) Q(nu/2 + j, x/2), and P for the lower tail. Both factors are
+// log-concave in j, so the terms have one mode and can be bracketed by bisection.
+struct PoissonMixture {
+  double half_x;
+  double half_degrees;
+  double rate;
+  Tail tail;
+
+  double log_weight(double j) const { return special::log_gamma_prefix(j + 1, rate, 1 / rate); }
+  double log_central(double j) const {
+    const LogTails tails = gamma_tails(half_x, half_degrees + j);
+    return tail == Tail::lower ? tails.lower : tails.upper;
+  }
+  double log_term(double j) const { return log_weight(j) + log_central(j); }
+};
+
+double mode(const PoissonMixture& mixture) {
+  double low = 0;
+  double high = 2 * (mixture.rate + mixture.half_x) + 10;
+  while (high - low > 1) {
+    const double middle = std::floor((low + high) / 2);
+    const bool rising = mixture.log_term(middle + 1) > mixture.log_term(middle);
+    (rising ? low : high) = middle;
+  }
+  return mixture.log_term(high) > mixture.log_term(low) ? high : low;
+}
+
+// The index nearest the mode, in steps of `direction`, from which on the terms are negligible.
+double edge(const PoissonMixture& mixture, double centre, int direction) {
+  const double floor = mixture.log_term(centre) - negligible;
+  double inside = centre;
+  double step = 1;
+  double outside = centre + direction;
+  while (outside > 0 && mixture.log_term(outside) > floor) {
+    inside = outside;
+    step *= 2;
+    outside = std::max(0.0, centre + direction * step);
+  }
+  while (std::abs(outside - inside) > 1) {
+    const double middle = std::floor((inside + outside) / 2);
+    (mixture.log_term(middle) > floor ? inside : outside) = middle;
+  }
+  return std::max(0.0, outside);
+}
+
+// Sum from one edge to the other in the direction in which the central tail grows, by
+//   Q(a+1, y) = Q(a, y) + y^a e^-y / Gamma(a+1)  upwards,
+//   P(a-1, y) = P(a, y) + y^(a-1) e^-y / Gamma(a)  downwards: positive terms only.
+// Carried along are the products weight x tail and weight x increment over the largest term, which
+// stay in range however small the tail; the factors alone would not.
+double log_mixture(const PoissonMixture& mixture) {
+  const double centre = mode(mixture);
+  const double low = edge(mixture, centre, -1);
+  const double high = edge(mixture, centre, +1);
+  const bool up = mixture.tail == Tail::upper;
+  const double peak = mixture.log_term(centre);
+  const double y = mixture.half_x;
+  double j = up ? low : high;
+  double term = std::exp(mixture.log_term(j) - peak);
+  const double shape = mixture.half_degrees + (up ? j : j - 1);
+  double increment =
+      shape > 0
+          ? std::exp(mixture.log_weight(j) + special::log_gamma_prefix(shape, y, 1 / shape) - peak)
+          : 0;
+  double sum = term;
+  while (up ? j < high : j > low) {
+    const double a = mixture.half_degrees + j;
+    const double weight_ratio = up ? mixture.rate / (j + 1) : j / mixture.rate;
+    const double tail_ratio = up ? y / (a + 1) : (a - 1) / y;
+    term = weight_ratio * (term + increment);
+    increment *= weight_ratio * tail_ratio;
+    sum += term;
+    j += up ? 1 : -1;
+  }
+  return peak + std::log(sum);
+}
+
+// ---- Noncentral t: an integral over the chi law of s
+
+// ln of the integrand of P(T >= t) = int P(Z >= t s - delta) f(s) ds over u = ln s, where
+// nu s^2 ~ chi-square: f(u) = 2 (nu/2)^(nu/2) / Gamma(nu/2) exp(nu u - nu e^(2u) / 2), without the
+// factors that do not depend on u.
+struct UpperIntegrand {
+  double t;
+  Noncentral parameters;
+
+  double operator()(double u) const {
+    const double growth = std::expm1(2 * u);
+    // 2 u - growth; near 0 without cancellation, which many degrees would make much of.
+    const double fall = std::abs(growth) < 0.1 ? special::log1p_minus(growth) : 2 * u - growth;
+    return parameters.degrees / 2 * fall + normal_upper(t * std::exp(u) - parameters.noncentrality);
+  }
+};
+
+// What the integrand varies over at u: 1 / sqrt(2 nu) by the chi law, 1 in t s by the normal one.
+double scale_at(const UpperIntegrand& f, double u) {
+  return 1 / (std::abs(f.t) * std::exp(u) + std::sqrt(2 * f.parameters.degrees));
+}
+
+// Near enough for where to begin: within a tenth of what the integrand varies over. It is
+// log-concave, and its maximum may lie beyond `high` where it still rises there.
+double maximise(const UpperIntegrand& f, double low, double high) {
+  const double rising = 0.1 / std::sqrt(f.parameters.degrees);
+  while (f(high) > f(high - rising)) high += high - low;
+  const GoldenSection about = golden_section(f, low, high, rising);
+  const GoldenSection left =
+      golden_section(f, about.low, about.high, 0.1 * scale_at(f, about.high));
+  return std::midpoint(left.low, left.high);
+}
+
+double support_edge(const UpperIntegrand& f, double centre, double direction) {
+  const double floor = f(centre) - negligible;
+  double step = 1 / std::sqrt(f.parameters.degrees);
+  while (f(centre + direction * step) > floor) step *= 1.2;
+  return centre + direction * step;
+}
+
+// The integral over the maximum from the centre to an edge, by Gauss's rule in panels that begin
+// as wide as what the integrand varies over and double. On the side of small s it falls like e^(nu
+// u), so slowly for few degrees that even steps of the width which the other side wants
+// would be a million.
+double side_over_peak(const UpperIntegrand& f, double centre, double edge) {
+  using Rule = boost::math::quadrature::gauss<double, 20>;
+  const double peak = f(centre);
+  const auto over_peak = [&](double u) { return std::exp(f(u) - peak); };
+  const double whole = std::abs(edge - centre);
+  const double direction = edge > centre ? 1 : -1;
+  double sum = 0;
+  double begin = 0;
+  for (double width = scale_at(f, centre); begin < whole; width *= 2) {
+    const double end = std::min(whole, begin + width);
+    const double from = centre + direction * begin;
+    const double to = centre + direction * end;
+    sum += Rule::integrate(over_peak, std::min(from, to), std::max(from, to));
+    begin = end;
+  }
+  return sum;
+}
+
+double log_noncentral_upper(double t, Noncentral parameters) {
+  const UpperIntegrand f{t, parameters};
+  const double spread = 60 / std::sqrt(parameters.degrees) + 60 / parameters.degrees;
+  const double centre = maximise(f, -spread - std::log1p(std::abs(t)), std::min(spread, 300.0));
+  const double sum = side_over_peak(f, centre, support_edge(f, centre, -1)) +
+                     side_over_peak(f, centre, support_edge(f, centre, +1));
+  const double half = parameters.degrees / 2;
+  return std::log(2.0) + special::log_gamma_prefix(half, half) + f(centre) + std::log(sum);
+}
+
+// Beyond this the mixture has a hundred thousand terms and more; what a saddlepoint leaves out is
+// of the order of ncp^(-3/2).
+constexpr double largest_mixture = 1e8;
+
+// Barndorff-Nielsen's r* = w + ln(v / w) / w at the saddlepoint s of K(s) - s x, for K(s) =
+// ncp s / (1 - 2s) - nu / 2 ln(1 - 2s): with 1 / (1 - 2s) = 1 + d,
+//   w^2 / 2 = ncp d^2 / 2 + nu / 2 (d - ln(1 + d)),   v = s sqrt K''(s).
+LogTails saddlepoint_tails(double x, Noncentral parameters) {
+  const auto [degrees, noncentrality] = parameters;
+  const double beyond_mean = x - noncentrality - degrees;
+  const double sum = 2 * noncentrality + degrees;
+  const double d = 2 * beyond_mean / (sum + std::sqrt(sum * sum + 4 * noncentrality * beyond_mean));
+  const double half_square = noncentrality * d * d / 2 + degrees * -special::log1p_minus(d) / 2;
+  const double w = std::copysign(std::sqrt(2 * half_square), d);
+  constexpr double near_the_mean = 1e-4;
+  if (std::abs(w) < near_the_mean) {
+    const double second = 2 * degrees + 4 * noncentrality;
+    const double third = 8 * degrees + 24 * noncentrality;
+    return normal_tails(w + third / (6 * second * std::sqrt(second)));
+  }
+  const double v = d / 2 * std::sqrt(2 * degrees + 4 * noncentrality * (1 + d));
+  return normal_tails(w + std::log(v / w) / w);
+}
+
+}  // namespace
+
+LogTails noncentral_chi_square_tails(double x, Noncentral parameters) {
+  check::finite({"noncentral_chi_square_tails", "x"}, x);
+  check::positive({"noncentral_chi_square_tails", "degrees"}, parameters.degrees);
+  check::non_negative({"noncentral_chi_square_tails", "noncentrality"}, parameters.noncentrality);
+  if (parameters.noncentrality == 0) return chi_square_tails(x, parameters.degrees);
+  if (x <= 0) return special::from_lower(special::lowest_log());
+  if (parameters.noncentrality > largest_mixture) return saddlepoint_tails(x, parameters);
+  const Tail tail = x >= parameters.degrees + parameters.noncentrality ? Tail::upper : Tail::lower;
+  const double log_p =
+      log_mixture({x / 2, parameters.degrees / 2, parameters.noncentrality / 2, tail});
+  return tail == Tail::upper ? special::from_upper(log_p) : special::from_lower(log_p);
+}
+
+LogTails noncentral_t_tails(double t, Noncentral parameters) {
+  check::finite({"noncentral_t_tails", "t"}, t);
+  check::positive({"noncentral_t_tails", "degrees"}, parameters.degrees);
+  check::finite({"noncentral_t_tails", "noncentrality"}, parameters.noncentrality);
+  if (t >= parameters.noncentrality) {
+    return special::from_upper(log_noncentral_upper(t, parameters));
+  }
+  const Noncentral mirrored{parameters.degrees, -parameters.noncentrality};
+  return special::from_lower(log_noncentral_upper(-t, mirrored));
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,264 @@
+#include "stats/tails/tabulated_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/basics/check.h"
+#include "stats/basics/vector_copies.h"
+
+namespace assay::stats {
+namespace {
+
+using Slopes = TabulatedLaw::Slopes;
+
+constexpr std::size_t nodes = AdaptiveQuadrature::nodes;
+constexpr int places_compared = 7;
+
+// P_0 to P_nodes at t, by Bonnet's recursion.
+std::array<double, nodes + 1> legendre(double t) {
+  std::array<double, nodes + 1> p{1, t};
+  for (std::size_t k = 1; k < nodes; ++k) {
+    const double degree = static_cast<double>(k);
+    p[k + 1] = ((2 * degree + 1) * t * p[k] - degree * p[k - 1]) / (degree + 1);
+  }
+  return p;
+}
+
+// P_1 to P_(nodes - 1) at every node.
+const std::array<Slopes, nodes>& legendre_at_nodes() {
+  static const std::array<Slopes, nodes> table = [] {
+    std::array<Slopes, nodes> all{};
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const auto p = legendre(AdaptiveQuadrature::node_places()[i]);
+      std::copy(p.begin() + 1, p.end() - 1, all[i].begin());
+    }
+    return all;
+  }();
+  return table;
+}
+
+// A part's mass and how it is spread: int_-1^t P_k = (P_k+1 - P_k-1) / (2 k + 1), and the k-th
+// coefficient of the interpolant is (2 k + 1) / 2 sum w_i f_i P_k(t_i), exact for degree 6.
+struct Spread {
+  Integral mass;
+  Slopes slopes = {};
+  // Mass that a jump beyond the outermost nodes, where neither the part nor its halves look, may
+  // add or take: the density at the ends is then not what the interpolant goes on to.
+  double unseen = 0;
+
+  Spread(const AdaptiveQuadrature::Sampled& sampled, double width) : mass(sampled.integral) {
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const Slopes& p = legendre_at_nodes()[i];
+      for (std::size_t k = 0; k < slopes.size(); ++k) slopes[k] += sampled.parts[i] * p[k] / 2;
+    }
+    for (const int end : {-1, 1}) {
+      const double there = width * sampled.ends[end < 0 ? 0 : 1];
+      unseen += AdaptiveQuadrature::blind_share * std::abs(there - 2 * density_at(end));
+    }
+  }
+
+ private:
+  // The interpolant at t = -1 or 1, whose integral over t is the mass: P_k(1) = 1, P_k(-1) =
+  // (-1)^k.
+  double density_at(int end) const {
+    double sum = mass.value / 2;
+    double sign = end;
+    for (std::size_t k = 0; k < slopes.size(); ++k, sign *= end) {
+      sum += slopes[k] * (2.0 * static_cast<double>(k) + 3) * sign;
+    }
+    return sum;
+  }
+};
+
+// The mass below t in [-1, 1].
+double mass_below(double t, double mass, const Slopes& slopes) {
+  const auto p = legendre(t);
+  double sum = mass / 2 * (t + 1);
+  for (std::size_t k = 0; k < slopes.size(); ++k) sum += slopes[k] * (p[k + 2] - p[k]);
+  return sum;
+}
+
+double mass_below(double t, const Spread& spread) {
+  return mass_below(t, spread.mass.value, spread.slopes);
+}
+
+// Between what a part says of the law inside it and what its halves do.
+double largest_distance(const Spread& whole, const Spread& first, const Spread& second) {
+  double largest = 0;
+  for (int k = 1; k <= places_compared; ++k) {
+    const double t = 2.0 * k / (places_compared + 1) - 1;
+    const double by_halves =
+        t <= 0 ? mass_below(2 * t + 1, first) : first.mass.value + mass_below(2 * t - 1, second);
+    largest = std::max(largest, std::abs(by_halves - mass_below(t, whole)));
+  }
+  return largest;
+}
+
+struct Part {
+  Span span;
+  Spread first;   // of the lower half
+  Spread second;  // of the upper half
+  double error = 0;
+  double departure = 0;
+  double badness = 0;  // above 1: to be halved
+  int depth = 0;
+
+  bool operator<(const Part& other) const { return badness < other.badness; }
+};
+
+// The worst part is halved first, so that the evaluations that there are go where they help most.
+class Table {
+ public:
+  Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule, TableLimits limits)
+      : density_(density), rule_(rule), limits_(limits) {}
+
+  void add(Span span) { add(span, spread(span), {}); }
+
+  void refine() {
+    while (parts_.front().badness > 1 && !rule_.exhausted()) {
+      std::pop_heap(parts_.begin(), parts_.end());
+      const Part part = parts_.back();
+      parts_.pop_back();
+      const Inherited inherited{part.departure / 4, part.depth + 1};
+      add({part.span.low, part.span.middle()}, part.first, inherited);
+      add({part.span.middle(), part.span.high}, part.second, inherited);
+    }
+  }
+
+  TabulatedLaw result() {
+    std::sort(parts_.begin(), parts_.end(),
+              [](const Part& a, const Part& b) { return a.span.low < b.span.low; });
+    TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}, .slopes = {}};
+    double largest_departure = 0;
+    for (const Part& part : parts_) {
+      append(law, part.span.middle(), part.first);
+      append(law, part.span.high, part.second);
+      law.total_error += part.error;
+      largest_departure = std::max(largest_departure, part.departure);
+    }
+    check::positive({"tabulate", "mass"}, law.total());
+    law.error = (largest_departure + law.total_error) / law.total();
+    return law;
+  }
+
+ private:
+  // Of the part that this is a half of: two that agree by luck do so once.
+  struct Inherited {
+    double departure = 0;
+    int depth = 0;
+  };
+
+  Spread spread(Span span) { return {rule_.sampled(density_, span), span.width()}; }
+
+  void add(Span span, const Spread& whole, Inherited from) {
+    Part part{.span = span,
+              .first = spread({span.low, span.middle()}),
+              .second = spread({span.middle(), span.high}),
+              .depth = from.depth};
+    const Integral sum = part.first.mass + part.second.mass;
+    part.error = std::max(std::abs(sum.value - whole.mass.value), sum.error);
+    const double seen = largest_distance(whole, part.first, part.second);
+    part.departure = std::max(seen + part.first.unseen + part.second.unseen, from.departure);
+    if (part.depth < limits_.deepest_bisection) {
+      part.badness =
+          std::max(part.departure / limits_.departure, part.error / rule_.limits().tolerance);
+    }
+    parts_.push_back(part);
+    std::push_heap(parts_.begin(), parts_.end());
+  }
+
+  static void append(TabulatedLaw& law, double place, const Spread& part) {
+    law.place.push_back(place);
+    law.cumulated.push_back(law.cumulated.back() + part.mass.value);
+    law.slopes.push_back(part.slopes);
+  }
+
+  const AdaptiveQuadrature::Function& density_;
+  AdaptiveQuadrature& rule_;
+  TableLimits limits_;
+  std::vector<Part> parts_;  // a heap, the worst first
+};
+
+constexpr std::size_t lanes = 16;
+using Lanes = std::array<double, lanes>;
+
+// Values, each with the part that it lies in.
+struct SideBySide {
+  Lanes t{};
+  Lanes mass{};
+  Lanes before{};
+  std::array<Lanes, nodes - 1> slopes{};
+};
+
+// mass_below of each, and what operator() makes of it.
+ASSAY_VECTOR_COPIES Lanes probabilities_of(const SideBySide& at, double total) {
+  std::array<Lanes, nodes + 1> p;
+  Lanes sum;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    p[0][i] = 1;
+    p[1][i] = at.t[i];
+    sum[i] = at.mass[i] / 2 * (at.t[i] + 1);
+  }
+  for (std::size_t k = 1; k < nodes; ++k) {
+    const double degree = static_cast<double>(k);
+    for (std::size_t i = 0; i < lanes; ++i) {
+      p[k + 1][i] = ((2 * degree + 1) * at.t[i] * p[k][i] - degree * p[k - 1][i]) / (degree + 1);
+      sum[i] += at.slopes[k - 1][i] * (p[k + 1][i] - p[k - 1][i]);
+    }
+  }
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double within = std::clamp(sum[i], 0.0, at.mass[i]);
+    sum[i] = std::min(1.0, (at.before[i] + within) / total);
+  }
+  return sum;
+}
+
+}  // namespace
+
+double TabulatedLaw::operator()(double x) const {
+  if (x <= place.front()) return 0;
+  if (x >= place.back()) return 1;
+  const auto above =
+      static_cast<std::size_t>(std::upper_bound(place.begin(), place.end(), x) - place.begin());
+  const std::size_t part = above - 1;
+  const double share = (x - place[part]) / (place[above] - place[part]);
+  const double mass = cumulated[above] - cumulated[part];
+  // The polynomial may leave its part's range next to a jump.
+  const double within = std::clamp(mass_below(2 * share - 1, mass, slopes[part]), 0.0, mass);
+  return std::min(1.0, (cumulated[part] + within) / total());
+}
+
+std::vector<double> TabulatedLaw::of_sorted(std::span<const double> values) const {
+  std::vector<double> all(values.size());
+  std::size_t part = 0;
+  for (std::size_t first = 0; first < values.size(); first += lanes) {
+    const std::size_t count = std::min(lanes, values.size() - first);
+    SideBySide block;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double x = values[first + i];
+      while (part + 1 < slopes.size() && place[part + 1] <= x) ++part;
+      const double share = (x - place[part]) / (place[part + 1] - place[part]);
+      block.t[i] = 2 * share - 1;
+      block.mass[i] = cumulated[part + 1] - cumulated[part];
+      block.before[i] = cumulated[part];
+      for (std::size_t k = 0; k < slopes[part].size(); ++k) block.slopes[k][i] = slopes[part][k];
+    }
+    const Lanes below = probabilities_of(block, total());
+    for (std::size_t i = 0; i < count; ++i) {
+      const double x = values[first + i];
+      all[first + i] = x <= place.front() ? 0 : x >= place.back() ? 1 : below[i];
+    }
+  }
+  return all;
+}
+
+TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,
+                      AdaptiveQuadrature& rule, TableLimits limits) {
+  check::at_least({"tabulate", "number of parts"}, parts.size(), 1);
+  Table table(density, rule, limits);
+  for (const Span& part : parts) table.add(part);
+  table.refine();
+  return table.result();
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,54 @@
+#include "stats/variances/f_ratio.h"
+
+#include <cmath>
+
+#include "stats/basics/check.h"
+#include "stats/basics/errors.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+void check_samples(const char* function, const Moments& x, const Moments& y) {
+  check::at_least({function, "count of x"}, x.count, 2);
+  check::at_least({function, "count of y"}, y.count, 2);
+  check::finite({function, "squared deviations of x"}, x.m2);
+  check::finite({function, "squared deviations of y"}, y.m2);
+  if (x.m2 == 0 || y.m2 == 0) throw ZeroVariance(std::string(function) + ": zero variance");
+}
+
+double degrees_of(const char* function, const Moments& x, double excess_kurtosis) {
+  check::non_negative({function, "excess kurtosis"}, excess_kurtosis);
+  return static_cast<double>(x.count - 1) / (1 + excess_kurtosis / 2);
+}
+
+}  // namespace
+
+TestResult f_ratio(const Moments& x, const Moments& y, double null_ratio,
+                   const ExcessKurtoses& allowed) {
+  check_samples("f_ratio", x, y);
+  check::positive({"f_ratio", "null_ratio"}, null_ratio);
+  const FDegrees degrees{degrees_of("f_ratio", x, allowed.x), degrees_of("f_ratio", y, allowed.y)};
+  const bool exact = allowed.x == 0 && allowed.y == 0;
+  const double f = x.variance() / y.variance() / null_ratio;
+  const LogTails tails = f_tails(f, degrees);
+  return {f,
+          {"F", {degrees.numerator, degrees.denominator}},
+          tails.lower,
+          tails.upper,
+          exact ? Exactness::exact : Exactness::asymptotic};
+}
+
+Interval f_ratio_interval(const Moments& x, const Moments& y, double confidence,
+                          const ExcessKurtoses& allowed) {
+  check_samples("f_ratio_interval", x, y);
+  check::inside_unit({"f_ratio_interval", "confidence"}, confidence);
+  const FDegrees degrees{degrees_of("f_ratio_interval", x, allowed.x),
+                         degrees_of("f_ratio_interval", y, allowed.y)};
+  const double ratio = x.variance() / y.variance();
+  const double log_tail = std::log((1 - confidence) / 2);
+  return {ratio / f_quantile({Tail::upper, log_tail}, degrees),
+          ratio / f_quantile({Tail::lower, log_tail}, degrees), confidence};
+}
+
+}  // namespace assay::stats

@@ -1,0 +1,288 @@
+#include "stats/variances/slope.h"
+
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "stats/basics/check.h"
+#include "stats/basics/errors.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void check_points(const SlopeData& data) {
+  check::at_least({"slope", "points"}, data.points.size(), 2);
+  check::non_negative({"slope", "reference_error"}, data.reference_error);
+  for (const SlopePoint& point : data.points) {
+    check::positive({"slope", "size"}, point.size);
+    check::finite({"slope", "estimate"}, point.estimate);
+    check::non_negative({"slope", "standard_error"}, point.standard_error);
+    if (point.standard_error == 0) throw ZeroVariance("slope: a standard error is zero");
+  }
+  for (std::size_t i = 1; i < data.points.size(); ++i) {
+    if (data.points[i].size == data.points[i - 1].size) {
+      check::fail({"slope", "size"}, data.points[i].size, "different from every other size");
+    }
+  }
+}
+
+SlopeData ordered(SlopeData data) {
+  std::sort(data.points.begin(), data.points.end(),
+            [](const SlopePoint& a, const SlopePoint& b) { return a.size < b.size; });
+  check_points(data);
+  return data;
+}
+
+// The quadratic form of V^-1, V = diag + u^2 1 1', split into the part around the weighted mean and
+// the mean's own, so that a large u cancels nothing.
+class Metric {
+ public:
+  explicit Metric(const SlopeData& data) {
+    for (const SlopePoint& point : data.points) {
+      weights_.push_back(1 / (point.standard_error * point.standard_error));
+    }
+    total_ = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+    const double u = data.scale == SlopeScale::values ? data.reference_error : 0;
+    mean_weight_ = total_ / (1 + u * u * total_);
+  }
+
+  double operator()(const std::vector<double>& a, const std::vector<double>& b) const {
+    const double mean_a = mean(a);
+    const double mean_b = mean(b);
+    double sum = mean_weight_ * mean_a * mean_b;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      sum += weights_[i] * (a[i] - mean_a) * (b[i] - mean_b);
+    }
+    return sum;
+  }
+
+ private:
+  double mean(const std::vector<double>& a) const {
+    return std::inner_product(a.begin(), a.end(), weights_.begin(), 0.0) / total_;
+  }
+
+  std::vector<double> weights_;
+  double total_ = 0;
+  double mean_weight_ = 0;
+};
+
+// Q(s), the squared length of what the best multiple of the shape leaves.
+class Misfit {
+ public:
+  explicit Misfit(const SlopeData& data) : metric_(data), scale_(data.scale) {
+    for (const SlopePoint& point : data.points) {
+      log_size_.push_back(std::log(point.size));
+      estimate_.push_back(point.estimate);
+    }
+  }
+
+  double operator()(double slope) const {
+    std::vector<double> rest = estimate_;
+    std::vector<double> shape(estimate_.size(), 1.0);
+    if (scale_ == SlopeScale::logarithms) {
+      for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= slope * (log_size_[i] - middle());
+    } else {
+      // Scaled so that its largest entry is 1: any slope up to the steepest is representable.
+      const double anchor = slope > 0 ? log_size_.back() : log_size_.front();
+      for (std::size_t i = 0; i < rest.size(); ++i) {
+        shape[i] = std::exp(slope * (log_size_[i] - anchor));
+      }
+    }
+    const double multiple = metric_(shape, rest) / metric_(shape, shape);
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= multiple * shape[i];
+    return metric_(rest, rest);
+  }
+
+  double extent() const { return log_size_.back() - log_size_.front(); }
+
+  // Beyond this slope M^s is one point only, to within e^-40 of it.
+  double steepest() const {
+    const std::size_t last = log_size_.size() - 1;
+    const double gap = std::min(log_size_[1] - log_size_[0], log_size_[last] - log_size_[last - 1]);
+    return 40 / gap;
+  }
+
+  // Least squares on logarithms: the slope in closed form.
+  double log_slope() const {
+    std::vector<double> position = log_size_;
+    for (double& x : position) x -= middle();
+    const std::vector<double> one(position.size(), 1.0);
+    const double lever = metric_(position, one) / metric_(one, one);
+    for (double& x : position) x -= lever;
+    return metric_(position, estimate_) / metric_(position, position);
+  }
+
+ private:
+  double middle() const { return std::midpoint(log_size_.front(), log_size_.back()); }
+
+  Metric metric_;
+  SlopeScale scale_;
+  std::vector<double> log_size_;
+  std::vector<double> estimate_;
+};
+
+struct Node {
+  double slope;
+  double misfit;
+};
+
+double minimum_between(const Misfit& misfit, double low, double high) {
+  return boost::math::tools::brent_find_minima(misfit, low, high, 50).first;
+}
+
+// Slopes from the steepest fall to the steepest rise, every local minimum of Q among them. The
+// steps are a hundredth of the scale on which the shape changes: 1 / ln(largest / smallest size)
+// around zero, relative further out.
+std::vector<Node> scan(const Misfit& misfit) {
+  const double unit = 1 / misfit.extent();
+  const double far = std::asinh(misfit.steepest() / unit);
+  const int steps = static_cast<int>(std::ceil(far * 100));
+  std::vector<double> slopes;
+  for (int i = -steps; i <= steps; ++i) slopes.push_back(unit * std::sinh(far * i / steps));
+  std::vector<Node> nodes;
+  for (const double slope : slopes) nodes.push_back({slope, misfit(slope)});
+  const std::size_t grid = nodes.size();
+  for (std::size_t i = 1; i + 1 < grid; ++i) {
+    if (nodes[i].misfit > nodes[i - 1].misfit || nodes[i].misfit > nodes[i + 1].misfit) continue;
+    const double at = minimum_between(misfit, nodes[i - 1].slope, nodes[i + 1].slope);
+    nodes.push_back({at, misfit(at)});
+  }
+  std::sort(nodes.begin(), nodes.end(),
+            [](const Node& a, const Node& b) { return a.slope < b.slope; });
+  return nodes;
+}
+
+// On logarithms Q is a parabola: three nodes say all.
+std::vector<Node> candidates(const SlopeData& data, const Misfit& misfit) {
+  if (data.scale == SlopeScale::values) return scan(misfit);
+  const double best = misfit.log_slope();
+  const double least = misfit(best);
+  const double curvature = misfit(best + 1) - least;
+  // Where Q - least is 1e8: beyond any threshold of use.
+  const double far = 1e4 / std::sqrt(curvature);
+  return {{best - far, misfit(best - far)}, {best, least}, {best + far, misfit(best + far)}};
+}
+
+double degrees_of(const SlopeData& data) { return static_cast<double>(data.points.size()) - 1; }
+
+double log_p(double misfit, double degrees) { return chi_square_tails(misfit, degrees).upper; }
+
+// Where Q crosses the threshold between a slope inside the set and one outside.
+double crossing(const Misfit& misfit, double threshold, double a, double b) {
+  std::uintmax_t iterations = 200;
+  const auto [low, high] = std::minmax({a, b});
+  const auto ends = boost::math::tools::toms748_solve(
+      [&](double slope) { return misfit(slope) - threshold; }, low, high,
+      boost::math::tools::eps_tolerance<double>(50), iterations);
+  return std::midpoint(ends.first, ends.second);
+}
+
+}  // namespace
+
+SlopeTest slope_test(const SlopeData& unordered, double null_slope) {
+  check::finite({"slope_test", "null_slope"}, null_slope);
+  const SlopeData data = ordered(unordered);
+  const Misfit misfit(data);
+  const double degrees = degrees_of(data);
+  const double here = misfit(null_slope);
+  double below = here;
+  double above = here;
+  for (const Node& node : candidates(data, misfit)) {
+    double& least = node.slope <= null_slope ? below : above;
+    least = std::min(least, node.misfit);
+  }
+  return {log_p(here, degrees),
+          {here,
+           {"chi-square", {degrees}},
+           log_p(above, degrees),
+           log_p(below, degrees),
+           Exactness::asymptotic}};
+}
+
+double log_p_of_slope(const SlopeData& unordered, double null_slope) {
+  check::finite({"log_p_of_slope", "null_slope"}, null_slope);
+  const SlopeData data = ordered(unordered);
+  return log_p(Misfit(data)(null_slope), degrees_of(data));
+}
+
+SlopeSet slope_set(const SlopeData& unordered, double confidence) {
+  check::inside_unit({"slope_set", "confidence"}, confidence);
+  const SlopeData data = ordered(unordered);
+  const Misfit misfit(data);
+  const double threshold =
+      chi_square_quantile({Tail::upper, std::log1p(-confidence)}, degrees_of(data));
+  const std::vector<Node> nodes = candidates(data, misfit);
+  const auto inside = [&](const Node& node) { return node.misfit <= threshold; };
+  const auto first = std::find_if(nodes.begin(), nodes.end(), inside);
+  SlopeSet set;
+  set.hull.confidence = confidence;
+  if (first == nodes.end()) {
+    set.empty = true;
+    set.hull.low = set.hull.high = std::numeric_limits<double>::quiet_NaN();
+    return set;
+  }
+  const auto last = std::find_if(nodes.rbegin(), nodes.rend(), inside).base() - 1;
+  set.connected = std::all_of(first, last, inside);
+  set.hull.low = first == nodes.begin()
+                     ? -infinity
+                     : crossing(misfit, threshold, (first - 1)->slope, first->slope);
+  set.hull.high = last + 1 == nodes.end()
+                      ? infinity
+                      : crossing(misfit, threshold, last->slope, (last + 1)->slope);
+  return set;
+}
+
+SlopeEstimate slope_estimate(const SlopeData& unordered) {
+  const SlopeData data = ordered(unordered);
+  const Misfit misfit(data);
+  const std::vector<Node> nodes = candidates(data, misfit);
+  const auto best = std::min_element(
+      nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.misfit < b.misfit; });
+  const double degrees = degrees_of(data) - 1;
+  SlopeEstimate estimate{.slope = best->slope,
+                         .log_p_fit = degrees > 0 ? log_p(best->misfit, degrees) : 0,
+                         .log_p_best = log_p(best->misfit, degrees + 1)};
+  if (best == nodes.begin()) estimate.slope = -infinity;
+  if (best + 1 == nodes.end()) estimate.slope = infinity;
+  return estimate;
+}
+
+double slope_power(const SlopeData& expected, double null_slope, double alpha) {
+  check::finite({"slope_power", "null_slope"}, null_slope);
+  check::inside_unit({"slope_power", "alpha"}, alpha);
+  const SlopeData data = ordered(expected);
+  const double degrees = degrees_of(data);
+  const double threshold = chi_square_quantile({Tail::upper, std::log(alpha)}, degrees);
+  const double noncentrality = Misfit(data)(null_slope);
+  if (noncentrality == 0) return alpha;
+  return std::exp(noncentral_chi_square_tails(threshold, {degrees, noncentrality}).upper);
+}
+
+std::optional<double> slope_sample_factor(const SlopeData& expected, double null_slope,
+                                          SlopeRates rates) {
+  check::inside_unit({"slope_sample_factor", "beta"}, rates.beta);
+  const auto enough = [&](double factor) {
+    SlopeData larger = expected;
+    for (SlopePoint& point : larger.points) point.standard_error /= std::sqrt(factor);
+    return slope_power(larger, null_slope, rates.alpha) >= 1 - rates.beta;
+  };
+  double high = 0x1p-40;
+  while (!enough(high)) {
+    high *= 2;
+    if (high > 0x1p60) return std::nullopt;
+  }
+  double low = high / 2;
+  while (high - low > 1e-9 * high) {
+    const double middle = std::midpoint(low, high);
+    (enough(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+}  // namespace assay::stats
