@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "harness/base/interrupt.h"
+#include "harness/base/progress_terminal.h"
 #include "reports/record/file.h"
 
 namespace assay::harness {
@@ -39,7 +40,7 @@ int locked(const std::string& path) {
     if (error == EINTR) continue;
     if (error == EWOULDBLOCK && !interrupted()) {
       if (waited > told_after && !std::exchange(told, true)) {
-        fmt::print(stderr, "assay: waiting for {}, to which another run is adding\n", path);
+        say_beside_progress(fmt::format("waiting for {}, to which another run is adding", path));
       }
       const auto pause = std::clamp(waited, std::chrono::milliseconds(1), longest_pause);
       std::this_thread::sleep_for(pause);
@@ -47,7 +48,9 @@ int locked(const std::string& path) {
       continue;
     }
     ::close(descriptor);
-    stop_if_interrupted();
+    if (interrupted()) {
+      throw std::runtime_error(fmt::format("cannot lock {}: the wait was interrupted", path));
+    }
     fail(path, error);
   }
   return descriptor;

@@ -151,9 +151,8 @@ std::string trouble_of(const TestWork& work, const UnitCosts& costs) {
   for (std::size_t i = 0; i < work.pools.size(); ++i) {
     const auto found = costs.find(work.pools[i].get());
     if (found == costs.end() || !std::holds_alternative<Fault>(found->second)) continue;
-    return fmt::format("`{}` stopped at {}, when its cost was measured",
-                       test.question.subjects[i].estimator->name,
-                       to_string(std::get<Fault>(found->second)));
+    return sentence_of(std::get<Fault>(found->second), test.question.subjects[i].estimator->name,
+                       " when its cost was measured");
   }
   return "";
 }
@@ -341,8 +340,9 @@ int plan_exit_code(const PlannedRun& planned, const UnitCosts& costs) {
     for (const TestWork& work : run->tests) {
       const TestOutcome& test = work.outcome;
       any = true;
-      bad = bad || !trouble_of(work, costs).empty() ||
-            (!test.plan.invalid.empty() && test.question.test->expect != Expectation::invalid);
+      const Expectation expect = test.question.test->expect;
+      bad = bad || (!trouble_of(work, costs).empty() && expect != Expectation::error) ||
+            (!test.plan.invalid.empty() && expect != Expectation::invalid);
     }
   }
   if (!any) return skipped ? 77 : 4;

@@ -105,7 +105,7 @@ std::string red_gates(const std::vector<reports::Gate>& gates) {
     if (gate.state != "red" || ++red > most) continue;
     text += (text.empty() ? "" : "; ") + sentence(gate);
   }
-  if (red > most) text += fmt::format("; and so on, {} in all", red);
+  if (red > most) text += fmt::format("; {} gates are red in all", red);
   return text;
 }
 

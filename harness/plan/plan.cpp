@@ -215,13 +215,11 @@ std::string caution_of(const Question& question, const Pilots& pilots) {
   const Subject& second = question.subjects[1];
   const Pilot* const pilot = pilot_of(second, pilots);
   if (pilot == nullptr) return "";
-  constexpr double certain = 8;  // standard errors: of a mean near zero margins are no part
   double size = 0;
   for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
     const stats::Moments moments = pilot_channel(second, *pilot, channel).moments;
-    const double mean = std::abs(moments.mean);
-    if (moments.count > 1 && mean > certain * moments.standard_error()) {
-      size = std::max(size, std::abs(question.factor) * mean);
+    if (moments.count > 1 && exceeds_its_error(moments.mean, moments.standard_error())) {
+      size = std::max(size, std::abs(question.factor * moments.mean));
     }
   }
   for (const Margin& margin : margins_of(*question.test)) {

@@ -187,11 +187,15 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
                           .limit = static_cast<double>(fewest_in_order_to_tell),
                           .state = rows < fewest_in_order_to_tell ? "red" : "green"});
     if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
+    // A forced method runs unchecked. No method takes the variance of a single row.
+    const std::string forced =
+        rows < 2 ? ""
+                 : fmt::format("; if they are independent, add {}",
+                               written_key(*question.test, "test", plan.method.name));
     reason = fmt::format(
-        "`{}` has {} row{}, and it takes {} to see that they do not depend on each other; give "
-        "more, or, if they do not, add {}",
-        side.estimator->name, rows, rows == 1 ? "" : "s", fewest_in_order_to_tell,
-        written_key(*question.test, "test", plan.method.name));
+        "`{}` has {} row{}, and it takes {} to see that they do not depend on each other: give "
+        "more{}",
+        side.estimator->name, rows, rows == 1 ? "" : "s", fewest_in_order_to_tell, forced);
   }
   return reason;
 }

@@ -139,7 +139,7 @@ bool both_spread(const Question& question, const PlannedChannel& channel) {
 
 double allocation(const stats::SampleSizes& sizes) { return sizes.y / sizes.x; }
 
-/// The spread of the other mean, where one of two has none.
+/// The size of the sample that has a spread; of the first if both have.
 double size_of_the_spread(const stats::SampleSizes& sizes, const PlannedChannel& channel) {
   return channel.standard_deviation > 0 ? sizes.x : sizes.y;
 }

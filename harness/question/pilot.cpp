@@ -153,8 +153,7 @@ const Fault* Pilots::fault(const std::string& name) const {
 }
 
 const Fault* Pilots::fault(const std::string& estimator, const std::string& purpose) const {
-  const Fault* const whole = fault(estimator);
-  return whole != nullptr ? whole : fault(pilot_name_of(estimator, purpose));
+  return fault(pilot_name_of(estimator, purpose));
 }
 
 void Pilots::add(const std::string& name, std::variant<Pilot, Fault> pilot) {
@@ -187,8 +186,7 @@ std::string where_pilots_stopped(const Question& question, const Pilots& pilots)
       fault = &*pilot->larger_fault;
     }
     if (fault == nullptr) continue;
-    return fmt::format("`{}` stopped in the pilot at {}", subject.estimator->name,
-                       to_string(*fault));
+    return sentence_of(*fault, subject.estimator->name, " in the pilot");
   }
   return "";
 }

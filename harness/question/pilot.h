@@ -60,9 +60,9 @@ class Pilots {
   const Pilot& at(const std::string& name) const { return drawn_.at(name); }
   /// Null where there is none, or a pilot.
   const Fault* fault(const std::string& name) const;
-  /// Why an estimator could not be piloted, or its draws for `purpose`; null where both could.
+  /// Why an estimator could not be piloted, or its sampler's draws for `purpose`; null where they
+  /// could.
   const Fault* fault(const std::string& estimator, const std::string& purpose) const;
-  bool contains(const std::string& name) const { return find(name) || fault(name); }
   bool empty() const { return drawn_.empty() && faults_.empty(); }
 
   void add(const std::string& name, std::variant<Pilot, Fault> pilot);

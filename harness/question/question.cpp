@@ -249,19 +249,28 @@ void check_margins(const Question& question) {
 }
 
 /// The largest reference that is known before anything is drawn, that of a second mean too; nullopt
-/// where none is, or where margins are no part of one.
+/// where none is, or where margins are no part of one. A number within its own error or rounding of
+/// 0 is none.
 std::optional<double> known_size(const Question& question) {
   if (question.kind == QuestionKind::slope || question.of_draws()) return {};
-  std::vector<double> known;
-  for (const Constant& reference : question.references) known.push_back(reference.value);
+  double largest = 0;
+  const auto add = [&](double value, double error) {
+    if (exceeds_its_error(value, error)) largest = std::max(largest, std::abs(value));
+  };
+  const std::vector<std::size_t>& first = question.subjects[0].channels;
+  const std::vector<Channel> channels = question.subjects[0].setup->channels();
+  for (std::size_t i = 0; i < question.references.size(); ++i) {
+    const Constant& reference = question.references[i];
+    const double rounding = channels[first[question.pooled() ? 0 : i]].rounding;
+    add(reference.value, std::max(reference.standard_error, rounding));
+  }
   if (question.of_means() && question.of_two()) {
-    const std::vector<Channel> channels = question.subjects[1].setup->channels();
+    const std::vector<Channel> others = question.subjects[1].setup->channels();
     for (const std::size_t channel : question.subjects[1].channels) {
-      known.push_back(question.factor * channels[channel].mean.value_or(0));
+      const Channel& other = others[channel];
+      add(question.factor * other.mean.value_or(0), question.factor * other.rounding);
     }
   }
-  double largest = 0;
-  for (const double value : known) largest = std::max(largest, std::abs(value));
   return largest > 0 ? std::optional(largest) : std::nullopt;
 }
 
@@ -385,11 +394,9 @@ std::vector<Margin> margins_of(const TestEntry& test) {
 std::string missing_per_cent(const Margin& margin, double size) {
   if (margin.relative || !(size > 0) || margin.value <= size) return "";
   return fmt::format(
-      "{:g} is {:.3g} times what it is held against, {:.3g}: for {:g} per cent write `{:g}%`; if "
-      "so much is "
-      "meant, `{:.0f}%`",
-      margin.value, margin.value / size, size, margin.value, margin.value,
-      std::ceil(100 * margin.value / size));
+      "{0:g} is larger than the reference, {1:.3g}: for {0:g} per cent write `{0:g}%`; if so much is "
+      "meant, `{2:.0f}%`",
+      margin.value, size, std::ceil(100 * margin.value / size));
 }
 
 Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint64_t seed) {

@@ -4,6 +4,7 @@
 // against, channel by channel.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -139,6 +140,12 @@ std::string written_key(const TestEntry& test, const std::string& key, const std
 
 /// The margins that a test has: `detect`, `allow` and that of `within`.
 std::vector<Margin> margins_of(const TestEntry& test);
+
+/// Whether a number is so far from 0 that its error cannot be why: 8 standard errors. Of a mean near
+/// 0 margins are no part.
+inline bool exceeds_its_error(double value, double standard_error) {
+  return std::abs(value) > 8 * standard_error;
+}
 
 /// Says how an absolute margin larger than `size`, what it is held against, is written in per cent.
 /// "" for any other margin.

@@ -11,6 +11,7 @@
 #include "harness/base/shell.h"
 #include "harness/record/github.h"
 #include "harness/record/image_record.h"
+#include "harness/sampling/sample.h"
 #include "harness/suite/files_read.h"
 #include "reports/formats/console.h"
 #include "reports/formats/json.h"
@@ -86,8 +87,8 @@ void write_reports(const Output& output, const ReportWriter& written) {
       } else {
         reports::write_whole(request.path, text);
       }
-    } catch (const std::runtime_error& error) {  // a full disk takes no other report with it
-      failures += (failures.empty() ? "" : "\n") + std::string(error.what());
+    } catch (...) {  // a full disk takes no other report with it
+      failures += (failures.empty() ? "" : "\n") + words_of(std::current_exception());
     }
   }
   if (!console_placed) {

@@ -315,7 +315,7 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
     add_untested_before(nullptr);
     suite.statements = statements_of(run->suite, suite.tests);
     suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
-    whole = whole && (run->holm);
+    whole = whole && run->holm;
     add_pictures(*run, suite);
     record.suites.push_back(std::move(suite));
   }

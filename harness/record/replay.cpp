@@ -284,8 +284,7 @@ bool print_observation(const TestWork& work, const reports::Test& recorded, std:
       values = draw_observation(*pool.setup(), pool.key(), pool.primaries(), index);
     } catch (...) {
       const Fault fault{.observation = index, .words = words_of(std::current_exception())};
-      throw std::runtime_error(fmt::format("`{}` stopped at {}",
-                                           question.subjects[i].estimator->name, to_string(fault)));
+      throw std::runtime_error(sentence_of(fault, question.subjects[i].estimator->name));
     }
     const std::vector<Channel> channels = pool.setup()->channels();
     for (std::size_t c = 0; c < values.size(); ++c) {

@@ -347,15 +347,15 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   require_activation(outcome, test);
 }
 
-/// Why the look cannot be taken; "" where it was.
-std::string take_drawn_look(TestWork& work, bool may_go_on) {
+/// Why the look cannot be taken; nothing if it was.
+std::optional<std::string> take_drawn_look(TestWork& work, bool may_go_on) {
   if (!work.outcome.plan.error.empty()) return work.outcome.plan.error;
   const std::optional<DrawnTest> test = drawn(work);
   if (!test) return where_it_stopped(work);
   if (std::string why = unusable(*test); !why.empty()) return why;
   if (!work.outcome.plan.pilot_error.empty()) return work.outcome.plan.pilot_error;
   take_sound_look(work, *test, may_go_on);
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace
@@ -364,7 +364,7 @@ void take_look(TestWork& work, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   outcome.decided = true;
   clear_numbers(outcome);
-  std::string why;
+  std::optional<std::string> why;
   try {
     why = take_drawn_look(work, may_go_on);
   } catch (const NoDensity& failure) {
@@ -376,9 +376,9 @@ void take_look(TestWork& work, bool may_go_on) {
     // Judging asks some sources again: for densities, and for a mutant's original.
     why = words_of(std::current_exception());
   }
-  if (why.empty()) return;
+  if (!why) return;
   clear_numbers(outcome);
-  settle(outcome, Verdict::error, std::move(why));
+  settle(outcome, Verdict::error, *std::move(why));
 }
 
 }  // namespace assay::harness

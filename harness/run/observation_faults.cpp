@@ -39,9 +39,7 @@ std::string where_it_stopped(const TestWork& work) {
   const std::vector<Sample> samples = work.samples();
   for (std::size_t subject = 0; subject < samples.size(); ++subject) {
     if (const Fault* fault = samples[subject].fault()) {
-      return fmt::format("`{}` stopped at {}",
-                         work.outcome.question.subjects[subject].estimator->name,
-                         to_string(*fault));
+      return sentence_of(*fault, work.outcome.question.subjects[subject].estimator->name);
     }
   }
   return "";

@@ -94,7 +94,7 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
       idle = false;
       wanted = wanted || chosen[i];
     }
-    // Of a renderer that is started for each observation a picture is too dear a decoration.
+    // A renderer that starts anew for each observation is too slow to draw for a picture alone.
     const bool dear = recorded::keeps_files(*estimator.setup);
     if (wanted || (idle && with_idle && !dear)) used.push_back(&estimator);
   }
@@ -239,7 +239,7 @@ std::string unprepared(const TestEntry& test, const std::map<std::string, Fault>
   for (const Source& source : sources) {
     const auto fault = faults.find(source.estimator);
     if (fault == faults.end()) continue;
-    return fmt::format("`{}` cannot be prepared: {}", source.estimator, to_string(fault->second));
+    return fmt::format("`{}` cannot be prepared: {}", source.estimator, fault->second.words);
   }
   return "";
 }

@@ -66,8 +66,7 @@ class Pool {
   void mark(std::uint64_t count);
   /// Marks `count` and asks for everything up to it to be drawn next.
   void request(std::uint64_t count);
-  bool is_marked() const { return !prefixes_.empty(); }
-  std::uint64_t most_marked() const { return is_marked() ? prefixes_.rbegin()->first : 0; }
+  std::uint64_t most_marked() const { return prefixes_.empty() ? 0 : prefixes_.rbegin()->first; }
   /// The most that is requested.
   std::uint64_t requested() const { return requested_; }
 

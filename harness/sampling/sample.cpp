@@ -9,9 +9,11 @@
 
 namespace assay::harness {
 
-std::string to_string(const Fault& fault) {
-  return fault.observation ? fmt::format("observation {}: {}", *fault.observation, fault.words)
-                           : fault.words;
+std::string sentence_of(const Fault& fault, const std::string& estimator,
+                        const std::string& when) {
+  const std::string at =
+      fault.observation ? fmt::format(" at observation {}", *fault.observation) : "";
+  return fmt::format("`{}` stopped{}{}: {}", estimator, when, at, fault.words);
 }
 
 std::string words_of(const std::exception_ptr& thrown) {
@@ -23,7 +25,8 @@ std::string words_of(const std::exception_ptr& thrown) {
   } catch (const std::bad_alloc&) {
     return "there is not enough memory (std::bad_alloc)";
   } catch (const std::exception& error) {
-    return error.what();
+    const std::string words = error.what();
+    return words.empty() ? "it threw an exception without words" : words;
   } catch (...) {
     return "it threw something that is no std::exception";
   }

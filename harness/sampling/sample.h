@@ -1,6 +1,6 @@
 #pragma once
 
-// What was drawn of one source, or why it could not be.
+// A sample: what was drawn of one source, or why it could not be drawn.
 
 #include <cstdint>
 #include <exception>
@@ -26,11 +26,12 @@ struct Fault {
   std::string words = "";                         ///< the source's own
 };
 
-/// "observation 17: the lamp burnt out", or the words alone.
-std::string to_string(const Fault& fault);
+/// "`darts` stopped in the pilot at observation 17: the lamp burnt out" with `when` " in the pilot".
+std::string sentence_of(const Fault& fault, const std::string& estimator,
+                        const std::string& when = "");
 
-/// What is thrown, in its own words; of an InputError with its place. std::bad_alloc and what is no
-/// std::exception get words of ours.
+/// The words of an exception. An InputError's place stands before them. An exception without words
+/// gets some.
 std::string words_of(const std::exception_ptr& thrown);
 
 /// One block of observations by itself.

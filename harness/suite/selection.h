@@ -25,7 +25,7 @@ bool selects(const Selection& selection, const TestEntry& test);
 std::string options_text(const Selection& selection);
 
 /// Says that no test has a tag, that no id matches a filter, or that no test is left. Names the
-/// tags there are, or the nearest ids. "" where every part of the selection does something.
+/// tags there are, or the nearest ids. "" else. A filter that excludes may match no id.
 std::string unmatched(const std::vector<Suite>& suites, const Selection& selection);
 
 }  // namespace assay::harness

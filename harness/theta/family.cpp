@@ -27,15 +27,21 @@ std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>&
     if (inside) inside_weight += question.test->weight;
     if (!inside) ++outside;
   }
+  // A test whose source died keeps its part, so that the others' numbers do not change.
+  double least_untested = std::numeric_limits<double>::infinity();
   for (const TestEntry& test : suite.tests) {
     const auto asks = [&](const Question& question) { return question.test == &test; };
     if (std::ranges::any_of(questions, asks)) continue;
     all_weight += test.weight;
-    if (test.expect == Expectation::pass) inside_weight += test.weight;
-    if (test.expect != Expectation::pass) ++outside;
+    if (test.expect != Expectation::pass) {
+      ++outside;
+      continue;
+    }
+    inside_weight += test.weight;
+    least_untested = std::min(least_untested, test.weight);
   }
   const double total = inside_weight > 0 ? inside_weight : all_weight;
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = suite.alpha * least_untested / total;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const double weight =
         questions[i].test->weight / total / static_cast<double>(questions[i].channel_count());

@@ -497,15 +497,15 @@ def require_test(cell, live, test, index, name):
     known = live.tests[test["name"]]
     if needs(cell, live, test["name"], index):
         if cell.moment == "restart" and test["verdict"] == known["verdict"]:
-            return  # no second program was started
+            return  # it read nothing of the second program
         expect(test["verdict"] == "error", f"error of `{test['name']}`",
                f"{test['verdict']}: {test['message']}")
         require_message(cell, test["message"], index, name)
         return
     expect(test["verdict"] == known["verdict"], f"{known['verdict']} of `{test['name']}`",
            f"{test['verdict']}: {test['message']}")
-    if not live.samples(test["name"]):
-        for part in ("samples", "channels", "looks"):
+    for part in ("samples", "channels", "looks"):
+        if part == "samples" or not live.samples(test["name"]):
             expect(bare(test[part]) == bare(known[part]), f"the {part} of `{test['name']}` as "
                    "without the dead source", "others")
 
@@ -517,7 +517,8 @@ def prepare(bench, cell, live):
     order, index = order_of(cell, live)
     folder = bench.work / cell.name
     (folder / "order").write_text(order + "\n")
-    (folder / "started").unlink(missing_ok=True)
+    for trace in ("started", "restarted"):
+        (folder / trace).unlink(missing_ok=True)
     shutil.rmtree(folder / ".assay-cache", ignore_errors=True)
     return suite, index
 
@@ -552,6 +553,9 @@ def run_group(bench, cells, live):
             for test in suite["tests"]:
                 any_bad |= not test["ok"]
                 require_test(cell, live, test, index, cell.name)
+            if (bench.work / cell.name / "restarted").exists():
+                verdicts = [test["verdict"] for test in suite["tests"]]
+                expect("error" in verdicts, "an error, as a second program died", verdicts)
         except Failure as failure:
             failures.append((cell, failure))
     expect(ended.code == (1 if any_bad else 0), f"exit code {1 if any_bad else 0}", ended.code)

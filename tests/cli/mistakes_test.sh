@@ -36,9 +36,9 @@ claim: area == 0.48|12: expected a quantity, as in `mean(area)`, found `area`
 claim: mean(area)|22: the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …
 claim: 0.4 < mean(area) < 0.5|12: a claim begins with a quantity, as in `mean(area) == 0.5`
 claim: distribution(area) == gaussian(0, 1)|34: `gaussian` is nothing that a quantity can be compared with; did you mean `normal(0, 1)`?
-claim: mean(area) within 5 of analytic|30: the margin 5 is 10.4 times what it is held against, 0.481: for 5 per cent write `5%`
+claim: mean(area) within 5 of analytic|30: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`
 {claim: quantile(area, 0.5) == 0.4}|28: inside {…} a comma ends the value of `claim`; quote the claim: `claim: "quantile(area, 0.5) == 0.4"`
-{claim: mean(area) == analytic, detect: 5}|45: the margin 5 is 10.4 times what it is held against, 0.481: for 5 per cent write `5%`; if so much is meant, `1040%`
+{claim: mean(area) == analytic, detect: 5}|45: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`; if so much is meant, `1040%`
 {claim: mean(area) == analytic, detect: 0}|37: `detect` must be above 0: it is the effect that must not pass, as `1%`
 {claim: distribution(area.point) == density, detect: 5}|58: the margin 5 is more than any difference of probabilities; here 5 per cent is written `0.05`
 {claim: mean(area) == analytic, expect: failed}|45: `expect` cannot be `failed`; did you mean `fail`?
@@ -94,7 +94,7 @@ test_mistakes_in_a_check_say_what_to_write() {
   answers 2 '`==` is one argument too many; quote the claim: `assay check' check 'mean(a)' == 3
   answers 2 'claim:1:6: there is no plugin `luminare/area`; did you mean `luminaire/area`?' \
     check 'mean(luminare/area) == analytic'
-  answers 2 '--detect 5: the margin 5 is 10.4 times what it is held against' \
+  answers 2 '--detect 5: the margin 5 is larger than the reference' \
     check "$claim" --detect 5
   answers 2 '--detect 0: `detect` must be above 0' check "$claim" --detect 0
   answers 2 '--detect 1e-5%: this claim would take about' check "$claim" --detect 1e-5%

@@ -98,5 +98,29 @@ tests:
   }
 }
 
+// The numbers of those that can be tested are the same with and without the dead source.
+TEST(Family, KeepsThePartOfATestThatCannotBeAsked) {
+  for (const std::string& dead : {"analytic", "expected", "mutant"}) {
+    const auto asked = ask_text(with_mutants);
+    const std::vector<FamilyPlace> sound = places(asked->suite, asked->questions);
+    std::vector<FamilyPlace> known;
+    std::vector<Question> questions;
+    for (std::size_t i = 0; i < asked->questions.size(); ++i) {
+      const TestEntry& test = *asked->questions[i].test;
+      const bool dies = dead == "analytic" ? test.expect == Expectation::pass : test.name == dead;
+      if (dies) continue;
+      questions.push_back(asked->questions[i]);
+      known.push_back(sound[i]);
+    }
+    ASSERT_LT(questions.size(), asked->questions.size()) << dead;
+    const std::vector<FamilyPlace> all = places(asked->suite, questions);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      EXPECT_DOUBLE_EQ(all[i].weight, known[i].weight) << dead;
+      EXPECT_DOUBLE_EQ(all[i].share.alpha, known[i].share.alpha) << dead;
+      EXPECT_DOUBLE_EQ(all[i].share.beta, known[i].share.beta) << dead;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace assay::harness

@@ -78,7 +78,7 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
 /// The first observations of a pool that has drawn them.
 Drawn sample_of(const Pool& pool, std::uint64_t count) {
   const Sample sample = pool.sample(count);
-  if (sample.fault() != nullptr) throw std::runtime_error(to_string(*sample.fault()));
+  if (sample.fault() != nullptr) throw std::runtime_error(sentence_of(*sample.fault(), "lamp"));
   return *sample.drawn();
 }
 
@@ -241,7 +241,8 @@ TEST(Pool, CountsWhatIsNotFiniteWithItsPlace) {
 TEST(Pool, SaysAtWhichObservationItsEstimatorThrew) {
   const auto pool = drawn({.prefixes = {1000, 6000}, .threads = 2, .behaviour = {.throws = 4321}});
   ASSERT_TRUE(pool->fault());
-  EXPECT_EQ(to_string(*pool->fault()), "observation 4321: the lamp burnt out");
+  EXPECT_EQ(sentence_of(*pool->fault(), "lamp"),
+            "`lamp` stopped at observation 4321: the lamp burnt out");
   EXPECT_EQ(pool->sample(6000).drawn(), nullptr);
   EXPECT_EQ(pool->sample(6000).fault()->observation, 4321);
 }

@@ -147,7 +147,7 @@ TEST(Question, RefusesAVarianceAgainstANumberWithAnError) {
 // `5` where `5%` was meant excludes nothing: pi is smaller, and so is what the plugin knows.
 TEST(Question, RefusesAMarginLargerThanItsReference) {
   EXPECT_EQ(refused("{claim: mean(darts) == 3, detect: 5}"),
-            "12:39: the margin 5 is 1.67 times what it is held against, 3: for 5 per cent write "
+            "12:39: the margin 5 is larger than the reference, 3: for 5 per cent write "
             "`5%`; if so much is meant, `167%`");
   for (const char* test :
        {"{claim: mean(darts) == 3, detect: 5, allow: 0.1}",

@@ -143,8 +143,8 @@ TEST(Rows, TooFewSayHowManyItTakesAndWhatToWrite) {
     return test.message;
   };
   EXPECT_EQ(said({3}, "mean(rows) == 2"),
-            "`rows` has 1 row, and it takes 100 to see that they do not depend on each other; give "
-            "more, or, if they do not, add `test: skewness-corrected-t`");
+            "`rows` has 1 row, and it takes 100 to see that they do not depend on each other: give "
+            "more");
   for (const char* claim :
        {"mean(rows) == 0", "distribution(rows) == normal(0, 1)", "quantile(rows, 0.5) == 0"}) {
     EXPECT_THAT(said(rows_of(20, 1, normal), claim), HasSubstr("has 20 rows, and it takes 100"));
