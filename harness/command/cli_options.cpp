@@ -7,6 +7,7 @@
 
 #include "harness/base/shell.h"
 #include "harness/command/cli_help.h"
+#include "harness/language/method_names.h"
 #include "harness/suite/suite_entries.h"
 #include "harness/suite/suite_keys.h"
 

@@ -27,36 +27,55 @@ using OneMeanTest = std::function<TestResult(const stats::Reference&)>;
 /// Tests "E x - scale E y = offset".
 using ContrastTest = std::function<TestResult(const stats::Contrast&)>;
 
-OneMeanTest one_mean_test(const Method& method, const Moments& x, const stats::Range& range) {
-  if (method.name == "binomial") {
-    return [x, range](const stats::Reference& null) {
-      return stats::two_valued_mean(stats::two_valued(x, range), null.value);
-    };
-  }
-  if (method.name == "bounded") {
-    return [x, range](const stats::Reference& null) {
-      return stats::bounded_mean(x, range, null.value);
-    };
-  }
-  if (method.name == "skewness-corrected-t") {
-    return [x](const stats::Reference& null) { return stats::skewness_corrected_t(x, null); };
-  }
+/// A test of one mean and of two, and whether both have closed intervals; else `at` is inverted.
+struct MeanTest {
+  OneMeanTest (*of_one)(const Moments& x, const stats::Range& range);
+  ContrastTest (*of_two)(const Moments& x, const Moments& y, const stats::Range& of_x,
+                         const stats::Range& of_y);
+  bool closed_interval = false;
+};
+
+OneMeanTest t_of_one(const Moments& x, const stats::Range&) {
   return [x](const stats::Reference& null) { return stats::student_t(x, null); };
 }
 
-ContrastTest contrast_test(const Method& method, const Moments& x, const Moments& y,
-                           const stats::Range& of_x, const stats::Range& of_y) {
-  if (method.name == "binomial") {
-    return [=](const stats::Contrast& null) {
-      return stats::two_valued_contrast(stats::two_valued(x, of_x), stats::two_valued(y, of_y),
-                                        null);
-    };
-  }
-  if (method.name == "skewness-corrected-t") {
-    return [=](const stats::Contrast& null) { return stats::skewness_corrected_welch(x, y, null); };
-  }
+ContrastTest t_of_two(const Moments& x, const Moments& y, const stats::Range&,
+                      const stats::Range&) {
   return [=](const stats::Contrast& null) { return stats::welch_t(x, y, null); };
 }
+
+OneMeanTest corrected_of_one(const Moments& x, const stats::Range&) {
+  return [x](const stats::Reference& null) { return stats::skewness_corrected_t(x, null); };
+}
+
+ContrastTest corrected_of_two(const Moments& x, const Moments& y, const stats::Range&,
+                              const stats::Range&) {
+  return [=](const stats::Contrast& null) { return stats::skewness_corrected_welch(x, y, null); };
+}
+
+OneMeanTest binomial_of_one(const Moments& x, const stats::Range& range) {
+  return [x, range](const stats::Reference& null) {
+    return stats::two_valued_mean(stats::two_valued(x, range), null.value);
+  };
+}
+
+ContrastTest binomial_of_two(const Moments& x, const Moments& y, const stats::Range& of_x,
+                             const stats::Range& of_y) {
+  return [=](const stats::Contrast& null) {
+    return stats::two_valued_contrast(stats::two_valued(x, of_x), stats::two_valued(y, of_y), null);
+  };
+}
+
+OneMeanTest bounded_of_one(const Moments& x, const stats::Range& range) {
+  return [x, range](const stats::Reference& null) {
+    return stats::bounded_mean(x, range, null.value);
+  };
+}
+
+constexpr MeanTest t{t_of_one, t_of_two, true};
+constexpr MeanTest corrected{corrected_of_one, corrected_of_two};
+constexpr MeanTest binomial{binomial_of_one, binomial_of_two};
+constexpr MeanTest bounded{bounded_of_one, nullptr};
 
 Interval map_ends(const Interval& interval, const std::function<double(double)>& map) {
   const double one = map(interval.low);
@@ -70,24 +89,18 @@ double log_p_of_no_sign(const Moments& y, const OneMeanTest& test) {
   return stats::log_p_two_sided(test({.value = 0}));
 }
 
-/// Closed forms for Student's and Welch's t; every other method is inverted.
-bool has_closed_interval(const Method& method) {
-  return method.name == "t" || method.name == "welch" || method.name == "tost" ||
-         method.name == "batch-means";
-}
-
 double spread_of(const Moments& x, double factor) {
   return std::abs(factor) * std::sqrt(x.variance() / static_cast<double>(x.count));
 }
 
-Evidence difference_of_means(const Method& method, const Question& question, const Moments& x,
+Evidence difference_of_means(bool closed_interval, const Question& question, const Moments& x,
                              const Moments& y, const ContrastTest& test) {
   const double factor = question.factor;
   const double offset = question.offset;
   const double estimate = stats::contrast_of_means(x, y, {.scale = factor, .offset = offset});
   const auto at = [=](double theta) { return test({.scale = factor, .offset = offset + theta}); };
   const auto interval = [=](double confidence) {
-    if (!has_closed_interval(method)) {
+    if (!closed_interval) {
       const double step = std::hypot(spread_of(x, 1), spread_of(y, factor));
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
@@ -103,7 +116,7 @@ Evidence difference_of_means(const Method& method, const Question& question, con
   return {.estimate = estimate, .at = at, .interval = interval, .quantity = "difference of means"};
 }
 
-Evidence ratio_of_means(const Method& method, const Question& question, const Moments& x,
+Evidence ratio_of_means(bool closed_interval, const Question& question, const Moments& x,
                         const Moments& y, const ContrastTest& test, const OneMeanTest& test_of_y) {
   const double factor = question.factor;
   const double offset = question.offset;
@@ -124,7 +137,7 @@ Evidence ratio_of_means(const Method& method, const Question& question, const Mo
     return result;
   };
   const auto interval = [=](double confidence) {
-    if (!has_closed_interval(method) || offset != 0) {
+    if (!closed_interval || offset != 0) {
       const double step = std::hypot(spread_of(x, 1), spread_of(y, factor)) / std::abs(other);
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
@@ -138,10 +151,92 @@ Evidence ratio_of_means(const Method& method, const Question& question, const Mo
           .relative = true};
 }
 
-/// "E x <= value" by bets on what lies above the declared lower bound; nothing refutes the
-/// contrary.
-Evidence bets_against_number(const Question& question, std::size_t channel, const Moments& x,
-                             std::span<const double> values) {
+}  // namespace
+
+stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
+                      const stats::Moments& moments) {
+  const Subject& side = question.subjects[subject];
+  if (side.setup->observations()) return {moments.minimum, moments.maximum};
+  const Channel declared = side.setup->channels()[side.channels[channel]];
+  return {declared.low, declared.high};
+}
+
+namespace {
+
+Evidence mean_against_number(const MeanTest& mean, const Question& question, std::size_t channel,
+                             const stats::Moments& x) {
+  const Constant& reference = question.references[channel];
+  const bool relative = is_relative(question, channel);
+  const double unit = relative ? std::abs(reference.value) : 1;
+  const double slope = relative ? std::copysign(1, reference.value) : 0;
+  const double null = reference.value + question.offset;
+  const double estimate = x.mean_less(null) / unit;
+  const OneMeanTest test = mean.of_one(x, range_of(question, 0, channel, x));
+  const auto at = [=](double theta) {
+    return test({.value = null + theta * unit,
+                 .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
+  };
+  const auto interval = [=](double confidence) {
+    // Theta scales the reference's own error too: the interval is what `at` does not reject.
+    if ((relative && reference.standard_error > 0) || !mean.closed_interval) {
+      const double step = std::hypot(spread_of(x, 1), reference.standard_error) / unit;
+      return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
+    }
+    return map_ends(stats::student_t_interval(x, {null, reference.standard_error}, confidence),
+                    [=](double d) { return d / unit; });
+  };
+  return {.estimate = estimate,
+          .at = at,
+          .interval = interval,
+          .quantity =
+              relative ? "relative difference from the reference" : "difference from the reference",
+          .relative = relative};
+}
+
+Evidence mean_against_mean(const MeanTest& mean, const Question& question, std::size_t channel,
+                           std::span<const ChannelData> data) {
+  const Moments& x = data[0].moments;
+  const Moments& y = data[1].moments;
+  const ContrastTest test =
+      mean.of_two(x, y, range_of(question, 0, channel, x), range_of(question, 1, channel, y));
+  if (!is_relative(question, channel))
+    return difference_of_means(mean.closed_interval, question, x, y, test);
+  return ratio_of_means(mean.closed_interval, question, x, y, test,
+                        mean.of_one(y, range_of(question, 1, channel, y)));
+}
+
+Evidence of_means(const MeanTest& mean, const Question& question, std::size_t channel,
+                  std::span<const ChannelData> data) {
+  if (question.of_two()) return mean_against_mean(mean, question, channel, data);
+  return mean_against_number(mean, question, channel, data[0].moments);
+}
+
+}  // namespace
+
+Evidence mean_by_t(const Method&, const Question& question, std::size_t channel,
+                   std::span<const ChannelData> data) {
+  return of_means(t, question, channel, data);
+}
+
+Evidence mean_by_corrected_t(const Method&, const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  return of_means(corrected, question, channel, data);
+}
+
+Evidence mean_of_two_values(const Method&, const Question& question, std::size_t channel,
+                            std::span<const ChannelData> data) {
+  return of_means(binomial, question, channel, data);
+}
+
+Evidence mean_in_a_range(const Method&, const Question& question, std::size_t channel,
+                         std::span<const ChannelData> data) {
+  return of_means(bounded, question, channel, data);
+}
+
+Evidence mean_by_bets(const Method&, const Question& question, std::size_t channel,
+                      std::span<const ChannelData> data) {
+  const Moments& x = data[0].moments;
+  const std::span<const double> values = data[0].values;
   const Constant& reference = question.references[channel];
   const bool relative = is_relative(question, channel);
   const double unit = relative ? std::abs(reference.value) : 1;
@@ -162,58 +257,6 @@ Evidence bets_against_number(const Question& question, std::size_t channel, cons
           .quantity =
               relative ? "relative difference from the reference" : "difference from the reference",
           .relative = relative};
-}
-
-}  // namespace
-
-stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
-                      const stats::Moments& moments) {
-  const Subject& side = question.subjects[subject];
-  if (side.setup->observations()) return {moments.minimum, moments.maximum};
-  const Channel declared = side.setup->channels()[side.channels[channel]];
-  return {declared.low, declared.high};
-}
-
-Evidence mean_against_number(const Method& method, const Question& question, std::size_t channel,
-                             const stats::Moments& x, std::span<const double> values) {
-  if (method.name == "betting") return bets_against_number(question, channel, x, values);
-  const Constant& reference = question.references[channel];
-  const bool relative = is_relative(question, channel);
-  const double unit = relative ? std::abs(reference.value) : 1;
-  const double slope = relative ? std::copysign(1, reference.value) : 0;
-  const double null = reference.value + question.offset;
-  const double estimate = x.mean_less(null) / unit;
-  const OneMeanTest test = one_mean_test(method, x, range_of(question, 0, channel, x));
-  const auto at = [=](double theta) {
-    return test({.value = null + theta * unit,
-                 .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
-  };
-  const auto interval = [=](double confidence) {
-    // Theta scales the reference's own error too: the interval is what `at` does not reject.
-    if ((relative && reference.standard_error > 0) || !has_closed_interval(method)) {
-      const double step = std::hypot(spread_of(x, 1), reference.standard_error) / unit;
-      return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
-    }
-    return map_ends(stats::student_t_interval(x, {null, reference.standard_error}, confidence),
-                    [=](double d) { return d / unit; });
-  };
-  return {.estimate = estimate,
-          .at = at,
-          .interval = interval,
-          .quantity =
-              relative ? "relative difference from the reference" : "difference from the reference",
-          .relative = relative};
-}
-
-Evidence mean_against_mean(const Method& method, const Question& question, std::size_t channel,
-                           std::span<const ChannelData> data) {
-  const Moments& x = data[0].moments;
-  const Moments& y = data[1].moments;
-  const ContrastTest test = contrast_test(method, x, y, range_of(question, 0, channel, x),
-                                          range_of(question, 1, channel, y));
-  if (!is_relative(question, channel)) return difference_of_means(method, question, x, y, test);
-  return ratio_of_means(method, question, x, y, test,
-                        one_mean_test(method, y, range_of(question, 1, channel, y)));
 }
 
 }  // namespace assay::harness

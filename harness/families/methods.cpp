@@ -13,6 +13,8 @@
 #include "harness/families/evidence_slope.h"
 #include "harness/families/law_evidence.h"
 #include "harness/families/mean_evidence.h"
+#include "harness/language/method_names.h"
+#include "harness/sampling/recorded_run.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
 #include "stats/variances/log_variance.h"
@@ -31,12 +33,11 @@ Interval map_ends(const Interval& interval, const std::function<double(double)>&
 }
 
 /// theta = ln(Var x per primary / v0).
-Evidence variance_against_number(const Method& method, const Question& question,
+Evidence variance_against_number(bool chi_square, const Method& method, const Question& question,
                                  std::size_t channel, const ChannelData& data) {
   const Moments x = data.moments;
   const double null =
       question.references[channel].value / question.subjects[0].averaged(data.primaries);
-  const bool chi_square = method.name == "chi-square";
   const double excess = method.frozen.excess_kurtosis(channel).x;
   const auto at = [=](double theta) {
     const double variance = null * std::exp(theta);
@@ -56,13 +57,12 @@ Evidence variance_against_number(const Method& method, const Question& question,
 }
 
 /// theta = ln(Var x / (c Var y)), each per primary.
-Evidence variance_against_variance(const Method& method, const Question& question,
+Evidence variance_against_variance(bool f, const Method& method, const Question& question,
                                    std::size_t channel, std::span<const ChannelData> data) {
   const Moments x = data[0].moments;
   const Moments y = data[1].moments;
   const double null = question.factor * question.subjects[1].averaged(data[1].primaries) /
                       question.subjects[0].averaged(data[0].primaries);
-  const bool f = method.name == "F";
   const stats::ExcessKurtoses excess = method.frozen.excess_kurtosis(channel);
   const auto at = [=](double theta) {
     const double ratio = null * std::exp(theta);
@@ -92,12 +92,63 @@ Evidence law_against_law(const Method& method, const Question& question, std::si
   return points_against_points(x, y);
 }
 
-Evidence values_against_law(const Method& method, const Question& question, std::size_t channel,
-                            const ChannelData& data) {
-  return points_against_law(points_of(question, 0, channel, data.values),
-                            declared_law(question, channel),
-                            method.name == "anderson-darling" ? PointsTest::anderson_darling
-                                                              : PointsTest::kolmogorov_smirnov);
+/// Evidence about a variance or two, by the exact test of normal values or by logarithms.
+template <bool exact>
+Evidence of_variances(const Method& method, const Question& question, std::size_t channel,
+                      std::span<const ChannelData> data) {
+  if (question.of_two()) return variance_against_variance(exact, method, question, channel, data);
+  return variance_against_number(exact, method, question, channel, data[0]);
+}
+
+template <PointsTest test>
+Evidence values_against_law(const Method&, const Question& question, std::size_t channel,
+                            std::span<const ChannelData> data) {
+  return points_against_law(points_of(question, 0, channel, data[0].values),
+                            declared_law(question, channel), test);
+}
+
+Evidence cells_of_density(const Method&, const Question& question, std::size_t,
+                          std::span<const ChannelData> data) {
+  return cells_against_density(question, data[0]);
+}
+
+Evidence cells_of_two(const Method& method, const Question& question, std::size_t,
+                      std::span<const ChannelData> data) {
+  return cells_against_cells(method, question, data);
+}
+
+Evidence ratio(const Method&, const Question& question, std::size_t channel,
+               std::span<const ChannelData> data) {
+  return evidence_of_ratio(question, channel, data);
+}
+
+Evidence ratio_of_replicates(const Method&, const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  return evidence_of_replicates(question, channel, data);
+}
+
+Evidence quantile(const Method&, const Question& question, std::size_t channel,
+                  std::span<const ChannelData> data) {
+  return evidence_of_quantile(question, channel, data);
+}
+
+Evidence integral(const Method&, const Question& question, std::size_t,
+                  std::span<const ChannelData> data) {
+  return evidence_of_integral(question, data[0]);
+}
+
+Evidence inconsistency(const Method&, const Question& question, std::size_t,
+                       std::span<const ChannelData> data) {
+  return evidence_of_inconsistency(question, data[0]);
+}
+
+Evidence slope(const Method&, const Question& question, std::size_t channel,
+               std::span<const ChannelData> data) {
+  return evidence_of_slope(question, channel, data);
+}
+
+Evidence whole_images(const Method&, const Question&, std::size_t, std::span<const ChannelData>) {
+  throw std::logic_error("a claim on images has evidence of its own (image_evidence.h)");
 }
 
 /// What the claim does not say itself: of what a bias or an error is taken, what is counted.
@@ -168,17 +219,20 @@ bool about_draws(const Question& question) {
   throw InputError(where, fmt::format("`test: {}` {}", method, why));
 }
 
-/// Methods whose p-values are exact take the reference for exact, and the range for declared.
-void require_exact_data(const Method& method, const Question& question) {
-  const bool of_range = method.name == "bounded" || method.name == "betting";
-  if (!of_range && method.name != "binomial") return;
+/// Why these data are none for the method: InputError.
+void require_data(const Method& method, const Question& question) {
   for (const Constant& reference : question.references) {
-    if (reference.standard_error == 0) continue;
+    if (!method.is.exact || reference.standard_error == 0) continue;
     refuse(question, method.name,
            "takes the reference for exact, but it has a standard error; leave `test` out");
   }
   for (const Subject& subject : question.subjects) {
-    if (!of_range || !subject.setup->observations()) continue;
+    if (method.is.of_observations && as_recorded_run(*subject.setup) != nullptr) {
+      refuse(question, method.name,
+             fmt::format("needs observations, and `{}` has the moments of a run",
+                         subject.estimator->name));
+    }
+    if (!method.is.in_range || !subject.setup->observations()) continue;
     refuse(question, method.name,
            fmt::format("needs a range that is declared, and the rows of `{}` declare none; leave "
                        "`test` out",
@@ -189,11 +243,182 @@ void require_exact_data(const Method& method, const Question& question) {
 /// A margin that the method cannot test.
 void require_margins(const Method& method, const Question& question) {
   const TestEntry& test = *question.test;
-  if (method.name != "anderson-darling" || !test.allow || test.allow->value == 0) return;
+  if (method.is.allows_distance || !test.allow || test.allow->value == 0) return;
   throw InputError(test.place_of("allow"),
-                   "`anderson-darling` tests that two laws are the same and knows no distance to "
-                   "`allow` between them; leave `allow` out, or test by `ks`");
+                   fmt::format("`{}` tests that two laws are the same and knows no distance to "
+                               "`allow` between them; leave `allow` out, or test by `ks`",
+                               method.name));
 }
+
+bool is_within(const Question& question) {
+  return question.test->claim.relation == Relation::within;
+}
+
+bool in_seconds(const Question& question) { return question.test->cost == CostKind::seconds; }
+
+/// Whether the draws of a sampler are held against its density in cells of all coordinates.
+bool of_whole_draws(const Question& question) {
+  const Subject& draws = question.subjects[0];
+  return question.kind == QuestionKind::fit_to_density &&
+         draws.setup->channels()[draws.channels[0]].name == cell_channel;
+}
+
+bool of_one_law(const Question& question) {
+  return question.kind == QuestionKind::fit_to_law ||
+         (question.kind == QuestionKind::fit_to_density && !of_whole_draws(question));
+}
+
+template <QuestionKind kind>
+bool is(const Question& question) {
+  return question.kind == kind;
+}
+
+const std::vector<MethodRow> table{
+    {"t",
+     "Student's t: a mean against a number",
+     [](const Question& q) { return q.kind == QuestionKind::mean_of_one && !is_within(q); },
+     Keeps::moments,
+     mean_by_t,
+     {.scores = true}},
+    {"welch",
+     "Welch's t: two means, whatever their variances",
+     [](const Question& q) { return q.kind == QuestionKind::mean_of_two && !is_within(q); },
+     Keeps::moments,
+     mean_by_t,
+     {.scores = true}},
+    {"tost",
+     "two one-sided t tests: a mean lies within a margin",
+     [](const Question& q) { return q.of_means() && is_within(q); },
+     Keeps::moments,
+     mean_by_t,
+     {.scores = true}},
+    {"skewness-corrected-t",
+     "t or Welch with Hall's correction for the skewness of the values",
+     [](const Question& q) { return q.of_means(); },
+     Keeps::moments,
+     mean_by_corrected_t,
+     {.corrects_skewness = true}},
+    {"binomial",
+     "exact: a mean of values that are the two ends of a range",
+     [](const Question& q) { return q.of_means(); },
+     Keeps::moments,
+     mean_of_two_values,
+     {.exact = true, .of_observations = true, .plans = stats::ExactMethod::binomial}},
+    {"bounded",
+     "exact: a mean of values in a declared range",
+     is<QuestionKind::mean_of_one>,
+     Keeps::moments,
+     mean_in_a_range,
+     {.exact = true,
+      .in_range = true,
+      .of_observations = true,
+      .plans = stats::ExactMethod::bounded}},
+    {"batch-means",
+     "t of batch means: a mean of observations that depend on their neighbours",
+     [](const Question& q) { return q.of_means() && !is_within(q); },
+     Keeps::values,
+     mean_by_t,
+     {.of_observations = true, .of_batches = true}},
+    {"betting",
+     "exact: a mean of values with a declared lower bound is not larger",
+     [](const Question& q) { return q.kind == QuestionKind::mean_of_one && !is_within(q); },
+     Keeps::values,
+     mean_by_bets,
+     {.exact = true, .in_range = true, .of_observations = true, .excludes_larger = false}},
+    {"F",
+     "F: two variances of near-normal values",
+     is<QuestionKind::variance_of_two>,
+     Keeps::moments,
+     of_variances<true>,
+     {.of_normal_values = true, .scores = true}},
+    {"chi-square",
+     "chi-square: a variance of near-normal values",
+     is<QuestionKind::variance_of_one>,
+     Keeps::moments,
+     of_variances<true>,
+     {.of_normal_values = true, .scores = true}},
+    {"log-variance", "normal law of the logarithm of a variance: values of any shape",
+     [](const Question& q) { return q.of_variances(); }, Keeps::moments, of_variances<false>},
+    {"ks",
+     "Kolmogorov-Smirnov: values against a law",
+     of_one_law,
+     Keeps::values,
+     values_against_law<PointsTest::kolmogorov_smirnov>,
+     {.of_distinct_values = true}},
+    {"anderson-darling",
+     "Anderson-Darling: values against a law, tails included",
+     of_one_law,
+     Keeps::values,
+     values_against_law<PointsTest::anderson_darling>,
+     {.of_distinct_values = true, .allows_distance = false, .power_is_known = false}},
+    {"ks", "Kolmogorov-Smirnov: values of two", is<QuestionKind::same_law>, Keeps::values,
+     law_against_law},
+    {"two-part-ks",
+     "Kolmogorov-Smirnov of two beside a value that comes again and again",
+     [](const Question& q) { return q.kind == QuestionKind::same_law && !about_draws(q); },
+     Keeps::values,
+     law_against_law,
+     {.power_is_known = false, .from_pilot = FromPilot::atoms}},
+    {two_sample_cells,
+     "chi-square of two: one or two coordinates together, in cells",
+     [](const Question& q) {
+       return q.kind == QuestionKind::same_law || q.kind == QuestionKind::same_cells;
+     },
+     Keeps::points,
+     cells_of_two,
+     {.from_pilot = FromPilot::cells}},
+    {"chi-square-fit", "chi-square: draws against their declared density, in cells", of_whole_draws,
+     Keeps::cells, cells_of_density},
+    {"log-cost", "normal law of the logarithm of a cost",
+     [](const Question& q) { return q.kind == QuestionKind::cost && !in_seconds(q); }, Keeps::costs,
+     ratio},
+    {"log-efficiency", "normal law of the logarithm of an efficiency",
+     [](const Question& q) { return q.kind == QuestionKind::efficiency && !in_seconds(q); },
+     Keeps::costs, ratio},
+    {"replicates", "t of replicates: costs and efficiencies in seconds",
+     [](const Question& q) {
+       return (q.kind == QuestionKind::cost || q.kind == QuestionKind::efficiency) && in_seconds(q);
+     },
+     Keeps::blocks, ratio_of_replicates},
+    {"log-total-variance", "normal law of the logarithm of the variances' sum",
+     is<QuestionKind::total_variance>, Keeps::group_variances, ratio},
+    {"binomial",
+     "exact: a quantile against a number",
+     [](const Question& q) { return q.kind == QuestionKind::quantile && !q.of_two(); },
+     Keeps::values,
+     quantile,
+     {.exact = true}},
+    {"quantile", "exact: two quantiles, by the counts on both sides",
+     [](const Question& q) { return q.kind == QuestionKind::quantile && q.of_two(); },
+     Keeps::values, quantile},
+    {"binomial",
+     "exact: what a sampler's density integrates to",
+     is<QuestionKind::integral>,
+     Keeps::cells,
+     integral,
+     {.exact = true}},
+    {"binomial",
+     "exact: how often a draw contradicts its sampler",
+     is<QuestionKind::inconsistency>,
+     Keeps::cells,
+     inconsistency,
+     {.exact = true}},
+    {"slope", "weighted fit of a power law: costs over a parameter",
+     [](const Question& q) {
+       return q.kind == QuestionKind::slope && q.test->claim.left.name == QuantityName::cost;
+     },
+     Keeps::costs, slope},
+    {"slope", "weighted fit of a power law: means, variances or biases over a parameter",
+     [](const Question& q) {
+       return q.kind == QuestionKind::slope && q.test->claim.left.name != QuantityName::cost;
+     },
+     Keeps::moments, slope},
+    {"image",
+     "cells of every size, alternating sums and the sum of squares: images",
+     is<QuestionKind::image>,
+     Keeps::images,
+     whole_images,
+     {.from_pilot = FromPilot::weights}}};
 
 }  // namespace
 
@@ -205,78 +430,32 @@ stats::ExcessKurtoses Frozen::largest_excess_kurtosis() const {
   return largest;
 }
 
-bool is_exact(const Method& method) {
-  return method.name == "binomial" || method.name == "bounded" || method.name == "betting";
+const std::vector<MethodRow>& method_table() { return table; }
+
+const std::vector<std::string>& method_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> each;
+    for (const MethodRow& row : table) {
+      if (std::ranges::find(each, row.name) == each.end()) each.push_back(row.name);
+    }
+    return each;
+  }();
+  return names;
 }
 
 std::vector<Method> methods_for(const Question& question) {
-  const bool within = question.test->claim.relation == Relation::within;
-  switch (question.kind) {
-    case QuestionKind::mean_of_one:
-      if (within) {
-        return {{"tost", Keeps::moments},
-                {"skewness-corrected-t", Keeps::moments},
-                {"binomial", Keeps::moments},
-                {"bounded", Keeps::moments}};
-      }
-      return {{"t", Keeps::moments},          {"skewness-corrected-t", Keeps::moments},
-              {"binomial", Keeps::moments},   {"bounded", Keeps::moments},
-              {"batch-means", Keeps::values}, {"betting", Keeps::values}};
-    case QuestionKind::mean_of_two:
-      if (within) {
-        return {{"tost", Keeps::moments},
-                {"skewness-corrected-t", Keeps::moments},
-                {"binomial", Keeps::moments}};
-      }
-      return {{"welch", Keeps::moments},
-              {"skewness-corrected-t", Keeps::moments},
-              {"binomial", Keeps::moments},
-              {"batch-means", Keeps::values}};
-    case QuestionKind::image:
-      return {{"image", Keeps::images}};
-    case QuestionKind::variance_of_one:
-      return {{"chi-square", Keeps::moments}, {"log-variance", Keeps::moments}};
-    case QuestionKind::variance_of_two:
-      return {{"F", Keeps::moments}, {"log-variance", Keeps::moments}};
-    case QuestionKind::fit_to_density: {
-      const Subject& draws = question.subjects[0];
-      const bool whole = draws.setup->channels()[draws.channels[0]].name == cell_channel;
-      if (whole) return {{"chi-square-fit", Keeps::cells}};
-      return {{"ks", Keeps::values}, {"anderson-darling", Keeps::values}};
-    }
-    case QuestionKind::fit_to_law:
-      return {{"ks", Keeps::values}, {"anderson-darling", Keeps::values}};
-    case QuestionKind::same_law:
-    case QuestionKind::same_cells: {
-      const Method cells{two_sample_cells, Keeps::points};
-      if (question.kind == QuestionKind::same_cells) return {cells};
-      if (about_draws(question)) return {{"ks", Keeps::values}, cells};
-      return {{"ks", Keeps::values}, {"two-part-ks", Keeps::values}, cells};
-    }
-    case QuestionKind::cost:
-    case QuestionKind::efficiency:
-      if (question.test->cost == CostKind::seconds) return {{"replicates", Keeps::blocks}};
-      if (question.kind == QuestionKind::cost) return {{"log-cost", Keeps::costs}};
-      return {{"log-efficiency", Keeps::costs}};
-    case QuestionKind::quantile:
-      return {{question.of_two() ? "quantile" : "binomial", Keeps::values}};
-    case QuestionKind::total_variance:
-      return {{"log-total-variance", Keeps::group_variances}};
-    case QuestionKind::integral:
-    case QuestionKind::inconsistency:
-      return {{"binomial", Keeps::cells}};
-    case QuestionKind::slope:
-      return {{"slope", question.test->claim.left.name == QuantityName::cost ? Keeps::costs
-                                                                             : Keeps::moments}};
+  std::vector<Method> methods;
+  for (const MethodRow& row : table) {
+    if (row.answers(question)) methods.push_back({row});
   }
-  return {};
+  return methods;
 }
 
 Method find_method(const Question& question, const std::string& name) {
   std::string known;
   for (const Method& method : methods_for(question)) {
     if (method.name == name) {
-      require_exact_data(method, question);
+      require_data(method, question);
       require_margins(method, question);
       return method;
     }
@@ -297,45 +476,6 @@ std::string null_hypothesis(const Method&, const Question& question, std::size_t
   if (test.allow && test.allow->value > 0)
     text += fmt::format(", up to {}", to_string(*test.allow));
   return text;
-}
-
-Evidence evidence_of(const Method& method, const Question& question, std::size_t channel,
-                     std::span<const ChannelData> data) {
-  switch (question.kind) {
-    case QuestionKind::mean_of_one:
-      return mean_against_number(method, question, channel, data[0].moments, data[0].values);
-    case QuestionKind::mean_of_two:
-      return mean_against_mean(method, question, channel, data);
-    case QuestionKind::variance_of_one:
-      return variance_against_number(method, question, channel, data[0]);
-    case QuestionKind::variance_of_two:
-      return variance_against_variance(method, question, channel, data);
-    case QuestionKind::fit_to_density:
-      if (method.name == "chi-square-fit") return cells_against_density(question, data[0]);
-      return values_against_law(method, question, channel, data[0]);
-    case QuestionKind::fit_to_law:
-      return values_against_law(method, question, channel, data[0]);
-    case QuestionKind::same_law:
-      return law_against_law(method, question, channel, data);
-    case QuestionKind::same_cells:
-      return cells_against_cells(method, question, data);
-    case QuestionKind::cost:
-    case QuestionKind::efficiency:
-    case QuestionKind::total_variance:
-      if (method.keeps == Keeps::blocks) return evidence_of_replicates(question, channel, data);
-      return evidence_of_ratio(question, channel, data);
-    case QuestionKind::quantile:
-      return evidence_of_quantile(question, channel, data);
-    case QuestionKind::integral:
-      return evidence_of_integral(question, data[0]);
-    case QuestionKind::inconsistency:
-      return evidence_of_inconsistency(question, data[0]);
-    case QuestionKind::image:
-      break;  // image_evidence.h
-    case QuestionKind::slope:
-      return evidence_of_slope(question, channel, data);
-  }
-  throw std::logic_error("a question that one channel's data do not answer");
 }
 
 }  // namespace assay::harness

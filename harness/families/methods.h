@@ -1,7 +1,6 @@
 #pragma once
 
-// The methods by name: which there are for a question, what null hypothesis each tests, and the
-// evidence it draws from data.
+// The method table: which methods answer a question, and the null hypothesis that they test.
 
 #include <span>
 #include <string>
@@ -13,8 +12,8 @@
 
 namespace assay::harness {
 
-/// Whether the method is exact: the normal law says nothing of it.
-bool is_exact(const Method& method);
+/// The table: a new method is a row of it and a function for its evidence.
+const std::vector<MethodRow>& method_table();
 
 /// The methods that answer a question, the default first; `test:` may force any of them.
 std::vector<Method> methods_for(const Question& question);
@@ -24,9 +23,5 @@ Method find_method(const Question& question, const std::string& name);
 
 /// The null hypothesis in words and symbols.
 std::string null_hypothesis(const Method& method, const Question& question, std::size_t channel);
-
-/// The evidence on theta of one channel. `data` is one or two subjects'.
-Evidence evidence_of(const Method& method, const Question& question, std::size_t channel,
-                     std::span<const ChannelData> data);
 
 }  // namespace assay::harness

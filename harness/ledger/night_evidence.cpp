@@ -25,12 +25,6 @@ const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
   return nullptr;
 }
 
-/// Methods whose estimate says nothing of its own standard error, so that scores have mean 0.
-bool gives_a_score(const std::string& method) {
-  return method == "t" || method == "welch" || method == "tost" || method == "chi-square" ||
-         method == "F";
-}
-
 /// Why a test says nothing that the next run could add to; "" where it does.
 std::string obstacle(const TestWork& work, std::size_t channel) {
   const TestOutcome& test = work.outcome;
@@ -105,8 +99,7 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
 
 EvidenceKind evidence_kind(const TestOutcome& test) {
   const bool moments = test.question.of_means() || test.question.of_variances();
-  return moments && gives_a_score(test.plan.method.name) ? EvidenceKind::score
-                                                         : EvidenceKind::log_e;
+  return moments && test.plan.method.is.scores ? EvidenceKind::score : EvidenceKind::log_e;
 }
 
 NightEvidence night_evidence(const TestWork& work, std::size_t channel, const Pilots& pilots) {

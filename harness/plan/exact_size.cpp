@@ -29,13 +29,8 @@ std::vector<int> sides_of(Relation relation) {
   return {1, -1};
 }
 
-stats::ExactMethod method_of(const Plan& plan) {
-  return plan.method.name == "bounded" ? stats::ExactMethod::bounded : stats::ExactMethod::binomial;
-}
-
 bool is_quoted(const Question& question, const Plan& plan, const PlannedChannel& channel) {
-  const bool known = plan.method.name == "binomial" || plan.method.name == "bounded";
-  return known && question.kind == QuestionKind::mean_of_one &&
+  return plan.method.is.plans && question.kind == QuestionKind::mean_of_one &&
          channel.regions.relation != Relation::within && std::isfinite(channel.range.low) &&
          std::isfinite(channel.range.high) && channel.range.low < channel.range.high;
 }
@@ -66,7 +61,7 @@ std::optional<std::uint64_t> exact_secondaries(const Question& question, const P
   std::uint64_t most = 0;
   for (const int side : sides_of(channel.regions.relation)) {
     const auto count =
-        stats::exact_sample_size(method_of(plan), plan_of(channel, rates), side * detect);
+        stats::exact_sample_size(*plan.method.is.plans, plan_of(channel, rates), side * detect);
     if (!count) return std::nullopt;
     most = std::max(most, *count);
   }
@@ -88,7 +83,7 @@ std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& quest
   for (const int side : {1, -1}) {
     at_margin.null_value = channel.null_value + side * margin;
     const auto count =
-        stats::exact_sample_size(method_of(plan), plan_of(at_margin, rates), -side * margin);
+        stats::exact_sample_size(*plan.method.is.plans, plan_of(at_margin, rates), -side * margin);
     if (!count) return std::nullopt;
     most = std::max(most, *count);
   }
@@ -101,8 +96,8 @@ std::optional<double> exact_detectable_effect(const Question& question, const Te
   if (!is_quoted(question, plan, channel)) return std::nullopt;
   double most = 0;
   for (const int side : sides_of(channel.regions.relation)) {
-    const auto found =
-        stats::exact_detectable(method_of(plan), plan_of(channel, rates), size.secondaries, side);
+    const auto found = stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates),
+                                               size.secondaries, side);
     // A range that ends before it has no such effect; one side without any is not told.
     if (!found) return std::nullopt;
     most = std::max(most, *found);
@@ -114,7 +109,8 @@ bool exact_finds_nothing(const Question& question, const TestSize& size, const P
                          const PlannedChannel& channel, const stats::ErrorRates& rates) {
   if (!is_quoted(question, plan, channel)) return false;
   return std::ranges::none_of(sides_of(channel.regions.relation), [&](int side) {
-    return stats::exact_detectable(method_of(plan), plan_of(channel, rates), size.secondaries, side)
+    return stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates), size.secondaries,
+                                   side)
         .has_value();
   });
 }
@@ -127,7 +123,7 @@ std::optional<double> exact_power_at(const Question& question, const TestSize& s
   double least = 1;
   for (const int side : sides_of(channel.regions.relation)) {
     const double theta = side * effect * channel.unit;
-    const double power = method_of(plan) == stats::ExactMethod::binomial
+    const double power = *plan.method.is.plans == stats::ExactMethod::binomial
                              ? stats::binomial_power(exact, size.secondaries, theta)
                              : stats::bounded_power(exact, size.secondaries, theta);
     least = std::min(least, power);

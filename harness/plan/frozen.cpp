@@ -118,9 +118,7 @@ void note(const Question& question, const std::vector<std::optional<Atom>>& atom
 
 }  // namespace
 
-bool takes_from_pilot(const Method& method) {
-  return method.name == "two-part-ks" || method.name == two_sample_cells || method.name == "image";
-}
+bool takes_from_pilot(const Method& method) { return method.is.from_pilot != FromPilot::nothing; }
 
 std::vector<const Subject*> piloted_draws(const Question& question) {
   std::vector<const Subject*> draws;
@@ -147,11 +145,12 @@ std::vector<std::optional<Atom>> atoms_of(const Question& question, const Pilots
 }
 
 void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
-  if (plan.method.name == two_sample_cells) {
+  const FromPilot wanted = plan.method.is.from_pilot;
+  if (wanted == FromPilot::cells) {
     freeze_cells(question, pilots, plan);
-  } else if (plan.method.name == "image") {
+  } else if (wanted == FromPilot::weights) {
     plan.method.frozen.weights = image_weights(question, pilots, plan);
-  } else if (plan.method.name == "two-part-ks") {
+  } else if (wanted == FromPilot::atoms) {
     plan.method.frozen.atoms = atoms_of(question, pilots, plan);
     if (has_any(plan.method.frozen.atoms)) return;
     plan.invalid =

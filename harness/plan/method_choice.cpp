@@ -187,7 +187,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
         {.secondaries = std::clamp(std::max(least, size), std::uint64_t{2}, affordable),
          .critical_value = x});
     // Answered by the method chosen.
-    const bool answered = plan.method.name == "skewness-corrected-t";
+    const bool answered = plan.method.is.corrects_skewness;
     if (answered && gate.state == GateState::red) gate.state = GateState::amber;
     note(plan, known, gate);
   }

@@ -281,7 +281,7 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     if (std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded)) {
       plan.invalid.clear();
     }
-  } else if (question.of_means() && !is_exact(plan.method)) {
+  } else if (question.of_means() && !plan.method.is.exact) {
     allow_for_dependence(all, plan);
   }
 }
@@ -304,7 +304,7 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
                          std::span<const double> values, stats::Moments moments) {
   // Constants are judged by themselves, and have no order.
   if (!(moments.m2 > 0) || values.size() < fewest_in_order) return moments;
-  if (plan.method.name == "batch-means") {
+  if (plan.method.is.of_batches) {
     return stats::batch_means(values, stats::sufficient_batch(values));
   }
   for (const RowAllowance& each : plan.method.frozen.row_allowances) {
@@ -319,18 +319,17 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
 std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
                             double critical_value) {
   const Question& question = outcome.question;
-  const std::string& method = outcome.plan.method.name;
+  const MethodTraits& method = outcome.plan.method.is;
   std::vector<Gate> gates;
   if (!has_rows(question)) return gates;
   if (question.kind == QuestionKind::fit_to_law || question.kind == QuestionKind::fit_to_density) {
-    const bool by_points = method == "ks" || method == "anderson-darling";
-    if (!by_points || data[0].values.size() < 2) return gates;
+    if (!method.of_distinct_values || data[0].values.size() < 2) return gates;
     const std::vector<double> sorted =
         stats::sorted({data[0].values.begin(), data[0].values.end()});
     gates.push_back(stats::quantisation_gate(sorted, outcome.share().alpha));
   }
-  if (!question.of_means() || is_exact(outcome.plan.method)) return gates;
-  const bool batches = method == "batch-means";
+  if (!question.of_means() || method.exact) return gates;
+  const bool batches = method.of_batches;
   const stats::Moments& first = data[0].moments;
   if (data.size() == 1) {
     if (!batches) gates.push_back(stats::unpiloted_count_gate(first, critical_value));

@@ -91,7 +91,7 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   PlannedChannel planned{.regions = plan.regions[channel]};
   const bool constant = is_constant(question, 0, channel, first);
   note_range(question, channel, first, planned);
-  if (constant && plan.method.name == "bounded") {
+  if (constant && plan.method.is.plans == stats::ExactMethod::bounded) {
     planned.standard_deviation = unseen_deviation(planned, first) /
                                  std::sqrt(question.subjects[0].averaged(plan.primaries[0]));
     planned.unseen = true;
@@ -185,8 +185,8 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
 /// Chi-square and F take data that are flatter than normal for normal ones: they find as little as
 /// of those, or of what they allow for. 1 is no second subject, or two values, within rounding.
 double kurtosis_for(const Method& method, double kurtosis, double allowed) {
-  const bool of_normal = method.name == "chi-square" || method.name == "F";
-  return of_normal && kurtosis > 1 ? std::max(3 + allowed, kurtosis) : std::max(1.0, kurtosis);
+  return method.is.of_normal_values && kurtosis > 1 ? std::max(3 + allowed, kurtosis)
+                                                    : std::max(1.0, kurtosis);
 }
 
 stats::LogVariancePlan variance_plan(const Method& method, const stats::ErrorRates& rates,
@@ -222,7 +222,7 @@ std::optional<std::uint64_t> one_channel(const Question& question, std::size_t i
   std::optional<std::uint64_t> count;
   if (question.on_log_scale()) {
     count = for_variances(plan.method, share, *channel);
-  } else if (plan.method.name == "binomial" || plan.method.name == "bounded") {
+  } else if (plan.method.is.plans) {
     count = equivalence
                 ? exact_equivalence_secondaries(question, plan, *channel, share)
                 : exact_secondaries(question, plan, *channel, planned_rates(share, regions));
@@ -265,7 +265,7 @@ double equivalence_power(const Question& question, const TestSize& size, const P
 bool has_power(const Question& question, const Method& method, const PlannedChannel& channel) {
   using enum QuestionKind;
   if (question.kind == quantile || question.kind == slope || question.kind == image ||
-      question.of_draws() || method.name == "anderson-darling" || method.name == "two-part-ks") {
+      question.of_draws() || !method.is.power_is_known) {
     return false;
   }
   const bool of_spread = has_log_spread(question) || question.of_variances();
@@ -321,7 +321,7 @@ std::optional<double> detectable_effect(const Question& question, const TestSize
   if (regions.relation == Relation::within) return std::nullopt;  // it finds nothing, it shows
   if (!has_power(question, plan.method, channel)) return std::nullopt;
   const stats::ErrorRates rates = planned_rates(share, regions);
-  if (is_exact(plan.method)) return exact_detectable_effect(question, size, plan, channel, rates);
+  if (plan.method.is.exact) return exact_detectable_effect(question, size, plan, channel, rates);
   double found = 0;
   if (both_spread(question, channel) && question.of_means()) {
     found = stats::welch_detectable(means_plan(rates, regions.allow, channel, allocation(sizes)),
@@ -354,7 +354,7 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
   const Regions& regions = channel.regions;
   const stats::ErrorRates rates = planned_rates(share, regions);
   if (!has_power(question, plan.method, channel)) return std::nullopt;
-  if (is_exact(plan.method)) return exact_power_at(question, size, plan, channel, rates, effect);
+  if (plan.method.is.exact) return exact_power_at(question, size, plan, channel, rates, effect);
   if (regions.relation == Relation::within) return equivalence_power(question, size, plan, channel);
   if (question.of_means() && !both_spread(question, channel)) {
     return stats::student_t_power(mean_plan(rates, regions.allow, channel),

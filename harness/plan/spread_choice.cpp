@@ -242,7 +242,7 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const double x = critical_value(smallest_level(question, place), two_sided(question));
   const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
   const bool forced = question.test->method.has_value();
-  if (forced && plan.method.name == "log-variance") {
+  if (forced && !plan.method.is.of_normal_values) {
     const std::uint64_t needed = enough_for_log_variance(question, channels, x);
     return as_forced(question, place, pilots, most, needed, least_secondaries, plan);
   }

@@ -229,14 +229,6 @@ void require_moments_suffice(const Question& question) {
                                    "`secondaries` out",
                                    name, run->summary().count));
     }
-    const auto& method = question.test->method;
-    if (method && (method == "binomial" || method == "bounded" || method == "betting" ||
-                   method == "batch-means")) {
-      throw InputError(question.test->place_of("test"),
-                       fmt::format("`test: {}` needs observations, and `{}` "
-                                   "has the moments of a run",
-                                   *method, name));
-    }
   }
 }
 

@@ -98,22 +98,19 @@ double largest_level(const ErrorShare& share, const Regions& regions) {
 
 }  // namespace
 
-namespace {}  // namespace
-
 std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t channel,
                                       std::span<const ChannelData> data) {
   std::vector<reports::Gate> gates;
   const Question& question = outcome.question;
-  const std::string& method = outcome.plan.method.name;
+  const MethodTraits& method = outcome.plan.method.is;
   const bool several = question.channel_count() > 1;
   const std::string name = several ? ", " + question.channel_name(channel) : "";
   const double x = critical_value(outcome.share().alpha, two_sided(question));
-  const bool exact = is_exact(outcome.plan.method);
+  const bool by_t = question.of_means() && !method.exact && !method.of_batches;
   for (const stats::Gate& gate : row_gates(outcome, data, x)) gates.push_back(gate_of(gate, name));
-  if (question.of_means() && !exact && method != "batch-means") {
-    gates.push_back(gate_of(method == "skewness-corrected-t"
-                                ? residual_gate(question, channel, data, x)
-                                : skewness_gate(question, data, x),
+  if (by_t) {
+    gates.push_back(gate_of(method.corrects_skewness ? residual_gate(question, channel, data, x)
+                                                     : skewness_gate(question, data, x),
                             name));
   }
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
@@ -121,10 +118,10 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
     const std::string whose = name + " of " + question.subjects[subject].estimator->name;
     // Of two values none can stand out, of three no kurtosis is known.
     const std::uint64_t count = data[subject].moments.count;
-    if (question.of_means() && !exact && method != "batch-means" && count > 2) {
+    if (by_t && count > 2) {
       gates.push_back(gate_of(stats::dominance_gate(data[subject].moments), whose));
     }
-    if ((method == "F" || method == "chi-square") && count > 3) {
+    if (method.of_normal_values && count > 3) {
       gates.push_back(gate_of(stats::kurtosis_gate(data[subject].moments), whose));
     }
   }
@@ -154,7 +151,7 @@ std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,
   if (kind == QuestionKind::slope) return point_without_spread(outcome.question, channel, data);
   if (!outcome.question.of_means()) return "";
   std::string reason =
-      is_exact(outcome.plan.method) ? "" : lost_to_rounding(outcome.question, channel, data);
+      outcome.plan.method.is.exact ? "" : lost_to_rounding(outcome.question, channel, data);
   return reason.empty() ? unseen_could_decide(outcome, channel, data) : reason;
 }
 

@@ -82,7 +82,7 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
     const std::vector<ChannelData> data = data_of(test, channel.index);
     PlannedChannel observed =
         observed_channel(outcome.question, channel.regions, channel.index, data);
-    if (outcome.plan.method.name == "batch-means") {
+    if (outcome.plan.method.is.of_batches) {
       // The deviations of independent values whose means are as uncertain.
       const auto deviation = [&](std::size_t subject) {
         return std::sqrt(static_cast<double>(outcome.secondaries(subject))) *

@@ -269,7 +269,7 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
-  if (outcome.plan.method.name == "betting") {
+  if (!outcome.plan.method.is.excludes_larger) {
     return "no number of samples would decide: without an upper bound on the values a larger mean "
            "cannot be excluded; declare the range";
   }

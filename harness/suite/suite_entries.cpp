@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimators/catalogue.h"
+#include "harness/language/method_names.h"
 #include "harness/suite/suite_keys.h"
 
 namespace assay::harness {
@@ -153,33 +154,6 @@ Budget read_budget(const Document& document, const Value& value) {
     throw InputError(value.where(), "a budget needs `primaries` or `seconds`");
   }
   return budget;
-}
-
-const std::vector<std::string>& method_names() {
-  static const std::vector<std::string> names{"t",
-                                              "welch",
-                                              "skewness-corrected-t",
-                                              "binomial",
-                                              "bounded",
-                                              "batch-means",
-                                              "betting",
-                                              "tost",
-                                              "F",
-                                              "chi-square",
-                                              "log-variance",
-                                              "ks",
-                                              "anderson-darling",
-                                              "two-part-ks",
-                                              "chi-square-two-sample",
-                                              "chi-square-fit",
-                                              "log-cost",
-                                              "log-efficiency",
-                                              "replicates",
-                                              "log-total-variance",
-                                              "quantile",
-                                              "slope",
-                                              "image"};
-  return names;
 }
 
 Sweep read_sweep(const Value& value) {

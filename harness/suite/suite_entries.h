@@ -9,9 +9,6 @@
 
 namespace assay::harness {
 
-/// The methods that `test:` and `--test` can force: those that this version has.
-const std::vector<std::string>& method_names();
-
 /// An entry of `estimators:`. `scenes` is the map under the suite's `scenes:`.
 EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
                               const Value& scenes);

@@ -6,6 +6,7 @@
 
 #include "estimators/catalogue.h"
 #include "harness/base/shell.h"
+#include "harness/language/method_names.h"
 #include "harness/suite/claim_entry.h"
 #include "harness/suite/suite.h"
 #include "harness/suite/suite_entries.h"

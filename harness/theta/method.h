@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "harness/question/question.h"
 #include "harness/sampling/image_views.h"
 #include "harness/sampling/summary.h"
+#include "harness/theta/evidence.h"
 #include "stats/cells/sampled_cells.h"
+#include "stats/means/power_exact.h"
 #include "stats/variances/f_ratio.h"
 
 namespace assay::harness {
@@ -71,10 +74,49 @@ struct Frozen {
   stats::ExcessKurtoses largest_excess_kurtosis() const;
 };
 
-struct Method {
-  std::string name;  ///< as in suites and records
+struct Method;
+
+/// What a method's evidence needs of the pilots, frozen before its own data are drawn.
+enum class FromPilot { nothing, atoms, cells, weights };
+
+/// What else of a method others have to know.
+struct MethodTraits {
+  bool exact = false;     ///< its level holds at every sample size; a reference has to be exact
+  bool in_range = false;  ///< rests on the range that a channel declares
+  bool of_observations = false;     ///< the moments of an earlier run are too little
+  bool of_batches = false;          ///< means of consecutive observations stand for them
+  bool corrects_skewness = false;   ///< of the mean, from the data
+  bool of_normal_values = false;    ///< takes the values for normal, with an allowance for kurtosis
+  bool of_distinct_values = false;  ///< coarsely rounded values break its level
+  bool allows_distance = true;      ///< tests a claim up to `allow`
+  bool excludes_larger = true;      ///< refutes "theta is larger"; else no sample size does
+  bool scores = false;              ///< the estimate tells nothing of its standard error
+  bool power_is_known = true;       ///< by a formula
+  FromPilot from_pilot = FromPilot::nothing;
+  std::optional<stats::ExactMethod> plans = {};  ///< of exact methods of a mean
+};
+
+/// A row of the method table (methods.h). Several rows may share a name: one of each family of
+/// claims.
+struct MethodRow {
+  std::string name;     ///< as in suites and records
+  std::string summary;  ///< what it tests and where it holds, for `assay list methods`
+  bool (*answers)(const Question&);
   Keeps keeps;
+  Evidence (*evidence)(const Method&, const Question&, std::size_t channel,
+                       std::span<const ChannelData>);
+  MethodTraits is = {};
+};
+
+/// A row with what a test has frozen for it.
+struct Method : MethodRow {
   Frozen frozen = {};
 };
+
+/// The evidence on theta of one channel. `data` is one or two subjects', of a slope each point's.
+inline Evidence evidence_of(const Method& method, const Question& question, std::size_t channel,
+                            std::span<const ChannelData> data) {
+  return method.evidence(method, question, channel, data);
+}
 
 }  // namespace assay::harness

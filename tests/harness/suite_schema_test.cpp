@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "harness/base/text_file.h"
+#include "harness/language/method_names.h"
 #include "harness/question/question.h"
 #include "harness/sampling/prepare.h"
 #include "harness/suite/suite_entries.h"
