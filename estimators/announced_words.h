@@ -35,7 +35,7 @@ class AnnouncedWords {
     return true;
   }
 
-  /// Of the batch, and where an observation stands in it.
+  /// The batch, and the place of an observation in it.
   std::span<FirstWords> words() { return std::span(words_).first(last_ - first_); }
   std::size_t place(std::uint64_t observation) const { return observation - first_; }
 

@@ -4,7 +4,7 @@
 
 namespace assay {
 
-/// What an observation cost, counted by the estimator; seconds are the caller's to measure.
+/// The work of an observation, counted by the estimator. The caller measures seconds.
 struct Cost {
   std::uint64_t camera_rays = 0;
   std::uint64_t closest_hit_rays = 0;
@@ -23,7 +23,6 @@ struct Cost {
   bool operator==(const Cost&) const = default;
 };
 
-/// What was added to `before`.
 inline Cost operator-(const Cost& after, const Cost& before) {
   return {.camera_rays = after.camera_rays - before.camera_rays,
           .closest_hit_rays = after.closest_hit_rays - before.closest_hit_rays,

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a plugin is: static information, an immutable set-up, and estimators made from it.
+// The interface of a plugin: static information, an immutable set-up, and estimators made from it.
 
 #include <algorithm>
 #include <array>
@@ -36,8 +36,8 @@ struct Announcement {
 class Estimator {
  public:
   virtual ~Estimator() = default;
-  /// What comes next, for an estimator that fetches several observations at a time. Changes no
-  /// number; observations may be asked for without it.
+  /// Tells which observations come next, for an estimator that fetches several at a time. It
+  /// changes no number. Observations may be asked for without it.
   virtual void announce(const Announcement&) {}
   /// CPU seconds spent so far outside of the calling thread: those of another process.
   virtual double seconds_elsewhere() const { return 0; }
@@ -50,10 +50,10 @@ class Estimator {
 /// How the expectation of a secondary estimate relates to the integral.
 enum class BiasClass {
   unbiased,
-  inverse_primaries,  ///< bias falls like 1 / primaries (ratios)
-  inverse_bootstrap,  ///< bias falls like 1 / bootstrap (a normaliser from so many points)
-  start_up,           ///< a chain that has not forgotten its start
-  reconstruction,     ///< bias of a filter or an interpolation
+  inverse_primaries,  ///< Bias falls like 1 / primaries, as of ratios.
+  inverse_bootstrap,  ///< Bias falls like 1 / bootstrap, the points of a normaliser.
+  start_up,           ///< Bias of a chain that has not forgotten its start.
+  reconstruction,     ///< Bias of a filter or an interpolation.
 };
 
 /// How secondary estimates relate to primaries and to the integral.
@@ -65,13 +65,13 @@ struct Nature {
 /// One number of an observation, and what is known of it exactly.
 struct Channel {
   std::string name = "value";
-  std::optional<double> mean = {};      ///< of a secondary estimate: the analytic reference
-  double mean_error = 0;                ///< standard error or error bound of `mean`, if any
-  std::optional<double> variance = {};  ///< of ONE primary estimate
-  double low = -std::numeric_limits<double>::infinity();  ///< no value is below
-  double high = std::numeric_limits<double>::infinity();  ///< no value is above
-  double rounding = 0;      ///< values that differ by no more are the same number
-  bool diagnostic = false;  ///< tested only where a claim names it
+  std::optional<double> mean = {};      ///< Analytic mean of a secondary estimate.
+  double mean_error = 0;                ///< Standard error or error bound of `mean`.
+  std::optional<double> variance = {};  ///< Variance of ONE primary estimate.
+  double low = -std::numeric_limits<double>::infinity();  ///< No value is below.
+  double high = std::numeric_limits<double>::infinity();  ///< No value is above.
+  double rounding = 0;      ///< Values that differ by no more are the same number.
+  bool diagnostic = false;  ///< Tested only where a claim names it.
 };
 
 /// Channels under the names of an image's elements, of each of which the same is known.
@@ -98,22 +98,20 @@ class Setup {
   virtual std::string data_file() const { return {}; }
   /// The stream that ready-made observations were drawn from, where they say so.
   virtual std::optional<StreamKey> data_stream() const { return {}; }
-  /// What stands in the place of the catalogue's `averages` and `bias`, which cannot be known
-  /// before another program has been asked.
+  /// Replaces the catalogue's `averages` and `bias` if another program must be asked for them.
   virtual std::optional<Nature> nature() const { return {}; }
-  /// What making the set-up cost.
   virtual Cost cost() const { return {}; }
 };
 
-/// What is known of a plugin without preparing it; `assay describe` prints it.
+/// Static facts of a plugin, known without preparing it; `assay describe` prints them.
 struct Information {
   std::string name;         ///< "luminaire/area"
   std::string summary;      ///< one line
   std::string description;  ///< the manual: statement, formula, source
   std::vector<ParameterInformation> parameters = {};
   BiasClass bias = BiasClass::unbiased;
-  /// A secondary estimate is the mean of `primaries` independent primaries, so that its variance
-  /// falls like 1 / primaries and `primaries` may be chosen from the pilot.
+  /// True if a secondary estimate is the mean of `primaries` independent primaries. Its variance
+  /// then falls like 1 / primaries, and `primaries` may be chosen from the pilot.
   bool averages = true;
   /// `bias` and `averages` are another program's to say: Setup::nature() has them.
   bool says_nature = false;
@@ -121,7 +119,6 @@ struct Information {
   std::string defect = "";    ///< of a mutant: what is wrong
 };
 
-/// An entry of the catalogue.
 struct Entry {
   Information information;
   std::function<std::shared_ptr<const Setup>(Parameters&)> prepare;
@@ -134,9 +131,9 @@ concept TwoStepPrimary = requires(const Primary& primary, Stream& random, Cost& 
   { primary.value(primary.draw(random), cost) } -> std::convertible_to<double>;
 };
 
-/// The common case: an estimator whose secondary estimate is the mean of independent primaries.
-/// `Primary` is callable as double(Stream&) or double(Stream&, Cost&), or a TwoStepPrimary; it is a
-/// template so that a primary of a few nanoseconds is inlined into the loop.
+/// An estimator whose secondary estimate is the mean of independent primaries. `Primary` is
+/// callable as double(Stream&) or double(Stream&, Cost&), or is a TwoStepPrimary. It is a template
+/// so that a primary of a few nanoseconds is inlined into the loop.
 template <class Primary>
 class AveragingEstimator final : public Estimator {
  public:
@@ -162,10 +159,9 @@ class AveragingEstimator final : public Estimator {
   Primary primary_;
 };
 
-/// A two-step primary makes a batch of choices before it follows them up: the processor overlaps
-/// the arithmetic of many choices, where a ray traced in between would make each wait for the one
-/// before (a shadow ray to an area light, 61 ns bare, took 137 ns one by one). Neither the order of
-/// random numbers nor that of the sum depends on the batch.
+/// The same for a two-step primary: it makes a batch of choices before it follows them up. So the
+/// processor overlaps the arithmetic of many choices, instead of waiting for each ray. The order of
+/// random numbers and of the sum does not depend on the batch.
 template <TwoStepPrimary Primary>
 class AveragingEstimator<Primary> final : public Estimator {
  public:
@@ -190,8 +186,8 @@ class AveragingEstimator<Primary> final : public Estimator {
   std::array<Choices, 32> choices_{};  // scratch
 };
 
-/// The set-up of an averaging estimator with one channel: a channel, a primary that is copied into
-/// every worker (hold shared state by shared_ptr<const T>), and the samplers inside.
+/// The set-up of an averaging estimator with one channel. Every worker gets a copy of the primary:
+/// hold shared state by shared_ptr<const T>. `samplers` are the sources of points inside.
 template <class Primary>
 class AveragingSetup final : public Setup {
  public:

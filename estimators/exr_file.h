@@ -31,12 +31,12 @@ struct ExrChannel {
   std::string in_part = "";  ///< its name in the part
 };
 
-/// An OpenEXR file of one part or several, scan lines or tiles (of which the finest level is read),
-/// any pixel type and compression. Reading takes one thread, which is the caller's.
+/// An OpenEXR file of one part or several, any pixel type and compression. It has scan lines or
+/// tiles, of which the finest level is read. Reading takes one thread, the caller's.
 ///
-/// InputError at the file when it is not there, is no OpenEXR file or is cut short; for a part that
-/// is deep, a picture of more than 2^27 pixels, or one larger than a file of this size can hold
-/// (checked before anything is allocated).
+/// InputError at the file if it is missing, is no OpenEXR file or is cut short. The same for a part
+/// that is deep, or a picture of more than 2^27 pixels. Before anything is allocated, a picture is
+/// refused that a file of this size cannot hold.
 class ExrFile {
  public:
   explicit ExrFile(const std::string& file);
@@ -50,11 +50,11 @@ class ExrFile {
   /// The attribute `samplesPerPixel` that pbrt writes.
   std::optional<std::uint64_t> samples_per_pixel() const;
 
-  /// Channels of one window, interleaved, of as many rows from `first` on as there is room for:
-  /// that of column x, row y and position c in `names` goes to
-  /// texels[((y - first) * width + x) * names.size() + c], rows from the top. Rows of chunks that
-  /// are read in parts take longer. InputError, beside the above, for a name that is not there,
-  /// windows that differ, and a channel that is sub-sampled.
+  /// Reads channels of one window, interleaved: as many rows from `first` on as there is room for.
+  /// Rows come from the top. The texel of column x, row y and position c in `names` goes to
+  /// texels[((y - first) * width + x) * names.size() + c]. Rows of chunks that are read in parts
+  /// take longer. InputError, beside the above, for a name that is not there, windows that differ,
+  /// and a sub-sampled channel.
   void read(std::span<const std::string> names, std::span<float> texels,
             std::size_t first = 0) const;
   /// The window that all of these share.
@@ -65,7 +65,7 @@ class ExrFile {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Whether the file begins as OpenEXR files do.
+/// True if the file begins as OpenEXR files do.
 bool is_exr(const std::string& file);
 
 }  // namespace assay

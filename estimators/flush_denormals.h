@@ -13,7 +13,7 @@ class FlushDenormals {
   FlushDenormals(const FlushDenormals&) = delete;
   FlushDenormals& operator=(const FlushDenormals&) = delete;
 
-  /// Whether the calling thread flushes them.
+  /// True if the calling thread flushes them.
   static bool is_on() { return (_mm_getcsr() & flush_bits) == flush_bits; }
 
  private:

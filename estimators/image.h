@@ -8,14 +8,14 @@
 
 namespace assay {
 
-/// What the first elements() channels of a set-up are: an image. The channel of column x, row y and
-/// component c is the one of index (y * width + x) * components + c.
+/// The shape of an image, the first elements() channels of a set-up. The channel of column x, row y
+/// and component c has the index (y * width + x) * components + c.
 struct ImageShape {
   std::size_t width = 0;
   std::size_t height = 0;
   std::vector<std::string> components = {"value"};
-  /// Whether the pixels of one observation are independent random variables. They are not where
-  /// they share random numbers, where a filter reaches over several or where a chain visits them.
+  /// True if the pixels of one observation are independent. They are not if they share random
+  /// numbers, if a filter reaches over several, or if a chain visits them.
   bool independent = true;
 
   std::size_t pixels() const { return width * height; }

@@ -10,7 +10,7 @@
 
 namespace assay {
 
-/// Where the random numbers of an image's elements come from.
+/// The source of the random numbers of an image's elements.
 enum class ImageStreams {
   own,    ///< a substream for each element: the elements are independent
   shared  ///< one for all of them: each element's primary gets the same numbers
@@ -40,7 +40,7 @@ class ImagingEstimator final : public Estimator {
   ImageStreams streams_;
 };
 
-/// What an image is made of: a channel and a primary for each element, in the shape's order. The
+/// The parts of an image: a channel and a primary for each element, in the shape's order. The
 /// channels' names are those of element_name().
 template <class Primary>
 struct ImageParts {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Libraries are run in a process of their own, so that a crash is theirs alone: that process is a
-// program that hosts one estimator of a library and speaks the protocol of `process`.
+// A program that hosts one estimator of a library and speaks the protocol of `process`. A library
+// runs in such a process of its own, so that a crash is its own.
 
 #include <string>
 #include <vector>

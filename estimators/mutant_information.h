@@ -4,8 +4,8 @@
 
 namespace assay {
 
-/// The static information of a mutant, made whole: from `original` and `defect`, what it does wrong
-/// as a verb phrase ("leaves out the cosine."), the summary and the description. The rest is kept.
+/// Completes the static information of a mutant. `original` and `defect` give the summary and the
+/// description. `defect` is a verb phrase ("leaves out the cosine."). The rest is kept.
 Information mutant_information(Information mutant);
 
 }  // namespace assay

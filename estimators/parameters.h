@@ -28,21 +28,22 @@ struct ParameterInformation {
   double high = std::numeric_limits<double>::infinity();  ///< largest value allowed
   bool low_excluded = false;
   bool high_excluded = false;
-  std::vector<std::string> choices = {};  ///< of a string: the only texts allowed
-  std::string reason = "";  ///< why nothing outside the range will do, if that is not plain
-  /// Whether the numbers drawn depend on it; if not (a time-out) it is no part of the stream's key.
+  std::vector<std::string> choices = {};  ///< The only texts allowed of a string.
+  std::string reason = "";                ///< Reason for the range, if that is not plain.
+  /// False if no draw depends on it (a time-out): it is no part of the stream's key.
   bool shapes_draws = true;
 };
 
-/// The values a user gave for one estimator, checked against what the plugin declares.
+/// The values that a user gave for one estimator, checked against the plugin's declarations.
 ///
-/// Errors are InputErrors that name plugin, parameter and the place in the file: an unknown name
-/// (with the nearest known one), a missing required one, a wrong type, a value out of range, and
-/// (`require_all_read`) a parameter the plugin declares but never reads.
+/// Errors are InputErrors that name plugin, parameter and the place in the file. They are for an
+/// unknown name (with the nearest known one), a missing required one, a wrong type, and a value out
+/// of range. The last is for a parameter that the plugin declares but never reads
+/// (`require_all_read`).
 class Parameters {
  public:
-  /// `given` is a map (or null for none); its place is used where a parameter is missing.
-  /// `folder` is what relative file names are relative to.
+  /// `given` is a map, or null for none. Its place is used for a missing parameter. Relative file
+  /// names are relative to `folder`.
   Parameters(std::string plugin, std::vector<ParameterInformation> declared, const Value& given,
              std::string folder);
 
@@ -55,7 +56,7 @@ class Parameters {
   std::string file(std::string_view name);
   /// A list or map with a meaning of the plugin's own (a scene).
   const Value& structure(std::string_view name);
-  /// Whether the user wrote it (rather than the fallback standing in).
+  /// True if the user wrote it; false if the fallback stands in.
   bool given(std::string_view name) const;
   /// The place to blame for a parameter's value.
   Location where(std::string_view name) const;

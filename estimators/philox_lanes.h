@@ -13,8 +13,8 @@
 
 namespace assay {
 
-/// Two counters to a register, in the lower halves of its 64-bit lanes; what stands in the upper
-/// halves is left there, as the products do not see it.
+/// Two counters to a register, in the lower halves of its 64-bit lanes. The upper halves hold
+/// leftovers, which the products ignore.
 struct PhiloxLanes {
   static constexpr std::size_t registers = 4;
   static constexpr std::size_t lanes = 2;

@@ -211,7 +211,7 @@ bool names_pictures(const std::string& file) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
   if (!std::filesystem::exists(status) && is_pattern(file)) return true;
-  // What is taken from a pipe to look at it is gone.
+  // A look into a pipe would take its bytes away.
   return file.ends_with(".exr") || (std::filesystem::is_regular_file(status) && is_exr(file));
 }
 
@@ -318,8 +318,8 @@ std::vector<double> means_of_components(const std::vector<double>& values,
   return means;
 }
 
-/// Of few samples a variance is too small where their mean is, and zero where a light was missed:
-/// it is raised to that of the pixels around, and where these missed it too to that of the image.
+/// Raises variances of few samples, which are too small, and zero if the samples missed a light.
+/// The pixels around give the variance; if they missed the light too, the image gives it.
 void raise_where_few(const std::vector<double>& counts, const ImageShape& shape,
                      std::vector<double>& squared_errors) {
   const std::vector<double> own = squared_errors;

@@ -13,7 +13,7 @@
 
 namespace assay::recorded {
 
-/// Whether a file's name is a pattern, or that of an OpenEXR picture by its ending or its contents.
+/// True if a name is a pattern, or that of an OpenEXR picture by its ending or its contents.
 bool names_pictures(const std::string& file);
 
 /// The files that a pattern names, sorted by bytes; the one of that very name where there is one.
@@ -27,9 +27,9 @@ struct PictureChannels {
   std::vector<std::string> components;  ///< without the layer that all of them share
 };
 
-/// The channels that one of the patterns in `patterns` (commas between) matches. With "usual" those
-/// that a renderer shows: R, G and B; else Y; else R, G and B of the one layer that has them, or of
-/// the one called Combined; else the only channel. InputError at the file where there is none.
+/// Chooses the channels that one of `patterns` (commas between) matches. The word "usual" stands
+/// for R, G and B, or else Y. A file without them gives R, G and B of the one layer that has them,
+/// or of Combined, or else its only channel. InputError at the file if there is none.
 PictureChannels choose_channels(const ExrFile& file, const std::string& patterns);
 
 /// Pictures of one size and kind, one file each.
@@ -49,13 +49,14 @@ struct PictureStack {
 /// file that cannot be read, or has another size or lacks a channel.
 PictureStack open_stack(std::vector<std::string> files, const std::string& patterns);
 
-/// Where a picture says how uncertain its means are. In `variance` and `second_moment` the `*`
-/// stands for a channel's name: "Variance.*" is Variance.R for R, "m2_*" is m2_path.R for path.R.
+/// The channels of a picture that say how uncertain its means are. In `variance` and
+/// `second_moment` the `*` stands for a channel's name: "Variance.*" is Variance.R for R, "m2_*" is
+/// m2_path.R for path.R.
 struct MomentChannels {
-  std::string variance = "";       ///< of one sample
-  std::string second_moment = "";  ///< E x^2 of one sample
-  /// Samples that the mean is of: a number, the name of a channel that counts them, or "" for the
-  /// attribute samplesPerPixel of pbrt.
+  std::string variance = "";       ///< Variance of one sample.
+  std::string second_moment = "";  ///< E x^2 of one sample.
+  /// Number of samples of the mean: a number, the name of a channel that counts them, or "" for
+  /// pbrt's attribute samplesPerPixel.
   std::string samples = "";
 
   bool any() const { return !variance.empty() || !second_moment.empty(); }
@@ -71,17 +72,19 @@ struct PictureMoments {
   ImageShape shape() const;
 };
 
-/// What a picture is known to say of its errors by the names of its channels: of pbrt's film and
-/// of Mitsuba's moment integrator.
+/// The error channels that a picture is known to have by their names: those of pbrt's film and of
+/// Mitsuba's moment integrator.
 MomentChannels usual_moments(const ExrFile& file, const PictureChannels& channels);
 
-/// One file as a mean with its error sqrt(variance / samples), of second moments
-/// sqrt((second moment - mean^2) / (samples - 1)), where a difference below 0 is rounding and taken
-/// as 0. Where there are fewer than 1e5 samples the squared error is that of the 3 x 3 pixels
-/// around, on average, if that is larger, and where all of these are zero that of the image: a few
-/// dark samples show a variance that is too small, and one of zero where they missed a light.
-/// InputError at the file for a channel that is not there, a texel that is not finite, a negative
-/// variance, and a count that is not given, below 1 or, of second moments, below 2.
+/// One file as a mean with its error sqrt(variance / samples). With second moments the error is
+/// sqrt((second moment - mean^2) / (samples - 1)). A difference below 0 is rounding and counts as
+/// 0.
+///
+/// Below 1e5 samples the squared error is at least the average of the 3 x 3 pixels around. If all
+/// of these are zero it is that of the image: a few dark samples may have missed a light.
+///
+/// InputError at the file for a channel that is not there, a texel that is not finite, and a
+/// negative variance. Also for a count that is not given, below 1 or, with second moments, below 2.
 PictureMoments read_moments(const std::string& file, const std::string& patterns,
                             const MomentChannels& errors);
 

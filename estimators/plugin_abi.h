@@ -7,16 +7,15 @@
  *
  * Rules of the interface
  * - Every struct begins with `size`, the sizeof of the side that made it. Structs only grow at the
- *   end: what lies beyond `size` is not there, and reads as zero. So a library works with an Assay
- *   that is older or newer than the header it was compiled with, while ASSAY_ABI_VERSION is the
- * same.
- * - A zero means "nothing said" in every member: leave out what you do not know.
- * - Functions return 0, or anything else after they wrote why to `message`. They do not throw, and
- *   they call nothing of Assay: what is needed is in this header.
- * - secondary(), sample(), density() and evaluate() are called from several threads at a time where
- *   the library is not isolated: they change nothing that they share.
+ *   end. A member beyond `size` reads as zero. So a library works with an older or newer Assay of
+ *   the same ASSAY_ABI_VERSION.
+ * - Zero means "nothing said" in every member: leave out what you do not know.
+ * - A function returns 0, or writes a reason to `message` and returns another number. It does not
+ *   throw, and it calls nothing of Assay: this header has all that is needed.
+ * - A library that is not isolated is called from several threads at a time. Its secondary(),
+ *   sample(), density() and evaluate() change nothing that they share.
  * - An observation is a function of the parameters, `primaries` and the numbers of `random` alone.
- * - Standard output is not the library's: write to standard error. */
+ * - Write to standard error, not to standard output. */
 #ifndef ASSAY_PLUGIN_ABI_H
 #define ASSAY_PLUGIN_ABI_H
 
@@ -36,7 +35,7 @@ enum { ASSAY_ABI_VERSION = 1 };
 /* ---- Random numbers ------------------------------------------------------------------------ */
 
 /* Numbers as a function of key, observation and substream: Philox4x32-10 (Salmon, Moraes, Dror and
- * Shaw 2011), the very ones that Assay's own estimators draw. */
+ * Shaw 2011). Assay's own estimators draw the same numbers. */
 typedef struct AssayStream {
   uint32_t key[2];
   uint32_t counter[4]; /* draw, substream, observation (low, high) */
@@ -52,8 +51,8 @@ static inline AssayStream assay_stream(uint64_t key, uint64_t observation) {
   return stream;
 }
 
-/* Independent numbers of the same observation, the same whatever was drawn before: one for each
- * path, light or pixel. A substream has no substreams. `index` is below 2^32 - 1. */
+/* Independent numbers of the same observation, for a path, a light or a pixel. They do not depend
+ * on earlier draws. A substream has no substreams. `index` is below 2^32 - 1. */
 static inline AssayStream assay_substream(const AssayStream* stream, uint32_t index) {
   AssayStream split = *stream;
   split.counter[0] = 0;
@@ -133,8 +132,8 @@ typedef struct AssayChannel {
   double rounding; /* values that differ by no more are the same number */
 } AssayChannel;
 
-/* An observation that is an image: the first width * height * component_count numbers, row by row,
- * the components of a pixel together. Channels that follow are diagnostic. */
+/* An observation that is an image. Its elements are the first width * height * component_count
+ * numbers, row by row, the components of a pixel together. Channels that follow are diagnostic. */
 typedef struct AssayImage {
   size_t size;
   uint64_t width;
@@ -148,7 +147,7 @@ typedef struct AssayImage {
 
 enum { ASSAY_NUMBER = 0, ASSAY_COUNT = 1, ASSAY_BOOLEAN = 2, ASSAY_TEXT = 3 };
 
-/* What a suite may give under `parameters:`. Checked by Assay before prepare() sees it. */
+/* A parameter that a suite may give under `parameters:`. Assay checks it before prepare(). */
 typedef struct AssayParameter {
   size_t size;
   const char* name;
@@ -160,7 +159,7 @@ typedef struct AssayParameter {
   double high;
 } AssayParameter;
 
-/* A parameter's value: as text, and a number where it is one (a boolean is 0 or 1). */
+/* A parameter's value: as text, and as a number if it is one (a boolean is 0 or 1). */
 typedef struct AssayValue {
   size_t size;
   const char* name;
@@ -180,18 +179,19 @@ enum {                       /* where points live, and the measure of densities 
 
 typedef struct AssayDraw {
   size_t size;
-  double point[3];   /* what the domain does not use stays 0 */
+  double point[3];   /* unused numbers stay 0 */
   double density;    /* as declared, at this point */
-  double weight;     /* what the estimator multiplies by: evaluate / density */
-  uint32_t no_point; /* not 0: no point came out, a direction below the horizon */
+  double weight;     /* evaluate / density, the factor of the estimator */
+  uint32_t no_point; /* not 0: no point came out, as of a direction below the horizon */
 } AssayDraw;
 
 /* A source of points with the density it declares, tested by itself. A draw is a function of the
- * numbers of `random` alone, density() and evaluate() are of the point: they are asked again. In the
- * process of its own that a library has by default many are asked for at a time. NaN is an error,
- * and so is a density below 0, a direction whose length is off 1 by more than 1e-4, and a point
- * outside its domain by more than 1e-6 of the domain's size; `rounding` where it is more. Nearer
- * ones are counted at the border, so that single precision passes. */
+ * numbers of `random` alone; density() and evaluate() are functions of the point. They are called
+ * again to check it. An isolated library is asked for many at a time.
+ *
+ * NaN and a density below 0 are errors. So are a direction whose length is off 1 by more than 1e-4,
+ * and a point outside its domain by more than 1e-6 of the domain's size. `rounding` stands for 1e-6
+ * if it is more. Points just outside count at the border, so that single precision passes. */
 typedef struct AssaySampler {
   size_t size;
   const char* name;
@@ -206,17 +206,17 @@ typedef struct AssaySampler {
 
 /* ---- Calls ---------------------------------------------------------------------------------- */
 
-/* prepare(): parameters in, what all calls share out. Draws nothing at random. */
+/* prepare() takes parameters and returns the state that all calls share. It draws nothing. */
 typedef struct AssayPreparation {
   size_t size;
   const AssayValue* values; /* of the declared parameters, in their order: see assay_value() */
   size_t value_count;
-  const char* folder; /* what file names are relative to */
-  char* message;      /* why, where the status is not 0 */
+  const char* folder; /* file names are relative to it */
+  char* message;      /* the reason, if the status is not 0 */
   size_t message_size;
   void* setup; /* out */
-  /* Out, where they depend on the parameters; they begin as the estimator has them. They live as
-   * long as the set-up. */
+  /* Out, if they depend on the parameters. They begin as the estimator has them, and live as long
+   * as the set-up. */
   const AssayChannel* channels;
   size_t channel_count;
   const AssayImage* image;
@@ -224,7 +224,7 @@ typedef struct AssayPreparation {
   size_t sampler_count;
 } AssayPreparation;
 
-/* The i-th value, whatever the size of the struct is in the Assay that calls. */
+/* The i-th value, for any size of the struct in the calling Assay. */
 static inline const AssayValue* assay_value(const AssayPreparation* preparation, size_t i) {
   return (const AssayValue*)(const void*)((const char*)(const void*)preparation->values +
                                           i * preparation->values->size);
@@ -233,14 +233,14 @@ static inline const AssayValue* assay_value(const AssayPreparation* preparation,
 /* secondary(): one observation. */
 typedef struct AssayCall {
   size_t size;
-  const void* setup;   /* what prepare() made, else NULL */
+  const void* setup;   /* of prepare(), else NULL */
   AssayStream* random; /* of this observation */
   uint64_t primaries;  /* 1 or more */
   double* out;         /* one number a channel */
   size_t out_count;
-  char* message; /* why, where the status is not 0 */
+  char* message; /* the reason, if the status is not 0 */
   size_t message_size;
-  uint64_t rays; /* out: of all kinds, where the estimator counts them */
+  uint64_t rays; /* out: of all kinds, if the estimator counts them */
 } AssayCall;
 
 typedef struct AssayEstimator {
@@ -252,7 +252,7 @@ typedef struct AssayEstimator {
   const AssayChannel* channels;
   size_t channel_count;
   int (*secondary)(AssayCall* call);
-  /* What follows may be left out. */
+  /* All below may be left out. */
   const AssayParameter* parameters;
   size_t parameter_count;
   int (*prepare)(AssayPreparation* preparation);
@@ -269,7 +269,7 @@ typedef struct AssayLibrary {
   size_t estimator_count;
 } AssayLibrary;
 
-/* The one symbol that a library exports. What it points to lives as long as the library. */
+/* The one symbol that a library exports. The table lives as long as the library. */
 #ifdef __GNUC__
 __attribute__((visibility("default")))
 #endif

@@ -18,7 +18,7 @@ class RunningMoments {
   double count() const { return count_; }
   /// 0 of none.
   double mean() const { return mean_; }
-  /// Of a sample, n - 1 in the denominator; NaN of fewer than two.
+  /// Sample variance, n - 1 in the denominator; NaN of fewer than two.
   double variance() const { return squares_ / (count_ - 1); }
 
  private:

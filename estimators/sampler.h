@@ -13,13 +13,13 @@
 
 namespace assay {
 
-/// Where points live and the measure of densities.
+/// The domain of points, and the measure of densities.
 enum class Domain {
-  interval,    ///< x in [low, high]; measure dx. One coordinate.
-  square,      ///< (u, v) in [0,1]^2; measure du dv.
-  triangle,    ///< (u, v) with u, v >= 0, u + v <= 1 (barycentric); measure du dv.
-  hemisphere,  ///< unit vector (x, y, z), z >= 0; measure solid angle.
-  sphere,      ///< unit vector (x, y, z); measure solid angle.
+  interval,    ///< Point x in [low, high]; measure dx. One coordinate.
+  square,      ///< Point (u, v) in [0,1]^2; measure du dv.
+  triangle,    ///< Point (u, v), u, v >= 0, u + v <= 1 (barycentric); measure du dv.
+  hemisphere,  ///< Unit vector (x, y, z), z >= 0; measure solid angle.
+  sphere,      ///< Unit vector (x, y, z); measure solid angle.
 };
 
 /// Coordinates of a point of a domain; those the domain does not use are 0.
@@ -47,9 +47,9 @@ struct Marginal {
 /// in [0, 2 pi). Interval: x (its bounds are the sampler's). Square and triangle: u and v.
 std::vector<Marginal> marginals(Domain domain);
 
-/// Numbers of equal parts of the ranges of a domain's coordinates (x; u and v; theta and phi) in
-/// which a density shows itself to a few nodes: a part is no wider than the narrowest lobe, and
-/// jumps along lines of a coordinate lie on borders of parts.
+/// Numbers of equal parts of a domain's coordinates (x; u and v; theta and phi), for quadrature by
+/// a few nodes a part. A part is no wider than the narrowest lobe. Jumps along lines of a
+/// coordinate lie on borders of parts.
 struct Panels {
   std::size_t first = 1;
   std::size_t second = 1;
@@ -67,30 +67,30 @@ class Sampler {
   virtual double density(const Point& point) const = 0;
   /// The function whose integral the weight estimates (for a BRDF: f cos).
   virtual double evaluate(const Point& point) const = 0;
-  /// What rounding may leave of weight x density(point) against evaluate(point), and of a draw's
-  /// density against density(point), relative. A point that is computed, stored and read again
-  /// loses some digits where a lobe is narrow.
+  /// Relative rounding of weight x density(point) against evaluate(point), and of a draw's density
+  /// against density(point). A point that is stored and read again loses some digits if a lobe is
+  /// narrow.
   virtual double rounding() const { return 1e-9; }
   /// How finely a quadrature of the density must look.
   virtual Panels panels() const { return {}; }
   /// The discrete choices that a draw's `lobe` numbers from 0.
   virtual int lobes() const { return 1; }
-  /// What a lobe adds to density(): its probability times its own density. They sum to density().
+  /// The part of density() of one lobe: its probability times its own density. They sum to
+  /// density().
   virtual double lobe_density(int /*lobe*/, const Point& point) const { return density(point); }
-  /// Probability of a lobe that has no density but sits on points, as a mirror's does: no part of
-  /// density(), and all its draws are one cell.
+  /// Probability of a lobe that has no density but sits on points, as a mirror's does. It is no
+  /// part of density(). All its draws are one cell.
   virtual double point_mass(int /*lobe*/) const { return 0; }
 
-  /// The same of many streams or points at a time, for a sampler that another process must be asked
-  /// for: each question then takes some microseconds, however many it is about. They write the
-  /// numbers of the first few, at least one, and return of how many; who wants the others asks
-  /// again. What one cannot be had of is thrown where it is the first.
+  /// The same of many streams or points at a time, for a sampler in another process: each question
+  /// takes some microseconds, of any length. They write the numbers of the first few, at least one,
+  /// and return how many. Ask again for the others. An exception concerns the first.
   virtual std::size_t samples(std::span<Stream> random, std::span<SamplerDraw> draws) const;
   virtual std::size_t densities(std::span<const Point> points, std::span<double> out) const;
   virtual std::size_t lobe_densities(int lobe, std::span<const Point> points,
                                      std::span<double> out) const;
   virtual std::size_t evaluations(std::span<const Point> points, std::span<double> out) const;
-  /// Whether it is such a sampler.
+  /// True if it is such a sampler.
   virtual bool is_elsewhere() const { return false; }
   /// CPU seconds that other processes have spent so far on what the calling thread asked.
   virtual double seconds_elsewhere() const { return 0; }

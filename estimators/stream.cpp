@@ -6,9 +6,9 @@ namespace assay {
 
 namespace {
 
-// A sponge over 64-bit words. Each word is added, a Weyl constant keeps a run of zeros from being a
-// fixed point, and the finaliser of SplitMix64 (Steele, Lea and Flood 2014, section 4: a bijection
-// in which every input bit flips each output bit with probability near one half) mixes.
+// A sponge over 64-bit words. Each word is added; a Weyl constant keeps a run of zeros from being a
+// fixed point. Then the finaliser of SplitMix64 mixes (Steele, Lea and Flood 2014, section 4). It
+// is a bijection: every input bit flips each output bit with probability near one half.
 class Sponge {
  public:
   void absorb(std::uint64_t word) { state_ = finalise((state_ ^ word) + 0x9e3779b97f4a7c15u); }

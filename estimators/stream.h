@@ -18,9 +18,15 @@ struct StreamKey {
   bool operator==(const StreamKey&) const = default;
 };
 
-/// The key of an estimator's streams in a run: a hash of the run's seed, the plugin's name (a
-/// mutant: its original's), its canonical parameters and the copy (0; 1 for a second source of the
-/// same key in one claim; the pilot has copies of its own).
+/// The key of an estimator's streams in a run. It is a hash of the run's seed, the plugin's name
+/// (of a mutant: its original's), its canonical parameters and the copy. The copy is 0, or 1 for a
+/// second source of the same key in one claim. The pilot has copies of its own.
+///
+/// From state 0 each 64-bit word is absorbed by
+///   state = finalise((state ^ word) + 0x9e3779b97f4a7c15).
+/// The words are the seed, the name, the parameters and the copy. A text is its length in bytes,
+/// then its bytes by eights, little-endian, the last padded with zeros. The key is finalise(state);
+/// `finalise` is SplitMix64's.
 StreamKey stream_key(std::uint64_t seed, std::string_view plugin, std::string_view parameters,
                      std::uint32_t copy);
 

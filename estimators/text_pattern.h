@@ -4,8 +4,8 @@
 
 namespace assay {
 
-/// Whether a pattern in which `*` stands for any text and `?` for any character matches the whole
-/// of a text. In time of at most the product of both lengths.
+/// True if a pattern matches the whole of a text. `*` stands for any text, `?` for any character.
+/// The time is at most the product of both lengths.
 bool matches(std::string_view pattern, std::string_view text);
 
 }  // namespace assay

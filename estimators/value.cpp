@@ -192,7 +192,8 @@ std::string Value::canonical() const {
 }
 
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
-  // What was cut short: the shortest that begins so. An option's dashes tell nothing.
+  // A word that was cut short: the shortest candidate that begins so. An option's dashes tell
+  // nothing.
   constexpr std::size_t least_beginning = 3;
   const std::size_t letters = name.size() - std::min(name.find_first_not_of('-'), name.size());
   const auto by_size = [](const std::string& a, const std::string& b) {

@@ -88,8 +88,8 @@ class Value {
 /// The candidate nearest to `name` in edit distance, or "" when none is near enough to suggest.
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates);
 
-/// How a message about an unknown name ends: "; did you mean `x`?" where a candidate is near, else
-/// "; " and `otherwise`, or nothing where that is empty.
+/// The end of a message about an unknown name: "; did you mean `x`?" if a candidate is near. Else
+/// it is "; " and `otherwise`, or nothing if that is empty.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates,
                          std::string_view otherwise = "");
 

@@ -32,7 +32,7 @@ build_project() {
   [ "${1:-}" = -- ] && shift
   local launcher=()
   if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-  # What ccache asks for beside precompiled headers; no file of ours tells the time of its compiling.
+  # ccache asks for this with precompiled headers; no file here uses the time of its compiling.
   export CCACHE_SLOPPINESS=pch_defines,time_macros
   mkdir -p "$folder"
   log=$folder/build.log
@@ -51,7 +51,7 @@ build_project() {
   tell_warnings "$log"
 }
 
-# Where CI is not set a warning does not end the build (a newer compiler has new ones), but it is said.
+# A warning does not end the build unless CI is set (a newer compiler has new ones), but it is said.
 tell_warnings() {
   local warnings
   warnings=$(grep -c 'warning:' "$1") || return 0

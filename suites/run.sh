@@ -8,7 +8,7 @@ source suites/install.sh
 
 lists=(suites/packages.txt)
 for suite in "$@"; do
-  # What one suite alone needs, another renderer, stands in a list beside it.
+  # A suite that needs more, such as another renderer, has a list beside it.
   if [ -e "${suite%.yaml}-packages.txt" ]; then lists+=("${suite%.yaml}-packages.txt"); fi
 done
 install_packages "${lists[@]}"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Benchmarks, on a machine that does nothing else. Last results: harness/README.md,
-# estimators/README.md and stats/README.md.
-#   bash tests/bench.sh            engine, rays, Kolmogorov-Smirnov, images, pictures, p-values, other programs
-#   bash tests/bench.sh build      a clean build, and the rebuild after touching one estimator
-#   bash tests/bench.sh suites     the engine's own time in every suite that is shipped (some minutes)
+# Benchmarks, for a machine that does nothing else. Each line names what it times.
+
+#   bash tests/bench.sh            engine, rays, KS, images, pictures, p-values, other programs
+#   bash tests/bench.sh build      a clean build, and the rebuild after touching an estimator
+#   bash tests/bench.sh suites     the engine's own time in every suite (some minutes)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source suites/install.sh

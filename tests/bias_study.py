@@ -8,7 +8,7 @@ beta 1e-2 for each test, biases from 0 to 5 detect. Rates with exact 99.9 % limi
 of observations over that of the fixed-n design, ((z_alpha/2 + z_beta) / (detect - allow))^2 (with
 allow 0 the two-sided test, else two one-sided ones, as planned). The exit code says whether no
 mistake is above its rate for certain, and, with allow, whether fewer than 0.25 of the fixed-n
-observations are taken at bias 0 and fewer than 0.02 at 0.05. Results stand in harness/README.md.
+observations are taken at bias 0 and fewer than 0.02 at 0.05.
 """
 
 import argparse

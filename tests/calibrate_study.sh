@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The long studies of levels and sample counts. Last results: harness/README.md.
-#   bash tests/calibrate_study.sh            calibration of all methods (20,000 runs a cell), spikes, biases
-#   bash tests/calibrate_study.sh RUNS       the calibration with RUNS a cell instead
-# The calibration's cells, drawn and in tables, go to calibration.html and calibration.json here.
+# The long studies of levels and sample counts: calibration of all methods, spikes, biases. The
+# calibration has 20,000 runs a cell, or RUNS. Its cells go to calibration.html and calibration.json
+# here.
+#   bash tests/calibrate_study.sh [RUNS]
 set -euo pipefail
 folder=$PWD
 cd "$(dirname "$0")/.."

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# What the largest share of a density's mass in a cell costs in power (tests/bench/cells_power.cpp):
-# a minute; the result stands in stats/README.md.
+# Power lost to large cells (tests/bench/cells_power.cpp); it takes a minute.
 #   bash tests/cells_study.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."

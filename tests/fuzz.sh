@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Fuzzes what reads other people's bytes: each target of tests/fuzz/ for a minute, with the address
-# and undefined behaviour sanitizers. A find ends it with exit code 1 and is kept in build/fuzz/.
+# Fuzzes each target of tests/fuzz/ for a minute, with the address and undefined behaviour
+# sanitizers. A find ends the run with exit code 1 and is kept in build/fuzz/.
+
 #   bash tests/fuzz.sh [TARGET...] [-- LIBFUZZER_OPTION...]     such as: protocol -- -max_total_time=600
-# To add a target write tests/fuzz/NAME_fuzz.cpp with LLVMFuzzerTestOneInput() and these lines on top:
-#   // sources: FILE...      what it is linked with, from the root
-#   // libraries: FLAG...    such as -lyaml-cpp, where needed
-#   // options: OPTION...     of libFuzzer, where its own will not do
-# and some inputs to begin with in tests/fuzz/corpus/NAME/.
+# A new target is tests/fuzz/NAME_fuzz.cpp with LLVMFuzzerTestOneInput(). Its first inputs stand in
+# tests/fuzz/corpus/NAME/, and these lines on top:
+#   // sources: FILE...      The files to link, from the root.
+#   // libraries: FLAG...    Such as -lyaml-cpp, if needed.
+#   // options: OPTION...    Options of libFuzzer, if needed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source suites/install.sh

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The study of image comparisons: power at known variances and with replicates, false alarms, two
-# million samples. Hours at these counts on two cores; results stand in stats/README.md.
+# million samples. It takes hours at these counts.
 #   bash tests/image_study.sh [KNOWN STACKS LEVEL SAMPLES]     repetitions, default 2000 100 20000 400
 set -euo pipefail
 cd "$(dirname "$0")/.."

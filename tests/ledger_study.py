@@ -9,7 +9,7 @@ own, share a ledger; every night runs them all with a fresh seed. Two studies:
   level   theta is 0 and the reference is off by 0.2 of a night's standard error, as it says: the
           share that alarm by night 100, against the budget of 3e-3
 The exit code says whether power is at least 0.9 and the exact 99.9 % lower limit of the level does
-not exceed the budget. Results stand in harness/README.md.
+not exceed the budget.
 """
 
 import argparse

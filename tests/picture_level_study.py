@@ -5,7 +5,7 @@
 
 Pictures of 32 x 32 pixels whose means rise from 1 to 10, each with noise of its mean times a
 variable of mean 0 and variance 1, against the exact picture: what `assay images` is asked of 16 to
-64 renderings and a reference. Last results: harness/README.md.
+64 renderings and a reference.
 """
 import argparse
 import json

@@ -8,7 +8,6 @@ and without uniform noise of half width 0.1; with the range declared and not. Th
 `mean(x) == 1` at level 0.01 of its own, 1e5 observations. Beside it the rate at which a plain t test
 rejects it, a constant sample rejected where it is not 1 (numpy, 1e5 repetitions). The exit code says
 whether no rate with a declared range exceeds 0.01 for certain (exact limit, 0.999 over the rows).
-Results stand in harness/README.md.
 """
 
 import argparse

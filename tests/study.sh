@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# The long study of false alarms: suites of true claims, coarsened, under many seeds.
-#   bash tests/study.sh [SEEDS [SUITE...]]      default: 400 seeds of suites/luminaire.yaml at alpha 0.1
-#   bash tests/study.sh sound [SEEDS]           200 seeds of every suite of sound estimators at alpha 0.05
-# At most a share alpha of the runs may fail; the exit code says whether the exact 99.9 % lower limit of the
-# share stays below, of each suite. Results stand in harness/README.md and suites/README.md.
+# The long study of false alarms: suites of true claims, coarsened, under many seeds. At most a
+# share alpha of the runs may fail. The exit code says if the exact 99.9 % lower limit of that share
+# stays below alpha, for each suite.
+
+#   bash tests/study.sh [SEEDS [SUITE...]]      400 seeds of suites/luminaire.yaml at alpha 0.1
+#   bash tests/study.sh sound [SEEDS]           200 seeds of every sound suite at alpha 0.05
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source suites/install.sh

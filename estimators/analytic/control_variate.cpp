@@ -1,7 +1,9 @@
-// The integral of f(x) = e^(3x) over [0, 1] with the control variate g(x) = 1 + 3x + 9x^2 / 2, f's
-// Taylor polynomial, whose integral is 4: X = f(u) - c (g(u) - 4).
-// E[X] = (e^3 - 1) / 3 for any c; Var X = Var f - 2 c Cov(f, g) + c^2 Var g with the integral of
-// f g = (11 e^3 - 2) / 6 and of g^2 = 104 / 5. The best c is Cov / Var g = 2.3006.
+// The integral of f(x) = e^(3x) over [0, 1] with a control variate. It is f's Taylor polynomial
+// g(x) = 1 + 3x + 9x^2 / 2, of integral 4.
+//   X = f(u) - c (g(u) - 4). E[X] = (e^3 - 1) / 3 for any c.
+//   Var X = Var f - 2 c Cov(f, g) + c^2 Var g.
+// The integral of f g is (11 e^3 - 2) / 6, that of g^2 is 104 / 5. The best c is Cov / Var g =
+// 2.3006.
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
-// X of a named law, which costs 1 + floor(r |X|) shadow rays: dear where it is large, as a path
-// that finds something is longer than one that does not. E[X] is the law's.
+// X of a named law costs 1 + floor(r |X|) shadow rays: large values are dear, as long paths are.
+// E[X] is the law's.
 
 #include <algorithm>
 #include <cmath>

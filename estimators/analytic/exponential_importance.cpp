@@ -1,7 +1,7 @@
-// The integral of e^(3x) over [0, 1] by importance sampling from q(x) = 5 (1 + x)^4 / 31:
-// X = e^(3x) / q(x) at x = (1 + 31 u)^(1/5) - 1.
-// E[X] = (e^3 - 1) / 3. E[X^2] = (31 / 5) the integral of e^(6x) / (1 + x)^4, which is
-// (31 / 5) e^-6 [-e^(6t) (1 / 3t^3 + 1 / t^2 + 6 / t) + 36 Ei(6t)] from t = 1 to 2, by parts.
+// The integral of e^(3x) over [0, 1] by importance sampling from q(x) = 5 (1 + x)^4 / 31.
+//
+// X = e^(3x) / q(x) at x = (1 + 31 u)^(1/5) - 1. E[X] = (e^3 - 1) / 3. By parts, from t = 1 to 2,
+//   E[X^2] = (31 / 5) e^-6 [-e^(6t) (1 / 3t^3 + 1 / t^2 + 6 / t) + 36 Ei(6t)].
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ std::shared_ptr<const Setup> prepare(Parameters&) {
   const double mean = analytic::integral();
   const double square = 31 * std::exp(-6) / 5 * (antiderivative(2) - antiderivative(1));
   const auto sampler = std::make_shared<NearDensitySampler>();
-  // X is smallest at x = 1/3, where (ln f)' = 3 = (ln q)' = 4 / (1 + x), and largest at x = 1.
+  // X is smallest at x = 1/3, where (ln f)' = (ln q)' = 3, and largest at x = 1.
   return averaging(Channel{.mean = mean,
                            .variance = square - mean * mean,
                            .low = analytic::integrand(1.0 / 3) / analytic::near_density(1.0 / 3),

@@ -1,10 +1,10 @@
-// A Pareto variable X = u^(-1/a) of tail index a, P(X > x) = x^-a for x >= 1: what a Monte Carlo
-// estimator with a bad density looks like. E[X] = a / (a - 1); Var X = a / ((a - 1)^2 (a - 2)) if
-// a > 2, else infinite; the k-th moment exists for k < a only.
+// A Pareto variable X = u^(-1/a) of tail index a: P(X > x) = x^-a for x >= 1. An estimator with a
+// bad density looks like it. E[X] = a / (a - 1). Var X = a / ((a - 1)^2 (a - 2)) if a > 2, else it
+// is infinite. The k-th moment exists for k < a only.
 //
-// u is the middle of one of 2^52 equal cells, never below 2^-53, and the share of the k-th moment
-// that comes from below is 2^(-53 (1 - k/a)): 17 % of the mean at a = 1.05. Less than 1e-4 of it
-// needs a >= 1.34 for the mean and a >= 2.67 for the variance; nothing is declared below.
+// u is the middle of one of 2^52 equal cells, never below 2^-53. The share of the k-th moment from
+// below is 2^(-53 (1 - k/a)). It is less than 1e-4 for the mean if a >= 1.34, and for the variance
+// if a >= 2.67. Nothing is declared below.
 
 #include <cmath>
 

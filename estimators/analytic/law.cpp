@@ -1,12 +1,13 @@
-// A variable of a named law, X = shift + scale Y. Y has
-//   bernoulli(p)        1 with probability p, else 0         mean p              variance p (1 - p)
-//   exponential(rate)   -ln U / rate                         1 / rate            1 / rate^2
-//   lognormal(m, s)     exp(m + s Z)                         exp(m + s^2 / 2)    (exp(s^2) - 1)
-//   mean^2 normal(m, s)        m + s Z                              m                   s^2
-//   student_t(nu)       by Bailey's polar method             0, nu > 1           nu / (nu - 2), nu
-//   > 2 uniform(a, b)       a + (b - a) U                        (a + b) / 2         (b - a)^2 / 12
-//   zero_inflated(p)    with probability p -ln U, else 0     p                   2 p - p^2
-// What statistical methods are calibrated on: the shapes that Monte Carlo data have.
+// A variable of a named law, X = shift + scale Y. Statistical methods are calibrated on these
+// shapes.
+//   Y                                               mean              variance
+//   bernoulli(p)      1 with probability p, else 0  p                 p (1 - p)
+//   exponential(rate) -ln U / rate                  1 / rate          1 / rate^2
+//   lognormal(m, s)   exp(m + s Z)                  exp(m + s^2 / 2)  (exp(s^2) - 1) mean^2
+//   normal(m, s)      m + s Z                       m                 s^2
+//   student_t(nu)     by Bailey's polar method      0, nu > 1         nu / (nu - 2), nu > 2
+//   uniform(a, b)     a + (b - a) U                 (a + b) / 2       (b - a)^2 / 12
+//   zero_inflated(p)  -ln U with probability p      p                 2 p - p^2
 
 #include "analytic/law.h"
 
@@ -27,7 +28,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// What a family's numbers must satisfy; `signature` is what messages show.
+/// The conditions on a family's numbers. Messages show `signature`.
 struct FamilyInformation {
   const char* name;
   const char* signature;
@@ -283,8 +284,8 @@ class VariableSetup final : public Setup {
   std::vector<NamedSampler> samplers_;
 };
 
-/// Draws of X with its density, on an interval of 12 standard deviations about the mean or what the
-/// range leaves of it; what falls outside is missing mass.
+/// Draws X with its density, on an interval of 12 standard deviations about the mean, cut by the
+/// range. Values outside are missing mass.
 class VariableSampler final : public Sampler {
  public:
   explicit VariableSampler(const Variable& variable)

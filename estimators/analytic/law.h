@@ -43,7 +43,7 @@ class Law {
   Law(Family family, const std::vector<double>& numbers)
       : family_(family), a_(numbers[0]), b_(numbers.size() > 1 ? numbers[1] : 0) {}
 
-  /// What use(draw) gives, `draw` a function of a Stream or of its first words.
+  /// The result of use(draw); `draw` is a function of a Stream or of its first words.
   auto with_family(const auto& use) const;
 
   Family family_;

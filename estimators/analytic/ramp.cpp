@@ -1,7 +1,7 @@
 // An image of known means: brightness grows from left to right.
 //
-// X(x, y, c) = m(x, c) (1 + s Z) with m(x, c) = (1 + 9 x / (width - 1)) (1, 0.8, 0.6)_c and
-// Z = (Y - E[Y]) / sqrt(Var Y), Y of a named law: E[X] = m, Var X = (m s)^2.
+// X(x, y, c) = m(x, c) (1 + s Z) in column x, row y and component c. Z = (Y - E[Y]) / sqrt(Var Y),
+// Y of a named law. E[X] = m, Var X = (m s)^2. m(x, c) = (1 + 9 x / (width - 1)) (1, 0.8, 0.6)_c.
 
 #include <array>
 #include <cmath>

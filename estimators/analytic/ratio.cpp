@@ -1,7 +1,8 @@
-// The integral of f(x) = e^(3x) over [0, 1] by weighted importance sampling: with g(x) =
-// 5 (1 + x)^4 / 31, whose integral is 1, and x uniform, I^ = sum f(x_i) / sum g(x_i). A ratio of
-// means: biased, consistent. n (E[I^] - I) -> I Var g - Cov(f, g) = -0.50012; n Var I^ ->
-// Var(f - I g). The reference is I = (e^3 - 1) / 3, which the mean approaches as n grows.
+// The integral of f(x) = e^(3x) over [0, 1] by weighted importance sampling.
+//
+// I^ = sum f(x_i) / sum g(x_i), x uniform and g(x) = 5 (1 + x)^4 / 31, whose integral is 1. It is a
+// ratio of means: biased and consistent. The reference is I = (e^3 - 1) / 3.
+//   n (E[I^] - I) -> I Var g - Cov(f, g) = -0.50012,  n Var I^ -> Var(f - I g).
 // Jackknifed, the bias falls like 1 / n^2.
 
 #include "analytic/ratio.h"

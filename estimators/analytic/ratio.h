@@ -52,9 +52,9 @@ struct LeftOut {
   }
 };
 
-/// R less (M - 1) times what R changes by, on average, when one pair is left out: takes the term
-/// 1/M of the bias away (Quenouille 1956). `Replicate` gives a ratio from the means with a pair
-/// left out and the means of all. One pair leaves nothing to leave out: R as it is.
+/// The jackknife (Quenouille 1956) removes the term 1/M of the bias. It subtracts (M - 1) times the
+/// mean change of R when one pair is left out. The function `Replicate` gives a ratio from the
+/// means with a pair left out and the means of all. One pair gives R as it is.
 template <class Replicate>
 struct Jackknife {
   double operator()(std::span<const RatioPair> pairs) const {

@@ -1,7 +1,9 @@
-// A path of one branching: X = D(u) + (W(u) / s) (Z_1 + ... + Z_N), D = 1 + u, W = 4 u^2, Z
-// exponential of mean 1, N = floor(s + v) children: roulette for s < 1, splitting for s > 1.
-// E[X] = 3/2 + 4/3 = 17/6 for any s. Given u, E = 1 + u + 4 u^2 and Var = W^2 (E[N] + Var N) / s^2;
-// with r the fraction of s, Var X = 10.2 - (17/6)^2 + (16/5) (s + r (1 - r)) / s^2.
+// A path of one branching: X = D(u) + (W(u) / s) (Z_1 + ... + Z_N). N = floor(s + v) children:
+// roulette for s < 1, splitting for s > 1. D = 1 + u, W = 4 u^2, and Z is exponential of mean 1.
+//
+// E[X] = 3/2 + 4/3 = 17/6 for any s. Given u, E = 1 + u + 4 u^2 and Var = W^2 (E[N] + Var N) / s^2.
+// With r the fraction of s,
+//   Var X = 10.2 - (17/6)^2 + (16/5) (s + r (1 - r)) / s^2.
 
 #include <cmath>
 

@@ -22,7 +22,7 @@ struct Variable {
 /// The parameter `law` of an estimator of a variable.
 ParameterInformation law_parameter();
 
-/// What it was given; a usage error where that is no law.
+/// The law that was given. InputError if it is no law.
 Law law_of(Parameters& parameters);
 
 /// Its mean, variance and range, as far as they exist.

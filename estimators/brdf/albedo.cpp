@@ -107,7 +107,7 @@ Prepared by_brdf(SharedBrdf brdf, const render::BrdfIntegrals& i) {
 
 // f cos_o / (f cos_o / albedo): the albedo whatever is drawn, to rounding.
 Prepared by_brdf_cosine(SharedBrdf brdf, const render::BrdfIntegrals& i) {
-  // Of the weight a few units in the last place, of the sum of many primaries more.
+  // A weight is off by a few units in the last place, a sum of many primaries by more.
   const double rounding = i.albedo * 0x1p-40;
   Channel constant = channel(i, i.albedo * i.albedo, i.albedo + rounding);
   constant.low = i.albedo - rounding;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the reflectances have in common as plugins: four samplers of reflected directions, and the
+// The common parts of the reflectance plugins: four samplers of reflected directions, and the
 // directional albedo as the estimator.
 
 #include <memory>
@@ -24,7 +24,6 @@ std::shared_ptr<const Setup> albedo(Channel channel, std::shared_ptr<const Sampl
 /// Reads `sampler` and prepares that one. Mean and variance come from quadrature.
 std::shared_ptr<const Setup> prepare_albedo(SharedBrdf, Parameters&);
 
-/// The channel of the published sampler.
 Channel published_channel(const render::HalfVectorBrdf&);
 
 /// theta_i, phi_i: shared by all reflectances.

@@ -1,8 +1,8 @@
 // The directional albedo of Ward's reflectance: E = the integral of f cos_o over the hemisphere.
 //
-// f is drawn by the half vector (render/brdf_ward.h). The published algorithm follows the density
-// p(w_o) that belongs to it, not f and not f cos: the weight f cos / p is not constant. Directions
-// below the horizon count as zero, which is what makes the mean of the weights the albedo.
+// Directions are drawn by the half vector (render/brdf_ward.h). The published algorithm follows its
+// own density p(w_o), so the weight f cos / p is not constant. Directions below the horizon count
+// as zero: so the mean of the weights is the albedo.
 
 #include "brdf/ward.h"
 

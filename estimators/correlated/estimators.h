@@ -1,7 +1,7 @@
 #pragma once
 
-// Four estimators from a source of pairs: lambda given, from the same samples, from the other half
-// of the samples, and the ratio of weighted importance sampling.
+// Four estimators from a source of pairs. Lambda is given, or comes from the same samples or from
+// the other half of the samples. The fourth is the ratio of weighted importance sampling.
 
 #include <functional>
 #include <memory>
@@ -13,14 +13,14 @@ namespace assay::correlated {
 /// lambda from sums over samples and the control's integral J.
 using LambdaRule = std::function<double(const Sums&, double control_integral)>;
 
-/// What the spread of the control is measured about.
+/// The centre about which the spread of the control is measured.
 enum class Centre {
-  integral,  ///< J: lambda = sum d (mean f - f) / sum d^2, the published estimate
-  mean,      ///< the samples' mean: the slope of the least-squares line of f on g
+  integral,  ///< The centre is J. As published: lambda = sum d (mean f - f) / sum d^2.
+  mean,      ///< The centre is the samples' mean. Lambda is the least-squares slope of f on g.
 };
 
-/// The estimate of lambda* from samples. 0 where the control does not vary (its root mean square
-/// deviation is below 2^-40 J): there is nothing to correct.
+/// The estimate of lambda* from samples. It is 0 if the control's root mean square deviation is
+/// below 2^-40 J: there is nothing to correct.
 LambdaRule estimated_lambda(Centre);
 /// The same moved into [0, 1].
 LambdaRule clamped_lambda(Centre);
@@ -29,10 +29,10 @@ LambdaRule clamped_lambda(Centre);
 /// mean and variance where they are known.
 std::shared_ptr<const Setup> fixed(SharedPairs, double lambda);
 
-/// I^ with lambda from the same samples: a bias of -E[(f - I - lambda* (g - J)) (g - J)^2] /
-/// (M Var g), f and g divided by p, and terms of higher order. Channels: a colour each, then
-/// diagnostic ones, `lambda` (of several colours lambda_r, lambda_g, lambda_b) with the limit
-/// lambda* where it is known.
+/// The estimator with lambda from the same samples. With f and g divided by p its bias is
+///   -E[(f - I - lambda* (g - J)) (g - J)^2] / (M Var g)
+/// and terms of higher order. Channels: one a colour, then the diagnostic `lambda` (lambda_r,
+/// lambda_g, lambda_b if there are several colours). Their limit lambda* is stated if it is known.
 std::shared_ptr<const Setup> same_samples(SharedPairs, LambdaRule);
 
 /// I^ by halves, each with the lambda of the other: unbiased. Of an odd M the second half is the

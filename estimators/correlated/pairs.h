@@ -1,13 +1,13 @@
 #pragma once
 
-// Pairs of an integrand and a control at the same random point, and what sums over them say.
+// Pairs of an integrand and a control at the same random point, and sums over them. Source: Szecsi,
+// Sbert and Szirmay-Kalos 2004, "Combined correlated and importance sampling in direct light source
+// computation and environment mapping".
 //
-// f is the integrand, g the control, whose integral J is known, p the density of the points:
-//   I^ = (1/M) sum over M points of f/p + lambda (J - g/p)
-// (Szecsi, Sbert and Szirmay-Kalos 2004, "Combined correlated and importance sampling in direct
-// light source computation and environment mapping"). lambda = 0 is importance sampling, lambda = 1
-// correlated sampling. A lambda that does not depend on the points leaves I^ unbiased; the variance
-// is least at lambda* = Cov(f/p, g/p) / Var(g/p).
+// The integrand is f, the density of the points p, and the control g has the known integral J:
+//   I^ = (1/M) sum over M points of f/p + lambda (J - g/p).
+// Importance sampling is lambda = 0, correlated sampling lambda = 1. A lambda that does not depend
+// on the points leaves I^ unbiased. The variance is least at lambda* = Cov(f/p, g/p) / Var(g/p).
 
 #include <cstddef>
 #include <memory>
@@ -36,7 +36,6 @@ struct Moments {
   double control = 0;  ///< E[(g/p)^2]
 };
 
-/// What is known of one colour.
 struct Colour {
   std::string name;
   double control_integral = 0;          ///< J

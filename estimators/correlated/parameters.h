@@ -14,13 +14,12 @@ namespace assay::correlated {
 ParameterInformation lambda_parameter();
 /// `centre` and `clamped`, of those that estimate it.
 std::vector<ParameterInformation> rule_parameters();
-/// Reads rule_parameters().
 LambdaRule read_rule(Parameters&);
 
 /// A source of pairs from a plugin's parameters.
 using ReadPairs = std::function<SharedPairs(Parameters&)>;
 
-/// What one kind of source is called and how it is made.
+/// The names of one kind of source, and how it is made.
 struct Family {
   std::string name;         ///< "correlated/area"
   std::string integral;     ///< "the irradiance from ..."

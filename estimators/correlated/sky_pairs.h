@@ -1,7 +1,7 @@
 #pragma once
 
-// Pairs for the light of a sky: f the irradiance that arrives, g that of a uniform sky of the same
-// mean under which nothing stands in the way.
+// Pairs for the light of a sky. f is the irradiance that arrives. g is that of an open uniform sky
+// of the same mean.
 
 #include "correlated/pairs.h"
 #include "sky/directions.h"
@@ -27,8 +27,8 @@ class SkyPairs final : public PairSource {
   std::vector<Colour> colours_;
 };
 
-/// The parameters of a sky and `sampling`: uniform, cosine, emittance (in proportion to the sky,
-/// interpolated on 2048 triangles) or steered (the sky times the lobe of nine harmonics).
+/// The parameters of a sky and `sampling`. It is uniform, cosine, emittance (in proportion to the
+/// sky, interpolated on 2048 triangles) or steered (the sky times the lobe of nine harmonics).
 std::vector<ParameterInformation> sky_pair_parameters();
 /// Reads them. InputError at `sky` where emittance or steered sampling would never draw some
 /// directions: the sky is black at a vertex.

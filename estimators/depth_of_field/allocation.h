@@ -14,10 +14,12 @@ struct Allocation {
   double exponent = 1;    ///< counts go with the variance to this power; 0 is uniform
 };
 
-/// max(1, K V^exponent rounded) with the largest K whose counts together are at most mean_count
-/// times the number of pixels. Noise V / N is equal for exponent 1 where lens samples are
-/// independent, for 2/3 where they are jittered across an edge (their error falls like N^-3/2);
-/// the sum of V / N is least for 1/2 (Neyman 1934). Where all V are zero: one sample each.
+/// Counts max(1, K V^exponent rounded). K is the largest with a total of at most mean_count times
+/// the number of pixels. If all V are zero there is one sample each.
+///
+/// Exponent 1 makes the noise V / N equal for independent lens samples. Exponent 2/3 does so for
+/// jittered ones across an edge, whose error falls like N^-3/2. Exponent 1/2 makes the sum of V / N
+/// least (Neyman 1934).
 std::vector<std::uint64_t> lens_counts(std::span<const double> variances, const Allocation& plan);
 
 }  // namespace assay::depth_of_field

@@ -1,8 +1,8 @@
 #pragma once
 
-// The same transport for a light field whose power spectrum is a Gaussian, by its 2 x 2 covariance
-// alone: cheaper than a set of waves, exact for Gaussians (after Belcour et al. 2013, "5D
-// covariance tracing"). Operators and signs are those of spectrum.h.
+// The transport of a light field with a Gaussian power spectrum, by its 2 x 2 covariance. It is
+// cheaper than a set of waves, and exact for Gaussians. Operators and signs are those of
+// spectrum.h. (After Belcour et al. 2013, "5D covariance tracing".)
 
 #include <cmath>
 
@@ -58,9 +58,9 @@ class Covariance {
   /// Variance of the frequency across the image, Wv / focus.
   double image_spread(const Lens& lens) const { return spread_.slope / lens.focus / lens.focus; }
 
-  /// The variance over a lens of Gaussian weights whose points spread as a disc's do, radius / 2
-  /// along an axis: power (1 - 1 / sqrt(1 + radius^2 lens_spread / 2)). For waves of low frequency
-  /// it is the disc's, up to the fourth power of the frequency.
+  /// The variance over a lens of Gaussian weights: power (1 - 1 / sqrt(1 + radius^2 lens_spread /
+  /// 2)). Its points spread as a disc's do, radius / 2 along an axis. For waves of low frequency it
+  /// is the disc's variance, up to the fourth power of the frequency.
   double lens_variance(const Lens& lens) const {
     return power_ * (1 - 1 / std::sqrt(1 + lens.radius * lens.radius * lens_spread(lens) / 2));
   }

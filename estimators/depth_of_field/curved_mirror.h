@@ -1,8 +1,8 @@
 #pragma once
 
-// A board seen in a mirror that bulges or is hollow, along one axis: a lens in the plane z = 0, the
-// mirror z = distance + curvature x^2 / 2 before it, and the board at z = distance - beyond. What
-// the lens does not see of the other axis does not change: the picture is the same for all y.
+// A board seen in a mirror that is curved along one axis. The lens is in the plane z = 0. The
+// mirror is z = distance + curvature x^2 / 2. The board is at z = distance - beyond. The picture is
+// the same for all y.
 
 #include <cmath>
 
@@ -11,13 +11,13 @@
 namespace assay::depth_of_field {
 
 struct CurvedMirror {
-  double distance = 1;   ///< from the lens to the mirror's vertex, along the axis
-  double beyond = 1;     ///< from there to the board
-  double curvature = 0;  ///< where it meets the axis; positive where it bulges and scatters light
+  double distance = 1;   ///< Distance from the lens to the mirror's vertex, along the axis.
+  double beyond = 1;     ///< Distance from there to the board.
+  double curvature = 0;  ///< Curvature at the axis, positive if the mirror bulges and scatters.
 
-  /// Where on the board the ray from x = u of the lens through x = pixel of the focal plane ends if
-  /// the slope that it leaves the mirror with is `turned` more: to first order in slopes and
-  /// distances from the axis, as frequencies are carried (spectrum.h).
+  /// The place on the board where the ray from x = u of the lens through x = pixel of the focal
+  /// plane ends. The ray leaves the mirror with a slope that is `turned` more. First order in
+  /// slopes and distances from the axis, as frequencies are carried (spectrum.h).
   double linear(const Lens& lens, double u, double pixel, double turned) const {
     const double slope = (pixel - u) / lens.focus;
     const double x = u + distance * slope;
@@ -27,8 +27,9 @@ struct CurvedMirror {
   /// The same by the law of reflection at the parabola. Only where no ray misses it.
   double exact(const Lens& lens, double u, double pixel, double turned) const {
     const double w = pixel - u;
-    // At t along (w, focus) from (u, 0): curvature / 2 (u + w t)^2 - focus t + distance = 0, the
-    // smaller root without a difference of nearly equal numbers.
+    // The ray from (u, 0) along (w, focus) meets the mirror at t, with
+    //   curvature / 2 (u + w t)^2 - focus t + distance = 0.
+    // The smaller root has no difference of nearly equal numbers here.
     const double a = curvature * w * w / 2;
     const double b = lens.focus - curvature * u * w;
     const double c = distance + curvature * u * u / 2;
@@ -41,8 +42,8 @@ struct CurvedMirror {
     return x + (beyond + curvature * x * x / 2) * (slope + turned);
   }
 
-  /// Whether the ray from x = u of the lens to this pixel meets the mirror, in front of the lens,
-  /// and is sent back: of the quantities in exact(), focus (nx^2 - 1) + 2 w nx < 0.
+  /// True if the ray from x = u of the lens to this pixel meets the mirror before the lens and is
+  /// sent back. In the quantities of exact(): focus (nx^2 - 1) + 2 w nx < 0.
   bool returns(const Lens& lens, double u, double pixel) const {
     const double w = pixel - u;
     const double a = curvature * w * w / 2;
@@ -54,7 +55,7 @@ struct CurvedMirror {
     return lens.focus * (nx * nx - 1) + 2 * w * nx < 0;
   }
 
-  /// Whether all do that start at 129 places of the lens; what they depend on is smooth in u.
+  /// True if the rays from 129 places of the lens return. The condition is smooth in u.
   bool returns_all(const Lens& lens, double pixel) const {
     for (int i = -64; i <= 64; ++i) {
       if (!returns(lens, lens.radius * i / 64, pixel)) return false;

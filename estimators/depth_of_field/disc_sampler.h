@@ -10,9 +10,9 @@
 
 namespace assay::depth_of_field {
 
-/// Lens points lifted to the hemisphere above the unit disc, (u, v, sqrt(1 - u^2 - v^2)): points
-/// uniform on the disc are directions of density cos(theta) / pi (Malley's method read backwards).
-/// `Disc` maps two numbers to a point of the disc.
+/// Lens points lifted to the hemisphere above the unit disc, (u, v, sqrt(1 - u^2 - v^2)). Points
+/// uniform on the disc become directions of density cos(theta) / pi (Malley's method, backwards).
+/// The type `Disc` maps two numbers to a point of the disc.
 template <class Disc = UniformDisc>
 class LensSampler final : public Sampler {
  public:

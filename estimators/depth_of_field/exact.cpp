@@ -44,7 +44,7 @@ class View {
 
   bool of_one_surface() const { return across_.empty() && along_.empty(); }
 
-  /// What the middle of the lens sees, if nothing changes over the lens.
+  /// The moments at the middle of the lens, for a picture that is constant over the lens.
   Moments of_its_surface() const {
     const Seen* const seen = first({});
     if (!seen) return {background_, background_ * background_, 0};
@@ -71,7 +71,7 @@ class View {
     std::vector<double> out{-pi / 2, pi / 2};
     for (const double v : along_) out.push_back(std::asin(v));
     for (const double u : across_) {
-      // Where the circle meets the edge.
+      // The circle meets the edge here.
       out.push_back(std::acos(std::abs(u)));
       out.push_back(-out.back());
     }

@@ -46,7 +46,7 @@ Channel radiance_channel(const SceneDescription& scene, const Moments& moments, 
                   .low = range.low,
                   .high = range.high,
                   .rounding = range.high * 0x1p-40};
-  // What rounding leaves of the difference: 32 halves of a last place of the largest square.
+  // Rounding of the difference: 32 halves of a last place of the largest square.
   const double off = moments.variance_error() + 0x1p-48 * range.high * range.high;
   if (off <= 1e-8 * moments.variance()) channel.variance = moments.variance() / samples;
   return channel;

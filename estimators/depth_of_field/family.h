@@ -1,6 +1,6 @@
 #pragma once
 
-// What the estimators of the family share: parameters, channels, and the primary at one pixel.
+// The common parts of the family: parameters, channels, and the primary at one pixel.
 
 #include "depth_of_field/disc_sampler.h"
 #include "depth_of_field/exact.h"
@@ -8,7 +8,6 @@
 
 namespace assay::depth_of_field {
 
-/// `scene`.
 ParameterInformation scene_parameter(const char* fallback);
 SharedSetting read_setting(Parameters&);
 
@@ -16,9 +15,9 @@ SharedSetting read_setting(Parameters&);
 ParameterInformation pixel_parameter();
 PlanePoint read_pixel(Parameters&);
 
-/// Average radiance over the lens at one pixel: mean, with its error, and range; the variance of
-/// one lens sample divided by `samples` where quadrature and rounding leave it eight digits, no
-/// variance elsewhere.
+/// Average radiance over the lens at one pixel: mean with its error, and range. The variance is
+/// that of one lens sample divided by `samples`. It is stated only if quadrature and rounding leave
+/// it eight digits.
 Channel radiance_channel(const SceneDescription& scene, const Moments& moments, double samples = 1);
 
 /// One lens sample at one pixel: the radiance along the ray from a point of the lens.
@@ -34,7 +33,6 @@ struct LensPrimary {
   double value(const PlanePoint& u, Cost& cost) const { return setting->radiance(pixel, u, cost); }
 };
 
-/// A mutant's static information.
 Information mutant_information(std::string name, const Information& original, std::string defect);
 
 }  // namespace assay::depth_of_field

@@ -1,8 +1,8 @@
 // An image behind a thin lens.
 //
-// Each pixel is the mean of N lens samples (pixel.cpp), N fixed beforehand: the same for all, or
-// in proportion to a power of the variance that a prediction or the closed form says. E of every
-// pixel is its lens average whatever N, as N depends on no sample that is averaged.
+// Each pixel is the mean of N lens samples (pixel.cpp). N is fixed beforehand: the same for all, or
+// in proportion to a power of the variance. The variance comes from a prediction or the closed
+// form. N depends on no sample that is averaged, so E of every pixel is its lens average.
 
 #include "depth_of_field/image.h"
 

@@ -30,7 +30,7 @@ Grid read_grid(Parameters&);
 /// says.
 ImagePlan read_image_plan(Parameters&, const PredictionRules* rules = nullptr);
 
-/// What a lens sample at a pixel is and what it is divided by.
+/// The value of a lens sample at a pixel, and its divisor.
 struct SoundShading {
   double sample(const ImagePlan& plan, std::size_t pixel, Stream& random, Cost& cost) const {
     const double s = random.uniform();

@@ -1,13 +1,14 @@
 // The radiance that a thin lens gathers of a wave that it sees in a curved, rough mirror.
 //
-// X = 1/2 + 1/2 cos(k x + phase), x where the ray from a point of the lens ends on the board, after
-// a reflection that changes its slope by a normal number of the standard deviation `roughness`.
-// E[X] and Var X follow from what becomes of the wave's frequency (spectrum.h) where x is linear in
-// the lens point, the pixel and that number:
-//   (k, 0) -> travel(beyond) -> reflect(roughness), curve(2 curvature) -> travel(distance)
-// has the frequency W across the lens and its amplitude times exp(-(roughness k beyond)^2 / 2), of
-// which the lens leaves j(radius W), j the transform of its disc. `rays: exact` reflects at the
-// parabola, whose rays are linear in the limit of a small lens only; nothing is stated of it.
+// X = 1/2 + 1/2 cos(k x + phase). The ray from a point of the lens ends at x on the board. The
+// reflection changes the ray's slope by a normal number of standard deviation `roughness`. E[X] and
+// Var X follow from the wave's frequency (spectrum.h), if x is linear in the lens point, the pixel
+// and that number:
+//   (k, 0) -> travel(beyond) -> reflect(roughness), curve(2 curvature) -> travel(distance).
+// The wave has the frequency W across the lens, and its amplitude times exp(-(roughness k beyond)^2
+// / 2). The lens leaves j(radius W) of that, with j the transform of its disc. With `rays: exact`
+// light reflects at the parabola, whose rays are linear only in the limit of a small lens. Nothing
+// is stated of it.
 
 #include <numbers>
 
@@ -39,7 +40,7 @@ struct Reflection {
                           : mirror.linear(lens, u, pixel, turned));
   }
 
-  /// What is left of a wave `times` as fast as the board's, averaged over lens and lobe.
+  /// The rest of a wave `times` as fast as the board's, averaged over lens and lobe.
   double left(double times) const {
     const CameraFrequency wave = Spectrum({{times * board.frequency, 0, 1}})
                                      .travel(mirror.beyond)

@@ -1,8 +1,8 @@
 // The radiance that a thin lens gathers at one pixel.
 //
-// X = L(u, P), the radiance along the ray from a lens point u uniform on the disc through the
-// pixel's point P of the focal plane. E[X] is the average of L over the lens, in closed form or by
-// quadrature (exact.h), and so is Var X.
+// X = L(u, P) is the radiance along a ray. It goes from a lens point u, uniform on the disc,
+// through the pixel's point P of the focal plane. E[X] is the average of L over the lens. Both E[X]
+// and Var X are known in closed form or by quadrature (exact.h).
 
 #include "depth_of_field/pixel.h"
 

@@ -14,7 +14,7 @@ namespace {
 // Bisections of an edge between two pixels: it is known to a thousandth of their distance.
 constexpr int bisections = 10;
 
-/// Where a line of pixels passes from one surface to another.
+/// A place where a line of pixels passes from one surface to another.
 struct Edge {
   double at = 0;  ///< coordinate along the line, on the focal plane
   const Plane* front = nullptr;
@@ -50,8 +50,9 @@ std::vector<MaskWave> step_waves(double highest) {
   return out;
 }
 
-/// What an edge sends to the camera: the constant and the wave of the surface behind, carried to
-/// the occluder, and those of the occluder itself, each times the waves of a step up to `highest`.
+/// The light that an edge sends to the camera, as frequencies there. The constant and the wave of
+/// the surface behind are carried to the occluder. They and the occluder's own are multiplied by
+/// the waves of a step up to `highest`.
 std::vector<CameraFrequency> edge_waves(const Edge& edge, const Lens& lens, double highest) {
   std::vector<Frequency> waves;
   if (edge.back) {

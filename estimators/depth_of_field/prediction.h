@@ -1,24 +1,25 @@
 #pragma once
 
-// What a pass of one ray a pixel tells of the noise and the detail that a lens will bring.
+// A pass of one ray a pixel predicts the noise and the detail that a lens will bring.
 //
-// A ray through the middle of the lens finds the surface of each pixel, and bisection between
+// A ray through the middle of the lens finds the surface of each pixel. Bisection between
 // neighbours of different surfaces finds the edges of occluders. The waves of a surface's texture
-// travel to the lens (spectrum.h); their power off the axis of no variation is the variance of the
-// radiance over the lens. An edge of an occluder hides a part c = half_plane_coverage(t) of the
-// lens (exact.h), t the distance from the pixel to the edge, positive where the occluder covers the
-// middle of the lens, over the radius of confusion on the occluder. By the law of total variance
-//   V = (1 - c) V_back + c V_front + c (1 - c) (mean_back - mean_front)^2;
-// of several edges the one of the largest V counts.
+// travel to the lens (spectrum.h). Their power off the axis of no variation is the variance over
+// the lens.
 //
-// The bandwidth is the highest frequency across the image that the lens lets through, of the waves
-// of the pixel's surface and of the edges within reach. A step times a wave is a sum of waves: the
-// wave behind travels to the occluder, every frequency k of a step is added and taken away, and all
-// travels to the lens. A wave k_front of the step (the image's Nyquist frequency at the most) and
-// one k_back behind have across the lens the frequency
-//   k_front (1 - d_front / focus) +- k_back (1 - d_back / focus)
-// and across the image k_front d_front / focus +- k_back d_back / focus. Of power only whether
-// there is any is asked: a step has waves of every length.
+// An edge hides a part c = half_plane_coverage(t) of the lens (exact.h). The number t is the
+// distance from the pixel to the edge over the radius of confusion on the occluder. It is positive
+// if the occluder covers the middle of the lens. The law of total variance gives
+//   V = (1 - c) V_back + c V_front + c (1 - c) (mean_back - mean_front)^2.
+// The edge of the largest V counts.
+//
+// The bandwidth is the highest frequency across the image that the lens lets through. The waves are
+// those of the pixel's surface and of the edges within reach. The wave behind travels to the
+// occluder, and a step adds and subtracts every frequency k. Then all travel to the lens. A wave
+// k_front of the step is at most the image's Nyquist frequency; the wave behind is k_back.
+//   Across the lens:  k_front (1 - d_front / focus) +- k_back (1 - d_back / focus).
+//   Across the image: k_front d_front / focus +- k_back d_back / focus.
+// A step has waves of every length, so the only question is if there is power.
 //
 // No random numbers, and no lens sample that is averaged later: counts that depend on a prediction
 // alone leave averages unbiased.
@@ -43,11 +44,10 @@ struct Grid {
   PlanePoint pixel(std::size_t index) const;
 };
 
-/// The parts of a prediction.
 struct PredictionRules {
   /// The variance that a texture at a depth has over the lens, averaged over its phase.
   std::function<double(const Plane&, const Lens&)> texture_variance;
-  /// Whether edges of such an occluder are looked at.
+  /// True if the edges of such an occluder count.
   std::function<bool(const Plane&, const Lens&)> occludes;
   std::function<double(std::span<const CameraFrequency>, const Lens&)> bandwidth;
 };
@@ -57,10 +57,10 @@ PredictionRules wave_rules();
 PredictionRules covariance_rules();
 
 struct Prediction {
-  std::vector<double> variance;   ///< of one lens sample, pixel by pixel
-  std::vector<double> bandwidth;  ///< highest frequency of the image there, radians per unit length
-                                  ///< of the focal plane
-  std::vector<bool> background;   ///< whether the pixel's ray hit nothing
+  std::vector<double> variance;   ///< Variance of one lens sample, pixel by pixel.
+  std::vector<double> bandwidth;  ///< Highest frequency of the image there, in radians per unit
+                                  ///< length of the focal plane.
+  std::vector<bool> background;   ///< True if the pixel's ray hit nothing.
   Cost cost;
 };
 

@@ -1,9 +1,8 @@
 // An image behind a thin lens from samples as dense as its predicted detail asks for.
 //
 // Each image sample is the mean of N lens samples at a pixel's middle, N in proportion to the
-// predicted variance; each pixel is a weighted mean of the image samples near it. The lens averages
-// are unbiased, what lies between them is interpolated: E of a pixel is the interpolant of the
-// exact means, off by what bends between the samples.
+// predicted variance. Each pixel is a weighted mean of the image samples near it. The lens averages
+// are unbiased. E of a pixel is the interpolant of the exact means.
 
 #include "depth_of_field/reconstruction.h"
 

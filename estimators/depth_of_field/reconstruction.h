@@ -21,7 +21,7 @@ struct ReconstructionPlan {
   Cost overhead;
 
   std::size_t pixel_of(const ImageSample& s) const { return s.y * grid.width + s.x; }
-  /// What the expectation of a pixel is off its lens average, sharpest where reconstruction fails.
+  /// The expectation of each pixel less its lens average.
   std::vector<double> bias() const;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a lens looks at: rectangles that face it, at several depths, plain or with a sinusoid of
+// The scene before a lens: rectangles that face it, at several depths, plain or with a sinusoid of
 // radiance across them.
 
 #include <string>
@@ -48,13 +48,18 @@ struct SceneDescription {
   Interval range() const;
 };
 
-/// Reads a scene: the name of a built-in one, or a map as in estimators/README.md. InputError at
-/// the offending node for an unknown name or key, a missing key, a number that is not finite, a
-/// lens without extent, a depth or focus that is not positive, an empty range, a radiance that is
-/// negative somewhere, an amplitude without a wavelength, and planes of one depth that overlap.
+/// Reads a scene: the name of a built-in one (edge, sinusoid, strip, portrait, boards), or a map
+///   lens:       {radius: .2, focus: 2}
+///   background: .1                                      0 unless given
+///   planes:     [{depth: 2, x: [-1, 1], y: [-1, 1], radiance: .6,
+///                 amplitude: .3, wavelength: .15, phase: 0}]   a wave along x; may be left out.
+///
+/// InputError at the offending node: an unknown or missing key, an unknown name, a number that is
+/// not finite, a lens without extent. InputError, too, for a depth or focus that is not positive,
+/// an empty range, and planes of one depth that overlap. InputError for an amplitude without a
+/// wavelength, and for a radiance that is negative somewhere.
 SceneDescription read_scene(const Value& value);
 
-/// The built-in scenes' names.
 std::vector<std::string> built_in_scenes();
 
 }  // namespace assay::depth_of_field

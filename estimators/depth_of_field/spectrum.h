@@ -1,21 +1,21 @@
 #pragma once
 
-// Frequencies of the local light field around a ray, and what happens to them on the way to the
-// lens (Durand et al. 2005, "A frequency analysis of light transport"; Soler et al. 2009).
+// Frequencies of the local light field around a ray, carried to the lens (Durand et al. 2005, "A
+// frequency analysis of light transport"; Soler et al. 2009).
 //
-// l(x, v) is the radiance at the transverse position x along the slope v in the light's direction;
-// a frequency (Wx, Wv) is a wave cos(Wx x + Wv v + phase). As the field is real, one of each pair
-// of opposite frequencies is kept. Where light moves by (x, v) -> M (x, v), frequencies move by the
+// l(x, v) is the radiance at the transverse position x along the slope v in the light's direction.
+// A frequency (Wx, Wv) is a wave cos(Wx x + Wv v + phase). The field is real: one of each pair of
+// opposite frequencies is kept. If light moves by (x, v) -> M (x, v), frequencies move by the
 // inverse transpose of M:
-//   travel over d          x += d v        Wv -= d Wx
-//   reflection, curvature  v += c x        Wx -= c Wv      (a mirror of curvature k: c = 2 k, k > 0
-//                                                            where it scatters)
-//   reflection, lobe       average over slopes   power exp(-(s Wv)^2), s the lobe's deviation
-//   occlusion              times a mask of x     every Wx becomes Wx + W and Wx - W for the mask's
-//   W
-// At the lens, focused at depth f, the pixel that sees the point X of the focal plane gathers the
-// slopes v = (u - X) / f from its points u, so that a frequency is Wx + Wv / f across the lens and
-// -Wv / f across the image.
+//   travel over d          x += d v             Wv -= d Wx
+//   reflection, curvature  v += c x             Wx -= c Wv
+//   reflection, lobe       average over slopes  power exp(-(s Wv)^2), s the lobe's deviation
+//   occlusion              times a mask of x    Wx becomes Wx + W and Wx - W for each of its W.
+// A mirror of curvature k has c = 2 k, with k > 0 if it scatters.
+//
+// The lens is focused at depth f. A pixel sees the point X of the focal plane. It gathers the
+// slopes v = (u - X) / f from the lens points u. A frequency is Wx + Wv / f across the lens and -Wv
+// / f across the image.
 
 #include <span>
 #include <vector>
@@ -37,8 +37,8 @@ struct CameraFrequency {
   double power = 0;
 };
 
-/// A wave of a mask: its frequency and the square of its amplitude over 4 (the power that it gives
-/// to each of the two waves that a wave of power 1 becomes).
+/// A wave of a mask: its frequency and a quarter of the square of its amplitude. A wave of power 1
+/// becomes two waves of this power.
 struct MaskWave {
   double frequency = 0;
   double power = 0;
@@ -64,13 +64,12 @@ class Spectrum {
   std::vector<Frequency> waves_;
 };
 
-/// The variance of the radiance over the lens, averaged over the waves' phases: by Parseval the
-/// power that is not on the axis of no variation across the lens, sum of power (1 - j(radius W)^2)
-/// with j the disc's transform.
+/// The variance of the radiance over the lens, averaged over the waves' phases. By Parseval it is
+/// the sum of power (1 - j(radius W)^2), with j the disc's transform.
 double lens_variance(std::span<const CameraFrequency> waves, const Lens& lens);
 
-/// Whether the lens lets a wave through: one that has power, with radius |W| below the first zero
-/// of the disc's transform. Beyond, less than 0.133 of an amplitude is left, and is neglected.
+/// True if the lens lets a wave through: it has power, and radius |W| is below the first zero of
+/// the disc's transform. Beyond that less than 0.133 of an amplitude is left, and is neglected.
 bool passes(const CameraFrequency& wave, const Lens& lens);
 
 /// The highest frequency across the image, in size, of the waves that the lens lets through; 0 of

@@ -23,8 +23,8 @@ inline constexpr std::size_t tile_side = 8;
 /// A square grid of samples in each tile, the same spacing in all.
 std::vector<ImageSample> regular_samples(const Grid& grid, std::size_t spacing);
 
-/// In each tile the largest spacing of 1, 2, 4, 8 pixels that gives its highest frequency two
-/// samples a period (Nyquist): spacing x pitch <= pi / bandwidth.
+/// Spacings 1, 2, 4 or 8: in each tile the largest that samples its highest frequency twice a
+/// period (Nyquist). That is spacing x pitch <= pi / bandwidth.
 std::vector<ImageSample> samples_by_bandwidth(const Grid& grid, std::span<const double> bandwidth);
 
 /// How much of a sample a pixel gets.

@@ -1,12 +1,12 @@
 #pragma once
 
-// A thin lens in the plane z = 0 about the origin that looks along +z: each point of a pixel's
-// image is gathered over the whole lens, and points of one depth, `focus`, are sharp.
+// A thin lens in the plane z = 0 about the origin that looks along +z. Each point of a pixel's
+// image is gathered over the whole lens. Points of the depth `focus` are sharp.
 //
-// A pixel is named by the point P of the plane z = focus that it sees. The ray from the lens point
-// radius (u, v), |(u, v)| <= 1, through P meets the plane at depth z in
-//   x = (1 - z / focus) radius u + z / focus P.x,   y likewise:
-// the lens is seen there as a disc of radius |1 - z / focus| radius, the disc of confusion.
+// A pixel is named by the point P of the plane z = focus that it sees. A ray from the lens point
+// radius (u, v), |(u, v)| <= 1, goes through P. It meets the plane at depth z in
+//   x = (1 - z / focus) radius u + z / focus P.x,   y likewise.
+// The lens is seen there as the disc of confusion, of radius |1 - z / focus| radius.
 
 #include <cmath>
 
@@ -48,7 +48,7 @@ inline render::Ray lens_ray(const Lens& lens, const PlanePoint& pixel, const Pla
   return {from, render::Vector3{pixel.x, pixel.y, lens.focus} - from};
 }
 
-/// A point uniform on the unit disc from two numbers uniform on [0, 1): the radius is the root of
+/// A point uniform on the unit disc from two numbers uniform on [0, 1). The radius is the root of
 /// the first, so that equal areas are equally probable.
 struct UniformDisc {
   PlanePoint operator()(double s, double t) const {

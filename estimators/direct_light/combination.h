@@ -27,7 +27,7 @@ class WeightedByHeuristic {
   Pair shares_;
 };
 
-/// What a draw of a technique adds: its weight times integrand / density.
+/// The term of one draw: its weight times integrand / density.
 template <class Combination>
 double from_light(const Combination& combination, const Draw& draw) {
   if (draw.integrand == 0) return 0;

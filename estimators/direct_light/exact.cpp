@@ -19,9 +19,9 @@ using render::Vector3;
 // More than a second's work to integrate over.
 constexpr std::size_t most_parts = 20000;
 
-// Whether a triangle is seen within two widths of the lobe about its middle, at distances that
-// differ threefold at most: nodes are then at most 0.6 widths apart, which is less than the lobe's
-// standard deviation, and its quarters' half of that.
+// True if a triangle is seen within two widths of the lobe about its middle, at distances that
+// differ threefold at most. Nodes are then at most 0.6 widths apart, less than the lobe's standard
+// deviation.
 bool small_enough(const Corners& t, double width) {
   const Vector3 middle = normalised(t[0] + t[1] + t[2]);
   const auto within = [&](const Vector3& p) { return length(normalised(p) - middle) <= 2 * width; };
@@ -118,7 +118,7 @@ std::optional<Moments> moments(const Techniques& techniques,
     const Pair p = techniques.density(techniques.setting().triangles()[0], w);
     const Pair weight = combination.weights(p);
     const Pair part{weight.light * f, weight.brdf * f};
-    // Where the density of the BRDF underflows, so does f: their ratio is bounded.
+    // If the density of the BRDF underflows, so does f: their ratio is bounded.
     const double of_brdf = p.brdf > 0 ? part.brdf * part.brdf / p.brdf : 0;
     return {f, part.light * part.light / p.light, of_brdf, part.light, part.brdf};
   };

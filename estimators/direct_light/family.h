@@ -1,6 +1,6 @@
 #pragma once
 
-// What the estimators of direct lighting have in common: parameters and the channel.
+// The common parameters and the channel of direct lighting.
 
 #include <optional>
 #include <string>
@@ -16,7 +16,6 @@ std::vector<ParameterInformation> common_parameters();
 /// scene, brdf, light_sampling and `more`.
 std::vector<ParameterInformation> parameters_with(std::vector<ParameterInformation> more);
 
-/// What techniques are made of.
 struct Parts {
   luminaire::SharedSetting setting;
   SharedReflectance reflectance;
@@ -35,14 +34,14 @@ Pair read_probabilities(Parameters&);
 /// The channel `radiance` with its mean, where that is known, and nothing else.
 Channel mean_channel(const Techniques&);
 
-/// What is known of a primary.
 struct KnownPrimary {
   std::optional<Known> mean = {};
   std::optional<Known> variance = {};
   double high = 0;  ///< no primary is above
 };
-/// The channel with the range [0, high], the mean of the primary, or of mean_channel() where that
-/// is in closed form or none is given, and the variance where it is known to 1e-8.
+/// The channel with the range [0, high] and the mean of the primary. The function mean_channel()
+/// gives the mean if it has a closed form or none is given. The variance is stated if it is known
+/// to 1e-8.
 Channel radiance_channel(const Techniques&, const KnownPrimary&);
 
 /// The most that a draw of the BRDF brings when all the light of the scene is weighted by 1.

@@ -14,14 +14,14 @@ struct Pair {
   double brdf = 0;
 };
 
-/// From q_i, the density of a technique times its number of samples (in the one-sample model: its
-/// probability), weights that sum to 1:
+/// Weights that sum to 1, from q_i, the density of a technique times its number of samples. In the
+/// one-sample model q_i is the density times the technique's probability.
 ///   balance      w_i = q_i / sum q_k  (eq. 9.8)
 ///   power        w_i = q_i^e / sum q_k^e
 ///   cutoff       0 where q_i < t max q_k, else q_i / sum of the q_k that are not
-///   maximum      1 where q_i is the largest, else 0
-/// all of which are one function of the ratio r of the smaller q to the larger: the technique of
-/// the larger has the weight 1 / (1 + g(r)) with g = r, r^e, r [r >= t], 0.
+///   maximum      1 where q_i is the largest, else 0.
+/// All are functions of the ratio r of the smaller q to the larger. The technique of the larger has
+/// the weight 1 / (1 + g(r)), with g = r, r^e, r [r >= t], 0.
 class Heuristic {
  public:
   static Heuristic balance() { return Heuristic(1, 0); }
@@ -31,7 +31,7 @@ class Heuristic {
 
   /// One of q is above 0. Equal ones are as if the light's were the larger.
   Pair operator()(const Pair& q) const;
-  /// Whether weights are smooth functions of q.
+  /// True if weights are smooth functions of q.
   bool smooth() const { return threshold_ == 0; }
 
  private:

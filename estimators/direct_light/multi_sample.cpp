@@ -10,9 +10,10 @@ namespace {
 
 using namespace direct_light;
 
-// Weighted, a draw brings f / q_b at most, q_b = n_b p_b, for every heuristic of exponent 1 or
-// more: w_i f / q_i is f / (q_l + q_b) by balance; f q_i^(e-1) / (q_l^e + q_b^e) <= f / q_b by
-// power, as x^(e-1) <= 1 + x^e; and f / q_i with q_i the larger where the other is left out.
+// For every heuristic of exponent 1 or more a weighted draw brings f / q_b at most, q_b = n_b p_b.
+//   Balance: w_i f / q_i = f / (q_l + q_b).
+//   Power: f q_i^(e-1) / (q_l^e + q_b^e) <= f / q_b, since x^(e-1) <= 1 + x^e.
+//   Maximum and cutoff: f / q_i with q_i the larger, if the other is left out.
 double highest(const Techniques& techniques, const Counts& counts) {
   const Pair n = counts.shares();
   return highest_of_brdf(techniques) * (n.light + n.brdf) / n.brdf;

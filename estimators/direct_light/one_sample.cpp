@@ -15,7 +15,7 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const Pair probabilities = read_probabilities(given);
   const Heuristic heuristic = read_heuristic(given);
   const WeightedByHeuristic combination(heuristic, probabilities);
-  // As in the multi-sample model, with one draw.
+  // The bound of the multi-sample model, with one draw.
   KnownPrimary primary{.high = highest_of_brdf(*techniques) / probabilities.brdf};
   if (heuristic.smooth()) {
     if (const auto known = moments(*techniques, combination)) {

@@ -16,9 +16,9 @@ struct Draw {
   Pair density;          ///< with which each technique draws it, per solid angle; where it counts
 };
 
-/// What the surface reflects towards the viewer of the light that arrives from the luminaire:
-///   L_r = integral over directions w of L(w) f(w, viewer) max(0, n . w) dw,
-/// L(w) the radiance of the luminaire where a ray along w hits it first, else 0.
+/// The light from the luminaire that the surface reflects towards the viewer:
+///   L_r = integral over directions w of L(w) f(w, viewer) max(0, n . w) dw.
+/// L(w) is the radiance of the luminaire if a ray along w hits it first, else 0.
 class Techniques {
  public:
   Techniques(luminaire::SharedSetting setting, SharedReflectance reflectance,

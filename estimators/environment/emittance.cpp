@@ -1,7 +1,9 @@
-// Irradiance from a sky by directions drawn where it is bright: a texel t with probability
-// s_t O_t / S, s = r + g + b its radiance, O its solid angle, S = sum s O, then a direction uniform
-// in it. Density p = s / S per solid angle; X_c = (L_c / s) S cos+ V, E[X_c] = E_c as s > 0
-// wherever any L_c > 0. E[X_c^2] = S sum over texels of (L_c^2 / s) times the integral of cos+^2.
+// Irradiance from a sky by directions drawn where it is bright.
+//
+// A texel t has probability s_t O_t / S, and the direction is uniform in it. Its radiance is s = r
+// + g + b, its solid angle O, and S = sum s O. The density is p = s / S per solid angle.
+//   X_c = (L_c / s) S cos+ V. E[X_c] = E_c, since s > 0 wherever any L_c > 0.
+//   E[X_c^2] = S sum over texels of (L_c^2 / s) times the integral of cos+^2.
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-// A receiver under a sky, the picture of an environment, and what stands in between: what the
-// estimators of the family share. They estimate the irradiance of each colour channel,
-//   E = integral over directions w of L(w) max(0, n . w) V(w),
-// V(w) = 1 where nothing stands in the way, else 0.
+// A receiver under the picture of an environment, with occluders between. The estimators of the
+// family estimate the irradiance of each colour channel,
+//   E = integral over directions w of L(w) max(0, n . w) V(w).
+// V(w) = 1 if nothing stands in the way, else 0.
 
 #include <functional>
 #include <memory>
@@ -38,7 +38,6 @@ std::vector<ParameterInformation> parameters();
 /// Reads them. InputError at the parameter for a picture that cannot be used.
 SharedSky read_sky(Parameters&);
 
-/// What the primaries of an estimator are.
 struct Primaries {
   /// E[X^2] of a channel is the sum of L^2 times this over texels of radiance L.
   std::function<double(std::size_t texel, const render::CosineMoments&)> second_moment;

@@ -29,13 +29,13 @@ class TimeOut : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What another thread or a signal handler sets to end all waiting; waits then throw
-/// std::runtime_error. Asked some times a second; nullptr for never.
+/// Sets the question that ends all waiting: `stop` is asked some times a second, nullptr for never.
+/// Another thread or a signal handler makes it true. Waits then throw std::runtime_error.
 void set_stop_question(bool (*stop)());
 /// Throws that std::runtime_error where waiting is to end.
 void stop_if_asked();
 
-/// Where sentences go that no result depends on, of any thread; nullptr for nowhere.
+/// Sets the receiver of sentences that no result depends on, of any thread; nullptr for none.
 void set_notice(void (*say)(const std::string& sentence));
 void notice(const std::string& sentence);
 
@@ -55,12 +55,11 @@ class Child {
   bool send(std::string_view bytes, Deadline deadline);
   /// Waits for bytes of its standard output; how many came, 0 when it ended. Throws TimeOut.
   std::size_t receive(std::span<char> into, Deadline deadline);
-  /// Whether bytes of its standard output can be read now.
+  /// True if bytes of its standard output can be read now.
   bool has_output();
 
   /// Asks it to end: its standard input is closed.
   void close_input();
-  /// Whether it ended by the deadline.
   bool ends_by(Deadline deadline);
   /// Kills the group if it still runs, and waits for the program.
   void kill();

@@ -6,7 +6,7 @@ namespace assay::foreign {
 
 namespace {
 
-// What a program may take to end by itself once its standard input is closed.
+// The time for a program to end by itself once its standard input is closed.
 constexpr std::chrono::milliseconds farewell{500};
 
 }  // namespace
@@ -52,7 +52,6 @@ Children::Known Children::known_of(const Question& wanted) {
   return known_.try_emplace(wanted.primaries, std::move(known)).first->second;
 }
 
-/// Whether they are the first that a program has drawn.
 bool Children::keep(const FirstObservations& drawn) {
   const std::scoped_lock lock(mutex_);
   Known& known = known_.at(drawn.question.primaries);

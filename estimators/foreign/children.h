@@ -38,8 +38,8 @@ class Children {
   /// what another has answered. False where the first one ended: the observation that ends it
   /// tells.
   bool examine(Dialogue& dialogue, const Question& wanted);
-  /// Where all first observations were the same, asks again for the first other one among these
-  /// numbers. Throws NoAnswer where it is then another.
+  /// If all first observations were the same, asks again for the first other one among these
+  /// numbers. Throws NoAnswer if it is then another.
   void examine_unusual(Dialogue& dialogue, const Question& question,
                        const std::vector<double>& numbers);
 

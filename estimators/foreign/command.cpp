@@ -19,7 +19,7 @@ namespace assay::plugins {
 
 namespace {
 
-/// What the files of a rendering hold, learnt from one of them.
+/// The contents of a rendering's files, learnt from one of them.
 struct Contents {
   recorded::PictureStack pictures = {};   ///< of pictures: size and channels, and no files
   std::vector<std::string> columns = {};  ///< of text

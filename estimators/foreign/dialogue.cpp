@@ -15,8 +15,8 @@ namespace {
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
-// A question is as large as is answered in about this time: long against what the change between
-// two programs takes (some 20 microseconds), short against a time-out.
+// A question is sized to be answered in about this time. It is long against a change between two
+// programs (some 20 microseconds), and short against a time-out.
 constexpr double pleasant_seconds = 0.02;
 // Longer than most programs take to start and to reply.
 constexpr int silent_seconds = 3;
@@ -127,7 +127,7 @@ std::vector<double> Dialogue::hear(const Question& question, std::string_view it
   }
   try {
     reads = child_.send(to_bytes(question, hello_.numbers) + std::string(items), end);
-    // What it has not read it will not answer; it may be about to end, and say why.
+    // It will not answer a question that it has not read. It may be about to end, and say why.
     if (!reads) end = std::min(end, steady_clock::now() + std::chrono::milliseconds(500));
     while (true) {
       const std::size_t count = listen(reply.space(), end);

@@ -21,10 +21,10 @@ namespace assay::foreign {
 /// How to run a program and how long to wait for a reply.
 struct Terms {
   Launch launch;
-  double timeout = 60;  ///< seconds a reply may take
-  std::string name;     ///< of the program in messages
-  /// Set once it was asked, of a program of the set-up that said nothing for 3 s, whether it
-  /// flushes its output; null where output cannot wait in a buffer.
+  double timeout = 60;  ///< Seconds that a reply may take.
+  std::string name;     ///< Name of the program in messages.
+  /// Set once a program of the set-up that said nothing for 3 s was asked if it flushes its output.
+  /// Null if output cannot wait in a buffer.
   std::shared_ptr<std::atomic_flag> asked_whether_it_flushes = {};
 };
 
@@ -55,7 +55,7 @@ class Dialogue {
   /// How many of the question's observations or items to ask for at a time, by how long the last
   /// replies to such questions took.
   std::uint64_t well_sized(const Question& question) const;
-  /// Whether nothing of this kind, of as many primaries or the same sampler, has been asked yet.
+  /// True if no question of as many primaries, or to the same sampler, has been asked yet.
   bool is_new_to(const Question& question) const;
   double cpu_seconds() const { return child_.cpu_seconds(); }
   Child& child() { return child_; }

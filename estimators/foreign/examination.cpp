@@ -76,8 +76,7 @@ class Coincidence {
   double probability_ = 1;
 };
 
-/// Whether the same observations come for another key. The first pair that differs ends it: of
-/// continuous values that is the first.
+/// True if the same observations come for another key. The first pair that differs ends it.
 bool ignores_key(const Source& source, std::size_t most) {
   Coincidence coincidence;
   for (std::size_t i = 0; i < most; ++i) {
@@ -89,7 +88,7 @@ bool ignores_key(const Source& source, std::size_t most) {
   return false;
 }
 
-/// What an observation begins with, so many numbers.
+/// The first numbers of an observation.
 std::vector<double> begin_of(std::vector<double> row, std::size_t numbers) {
   row.resize(std::min(numbers, row.size()));
   return row;
@@ -106,8 +105,8 @@ bool same_but_for_rounding(const std::vector<double>& a, const std::vector<doubl
   return std::ranges::equal(a, b, near);
 }
 
-/// Whether the index of an observation changes nothing, though what else is asked does: `count`
-/// observations all begin with the same numbers, the others too, but with others.
+/// True if the index of an observation changes nothing, though the question does. The first `count`
+/// observations all begin with the same numbers, and the others all begin with different ones.
 template <class Others>
 bool ignores_index(const Source& source, const Others& others, std::size_t numbers,
                    std::size_t count, std::uint64_t primaries) {

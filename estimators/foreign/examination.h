@@ -1,23 +1,23 @@
 #pragma once
 
-// What is found by asking again: whether numbers are a function of what was asked, of another
-// program and of a library that is called in this process alike.
+// Asking again shows if numbers are a function of the question. This is for programs, and for a
+// library that is called in this process.
 //
-// For each number of primaries that a set-up is asked for, the first observations are drawn:
-//   - They are asked for again, one by one from the last. Other bits are an error.
-//   - They are compared with the same ones of another key, pair by pair until two differ. They are
-//     an error once so many equal pairs can be no coincidence.
-//   - Where they are all the same, those of another key, and means of twice as many primaries, must
-//     not be all the same too, but others: the index then changes nothing.
-//   - Where they are all the same, the first other one that a test meets is asked for again.
+// The first observations are drawn for each number of primaries.
+//   * They are asked for again, one by one from the last. Other bits are an error.
+//   * They are compared with the same ones of another key, pair by pair until two differ. Too many
+//     equal pairs for a coincidence are an error.
+//   * If all are one value, those of another key must not all be another value. Nor may means of
+//     twice as many primaries: the index would change nothing. The first other value that a test
+//     meets is asked for again.
 //
-// A sound estimator, whatever its values, is accused with a probability below 1e-6. Its 2n
-// observations are exchangeable. Given their values, all n pairs are equal with a probability that
-// is a product over the pairs, of (2k + 1) / (2i + 1): i pairs came before, k of them with the same
-// value. It accuses below 5e-7 / 128, after one of 128 pairs at most. For a constant it is 1; for
-// 4 ones among 128 it is too large, for 5 it is not. Let a value have probability p. That n
-// observations are all this value, and n means of twice as many primaries all another, has a
-// probability of at most (p (1 - p^2))^n: 3e-7 for 16.
+// A sound estimator is accused with a probability below 1e-6, whatever its values. Its 2n
+// observations are exchangeable. Given their values, the probability that all n pairs are equal is
+// a product over the pairs. The factor is (2k + 1) / (2i + 1): i pairs came before, k of them with
+// the same value. The limit is 5e-7 / 128, for each of 128 pairs at most. A constant has 1. With 4
+// ones among 128 it is above the limit, with 5 below. Let a value have probability p. Then n
+// observations are all this value, and n means of twice as many primaries all another, with
+// probability (p (1 - p^2))^n at most. That is 3e-7 for 16.
 
 #include <atomic>
 #include <cstddef>
@@ -47,12 +47,12 @@ struct FirstObservations {
   std::optional<std::vector<double>> usual() const;
 };
 
-/// How many observations of so many numbers are drawn to be asked for again: 32 numbers' worth, but
-/// two at least, since an image may take a minute.
+/// Number of observations of `width` numbers that are asked for twice: 32 numbers' worth, but at
+/// least two, since an image may take a minute.
 std::uint64_t asked_twice(std::size_t width);
 
-/// Why a program or library of this name gives no function of key and index, as it gave other
-/// numbers when it was asked again; "" where it gave the same. What `ask` throws goes on.
+/// A sentence if a program or library of this name gives other numbers when it is asked again, else
+/// "". An exception of `ask` goes on.
 std::string why_not_repeated(const Asking& ask, const FirstObservations& first,
                              const std::string& name);
 

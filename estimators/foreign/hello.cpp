@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, 5> domain_words = {"interval", "square", 
   throw ProtocolError("its hello has the line `" + shown(line) + "`: " + why);
 }
 
-// As a claim can name it.
+// True if a claim can use the word as a name.
 bool is_name(std::string_view word) {
   const auto letter = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -47,7 +47,6 @@ bool is_name(std::string_view word) {
   return true;
 }
 
-/// Reads the lines one by one.
 class Reader {
  public:
   explicit Reader(std::uint64_t most) : most_(most) {}

@@ -1,6 +1,6 @@
 #pragma once
 
-// What another program says of its estimator before it is asked for numbers, as lines of text:
+// The words of another program about its estimator, before it is asked for numbers. They are lines:
 //
 //   assay 1 text
 //   channel area low 0 high 4
@@ -8,19 +8,20 @@
 //   bias unbiased
 //   ready
 //
-// The first line tells the protocol's version and whether replies are `text` or `binary`. There is
-// a line for each channel, with what is known of it exactly after its name. `averages`: an
-// observation is the mean of its primaries. The bias is unknown, as without the line, unbiased,
-// primaries, bootstrap, start-up or reconstruction.
+// The first has the protocol's version, and the form of replies: `text` or `binary`. Each channel
+// has a line. Its exact facts follow its name. The line `averages` says that an observation is the
+// mean of its primaries. The bias is unknown (the default), unbiased, primaries, bootstrap,
+// start-up or reconstruction.
 //
-// Instead of channels, or before channels that are diagnostic, `image 64 48 red green blue` says
-// that an observation is an image, `range LOW HIGH` what no element of it leaves, and `independent`
-// that its pixels do not depend on each other. With `rays` one number more follows each
-// observation's: the rays that it took. `error WORDS` instead of `ready` refuses.
+// An image is announced instead of channels, or before diagnostic ones: `image 64 48 red green
+// blue`. Its line `range LOW HIGH` is of all elements. Its line `independent` says that pixels are.
+// With `rays` one more number follows each observation: the rays that it took. A line `error WORDS`
+// instead of `ready` refuses.
 //
-// `sampler lens hemisphere` says that there is a source of points of this name on this domain,
-// interval (with `low X high Y`), square, triangle, hemisphere or sphere, which can be asked for
-// draws, densities and evaluations (reply.h), in binary only; `rounding X` may follow.
+// A line `sampler lens hemisphere` announces a source of points of this name on this domain.
+// Domains are interval (with `low X high Y`), square, triangle, hemisphere and sphere. It can be
+// asked for draws, densities and evaluations (reply.h), in binary only. The words `rounding X` may
+// follow.
 
 #include <array>
 #include <cstddef>
@@ -74,7 +75,7 @@ struct Hello {
   std::size_t width() const { return channels.size() + (rays ? 1 : 0); }
 };
 
-/// Whether a text holds a whole hello: one of its lines begins with `ready` or `error`.
+/// True if a text holds a whole hello: one of its lines begins with `ready` or `error`.
 bool is_whole_hello(std::string_view text);
 
 /// An observation of more numbers is a mistake in the size of an image; a frame of film has a
@@ -87,8 +88,8 @@ Hello parse_hello(std::string_view text, std::uint64_t most = most_numbers);
 /// The text that parse_hello() reads.
 std::string to_text(const Hello& hello);
 
-/// Lines of it, each with its end: of a channel; of an image, each of whose elements has the range
-/// of this one; of a bias; of a sampler.
+/// Lines of a hello, each with its end: a channel, an image, a bias, a sampler. Each element of the
+/// image has the range of the given channel.
 std::string channel_line(const Channel& channel);
 std::string image_lines(const ImageShape& image, const Channel& element);
 std::string bias_line(std::optional<BiasClass> bias);

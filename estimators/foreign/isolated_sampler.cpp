@@ -29,7 +29,7 @@ class Counted {
   double before_;
 };
 
-/// As an observation of no primaries.
+/// The question for one draw, as an observation of no primaries.
 Question draw_of(const Stream& random) {
   return {.key = random.key().bits, .first = random.observation(), .count = 1, .primaries = 0};
 }
@@ -41,7 +41,7 @@ SamplerDraw draw_from(const double* numbers) {
           .valid = numbers[5] != 0};
 }
 
-/// Whether a reply of so many numbers an item is one: numbers, of a draw 0 or 1 for its point.
+/// True if an item of a reply is whole: no NaN, and a draw ends with 0 or 1.
 bool is_whole(std::span<const double> item) {
   if (item.size() > 1) {
     if (item.back() == 0) return true;  // there is no point
@@ -52,7 +52,7 @@ bool is_whole(std::span<const double> item) {
 
 }  // namespace
 
-/// What is asked about, as it is sent.
+/// The items of a question, as they are sent.
 struct IsolatedSampler::Items {
   Asked what;
   std::string_view bytes;
@@ -61,7 +61,7 @@ struct IsolatedSampler::Items {
   Items range(std::size_t first, std::size_t count) const {
     return {what, bytes.substr(first * bytes_of_one(), count * bytes_of_one())};
   }
-  /// Of a single one that is a point: where it is.
+  /// The place of a single item that is a point, in words.
   std::string place(Domain domain) const {
     if (what == Asked::draws || size() != 1) return "";
     Point point;
@@ -166,8 +166,8 @@ std::vector<double> IsolatedSampler::ask_once(Items& items) const {
   return numbers;
 }
 
-/// The last of the first many of each kind is asked for alone: a program that goes on from where
-/// its random numbers are gives others.
+/// Asks for the last of the first many of each kind alone. A program that draws on from the state
+/// of its random numbers gives others.
 void IsolatedSampler::require_alone(Dialogue& dialogue, const Question& question,
                                     const Items& items, std::span<const double> numbers) const {
   {

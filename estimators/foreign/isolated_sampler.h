@@ -14,10 +14,9 @@
 
 namespace assay::foreign {
 
-/// Asks one of the programs, whichever is idle. Its draws are of streams whose key and observation
-/// are the next two words of Assay's. It throws NoAnswer where the program ends, takes too long or
-/// says something else instead, with the point that it was asked about, and where a program does
-/// not answer the same when asked again.
+/// Asks whichever program is idle. Its draws are of streams whose key and observation are the next
+/// two words of Assay's. NoAnswer, with the point in question, if the program ends, takes too long
+/// or says something else. NoAnswer, too, if it answers differently when it is asked again.
 class IsolatedSampler final : public Sampler {
  public:
   /// The sampler that stands at this place in the hello.

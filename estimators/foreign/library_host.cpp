@@ -42,8 +42,8 @@ std::string& host_program() {
   return program;
 }
 
-/// The pipes of the protocol, out of the library's reach: what it reads from standard input is
-/// empty, what it writes to standard output goes to a file in memory.
+/// The pipes of the protocol, out of the library's reach. The library reads an empty standard
+/// input; its standard output goes to a file in memory.
 class Channels {
  public:
   Channels()
@@ -65,7 +65,7 @@ class Channels {
     return fill({reinterpret_cast<char*>(&question), sizeof question});
   }
 
-  /// What follows a question to a sampler.
+  /// The items that follow a question to a sampler.
   template <class Item>
   std::vector<Item> read_items(const Question& question) const {
     std::vector<Item> items(question.count);
@@ -84,7 +84,7 @@ class Channels {
     }
   }
 
-  /// What the library wrote to standard output, the beginning of it.
+  /// The beginning of the library's standard output.
   std::string printed() const {
     std::fflush(stdout);
     std::array<char, 128> text{};

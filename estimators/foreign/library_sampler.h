@@ -16,7 +16,7 @@ class PreparedLibrary;
 /// Throws LibraryError where a function is missing or a domain is none.
 void require_whole(const AssaySampler& sampler);
 
-/// What the library says of it. As require_whole() has found it.
+/// The sampler's facts. require_whole() has passed.
 SamplerNote note_of(const AssaySampler& sampler);
 
 /// A sampler as Assay's. It throws LibraryError where the library reports an error or gives a
@@ -43,8 +43,8 @@ class LibrarySampler : public Sampler {
   SamplerNote note_;
 };
 
-/// One that nobody else asks twice: the first draw, density and evaluation are asked for again, and
-/// other bits are a LibraryError, of all that come after too.
+/// A sampler that nobody else asks twice. It asks again for the first draw, density and evaluation.
+/// Other bits are a LibraryError, then and at every later call.
 class InProcessSampler final : public LibrarySampler {
  public:
   InProcessSampler(std::shared_ptr<const PreparedLibrary> library, const AssaySampler& sampler);

@@ -124,7 +124,7 @@ ImageShape shape_of(const AssayImage& theirs) {
   return shape;
 }
 
-/// What is known of every element.
+/// The facts that all elements share.
 Channel element_of(const AssayImage& theirs) {
   Channel element;
   if (has(theirs.flags, ASSAY_LOW)) element.low = theirs.low;
@@ -158,7 +158,7 @@ std::vector<AssaySampler> samplers_of(const AssayPreparation& prepared) {
   return all;
 }
 
-/// What the library says, in the words of a program, so that both are read by the same rules.
+/// The library's facts in the words of a program, so that the same rules read both.
 std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& prepared,
                        const std::vector<AssaySampler>& samplers) {
   std::string text = "assay " + std::to_string(protocol_version) + " binary\n";
@@ -186,7 +186,7 @@ std::vector<double> numbers_of(const PreparedLibrary& library, const Question& q
   return numbers;
 }
 
-/// What is found by asking for observations of so many primaries again.
+/// The result of asking again for observations of so many primaries.
 struct Examined {
   FirstLook look;
   std::vector<double> usual;  ///< of observations that were all the same
@@ -269,7 +269,7 @@ class LibraryEstimator final : public Estimator {
     primaries_ = primaries;
   }
 
-  /// Where it is the first other one, it is drawn again. Rays are not compared.
+  /// Draws the first other observation again. Rays are not compared.
   void examine_unusual(const Question& question, std::span<const double> out) {
     if (!first_unusual(out, std::span(examined_->usual).first(out.size()))) return;
     std::vector<double> again = numbers_of(*library_, question);

@@ -31,7 +31,7 @@ class PreparedLibrary {
   PreparedLibrary(const PreparedLibrary&) = delete;
   PreparedLibrary& operator=(const PreparedLibrary&) = delete;
 
-  /// What it says of itself, as if it were a program.
+  /// The library's hello, as if it were a program.
   const Hello& hello() const { return hello_; }
   const std::vector<AssaySampler>& samplers() const { return samplers_; }
   const void* state() const { return state_; }

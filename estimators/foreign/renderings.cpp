@@ -71,8 +71,8 @@ std::string stamp_of(const fs::path& file, bool program) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// What may name a file in an argument: itself, what follows a `=`, and the words of a shell's
-/// line.
+/// The words of an argument that may name a file: all of it, the part after a `=`, and the words of
+/// a shell's line.
 std::vector<std::string> names_in(const std::string& argument) {
   std::vector<std::string> names{argument};
   std::string name;
@@ -132,7 +132,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// What programs that no longer run have left unfinished.
+/// Removes the unfinished files of programs that no longer run.
 void remove_leftovers(const fs::path& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
@@ -261,7 +261,7 @@ std::string Renderings::attempt(Task& task, const std::string& part, double& cpu
   const bool several = rendering_.takes_several();
   fs::remove_all(part);
   if (several) fs::create_directories(part);
-  // What was made before a program of several failed is whole or not: nobody knows.
+  // A file that was made before a program of several failed may or may not be whole.
   const std::string failure = run_program(task, part, cpu_seconds);
   if (!failure.empty()) return failure;
   std::erase_if(task.seeds, [&](std::uint32_t seed) {

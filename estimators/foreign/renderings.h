@@ -15,7 +15,7 @@
 
 namespace assay::foreign {
 
-/// Whether a word of the command has this place, as `{seed}`.
+/// True if a word of the command has this place, as `{seed}`.
 bool has_place(const std::vector<std::string>& command, std::string_view place);
 
 /// How a file is made. In the words of the command `{seed}`, `{samples}` and `{out}` stand for the
@@ -23,14 +23,14 @@ bool has_place(const std::vector<std::string>& command, std::string_view place);
 /// it is given seeds with commas between, and `{out}` is the folder in which it writes SEED.exr.
 struct Rendering {
   std::vector<std::string> command;
-  std::vector<std::string> depends = {};  ///< files that change what is made, beside those named
-  std::string folder = "";                ///< where the program runs
-  std::string cache = "";                 ///< folder of the files that are kept
-  std::string ending = "exr";             ///< of the files
-  double timeout = 600;                   ///< seconds for one file, from a program's start
-  std::uint64_t retries = 0;              ///< times that a program that failed is started again
-  double memory = 0;                      ///< MiB; 0: no limit
-  std::uint64_t jobs = 1;                 ///< programs at a time
+  std::vector<std::string> depends = {};  ///< Files that also change the result.
+  std::string folder = "";                ///< Folder in which the program runs.
+  std::string cache = "";                 ///< Folder of the files that are kept.
+  std::string ending = "exr";             ///< Ending of the files.
+  double timeout = 600;                   ///< Seconds for one file, from a program's start.
+  std::uint64_t retries = 0;              ///< Times that a failed program is started again.
+  double memory = 0;                      ///< MiB; 0: no limit.
+  std::uint64_t jobs = 1;                 ///< Programs at a time.
 
   bool takes_several() const;
 };
@@ -45,13 +45,14 @@ struct Wanted {
 
 /// The files of one rendering. Thread-safe.
 ///
-/// They stand in `cache`/HASH/SEED.exr. HASH is of the command before it is filled in, the samples,
-/// the folder, and the contents of every file that the command or `depends` names (of a program,
-/// and beyond 16 MiB, size and time of change): change a scene and all is made anew. An argument
-/// names files by itself, as `--scene=FILE`, and as a line of a shell does. The file
-/// command.txt beside them says what they are. A file is written under another name and renamed
-/// when the program has ended with status 0: one that is there is whole, and a run that was
-/// interrupted goes on where it stopped.
+/// They stand in `cache`/HASH/SEED.exr; the file command.txt beside them says what they are. HASH
+/// is of the command before it is filled in, the samples, the folder, and every file that the
+/// command or `depends` names. A file counts by its contents; a program, or a file beyond 16 MiB,
+/// by size and time of change. An argument names files by itself, as `--scene=FILE`, and as a line
+/// of a shell does.
+///
+/// A file is renamed from another name once the program has ended with status 0. So every file is
+/// whole, and an interrupted run goes on where it stopped.
 class Renderings {
  public:
   /// Throws std::runtime_error where the cache cannot be made or a file of `depends` is not there.

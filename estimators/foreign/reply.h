@@ -3,20 +3,18 @@
 // Questions to another program and its replies.
 //
 // A question asks for the observations first, first + 1, …, first + count - 1 of a stream, each
-// built from so many primaries. The reply is the numbers of each observation in order, and then the
-// question once more: whatever else came through the pipe, and whatever is missing, then shows.
+// built from so many primaries. The reply has the numbers of each observation in order, then the
+// question once more. So a stray or a missing word shows.
 //
-// Binary: a question is four 64-bit little-endian words: key, first, count, primaries. Text: a line
-// of five decimal numbers: the key's high and low 32 bits (many languages have no unsigned 64-bit
-// integers), first, count, primaries; of the reply, each observation is a line.
+// In binary a question is four 64-bit little-endian words: key, first, count, primaries. In text it
+// is a line of five decimal numbers: the key's high and low 32 bits, first, count, primaries. Each
+// observation is a line.
 //
-// A question of no primaries is to a sampler, in binary only: its number in the hello in the place
-// of the key, what is asked in the place of the first observation, and so many items follow it.
-// They are asked as
-//   draws        key and observation of a stream   point (three numbers), density, weight, and
-//                                                  whether a point came out, 0 or 1
-//   densities    a point, three numbers            a number
-//   evaluations  a point                           a number
+// A question of no primaries is to a sampler, in binary only. Its words are the sampler's number in
+// the hello, the kind of the question, the number of items, and 0. The items follow.
+//   Draws: an item is the key and observation of a stream. The reply is the point (three numbers),
+//          density, weight, and 1 or 0: a point came out, or none.
+//   Densities, evaluations: an item is a point, three numbers. The reply is a number.
 
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +27,7 @@
 
 namespace assay::foreign {
 
-/// What is asked of a sampler: 0, 1 or 2, plus 4 where denormals are to be flushed to zero.
+/// The kind of a question to a sampler: 0, 1 or 2, plus 4 if denormals are to be flushed to zero.
 enum class Asked : std::uint64_t { draws, densities, evaluations };
 inline constexpr std::uint64_t denormals_flushed = 4;
 
@@ -44,17 +42,16 @@ struct Question {
   std::uint64_t primaries = 1;
 
   bool is_to_sampler() const { return primaries == 0; }
-  /// Of a question to a sampler.
+  /// The kind of a question to a sampler.
   Asked asked() const { return Asked{first % denormals_flushed}; }
 };
 
-/// As it is sent.
 std::string to_bytes(const Question& question, Numbers numbers);
 
 /// "observation 7", "observations 0 to 255", "32 densities".
 std::string to_text(const Question& question);
 
-/// Whether two replies are the same, numbers that are not finite too.
+/// True if two replies have the same bits, NaN included.
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
 
 /// A reply as it comes in, in pieces of any size.
@@ -63,7 +60,7 @@ class Reply {
   /// `width` numbers an observation.
   Reply(const Question& question, std::size_t width, Numbers numbers);
 
-  /// Where the next bytes are to be written: never empty before the reply is complete.
+  /// The room for the next bytes. It is never empty before the reply is complete.
   std::span<char> space();
   /// That so many bytes were written there; whether the reply is now complete. Throws ProtocolError
   /// where they are none that could be part of it.
@@ -73,7 +70,7 @@ class Reply {
   /// Why the reply cannot become complete, though nothing more has come: it ended too early; ""
   /// where it may.
   std::string ends_early() const;
-  /// What has come so far, in words.
+  /// The bytes that have come so far, in words.
   std::string so_far() const;
 
  private:

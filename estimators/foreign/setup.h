@@ -35,9 +35,8 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
 ParameterInformation timeout_parameter(const std::string& summary, const std::string& fallback);
 ParameterInformation memory_parameter();
 
-/// What `process` and `library` have in common.
+/// The common parameters of `process` and `library`.
 std::vector<ParameterInformation> terms_parameters();
-/// Reads them.
 Terms read_terms(Parameters& parameters);
 
 }  // namespace assay::foreign

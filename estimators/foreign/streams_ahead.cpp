@@ -6,7 +6,7 @@ AssayStream StreamsAhead::of(StreamKey key, std::uint64_t observation) {
   AssayStream stream = assay_stream(key.bits, observation);
   if (!ahead_.has(key, observation)) return stream;
   ahead_.reach(observation);
-  // As assay_refill() leaves it.
+  // The state that assay_refill() leaves.
   FirstWords words = ahead_.words()[ahead_.place(observation)];
   stream.words[0] = words();
   stream.words[1] = words();

@@ -1,6 +1,6 @@
 // Irradiance from a luminaire by points uniform on its area.
 //
-// X = A L cos+ light_cosine+ / r^2 [visible], density 1 / A per unit area: the light's cosine over
+// X = A L cos+ light_cosine+ / r^2 [visible], density 1 / A per unit area. The light's cosine over
 // r^2 turns solid angle into area, so E[X] is the irradiance.
 
 #include "luminaire/area.h"
@@ -9,8 +9,8 @@ namespace assay::luminaire {
 
 namespace {
 
-// light_cosine / r^2 = h / r^3 at distance h from a triangle's plane, and r is at least h and at
-// least what rays see.
+// Rays see nothing nearer than a shortest distance. At distance h from a triangle's plane
+// light_cosine / r^2 = h / r^3, and r is at least h and at least that distance.
 double highest_term(const Setting& setting) {
   const double least = setting.near() / resolution;
   double highest = 0;

@@ -1,7 +1,7 @@
 // Irradiance from a luminaire by directions uniform in the projected hemisphere.
 //
-// X = pi L [the ray hits the luminaire], density cos(theta) / pi: the cosines cancel, so X is pi L
-// times a Bernoulli variable of mean E / (pi L), and its variance is E (pi L - E).
+// X = pi L [the ray hits the luminaire], density cos(theta) / pi: the cosines cancel. X is pi L
+// times a Bernoulli variable of mean E / (pi L), so its variance is E (pi L - E).
 
 #include <numbers>
 

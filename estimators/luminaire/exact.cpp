@@ -39,7 +39,7 @@ void add_outside(std::vector<SignedPolygon>& parts, const SignedPolygon& whole,
   add_outside(parts, {clipped(whole.polygon, cones[0]), -whole.sign}, rest);
 }
 
-// What an additive functional gives for the sum of parts.
+// The value of an additive functional for the sum of parts.
 double sum(std::span<const SignedPolygon> parts, const Functional& functional) {
   double total = 0;
   for (const SignedPolygon& part : parts) total += part.sign * functional(part.polygon);
@@ -66,7 +66,7 @@ bool nearer_than(const Polygon& polygon, double distance) {
   return false;
 }
 
-// Where the occluders hide the luminaire; none when that cannot be said exactly.
+// The cones in which the occluders hide the luminaire; nullopt if they have no exact form.
 std::optional<std::vector<Cone>> shadows(const Setting& setting) {
   const auto& occluders = setting.polygonal_occluders();
   if (!occluders || occluders->size() > most_occluders) return {};

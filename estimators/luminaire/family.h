@@ -1,11 +1,11 @@
 #pragma once
 
-// What the luminaire estimators have in common: their parameter, their channel, and samplers.
+// The common parameter, channel and samplers of the luminaire estimators.
 //
-// All of them estimate the irradiance at a receiver from a diffuse luminaire,
-//   E = integral over directions w of L(w) max(0, n . w),
-// where L(w) is the radiance of the luminaire where a ray along w hits it first, else 0. Parts of
-// the luminaire below the receiver's horizon, and sides that do not emit, contribute nothing.
+// All estimate the irradiance at a receiver from a diffuse luminaire,
+//   E = integral over directions w of L(w) max(0, n . w).
+// L(w) is the radiance of the luminaire if a ray along w hits it first, else 0. Parts of the
+// luminaire below the receiver's horizon, and sides that do not emit, contribute nothing.
 
 #include <functional>
 #include <memory>
@@ -26,7 +26,6 @@ Information information(std::string name, std::string summary, std::string descr
 /// The same for a mutant of `original`.
 Information mutant_information(std::string name, std::string original, std::string defect);
 
-/// The setting of the parameter `scene`.
 SharedSetting read_setting(Parameters& parameters);
 
 /// E[X^2] for unit radiance of the primary X, if it can be had from the exact integrals.

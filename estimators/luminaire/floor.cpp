@@ -1,8 +1,8 @@
 // The irradiance of a plane under a luminaire, as an image.
 //
-// Pixel (x, y) is the receiver at the middle of its square. Each has X = A L cos+ light_cosine+ /
-// r^2 [visible] at points uniform on the luminaire, so E[X] is that receiver's irradiance, which
-// Lambert's formula knows.
+// Pixel (x, y) is the receiver at the middle of its square. At points uniform on the luminaire it
+// has X = A L cos+ light_cosine+ / r^2 [visible]. E[X] is that receiver's irradiance, known by
+// Lambert's formula.
 
 #include "luminaire/floor.h"
 

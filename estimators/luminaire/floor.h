@@ -8,8 +8,8 @@
 
 namespace assay::luminaire {
 
-/// The grid: width x height receivers that share the scene's normal, centred on the scene's
-/// receiver, the centres of equal squares of a rectangle `size` long along the width.
+/// The grid: width x height receivers that share the scene's normal. They are the centres of equal
+/// squares. The rectangle is centred on the scene's receiver and `size` long along the width.
 struct Floor {
   ImageShape shape;
   std::vector<SharedSetting> settings;  ///< of each pixel, row by row

@@ -87,7 +87,7 @@ Receiver receiver(const Value& value) {
           unit_vector(required(value, "the receiver", "normal"), "the receiver's normal")};
 }
 
-// Whether a polygon is seen clockwise from the side that `direction` points to.
+// True if a polygon is seen clockwise from the side that `direction` points to.
 bool is_clockwise(const Polygon& vertices, const Vector3& direction) {
   return dot(render::area_vector(vertices), direction) < 0;
 }

@@ -23,7 +23,7 @@ struct Light {
   /// A polygon is planar and convex.
   std::variant<render::Polygon, render::TriangleMesh> shape;
   double radiance = 1;
-  /// Whether the side emits from which the vertices are seen clockwise, not the other one.
+  /// True if the side emits from which the vertices are seen clockwise.
   bool clockwise = false;
 };
 
@@ -36,11 +36,19 @@ struct SceneDescription {
   std::vector<Occluder> occluders;
 };
 
-/// Reads a scene: the name of a built-in one, or a map as in estimators/README.md. File names are
-/// relative to `folder`. InputError at the offending node for an unknown name or key (with the
-/// nearest known), a missing key, a number that is not finite, a zero normal, a polygon of fewer
-/// than three vertices, without area, not planar (to 1e-6 of its diameter) or not convex, a
-/// negative radius or radiance, and whatever read_obj() refuses.
+/// Reads a scene: the name of a built-in one (triangle, cornell_triangle, rectangle), or a map
+///   receiver:  {position: [0, 0, 0], normal: [0, 0, 1]}
+///   light:     {polygon: [[.2, -.4, 1], [1.6, .3, 1.4], [-.3, 1.2, 1.1]], radiance: 1}
+///   occluders: [{polygon: [...]}, {disc: {center: [0, 0, .4], normal: [0, 0, 1], radius: .1}},
+///               {obj: chair.obj}].
+/// A light has `polygon` or `obj`, and file names are relative to `folder`. A polygon emits from
+/// the receiver's side, or from the one that an optional `normal` of the light points from. A mesh
+/// emits from the counter-clockwise side of each triangle.
+///
+/// InputError at the offending node: an unknown name or key, a missing key, a number that is not
+/// finite, a zero normal. InputError, too, for a polygon of fewer than three vertices, without
+/// area, not planar (to 1e-6 of its diameter) or not convex. InputError for a negative radius or
+/// radiance, and for whatever read_obj() refuses.
 SceneDescription read_scene(const Value& value, const std::string& folder);
 
 /// The occluders of a scene alone: a list as under its key `occluders`. The same errors.

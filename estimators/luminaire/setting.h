@@ -1,10 +1,10 @@
 #pragma once
 
-// A luminaire scene as its receiver sees it: everything that does not depend on the sample, worked
-// out once and shared by all workers.
+// A luminaire scene as its receiver sees it: the parts that do not depend on the sample, shared by
+// all workers.
 //
-// All of it is in the receiver's frame: the receiver is the origin and its normal is +z, so that
-// the receiver's cosine of a unit vector w is w.z and every ray starts at the exact zero vector.
+// All of it is in the receiver's frame. The receiver is the origin and its normal is +z. So the
+// receiver's cosine of a unit vector w is w.z, and every ray starts at the exact zero vector.
 
 #include <cstdint>
 #include <memory>
@@ -21,15 +21,12 @@ namespace assay::luminaire {
 
 /// Surfaces are told apart down to this fraction of a distance.
 ///
-/// What lies nearer to the receiver is not seen: for shadow rays, nearer than this fraction of the
-/// way to the point on the luminaire; for closest-hit rays, of the way to the luminaire's nearest
+/// Rays ignore surfaces nearer to the receiver. A shadow ray ignores this fraction of the way to
+/// the point on the luminaire. A closest-hit ray ignores it of the way to the luminaire's nearest
 /// point. The luminaire stops rays as if it were nearer by this fraction, and shadow rays end twice
-/// as much before it: of two coplanar surfaces, a lamp and the wall it is let into, the lamp wins
-/// for every estimator. Moving a surface along the lines through the receiver changes nothing that
-/// it sees.
+/// as much before it. So a lamp wins over the wall that it is let into, for every estimator.
 inline constexpr double resolution = 0x1p-14;
 
-/// A triangle of the luminaire.
 struct LightTriangle {
   render::Vector3 a;       ///< first vertex
   render::Vector3 ab;      ///< edge to the second
@@ -40,7 +37,7 @@ struct LightTriangle {
   bool emits = false;         ///< whether the side that emits faces the receiver
 };
 
-/// What joins the receiver to a point of the luminaire.
+/// The line from the receiver to a point of the luminaire.
 struct Connection {
   render::Vector3 to_light;  ///< from the receiver to the point
   double squared_distance = 0;
@@ -72,9 +69,9 @@ class Setting {
 
   double radiance() const { return radiance_; }
   const std::vector<LightTriangle>& triangles() const { return triangles_; }
-  /// Of all triangles, those that face away included.
+  /// Area of all triangles, those that face away included.
   double area() const { return area_; }
-  /// Whether the luminaire is one planar polygon; it then does not shade itself.
+  /// True if the luminaire is one planar polygon; it then does not shade itself.
   bool planar() const { return planar_; }
   /// The planar polygon as written, in the receiver's frame; empty for a mesh.
   const render::Polygon& polygon() const { return polygon_; }
@@ -104,14 +101,14 @@ class Setting {
     return hit.shape == 0 ? &triangles_[hit.primitive] : nullptr;
   }
 
-  /// Whether a ray from the receiver first hits a side of the luminaire that emits.
+  /// True if a ray from the receiver first hits a side of the luminaire that emits.
   bool sees_light(const render::RoundedRay& ray, Cost& cost) const {
     const LightTriangle* const triangle = first_hit(ray, cost);
     return triangle && triangle->emits;
   }
 
-  /// What a light sample brings: its value, or 0 where a shadow ray is blocked. Where the value is
-  /// 0 anyway nobody needs the ray.
+  /// The value of a light sample, or 0 if a shadow ray is blocked. No ray is traced for a value of
+  /// 0.
   double received(const LightSample& sample, Cost& cost) const {
     if (sample.value == 0) return 0;
     ++cost.shadow_rays;

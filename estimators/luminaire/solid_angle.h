@@ -117,8 +117,8 @@ class SolidAngleSampler final : public Sampler {
   }
 
   // The density jumps at the outline: more than thirty nodes across a square of the same solid
-  // angle. A corner of the outline thinner than the nodes' distance is not seen: at 8 x 16 parts
-  // the built-in triangle lacks 2.6e-4 of its mass, at 32 x 64 less than 1e-5.
+  // angle. Corners thinner than the nodes' distance are not seen. At 8 x 16 parts the built-in
+  // triangle lacks 2.6e-4 of its mass, at 32 x 64 less than 1e-5.
   Panels panels() const override {
     const double across = std::sqrt(primary_.solid_angle());
     const double parts = std::clamp(2 * std::numbers::pi / across, 32.0, 128.0);
@@ -143,8 +143,8 @@ class SolidAngleSampler final : public Sampler {
   SolidAnglePrimary<Map> primary_;
 };
 
-/// The same of a single triangle in coordinates that turn the spherical triangle into the unit
-/// square at constant density 1: what a histogram tests to the outline's very edge.
+/// The same of a single triangle, in coordinates that turn the spherical triangle into the unit
+/// square at constant density 1. A histogram then tests to the outline's very edge.
 template <class Map = ArvoMap>
 class SquareSampler final : public Sampler {
  public:

@@ -43,7 +43,7 @@ class ChainEstimator final : public Estimator {
     tally_.steps = tally_.acceptance = 0;
     Walker walker{*recipe_->target, *coordinates_, random, cost};
     const double normaliser = (*recipe_->start)(walker);
-    // Where all points of the start are black the estimate is b = 0 times anything.
+    // If all points of the start are black, b = 0 and the estimate is 0.
     if (normaliser > 0) {
       for (std::uint64_t i = 0; i < primaries; ++i) step(walker, normaliser);
     }

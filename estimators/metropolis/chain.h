@@ -10,7 +10,6 @@
 
 namespace assay::metropolis {
 
-/// What a chain is made of; shared by all workers.
 struct Recipe {
   SharedTarget target;
   double p_large;  ///< probability of a large step, in (0, 1]

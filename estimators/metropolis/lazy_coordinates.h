@@ -1,8 +1,8 @@
 #pragma once
 
-// The coordinates of a chain's state, mutated when they are looked at (Kelemen, Szirmay-Kalos,
-// Antal and Csonka 2002, "A simple and robust mutation strategy for the Metropolis light transport
-// algorithm", section 3.3).
+// The coordinates of a chain's state, mutated on demand. Source: Kelemen, Szirmay-Kalos, Antal and
+// Csonka 2002, "A simple and robust mutation strategy for the Metropolis light transport
+// algorithm", section 3.3.
 
 #include <cstdint>
 #include <memory>
@@ -13,22 +13,21 @@
 
 namespace assay::metropolis {
 
-/// Every accepted proposal moves all coordinates, of which a path looks at a few. Each carries the
-/// time, counted in accepted proposals, that its value is of; what it has missed since is made up
-/// for when it is next looked at: a fresh value if a large step was accepted meanwhile, and a small
-/// step for each small one after that. Before a proposal changes a coordinate it is set aside, and
-/// put back if the proposal is rejected.
+/// Every accepted proposal moves all coordinates, but a path looks at a few. Each value carries its
+/// time, counted in accepted proposals. The next look makes up for the missed ones: a fresh value
+/// for a large step, then a small step for each small one. A proposal sets a coordinate aside
+/// before it changes it. A rejection puts it back.
 class LazyCoordinates : public Coordinates {
  public:
   explicit LazyCoordinates(std::shared_ptr<const SmallStep> step) : step_(std::move(step)) {}
 
   /// Forgets everything: a state of fresh uniform coordinates.
   void restart();
-  /// Begins a proposal from the state, all coordinates fresh (`large`) or each a small step away.
-  /// `random` is where its numbers come from, until the next proposal.
+  /// Begins a proposal from the state: all coordinates fresh (`large`), or each a small step away.
+  /// It takes numbers from `random` until the next proposal.
   void propose(bool large, Stream& random);
   double uniform() override;
-  /// Whether no coordinate of the proposal has left [0, 1).
+  /// True if no coordinate of the proposal has left [0, 1).
   bool inside() const { return inside_; }
   /// Makes the proposal the state.
   void accept();
@@ -55,9 +54,7 @@ class LazyCoordinates : public Coordinates {
   /// A small step that a coordinate has missed. No path looks at it, so that it may stay where the
   /// step would leave: that, too, is symmetric.
   void advance(Coordinate& coordinate);
-  /// Whether the proposal is a large step.
   bool large() const { return large_; }
-  /// Of the state.
   std::uint64_t time() const { return time_; }
   /// From the proposal on, coordinates that are older are drawn afresh.
   void date_large_step() { large_time_ = time_ + 1; }

@@ -14,16 +14,14 @@ std::vector<ParameterInformation> chain_parameters();
 /// `weights`, of chains that may have either.
 ParameterInformation weights_parameter();
 
-/// What a plugin reads before it knows its rules and its start.
+/// Parameters that a plugin reads before it knows its rules and its start.
 struct Ingredients {
   SharedTarget target;
   double p_large;
   std::uint64_t bootstrap;
   Boundary boundary;
 };
-/// Reads chain_parameters().
 Ingredients read_ingredients(Parameters& given);
-/// Reads `weights`.
 std::shared_ptr<const Rules> read_rules(Parameters& given, double p_large);
 
 /// A sound chain with these rules, started from the bootstrap.

@@ -42,10 +42,10 @@ struct Product {
   std::vector<Factor> factors;
 };
 
-/// F = sum of products, all of as many factors; std::invalid_argument for none, more than
-/// most_terms of either, and products of different numbers of factors. No units. The first
-/// coordinate runs along a row of pixels; with `coloured` pixel p of n has the colour (1 - 0.8 t,
-/// 0.5, 0.2 + 0.8 t), t = p / (n - 1).
+/// A sum F of products, without units. All have as many factors. The first coordinate runs along a
+/// row of pixels. With `coloured` pixel p of n has the colour (1 - 0.8 t, 0.5, 0.2 + 0.8 t), t = p
+/// / (n - 1). Throws std::invalid_argument for none, more than most_terms of either, and different
+/// numbers of factors.
 class ProductTarget final : public Target {
  public:
   ProductTarget(std::vector<Product> sum, std::size_t width, bool coloured);

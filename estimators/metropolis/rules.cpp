@@ -23,7 +23,7 @@ void Rules::record(const Step& step, Tally& tally) const {
   ++tally.steps;
 }
 
-// Where I = 0, F = 0 and any weight will do.
+// If I = 0, F = 0 and any weight will do.
 Weights MeanValueRules::weights(const Step& step) const {
   return {ratio(step.acceptance * step.normaliser, step.proposed.importance),
           ratio((1 - step.acceptance) * step.normaliser, step.current.importance)};

@@ -32,7 +32,7 @@ struct Tally {
   }
 };
 
-/// What F(y) and F(x) of a step are multiplied by.
+/// The factors of F(y) and F(x) in a step.
 struct Weights {
   double proposed;
   double current;
@@ -49,16 +49,16 @@ class Rules {
   virtual void record(const Step& step, Tally& tally) const;
 };
 
-/// Veach and Guibas' (1997) use of both ends of a step by the expected value: a b / I(y) and
-/// (1 - a) b / I(x).
+/// Both ends of a step by the expected value (Veach and Guibas 1997): a b / I(y) and (1 - a) b /
+/// I(x).
 class MeanValueRules : public Rules {
  public:
   Weights weights(const Step& step) const override;
 };
 
-/// Kelemen et al.'s (2002, section 3.4) weights, which take the large steps as a second way of
-/// sampling, uniform, and combine the two by multiple importance: (a + [large]) / (I(y) / b +
-/// p_large) and (1 - a) / (I(x) / b + p_large).
+/// Weights of multiple importance sampling (Kelemen et al. 2002, section 3.4). Large steps are a
+/// second way of sampling, uniform:
+///   (a + [large]) / (I(y) / b + p_large)  and  (1 - a) / (I(x) / b + p_large).
 class MultipleImportanceRules : public Rules {
  public:
   explicit MultipleImportanceRules(double p_large) : p_large_(p_large) {}
@@ -71,7 +71,7 @@ class MultipleImportanceRules : public Rules {
   double p_large_;
 };
 
-/// What a chain is made from and is at.
+/// The recipe of a chain and its state.
 struct Walker {
   const Target& target;
   LazyCoordinates& coordinates;
@@ -91,8 +91,8 @@ class Start {
   virtual double operator()(Walker& walker) const = 0;
 };
 
-/// The first state is one of `count` independent points, drawn in proportion to I; b is the mean of
-/// I over the same points, so that E[b h(first)] is the integral of h I for every h.
+/// The first state is one of `count` independent points, drawn in proportion to I. The normaliser b
+/// is the mean of I over the same points. So E[b h(first)] is the integral of h I for every h.
 class ResampledStart : public Start {
  public:
   explicit ResampledStart(std::uint64_t count) : count_(count) {}

@@ -10,8 +10,9 @@
 
 namespace assay::metropolis {
 
-/// `step`: the signed length, of density 1 / (2 |x| ln(largest / smallest)). `coordinate`: a
-/// uniform number after a small step, staying where a step is rejected; uniform again.
+/// The samplers of a step. One is `step`, the signed length, of density 1 / (2 |x| ln(largest /
+/// smallest)). The other is `coordinate`, a uniform number after a small step; it stays if a step
+/// is rejected. It is uniform again.
 std::vector<NamedSampler> step_samplers(const std::shared_ptr<const SmallStep>& step);
 
 }  // namespace assay::metropolis

@@ -7,11 +7,11 @@
 
 namespace assay::metropolis {
 
-/// Pixel p is the wall between two heights of the unit sphere, one of `width` bands of equal area;
-/// its element is the mean radiance that leaves the band, Le + a (mean Le) / (1 - mean a) averaged
-/// over its area. A path starts at a uniform point of the wall (two coordinates), goes on with
-/// probability `survival` at each vertex (one) in a cosine-distributed direction (two), and brings
-/// what is emitted where it arrives: paths/plain in the coordinates' hands.
+/// Pixel p is the wall between two heights of the unit sphere, one of `width` bands of equal area.
+/// Its element is the mean radiance that leaves the band, Le + a (mean Le) / (1 - mean a) averaged
+/// over its area. A path is that of paths/plain. It starts at a uniform point of the wall (two
+/// coordinates). At each vertex it goes on with probability `survival` (one coordinate) in a
+/// cosine-distributed direction (two). It brings what is emitted where it arrives.
 class SphereTarget final : public Target {
  public:
   struct Form {

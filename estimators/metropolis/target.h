@@ -1,6 +1,6 @@
 #pragma once
 
-// What a chain integrates.
+// The integrand of a chain.
 
 #include <memory>
 #include <optional>
@@ -16,15 +16,16 @@ namespace assay::metropolis {
 
 using paths::Spectrum;
 
-/// What a point of the primary sample space brings.
+/// The light of one point of the primary sample space.
 struct Contribution {
   std::size_t pixel = 0;
   Spectrum value;         ///< F, not negative; of a grey target all three are alike
   double importance = 0;  ///< I, the luminance of F: what chains follow
 };
 
-/// An image as integrals over the primary sample space: the element of pixel p is pixels x the
-/// integral of F(u) [p(u) = p], so that an image is the mean of what its points bring.
+/// An image as integrals over the primary sample space. The element of pixel p is the number of
+/// pixels times the integral of F(u) [p(u) = p]. So an image is the mean of its points'
+/// contributions.
 class Target {
  public:
   virtual ~Target() = default;

@@ -17,7 +17,7 @@ std::shared_ptr<const Setup> scaled(Parameters& parameters) {
   });
 }
 
-// Whether an observation is spoilt comes from a substream, so that all others are the original's.
+// A substream decides if an observation is spoilt, so that all others are the original's.
 std::shared_ptr<const Setup> rare_nan(Parameters& parameters) {
   const analytic::NormalLaw law = analytic::normal_law(parameters);
   const double probability = parameters.number("probability");

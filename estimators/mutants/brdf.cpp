@@ -139,8 +139,8 @@ struct MirroredWeight final : Misreported {
   }
 };
 
-// All of the original's parameters, so that the key of the streams is the same; the defects are in
-// the published sampler, which is the only choice.
+// All of the original's parameters, so that the key of the streams is the same. The defects are in
+// the published sampler, the only choice.
 std::vector<ParameterInformation> with_sampler(std::vector<ParameterInformation> parameters) {
   ParameterInformation sampler = brdf::sampler_parameter();
   sampler.summary = "the one that has the defect";
@@ -149,7 +149,7 @@ std::vector<ParameterInformation> with_sampler(std::vector<ParameterInformation>
   return parameters;
 }
 
-// What the author claims: the original's mean. Nothing is claimed of the range and the variance.
+// The author's claim: the original's mean. Nothing is claimed of the range and the variance.
 Channel claimed(const render::HalfVectorBrdf& original) {
   const Channel channel = brdf::published_channel(original);
   return {.name = channel.name, .mean = channel.mean, .mean_error = channel.mean_error};

@@ -19,8 +19,8 @@ struct CrowdedDisc {
   PlanePoint operator()(double s, double t) const { return UniformDisc{}(s * s, t); }
 };
 
-// Lens points are moved in by focus / depth of what the middle of the lens sees, so that discs of
-// confusion have the radius A |depth - focus| / depth.
+// Moves lens points in by focus / depth of the surface that the middle of the lens sees. Discs of
+// confusion then have the radius A |depth - focus| / depth.
 struct BlurByDepth {
   SharedSetting setting;
   PlanePoint pixel;

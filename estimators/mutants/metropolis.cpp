@@ -135,7 +135,7 @@ struct NotFreshened final : LazyCoordinates {
   }
 };
 
-// What a mutant does to a sound recipe.
+// The change that a mutant makes to a sound recipe.
 using Defect = std::function<void(Recipe&, const Ingredients&)>;
 
 template <class Mutant>

@@ -1,11 +1,11 @@
 // Mutants of multiple importance sampling of light and BRDF: weights, densities or techniques with
 // one thing wrong.
 //
-// I is the radiance, I_l and I_b the integrals of w_l f and w_b f, its parts. Whatever makes both
-// techniques' weights wrong alike, so that they still sum to 1, leaves no bias and shows in the
-// variance alone. Numbers are for a square light of side 0.6 at the distance 2 in the mirror
-// direction, Ashikhmin-Shirley exponents 1000 and 100, a sample of each, the balance heuristic,
-// unless said otherwise.
+// I is the radiance, I_l and I_b its parts, the integrals of w_l f and w_b f. A defect that leaves
+// the sum of weights at 1 leaves no bias, and shows in the variance alone. Unless said otherwise,
+// figures are for the balance heuristic and a sample of each. The light is a square of side 0.6 at
+// the distance 2 in the mirror direction. The reflectance is Ashikhmin-Shirley with exponents 1000
+// and 100.
 
 #include <utility>
 

@@ -1,6 +1,6 @@
-// Mutants of steerable importance sampling: its parts with one replaced. Biases are given for the
-// sky of nine harmonics (smooth) and for 0.2 + 20 e^(60 (cos - 1)) about (.3, .2, .8) (peaked),
-// both as in suites/steerable.yaml, at level 4.
+// Mutants of steerable importance sampling: its parts with one replaced. Biases are given for two
+// skies of suites/steerable.yaml, at level 4. The smooth one is of nine harmonics. The peaked one
+// is 0.2 + 20 e^(60 (cos - 1)) about (.3, .2, .8).
 
 #include <bit>
 #include <functional>
@@ -129,7 +129,7 @@ Outcome absolute_cosine(const sky::Setting& setting, const Direction& direction,
   return result;
 }
 
-/// What a mutant starts from.
+/// The sound parts that a mutant starts from.
 struct Parts {
   SharedSetting setting;
   std::shared_ptr<const SkyTree> tree;

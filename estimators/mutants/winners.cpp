@@ -45,8 +45,8 @@ struct SmallNumbersDropped : Winners {
 
 // Two defects need the children's values; they act at the first vertex, below it all is sound.
 
-// Whether there shall be another child, after so many, of which the first and the last brought
-// this.
+// True if another child follows after `drawn` ones, of which the first and the last were bright or
+// not.
 struct WhileBright {
   bool operator()(bool /*first_bright*/, bool last_bright, double drawn, double splitting) const {
     return last_bright && drawn < splitting;
@@ -135,7 +135,7 @@ Entry first_vertex_mutant(const Defect& defect) {
       }};
 }
 
-// Where a child follows from every n of a half or more, some surface must have fewer.
+// If a child follows from every n of a half or more, some surface must have fewer.
 template <class Broken>
 Entry rounding_mutant(const Defect& defect) {
   Entry entry = tree_mutant<Broken>(defect);

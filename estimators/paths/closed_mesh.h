@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether a mesh encloses a volume, and what lies in it.
+// Tests if a mesh encloses a volume, and if a point lies in it.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace assay::paths {
 
-/// Empty where every edge of a triangle is an edge of exactly one other, run through the opposite
-/// way; else a sentence that names an edge which is not (vertices counted from 1).
+/// Empty if every edge of a triangle is an edge of exactly one other, run through the opposite way.
+/// Else a sentence that names an edge which is not (vertices counted from 1).
 std::string why_not_closed(const render::TriangleMesh& mesh);
 
 /// How often a closed mesh winds about a point: +-1 inside, 0 outside. The sum of the triangles'

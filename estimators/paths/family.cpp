@@ -19,7 +19,8 @@ Scene scene_of(const SphereScene& form, const Camera& camera) {
 
 Scene scene_of(const MeshScene& form, const Camera& camera) {
   auto world = std::make_shared<const MeshWorld>(form, camera);
-  // Of a furnace without summing over its triangles, whose rounding the right terminal value shows.
+  // A furnace needs no sum over its triangles: the right terminal value would show the sum's
+  // rounding.
   if (form.furnace) {
     const ZonedScene& law = world->furnace();
     return {world, true, law, global_incoming(law.mean_emission(), law.mean_albedo())};
@@ -27,8 +28,8 @@ Scene scene_of(const MeshScene& form, const Camera& camera) {
   return {world, true, {}, global_incoming(mean_emission(*world), mean_albedo(*world))};
 }
 
-// What a vertex of a zone scores, for one colour; the emission that arrives along the camera's ray
-// is added to the mean elsewhere and has no variance.
+// Adds the score of a vertex of a zone, for one colour. The emission that arrives along the
+// camera's ray is added to the mean elsewhere and has no variance.
 void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, Pick colour,
                Direct direct) {
   const ZonedScene& law = *scene.law;
@@ -59,8 +60,8 @@ std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, Pick c
   return all;
 }
 
-// Whether the variance's recursion describes the path: mirrors keep it only in grey furnaces whose
-// light is found by hits, and a furnace's shadow rays have no closed form.
+// True if the variance's recursion describes the path. Mirrors keep it only in grey furnaces whose
+// light is found by hits. A furnace's shadow rays have no closed form.
 bool has_variance(const Scene& scene, const Steps& steps) {
   bool mirrors = false;
   for (const ZonedScene::Zone& z : scene.law->zones) {

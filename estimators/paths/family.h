@@ -1,6 +1,6 @@
 #pragma once
 
-// What the estimators of this folder share: parameters, worlds, channels, set-up.
+// The common parts of this folder's estimators: parameters, worlds, channels, set-up.
 
 #include <functional>
 #include <memory>
@@ -23,20 +23,19 @@ using SharedMesh = std::shared_ptr<const MeshWorld>;
 struct Scene {
   std::variant<SharedSphere, SharedMesh> world;
   bool grey = true;
-  /// Where vertices are independent: in spheres and furnaces.
+  /// Present if vertices are independent: in spheres and furnaces.
   std::optional<ZonedScene> law;
   Incoming global;
 };
 
 Scene read_scene(Parameters& parameters);
 
-/// What a colour's channel may state.
 struct Known {
   std::optional<double> mean = {};
   std::optional<double> variance = {};
 };
 
-/// What is known of an estimator: by colour, and the expected numbers of vertices at each bounce.
+/// Exact facts of an estimator, by colour, and the expected numbers of vertices at each bounce.
 struct Knowledge {
   std::array<Known, 3> colours = {};
   std::optional<std::array<double, Tally::bounces>> vertices = {};
@@ -44,7 +43,7 @@ struct Knowledge {
   double low = -std::numeric_limits<double>::infinity();
 };
 
-/// What the zones of a sphere or of a furnace do at a vertex.
+/// The steps of a path in the zones of a sphere or of a furnace.
 struct Steps {
   std::function<double(const Surface&)> survival;
   std::function<Spectrum(const Surface&)> terminal;

@@ -15,21 +15,21 @@
 
 namespace assay::paths {
 
-/// How far a path goes on from where it arrived, in fractions of the radius of the triangle's
-/// inscribed circle: moved by this much of the way to the circle's centre, and by a quarter as much
-/// of its radius off the triangle. So it starts inside of neighbours that meet at 15 degrees or
-/// more, whatever rounding did, and no ray slips out at an edge.
+/// A path goes on from a point moved off its vertex, as a fraction of the radius of the triangle's
+/// inscribed circle. The point moves by this fraction of the way to the circle's centre. It also
+/// moves by a quarter of the fraction of the radius off the triangle. So it starts inside of
+/// neighbours that meet at 15 degrees or more, and no ray slips out at an edge.
 inline constexpr double mesh_resolution = 0x1p-14;
-/// The least of it in units of the scene's longest side, 64 times the rounding of a coordinate: a
-/// small triangle takes a larger fraction, half at most, so that triangles whose inscribed circles
-/// are larger than a 100000th of the scene do not leak.
+/// The least shift in units of the scene's longest side, 64 times the rounding of a coordinate. A
+/// small triangle takes a larger fraction, half at most. So triangles do not leak if their
+/// inscribed circles are larger than a 100000th of the scene.
 inline constexpr double least_shift = 0x1p-18;
 
 class MeshWorld {
  public:
   MeshWorld(const MeshScene& scene, const Camera& camera);
 
-  /// Of a furnace: its law as a scene of one zone.
+  /// The law of a furnace, as a scene of one zone.
   const ZonedScene& furnace() const { return furnace_; }
   /// Sides of triangles: 2 i is the side of triangle i that is seen counter-clockwise, 2 i + 1 the
   /// other.
@@ -40,8 +40,8 @@ class MeshWorld {
   /// Moved and scaled until the longest side is 1, as all positions are. Vertices that are at the
   /// same place in the description are so here.
   const render::TriangleMesh& mesh() const { return mesh_; }
-  /// Whether nothing stands between two vertices. One shadow ray; what lies within 2^-12 of the way
-  /// to the second is that point itself.
+  /// True if nothing stands between two vertices. Traces one shadow ray. A hit within 2^-12 of the
+  /// way to the second is that point itself.
   bool sees(const Vertex& from, const Vertex& to, Cost& cost) const {
     ++cost.shadow_rays;
     constexpr double far = 1 - 0x1p-12;
@@ -90,9 +90,9 @@ class MeshWorld {
     double area = 0;
   };
 
-  /// Albedo / pi x emission x cosines / squared distance x area, of a point of what emits, drawn in
-  /// proportion to mean emission x area; 0 where something stands between. One shadow ray where a
-  /// cosine is positive.
+  /// Albedo / pi x emission x cosines / squared distance x area, of a point of an emitter. The
+  /// point is drawn in proportion to mean emission x area. The value is 0 if something stands
+  /// between. Traces one shadow ray if a cosine is positive.
   Spectrum sampled_light(const Vertex& v, Stream& random, Cost& cost) const;
 
   static Triangle triangle(const std::array<render::Vector3, 3>& corners);

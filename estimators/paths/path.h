@@ -11,7 +11,8 @@
 
 namespace assay::paths {
 
-/// What a path found and how many vertices it had at each bounce: 0 is what the camera sees.
+/// The light of a path, and its number of vertices at each bounce. Bounce 0 is what the camera
+/// sees.
 struct Tally {
   static constexpr std::size_t bounces = 7;
 
@@ -25,8 +26,8 @@ struct Tally {
   }
 };
 
-/// What a vertex scores by itself. Emission counts where the path arrived by the camera's ray or a
-/// mirror; elsewhere only if light is learnt of by hits.
+/// The score of a vertex by itself. Emission counts if the path arrived by the camera's ray or a
+/// mirror. Elsewhere it counts only if light is found by hits.
 template <class World>
 Spectrum score(const World& world, const Vertex& v, Direct direct, bool sees_emission,
                Stream& random, Cost& cost) {

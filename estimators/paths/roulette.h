@@ -11,11 +11,11 @@ namespace assay::paths {
 /// The probability to go on, from the throughput T and the albedo a of each colour. Each is a
 /// weighted mean of the albedo, or its maximum, and so below 1.
 enum class Rule {
-  max_albedo,   ///< max a
-  mean_albedo,  ///< (sum a) / 3
-  luminance,    ///< luminance of a
-  throughput,   ///< sum T a / sum T: keeps the sum of T as it is
-  radiance,     ///< sum T a L / sum T L, L the scene's mean radiance: keeps the sum of T L
+  max_albedo,   ///< Value max a.
+  mean_albedo,  ///< Value (sum a) / 3.
+  luminance,    ///< Luminance of a.
+  throughput,   ///< Value sum T a / sum T: keeps the sum of T as it is.
+  radiance,     ///< Value sum T a L / sum T L, L the scene's mean radiance: keeps the sum of T L.
 };
 
 /// Probabilities to go on by a diffuse reflection and by the mirror.
@@ -26,10 +26,10 @@ struct Survival {
   double total() const { return diffuse + mirror; }
 };
 
-/// Russian roulette with terminal values (Szecsi, Szirmay-Kalos and Kelemen 2003). At a vertex with
-/// throughput T, albedo a, probability to go on s and terminal value e a path that ends adds T e,
-/// one that goes on subtracts T e (1 - s) / s and multiplies T by a / s: the expectation is the
-/// same for every e. With e = 0 it is the classical roulette.
+/// Russian roulette with terminal values (Szecsi, Szirmay-Kalos and Kelemen 2003). T is a vertex's
+/// throughput, a its albedo, s the probability to go on and e the terminal value. A path that ends
+/// adds T e. One that goes on subtracts T e (1 - s) / s and multiplies T by a / s. The expectation
+/// is the same for every e. With e = 0 it is the classical roulette.
 class Roulette {
  public:
   /// `terminal` holds e of each patch, or nothing for e = 0.
@@ -50,7 +50,7 @@ class Roulette {
         break;
     }
     const Spectrum weight = throughput * mean_radiance_;
-    // Where no light can arrive in any channel that the path still carries, nothing is lost.
+    // Nothing is lost if no light can arrive in any channel that the path still carries.
     return sum(weight) > 0 ? sum(weight * albedo) / sum(weight) : 0;
   }
 

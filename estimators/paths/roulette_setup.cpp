@@ -20,7 +20,7 @@ std::vector<Surface> patch_surfaces(const Scene& scene) {
   return all;
 }
 
-// Where a reflected ray arrives in a sphere: uniform in area.
+// The point where a reflected ray arrives in a sphere: uniform in area.
 class SphereHits final : public Sampler {
  public:
   explicit SphereHits(SharedSphere world) : world_(std::move(world)) {}

@@ -24,8 +24,8 @@ RoulettePlan read_classical(Parameters& parameters, const Scene& scene);
 RoulettePlan read_improved(Parameters& parameters, const Scene& scene);
 std::vector<ParameterInformation> improved_parameters();
 
-/// e of a surface from what arrives: scale x albedo x radiance, without the direct part of what is
-/// reflected diffusely where direct light is learnt of separately.
+/// The terminal value e of a surface: scale x albedo x arriving radiance. If direct light is found
+/// separately, its part of the diffuse reflection is left out.
 Spectrum terminal_value(const Surface& surface, const Incoming& incoming, Direct direct,
                         double scale);
 /// e of every patch of a scene from its global estimate.

@@ -38,15 +38,26 @@ struct MeshScene {
 struct SceneDescription {
   std::variant<SphereScene, MeshScene> form;
   Camera camera;
-  /// Whether every number was given once for all colours: there is one channel then.
+  /// True if every number was given once for all colours: there is one channel then.
   bool grey = true;
 };
 
-/// Reads a scene: a built-in name or a map as in estimators/README.md. Files are relative to
-/// `folder`. InputError at the offending node: what luminaire's scenes refuse; an emission that is
-/// negative; an albedo that is negative or, together with `mirror`, 1 or more in a channel; zones
-/// whose tops do not ascend from -1 to 1; a camera that is not inside the sphere or the furnace; a
-/// furnace whose mesh is open or not oriented consistently.
+/// Reads a scene: a built-in name (furnace, sphere, coloured_sphere, box), or a map of `camera` and
+/// one of `zones`, `furnace` and `surfaces`.
+///   camera:   {position: [0, 0, 0], direction: [0, 0, -1]}
+///   zones:    [{top: 0.8, emission: 0, albedo: 0.8}, {top: 1, emission: 1, albedo: [.8, .5, .2]}]
+///   furnace:  {obj: room.obj, emission: 1, albedo: 0.5, mirror: 0}
+///   surfaces: [{polygon: [...], emission: 0, albedo: 0.5, mirror: 0},
+///              {obj: lamp.obj, emission: 9, albedo: 0}].
+/// Zones cut the unit sphere at heights z. A furnace is a closed mesh with the camera inside. Rays
+/// that leave surfaces bring nothing. A number may be a list of three colours. Surfaces emit and
+/// reflect alike on both sides. Files are relative to `folder`.
+///
+/// InputError at the offending node: an emission that is negative, an albedo that is negative or,
+/// together with `mirror`, 1 or more in a channel. InputError, too, for zones whose tops do not
+/// ascend from -1 to 1, and a camera that is not inside the sphere or the furnace. InputError for a
+/// furnace whose mesh is open or not oriented consistently, and for whatever luminaire's scenes
+/// refuse.
 SceneDescription read_scene(const Value& value, const std::string& folder);
 
 std::vector<std::string> built_in_scenes();

@@ -14,7 +14,7 @@
 
 namespace assay::paths {
 
-/// What the two share: the zones, and the point that the camera sees.
+/// The common parts of the two: the zones, and the point that the camera sees.
 class Zones {
  public:
   Zones(const SphereScene& scene, const Camera& camera);
@@ -77,8 +77,8 @@ class SphereWorld {
   }
 
  private:
-  /// One shadow ray to a point uniform on the sphere: of two points of a unit sphere the product of
-  /// the cosines over the squared distance is 1/4, so the area 4 pi and the albedo over pi leave
+  /// Traces one shadow ray to a point uniform on the sphere. The product of the cosines of two
+  /// points over their squared distance is 1/4. With the area 4 pi and albedo / pi this leaves
   /// albedo x emission.
   Spectrum sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
     const Vertex light = zones_.vertex(uniform_on_sphere(random));

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a surface does with light, and a point of it that a path has reached.
+// The emission and reflection of a surface, and a point of it that a path has reached.
 
 #include <cstdint>
 
@@ -19,20 +19,20 @@ struct Surface {
   constexpr Spectrum albedo() const { return diffuse + mirror; }
 };
 
-/// Where a path has arrived.
+/// A point where a path has arrived.
 struct Vertex {
   render::Vector3 position;
-  render::Vector3 normal;            ///< unit, on the side that was reached
-  render::Vector3 arriving;          ///< unit, the way the ray went
-  const Surface* surface = nullptr;  ///< none: the ray has left the scene
-  std::uint32_t patch = 0;           ///< zone of a sphere, triangle of a mesh
+  render::Vector3 normal;            ///< Unit, on the side that was reached.
+  render::Vector3 arriving;          ///< Unit, the way the ray went.
+  const Surface* surface = nullptr;  ///< None: the ray has left the scene.
+  std::uint32_t patch = 0;           ///< Zone of a sphere, triangle of a mesh.
 };
 
 /// How a path learns of emitted light.
 enum class Direct {
-  hit,      ///< by arriving at what emits
-  exact,    ///< reflected direct light in closed form at every vertex
-  sampled,  ///< one shadow ray at every vertex, to a point of what emits
+  hit,      ///< The path arrives at an emitter.
+  exact,    ///< Reflected direct light in closed form at every vertex.
+  sampled,  ///< One shadow ray at every vertex, to a point of an emitter.
 };
 
 }  // namespace assay::paths

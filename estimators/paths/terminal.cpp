@@ -6,8 +6,8 @@ namespace assay::paths {
 
 namespace {
 
-// Additive recurrences with the powers of 1/g, g^5 = g + 1: even in four dimensions whatever
-// the number of points (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+// Additive recurrences with the powers of 1/g, g^5 = g + 1. They are even in four dimensions for
+// any number of points (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 double recurrence(std::size_t index, int dimension) {
   constexpr double g = 1.1673039782614187;
   const double x = 0.5 + static_cast<double>(index + 1) * std::pow(g, -dimension);
@@ -57,8 +57,8 @@ std::vector<Incoming> local_incoming(const MeshWorld& world, std::size_t rays, C
   const auto seen = seen_patches(world, rays);
   cost.closest_hit_rays += seen.size() * rays;
   std::vector<Incoming> incoming(seen.size());
-  // A sweep leaves at most the largest albedo of the error; what is left when changes fall below a
-  // thousandth matters no more than the estimate's own roughness.
+  // A sweep leaves at most the largest albedo of the error. Below changes of a thousandth the rest
+  // matters no more than the estimate's own roughness.
   for (double change = 1; change > 1e-3;) {
     change = 0;
     for (std::size_t i = 0; i < seen.size(); ++i) {

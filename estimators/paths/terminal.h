@@ -22,9 +22,9 @@ Incoming global_incoming(const Spectrum& mean_emission, const Spectrum& mean_alb
 Spectrum mean_emission(const MeshWorld& world);
 Spectrum mean_albedo(const MeshWorld& world);
 
-/// One estimate for each patch: `rays` rays from each, at fixed points along fixed directions,
-/// say which patches it sees; the light is then passed around until it no longer changes. Adds the
-/// rays to the cost.
+/// One estimate for each patch. `rays` rays from each, at fixed points along fixed directions, say
+/// which patches it sees. Light is then passed around until it no longer changes. Adds the rays to
+/// the cost.
 std::vector<Incoming> local_incoming(const MeshWorld& world, std::size_t rays, Cost& cost);
 
 }  // namespace assay::paths

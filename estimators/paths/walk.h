@@ -7,10 +7,10 @@
 
 namespace assay::paths {
 
-/// Adds to the tally what a path from `v` on brings: the sum of T_k Le_k, T_0 = 1, T_k+1 = T_k a_k
-/// / survival. `Random` gives uniform numbers in [0, 1): a stream, or coordinates that a Markov
-/// chain has mutated. One number a vertex decides whether to go on, one more at a mirror, two give
-/// a diffuse direction.
+/// Adds the light of a path from `v` on to the tally. It is the sum of T_k Le_k, with T_0 = 1 and
+/// T_k+1 = T_k a_k / survival. The type `Random` gives uniform numbers in [0, 1). It is a stream,
+/// or coordinates that a Markov chain has mutated. A vertex takes one number to decide to go on,
+/// one more at a mirror, and two for a diffuse direction.
 template <class World, class Random>
 void walk(const World& world, Vertex v, double survival, Random& random, Tally& tally, Cost& cost) {
   Spectrum throughput = Spectrum::grey(1);

@@ -8,10 +8,10 @@
 
 namespace assay::paths {
 
-/// How many children a vertex has and what each weighs. The anticipated error of a diffuse
-/// reflection is `splitting` times that of a mirror (Szirmay-Kalos, Antal and Sbert 2005, with
-/// n = W a sqrt(1 + (N^2 - 1) / (shininess + 1)^2)): n = W a N, or n = W a, W being the mean over
-/// the colours of the weight so far.
+/// The number of a vertex's children, and the weight of each. The anticipated error of a diffuse
+/// reflection is `splitting` times that of a mirror: n = W a N, or n = W a. W is the mean over the
+/// colours of the weight so far. The source is Szirmay-Kalos, Antal and Sbert (2005), with n = W a
+/// sqrt(1 + (N^2 - 1) / (shininess + 1)^2).
 class Winners {
  public:
   explicit Winners(double splitting) : splitting_(splitting) {}

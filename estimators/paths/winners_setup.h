@@ -1,6 +1,6 @@
 #pragma once
 
-// What go with the winners and its mutants share.
+// The common parts of go with the winners and its mutants.
 
 #include "paths/family.h"
 #include "paths/winners.h"

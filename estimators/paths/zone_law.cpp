@@ -59,7 +59,7 @@ std::optional<double> path_variance(const std::vector<ZoneSteps>& zones, std::si
   if (!next.square) return {};
   const double n = splitting * z.survival;
   const double part = n - std::floor(n);
-  // X = D + e + sum of N terms Y / n with Y = a X' - e, N of mean n and variance part (1 - part).
+  // X = D + e + sum of N terms Y / n. Y = a X' - e; N has mean n and variance part (1 - part).
   const double mean = z.albedo * next.mean - z.terminal;
   const double variance = z.albedo * z.albedo * (*next.square - next.mean * next.mean);
   return z.score_variance + variance / n + part * (1 - part) * mean * mean / (n * n);

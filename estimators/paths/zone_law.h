@@ -1,13 +1,12 @@
 #pragma once
 
-// The exact law of paths whose vertices are independent: in a sphere, where the next diffuse hit is
-// uniform in area whatever the vertex, and in a furnace, where all vertices are alike.
+// The exact law of paths whose vertices are independent. In a sphere the next diffuse hit is
+// uniform in area for every vertex. In a furnace all vertices are alike.
 //
 // A path from a vertex of zone z estimates
-//   X(z) = D(z) + e(z) + B (a(z)/s(z) X' - e(z)/s(z)),
-// with B = 1 of probability s(z), e the terminal value, D what the vertex scores by itself and X'
-// the same from a vertex of a random zone. Means and second moments follow from one linear
-// equation.
+//   X(z) = D(z) + e(z) + B (a(z)/s(z) X' - e(z)/s(z)).
+// B is 1 with probability s(z), e is the terminal value, and D is the vertex's own score. X' is the
+// same from a vertex of a random zone. Means and second moments follow from one linear equation.
 
 #include <optional>
 #include <vector>
@@ -33,7 +32,7 @@ struct ZonedScene {
   Spectrum seen_radiance() const;
 };
 
-/// What a path does in one zone, for one colour.
+/// The step of a path in one zone, for one colour.
 struct ZoneSteps {
   double fraction = 0;
   double albedo = 0;
@@ -50,8 +49,8 @@ struct ZoneMoments {
 };
 ZoneMoments moments(const std::vector<ZoneSteps>& zones);
 
-/// The variance of a path that begins in zone `first` and has floor(n + u) continuations there, n =
-/// `splitting` x s, each weighted by albedo / n. With splitting 1 it is roulette. Nothing where it
+/// The variance of a path that begins in zone `first`. It has floor(n + u) continuations there,
+/// each weighted by albedo / n, n = `splitting` x s. With splitting 1 it is roulette. nullopt if it
 /// is infinite.
 std::optional<double> path_variance(const std::vector<ZoneSteps>& zones, std::size_t first,
                                     double splitting);

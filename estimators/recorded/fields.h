@@ -8,7 +8,7 @@
 
 namespace assay::recorded {
 
-/// What separates fields where nothing else does: white space of any length.
+/// The separator if there is no other: white space of any length.
 inline constexpr char blank = ' ';
 
 /// A piece of a line and the column it begins at, counted from 1.

@@ -87,7 +87,7 @@ class StackRows final : public PictureRows {
   }
 
  private:
-  // Of one stack: a process may have a thousand, each of these takes two.
+  // Limit of one stack. A process may have a thousand descriptors, and each picture takes two.
   static constexpr std::size_t most_open = 128;
 
   struct Reading {

@@ -19,7 +19,7 @@ std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,
 /// Means with their errors; there is nothing to draw.
 std::shared_ptr<const Setup> reference_setup(PictureMoments moments);
 
-/// What follows the elements in an observation: their average, for claims that name it.
+/// The channel that follows the elements in an observation: their average, for claims that name it.
 Channel average_channel();
 
 /// A picture's texels and their average.

@@ -1,7 +1,7 @@
-// Observations that another program made, or Assay itself earlier: observation i is row i of a text
-// or an array (recorded/table.h), or picture i of several (estimators/pictures.h). Nothing is known
-// of their mean, unless a picture carries its own error and is a reference. `primaries` is 1: what
-// one observation was made from is the other program's affair.
+// Observations that another program made, or Assay itself earlier. Observation i is row i of a text
+// or an array (recorded/table.h), or picture i of several (estimators/pictures.h). Their mean is
+// unknown, unless a picture carries its own error and is a reference. The number of primaries is 1:
+// how an observation was made is the other program's affair.
 
 #include <sys/stat.h>
 
@@ -152,7 +152,6 @@ Reading read(Parameters& parameters) {
 
 // ---- Pictures
 
-/// What is asked of pictures.
 struct PictureRequest {
   std::string pattern;
   std::string channels;
@@ -175,7 +174,7 @@ PictureRequest picture_request(Parameters& parameters) {
                      .samples = given("samples")}};
 }
 
-/// What is wrong with a file is a mistake of the parameter that names it.
+/// Reports an error of a file at the parameter that names it.
 template <class Read>
 auto reading(const Parameters& parameters, const Read& read) {
   try {

@@ -23,8 +23,8 @@ std::uint64_t word(const float* texels) {
   return bits;
 }
 
-/// Of two texels at a time. Every eighth pair goes to a digest of its own, so that none waits for
-/// the last.
+/// A digest of two texels at a time. Every eighth pair goes to a digest of its own, so that none
+/// waits for the last.
 std::uint64_t digest_of_bits(std::span<const float> texels) {
   constexpr std::size_t lanes = 8;
   std::uint64_t whole = basis;

@@ -12,11 +12,10 @@
 
 namespace assay::recorded {
 
-/// What a picture's texels come to (64 bits), whole rows of them after whole rows, in whichever
-/// portions they come.
+/// A 64-bit digest of a picture's texels. Whole rows come one after the other, in any portions.
 class PictureDigest {
  public:
-  /// Of rows of so many texels.
+  /// `row` is the number of texels in a row.
   explicit PictureDigest(std::size_t row) : row_(row) {}
 
   void add(std::span<const float> texels);
@@ -35,10 +34,9 @@ class PictureDigest {
 
 class SeenPictures {
  public:
-  /// Notes the picture of an observation by its digest. Returns another one that had the same;
-  /// nullopt where there is none, and for a picture of one value throughout, which noise may never
-  /// have reached, or with texels that are not finite, whose observation is an error in itself.
-  /// Thread-safe.
+  /// Notes the picture of an observation by its digest. Returns another one that had the same, or
+  /// nullopt. Pictures of one value throughout, which noise may never have reached, give nullopt.
+  /// So do pictures with texels that are not finite. Thread-safe.
   std::optional<std::uint64_t> note(std::uint64_t index, const PictureDigest& digest);
 
   /// Indices below `count` of a picture here and of one there that had the same digest, the first

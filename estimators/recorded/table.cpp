@@ -116,7 +116,7 @@ class Reader {
     if (table_.columns.empty()) refuse(field.column, "`# columns:` names no column");
   }
 
-  /// Whether a line is one of names, which it then gives.
+  /// True if a line is one of names. It takes them.
   bool header(const std::vector<Field>& fields) {
     if (!table_.columns.empty()) return false;
     const auto is_empty = [](const Field& field) {
@@ -249,7 +249,7 @@ class Lines {
   std::string begun_;  ///< a line of which the end has not come
 };
 
-/// As many numbers as a quarter of the memory holds: a vector that grows takes thrice its size.
+/// A quarter of the memory, since a vector that grows takes thrice its size.
 std::size_t most_numbers() {
   const long pages = sysconf(_SC_PHYS_PAGES);
   const long page = sysconf(_SC_PAGESIZE);

@@ -25,22 +25,23 @@ struct Table {
 enum class Rows { several, one_is_fine };
 
 /// Reads a table from a file, a pipe, a device or, for `-`, standard input (ByteSource), compressed
-/// by gzip or not. What begins as numpy's .npy is read as read_npy() says, anything else as text.
+/// by gzip or not. A file that begins like numpy's .npy is read by read_npy(), anything else as
+/// text.
 ///
 /// Text has one row a line. Numbers are separated by `;` where the line has any, else by commas,
-/// else by tabs (one may end the line), else by white space. They are written as in C++, `inf` and
-/// `nan` included: a recorded failure is a value too. Where `;` separates, a comma is a decimal
-/// point. `"` may enclose a field. `#` begins a comment, empty lines are skipped.
+/// else by tabs (one may end the line), else by white space. They are written as in C++, with `inf`
+/// and `nan`. Where `;` separates, a comma is a decimal point. `"` may enclose a field. `#` begins
+/// a comment, empty lines are skipped.
 ///
-/// Columns are named by a first line in which nothing begins like a number, or by
+/// A first line in which nothing begins like a number names the columns, and so does
 /// `# columns: a b c` before the first row. Else they are `value`, or `value1`, `value2`, …. A
-/// first column whose name is empty holds the names of rows (pandas, R) and is left out. `# stream:
-/// HEX` tells the key of the stream the rows were drawn from.
+/// first column whose name is empty holds the names of rows (pandas, R). It is left out. The line
+/// `# stream: HEX` has the key of the stream that the rows were drawn from.
 ///
-/// LineError for what is no number or no double can hold, an empty field, and a row of another
-/// length. LineError for a second, late or repeated header. InputError for a file without rows, and
-/// where several are expected for one row of several numbers without names. InputError for a binary file, and for more numbers
-/// than a quarter of the memory holds.
+/// LineError for a field that is no number or that no double can hold, an empty field, and a row of
+/// another length. LineError for a second, late or repeated header. InputError for a binary file,
+/// for a file without rows, and for more numbers than a quarter of the memory holds. InputError for
+/// one row of several numbers without names, if several rows are expected.
 Table read_table(const std::string& file, Rows expected);
 
 }  // namespace assay::recorded

@@ -13,8 +13,8 @@ AliasTable::AliasTable(const std::vector<double>& weights)
   if (!valid || !(total_ > 0) || !std::isfinite(total_)) {
     throw std::invalid_argument("AliasTable: weights must not be negative and their sum positive");
   }
-  // What is left of each weight, in units of the mean. A column too small for its share is filled
-  // up from one that has more.
+  // The rest of each weight, in units of the mean. A column too small for its share is filled up
+  // from one that has more.
   std::vector<double> left;
   for (const double w : weights) {
     left.push_back(w / total_ * static_cast<double>(weights.size()));

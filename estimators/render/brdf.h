@@ -14,16 +14,16 @@ struct Angles {
 
 Vector3 direction(Angles);
 
-/// What a sampler of reflected directions may follow.
+/// The function that a sampler of reflected directions may follow.
 enum class Target {
   density,      ///< the density of the published sampler
   brdf,         ///< f
   brdf_cosine,  ///< f cos theta_o, the integrand of the albedo
 };
 
-/// A reflectance f(w_i, w_o) with w_i fixed, in the local frame (normal +z), and the parts of its
-/// published sampler: an azimuth and a polar angle of the half vector h by inversion, the mirrored
-/// direction w_o = 2 (h . w_i) h - w_i, and its density p(w_o) = p_h(h) / (4 h . w_i). The density
+/// A reflectance f(w_i, w_o) with w_i fixed, in the local frame (normal +z), and its published
+/// sampler. The sampler draws an azimuth and a polar angle of the half vector h by inversion. It
+/// mirrors w_i: w_o = 2 (h . w_i) h - w_i. The density is p(w_o) = p_h(h) / (4 h . w_i). It
 /// integrates over the upper hemisphere to one minus the mass that falls below the horizon.
 ///
 /// Each part is a virtual function, so that one can be exchanged while the others stay.
@@ -56,8 +56,8 @@ class HalfVectorBrdf {
   /// The target per steradian, not normalised.
   double target(Target, const Vector3& out) const;
 
-  /// An upper bound of target(w_o) / q(w_o) over the upper hemisphere for the proposal
-  /// q = 1 / (4 pi sqrt(cos theta_o)), that is cos theta_o = xi^2. Each is proved where it stands.
+  /// An upper bound of target(w_o) / q(w_o) over the upper hemisphere. The proposal is q = 1 / (4
+  /// pi sqrt(cos theta_o)), that is cos theta_o = xi^2. Each override has the proof.
   virtual double rejection_bound(Target) const = 0;
   /// An upper bound of f cos theta_o / p.
   virtual double weight_bound() const = 0;

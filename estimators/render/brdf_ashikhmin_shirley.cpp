@@ -12,8 +12,9 @@ double AshikhminShirley::normalisation() const {
   return std::sqrt((material_.exponents.u + 1) * (material_.exponents.v + 1));
 }
 
-// (n.h)^e of a unit half vector. With s = sin^2 d, e ln cos d = (nu hx^2 + nv hy^2) ln(1 - s) / 2s,
-// which is smooth at h = n where the azimuth is not.
+// The power (n.h)^e of a unit half vector. Its logarithm, with s = sin^2 d, is
+//   e ln cos d = (nu hx^2 + nv hy^2) ln(1 - s) / 2s.
+// It is smooth at h = n, unlike the azimuth.
 double AshikhminShirley::lobe(const Vector3& h) const {
   const double s = h.x * h.x + h.y * h.y;
   const double ratio = s > 0 ? std::log1p(-std::min(s, 1.0)) / s : -1;
@@ -63,13 +64,12 @@ double AshikhminShirley::half_vector_density(const Vector3& h) const {
   return normalisation() / (2 * pi) * lobe(h);
 }
 
-// With C = sqrt((nu+1)(nv+1)), c = cos d, 1 / q = 4 pi sqrt(cos_o), m = max(cos_i, cos_o) and
-// cos_i + cos_o = 2 (h.w_i) c:
-//   density:     p / q = C c^(e+1) sqrt(cos_o) / (cos_i + cos_o)              <= C / (2
-//   sqrt(cos_i)) brdf:        f / q = C c^(e+1) F sqrt(cos_o) / ((cos_i + cos_o) m)        <= C /
-//   (2 cos_i^1.5) brdf_cosine: f cos_o / q = C c^(e+1) F cos_o^1.5 / ((cos_i + cos_o) m)    <= C /
-//   (2 sqrt(cos_i))
-// as each function of cos_o is largest at cos_o = cos_i, and c <= 1, F <= 1, e >= 0.
+// With C = sqrt((nu+1)(nv+1)), c = cos d, 1 / q = 4 pi sqrt(cos_o), m = max(cos_i, cos_o):
+//   Density:     p / q     = C c^(e+1) sqrt(cos_o) / (cos_i + cos_o)      <= C / (2 sqrt(cos_i)).
+//   BRDF:        f / q     = C c^(e+1) F sqrt(cos_o) / ((cos_i + cos_o) m) <= C / (2 cos_i^1.5).
+//   With cosine: f cos_o/q = C c^(e+1) F cos_o^1.5 / ((cos_i + cos_o) m)   <= C / (2 sqrt(cos_i)).
+// Here cos_i + cos_o = 2 (h.w_i) c. Each function of cos_o is largest at cos_o = cos_i, and c <= 1,
+// F <= 1, e >= 0.
 double AshikhminShirley::rejection_bound(Target target) const {
   const double cosine = incident().z;
   const double largest = normalisation() / (2 * std::sqrt(cosine));

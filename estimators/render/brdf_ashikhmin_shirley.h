@@ -10,11 +10,11 @@ struct Exponents {
   double v = 0;
 };
 
-/// The specular part of the anisotropic Phong reflectance of Ashikhmin & Shirley (2000), eq. 4,
+/// The specular part of the anisotropic Phong reflectance of Ashikhmin & Shirley (2000), eq. 4:
 ///   f = sqrt((nu+1)(nv+1)) / (8 pi) (n.h)^e F(h.w_i) / ((h.w_i) max(cos_i, cos_o)),
-///   e = nu cos^2 phi + nv sin^2 phi,  F(c) = R + (1 - R)(1 - c)^5  (Schlick),
-/// sampled by their eqs. 9-10: in the first quadrant phi = atan(sqrt((nu+1)/(nv+1)) tan(pi u'/2)),
-/// mirrored to the others, and cos d = v^(1/(e+1)), so that
+///   e = nu cos^2 phi + nv sin^2 phi,  F(c) = R + (1 - R)(1 - c)^5  (Schlick).
+/// It is sampled by their eqs. 9-10: cos d = v^(1/(e+1)), and in the first quadrant phi =
+/// atan(sqrt((nu+1)/(nv+1)) tan(pi u'/2)), mirrored to the others. So
 ///   p_h = sqrt((nu+1)(nv+1)) / (2 pi) (n.h)^e  and  f cos_o / p = F cos_o / max(cos_i, cos_o).
 class AshikhminShirley : public HalfVectorBrdf {
  public:

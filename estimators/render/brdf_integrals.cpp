@@ -15,9 +15,9 @@ using Five = std::array<double, 5>;
 constexpr double tolerance = 1e-12;
 
 // In the half plane of h with azimuth phi, cos_o = R cos(2 theta - psi), theta the polar angle of
-// h, R cos psi = cos_i and R sin psi = sin_i cos(phi - phi_i). w_o meets the horizon at theta = pi
-// / 4 + psi / 2, where the integrand of f has a root's singularity in cos_o; with theta = limit -
-// delta, cos_o = R sin 2 delta has no cancellation there.
+// h. R cos psi = cos_i and R sin psi = sin_i cos(phi - phi_i). At the `limit` theta = pi / 4 + psi
+// / 2 w_o meets the horizon. The integrand of f has a root's singularity in cos_o there. With theta
+// = limit - delta, cos_o = R sin 2 delta has no cancellation.
 struct HalfPlane {
   double phi;
   double amplitude;
@@ -40,7 +40,7 @@ Five integrands(const HalfVectorBrdf& brdf, const HalfPlane& plane, double delta
   const double density = brdf.density(out);
   const double value = brdf.value(out);
   const double integrand = value * out.z;
-  // Where p underflows, so does f cos_o: their ratio is bounded.
+  // If p underflows, so does f cos_o: their ratio is bounded.
   const double second = density > 0 ? integrand * integrand / density : 0;
   return {density * measure, value * measure, integrand * measure, integrand * out.z * measure,
           second * measure};

@@ -36,14 +36,13 @@ double Ward::half_vector_density(const Vector3& h) const {
   return gaussian(h) / (pi * roughness_.x * roughness_.y * h.z * h.z * h.z);
 }
 
-// With t = tan^2 d, g = exp(-t A(phi)) and 4 pi sqrt(cos_o) = 1 / q:
-//   brdf:        f / q = g / (ax ay sqrt(cos_i))                                      <= K
-//   brdf_cosine: f cos_o / q = g cos_o / (ax ay sqrt(cos_i))                          <= K
-//   density:     p / q = g sqrt(cos_o) / (ax ay (h . w_i) cos^3 d); as cos_i + cos_o =
-//                2 (h . w_i) cos d, this is 2 g sqrt(cos_o) (1 + t) / (ax ay (cos_i + cos_o));
-//                2 sqrt(cos_i cos_o) <= cos_i + cos_o leaves g (1 + t) / (ax ay sqrt(cos_i)), and
-//                A >= 1 / max(ax, ay)^2 >= 1 makes (1 + t) exp(-t A) <= 1                <= K
-// with K = 1 / (ax ay sqrt(cos_i)), whatever the anisotropy.
+// With t = tan^2 d, g = exp(-t A(phi)), 4 pi sqrt(cos_o) = 1 / q and K = 1 / (ax ay sqrt(cos_i)):
+//   BRDF:        f / q       = K g                                          <= K.
+//   BRDF cosine: f cos_o / q = K g cos_o                                    <= K.
+//   Density:     p / q       = g sqrt(cos_o) / (ax ay (h . w_i) cos^3 d)    <= K.
+// Proof of the last. It is 2 g sqrt(cos_o) (1 + t) / (ax ay (cos_i + cos_o)), since cos_i + cos_o =
+// 2 (h . w_i) cos d. It is at most K g (1 + t), since 2 sqrt(cos_i cos_o) <= cos_i + cos_o. And A
+// >= 1 / max(ax, ay)^2 >= 1 makes (1 + t) exp(-t A) <= 1.
 double Ward::rejection_bound(Target) const {
   return 1 / (roughness_.x * roughness_.y * std::sqrt(incident().z));
 }

@@ -11,9 +11,9 @@ struct Roughness {
 };
 
 /// The anisotropic Gaussian reflectance of Ward (1992), eq. 5a, with reflectance 1:
-///   f = exp(-tan^2 d (cos^2 phi / ax^2 + sin^2 phi / ay^2)) / (4 pi ax ay sqrt(cos_i cos_o)),
-/// d and phi the angles of h. Unbounded where w_o grazes the surface. Sampled after Walter (2005),
-/// "Notes on the Ward BRDF", eqs. 6-9:
+///   f = exp(-tan^2 d (cos^2 phi / ax^2 + sin^2 phi / ay^2)) / (4 pi ax ay sqrt(cos_i cos_o)).
+/// d and phi are the angles of h. f is unbounded where w_o grazes the surface. It is sampled after
+/// Walter (2005), "Notes on the Ward BRDF", eqs. 6-9:
 ///   phi = atan((ay / ax) tan 2 pi u),  tan^2 d = -ln v / (cos^2 phi / ax^2 + sin^2 phi / ay^2),
 ///   p_h = exp(.) / (pi ax ay cos^3 d),  f cos_o / p = (h . w_i) cos^3 d sqrt(cos_o / cos_i).
 /// Bounds are proved for ax, ay <= 1.

@@ -6,7 +6,7 @@
 
 namespace assay::render {
 
-/// What the core has open, and the first thing that it found wrong.
+/// A file that the core has open, and the first fault that it found.
 class CoreFile {
  public:
   explicit CoreFile(const std::string& file);

@@ -29,8 +29,8 @@ class Device {
   /// Throws what Embree has to complain of; it keeps the first error of each thread until asked.
   void check() const;
 
-  /// An empty scene that keeps the device alive; and building it, on the calling thread, so that
-  /// the tree does not depend on the number of processors.
+  /// An empty scene that keeps the device alive. The scene is then built on the calling thread, so
+  /// that the tree does not depend on the number of processors.
   static std::shared_ptr<RTCSceneTy> new_scene();
   static void commit(RTCScene scene);
 

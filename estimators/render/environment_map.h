@@ -32,9 +32,9 @@ struct Resolution {
   std::size_t height = 0;
 };
 
-/// Radiance that is constant over each texel. Row r of H holds the polar angles pi r / H to
-/// pi (r + 1) / H, so that +z is the pole of the first row; column c of W the azimuths 2 pi c / W
-/// to 2 pi (c + 1) / W; w = (sin theta cos phi, sin theta sin phi, cos theta).
+/// Radiance that is constant over each texel, w = (sin theta cos phi, sin theta sin phi, cos
+/// theta). Row r of H holds the polar angles pi r / H to pi (r + 1) / H. The pole +z is in the
+/// first row. Column c of W holds the azimuths 2 pi c / W to 2 pi (c + 1) / W.
 class EnvironmentMap {
  public:
   /// Texels row after row. std::invalid_argument unless there are width * height > 0 of them, all
@@ -55,9 +55,9 @@ class EnvironmentMap {
 };
 
 /// Reads an OpenEXR picture with the channels R, G and B, or Y for grey, of any pixel type.
-/// InputError at `file`, without a line, when it is not there, not an EXR file, truncated, without
-/// these channels, sub-sampled, cropped (data window not the display window), of more than 2^27
-/// texels, or holds a texel that is negative or not finite.
+/// InputError at `file`, without a line, if it is missing, no EXR file, truncated or without these
+/// channels. The same if it is sub-sampled, cropped (data window not the display window) or of more
+/// than 2^27 texels. The same for a texel that is negative or not finite.
 EnvironmentMap read_environment(const std::string& file);
 
 }  // namespace assay::render

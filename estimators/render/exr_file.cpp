@@ -41,8 +41,8 @@ ExrWindow window_of(const Imf::Header& header) {
           .height = static_cast<std::size_t>(std::max<std::int64_t>(height, 0))};
 }
 
-/// What a file of this many bytes says of its pictures must be possible: a header alone could ask
-/// for any amount of memory.
+/// Refuses a header whose pictures cannot fit into a file of this many bytes: it could ask for any
+/// amount of memory.
 void require_possible(const Imf::Header& header, const std::string& file, double bytes) {
   const ExrWindow window = window_of(header);
   const std::string size = std::to_string(window.width) + " x " + std::to_string(window.height);
@@ -160,7 +160,7 @@ void ExrFile::Parts::read_part(const render::ScanLineTexels& to) const {
 
 namespace {
 
-/// What the library throws, as our own error.
+/// Turns an exception of the library into our own error.
 template <class Work>
 auto in_our_words(const std::string& file, const Work& work) {
   try {

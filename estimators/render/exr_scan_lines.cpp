@@ -99,7 +99,7 @@ class ScanLines {
                : EXR_ERR_CORRUPT_CHUNK;
   }
 
-  // Where this chunk's texels go; those of channels that nobody asks for go nowhere.
+  // Sets the place of this chunk's texels. Channels that nobody asks for go nowhere.
   bool point_channels(std::size_t row, std::size_t rows) {
     if (row + rows > to_.last) return false;
     std::size_t found = 0;

@@ -8,8 +8,8 @@ namespace assay::render {
 
 class CoreFile;
 
-/// Where the texels of a part's channels go: that of column x and row y to
-/// channels[name][((y - first) * width + x) * apart], rows from the top.
+/// The place of a part's texels. Column x and row y go to channels[name][((y - first) * width + x)
+/// * apart], rows from the top.
 struct ScanLineTexels {
   int part = 0;
   std::map<std::string, float*> channels;
@@ -20,11 +20,10 @@ struct ScanLineTexels {
   std::size_t apart = 1;
 };
 
-/// Reads 32-bit floats of scan lines that are compressed by ZIP or ZIPS, whose checksums show what
-/// is damaged, by OpenEXR's core and libdeflate: all channels of a line at once, in less than half
-/// the time of its classes. Of halves and of PIZ it is no faster. False where the part is of
-/// another kind or size, the rows are not those of whole chunks, or anything is wrong with it: the
-/// classes read it then, or say what is wrong.
+/// Reads 32-bit floats of scan lines that ZIP or ZIPS compresses, by OpenEXR's core and libdeflate.
+/// Checksums show damage. All channels of a line come at once, in less than half the time of
+/// OpenEXR's classes. Returns false for a part of another kind or size, for rows that are not whole
+/// chunks, and for any fault. The classes then read it, or report the fault.
 bool read_scan_lines(const CoreFile& file, const ScanLineTexels& to);
 
 }  // namespace assay::render

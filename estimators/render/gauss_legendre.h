@@ -56,8 +56,8 @@ inline std::array<Corners, 4> quartered(const Corners& t) {
 
 namespace detail {
 
-/// N integrals over a triangle with respect to area by 8 x 8 nodes, through Duffy's map of the
-/// square to the triangle, whose area element is u.
+/// N integrals over a triangle with respect to area by 8 x 8 nodes. Duffy's map takes the square to
+/// the triangle; its area element is u.
 template <std::size_t N, class F>
 std::array<double, N> over_triangle(const F& f, const Corners& t) {
   static const auto nodes = gauss_legendre<8>();
@@ -87,11 +87,12 @@ struct Patch {
 }  // namespace detail
 
 /// The integrals over triangles, with respect to area, of the N components of f, none negative.
-/// Triangles are quartered, those first whose refinement changed some integral the most, until the
-/// changes that are left make less than `tolerance` of every integral's scale, or there are `most`
-/// triangles; the sums of these changes are the errors. The scale of an integral is the sum of
-/// those of its group. Changes are no bound: a lobe that falls between the nodes of the triangles
-/// that are added makes none.
+///
+/// Triangles are quartered, first those whose refinement changed some integral the most. It ends
+/// when the last changes are below `tolerance` of every integral's scale, or there are `most`
+/// triangles. The sums of these changes are the errors. The scale of an integral is the sum of
+/// those of its group. Changes are no bound: a lobe between the nodes of the given triangles makes
+/// none.
 template <std::size_t N, class F>
 class TriangleQuadrature {
  public:

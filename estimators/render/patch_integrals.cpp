@@ -32,7 +32,7 @@ struct PolarIntegrals {
   }
 };
 
-// n . w = P sin theta + Q cos theta along a meridian, P = nx cos phi + ny sin phi, Q = nz.
+// n . w = P sin theta + Q cos theta along a meridian: P = nx cos phi + ny sin phi, Q = nz.
 Pair whole_patch(const Patch& patch, const Vector3& n) {
   const PolarIntegrals polar(patch.theta);
   const auto [c, d] = patch.phi;
@@ -46,8 +46,8 @@ Pair whole_patch(const Patch& patch, const Vector3& n) {
           of_pp * polar.sss + 2 * of_p * n.z * polar.ssc + n.z * n.z * width * polar.scc};
 }
 
-// Both moments along the meridian at phi. In (0, pi), P sin + Q cos has one zero, where
-// (sin, cos) ~ (|Q|, -P sign Q); it is positive before it if Q > 0, after it if Q < 0.
+// Both moments along the meridian at phi. In (0, pi) P sin + Q cos has one zero, at (sin, cos) ~
+// (|Q|, -P sign Q). It is positive before the zero if Q > 0, after it if Q < 0.
 Pair along_meridian(Pair theta, const Vector3& n, double phi) {
   const double p = n.x * std::cos(phi) + n.y * std::sin(phi);
   const double q = n.z;
@@ -62,8 +62,9 @@ Pair along_meridian(Pair theta, const Vector3& n, double phi) {
           p * p * polar.sss + 2 * p * q * polar.ssc + q * q * polar.scc};
 }
 
-// The ends of the patch in azimuth and between them those azimuths at which the horizon meets one
-// of its parallels, or is steepest: near a vertical horizon it runs from pole to pole there.
+// The ends of the patch in azimuth, and the azimuths between them at which the horizon meets one of
+// its parallels. Also those at which it is steepest: a near-vertical horizon runs from pole to pole
+// there.
 std::vector<double> breaks(const Patch& patch, const Vector3& n) {
   const auto [c, d] = patch.phi;
   std::vector<double> all{c, d};

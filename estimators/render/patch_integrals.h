@@ -11,9 +11,9 @@ struct CosineMoments {
   double error = 0;  ///< bound of the error of either
 };
 
-/// In closed form where the patch is wholly above or below the horizon of the unit vector
-/// `normal`; where the horizon may cross it, in closed form along each meridian and by quadrature
-/// over the azimuth, between the points where the horizon enters and leaves.
+/// The moments in closed form if the patch is wholly above or below the horizon of the unit vector
+/// `normal`. If the horizon may cross it, they have a closed form along each meridian. Quadrature
+/// over the azimuth runs between the points where the horizon enters and leaves.
 CosineMoments cosine_moments(const Patch&, const Vector3& normal);
 
 }  // namespace assay::render

@@ -11,8 +11,8 @@ const Vector3& next(std::span<const Vector3> polygon, std::size_t i) {
   return polygon[i + 1 == polygon.size() ? 0 : i + 1];
 }
 
-// The integral of dot(n, w) along the great arc from a to b, both of unit length, where m is the
-// unit normal of its plane: w(s) = a cos s + (m x a) sin s.
+// The integral of dot(n, w) along the great arc from a to b, both of unit length. The arc is w(s) =
+// a cos s + (m x a) sin s, with m the unit normal of its plane.
 double arc_integral(const Vector3& a, const Vector3& b, const Vector3& m, const Vector3& n) {
   const double sine = dot(m, cross(a, b));
   const double one_minus_cosine = squared_length(a - b) / 2;

@@ -29,30 +29,31 @@ inline double area(const Polygon& polygon) { return length(area_vector(polygon))
 /// changes neither area_vector() nor lambert().
 Polygon clipped(const Polygon& polygon, const HalfSpace& half_space);
 
-/// The irradiance at the origin on a surface of unit normal n from a polygon of unit radiance that
-/// lies above the horizon (dot(n, p) >= 0; clip beforehand), both sides emitting:
-///   E = | sum over edges of angle(v_i, v_i+1) dot(n, normalised(v_i x v_i+1)) | / 2
-/// (Lambert 1760; Baum, Rushmeier and Winget 1989, equation 12). In [0, pi]. Edges through the
-/// origin subtend nothing and add nothing.
+/// The irradiance at the origin on a surface of unit normal n from a polygon of unit radiance, both
+/// sides emitting (Lambert 1760; Baum, Rushmeier and Winget 1989, equation 12). The polygon lies
+/// above the horizon, dot(n, p) >= 0: clip it beforehand.
+///   E = | sum over edges of angle(v_i, v_i+1) dot(n, normalised(v_i x v_i+1)) | / 2.
+/// In [0, pi]. Edges through the origin subtend nothing and add nothing.
 double lambert(std::span<const Vector3> polygon, const Vector3& n);
 
 /// The integral of dot(n, w)^2 over the directions w in which a convex polygon is seen from the
-/// origin, which must not lie in its plane. With Omega its solid angle, m_i the edges' unit normals
-/// towards the inside, and s the arc length along an edge, Stokes' theorem for the field
-/// dot(n, w) (n - dot(n, w) w), whose divergence on the sphere is 1 - 3 dot(n, w)^2, gives
-///   (Omega + sum over edges of dot(n, m_i) integral dot(n, w(s)) ds) / 3
-/// (the axial moment of order 2 of Arvo 1995, "Applications of irradiance tensors").
+/// origin. It is the axial moment of order 2 of Arvo 1995, "Applications of irradiance tensors".
+/// The origin must not lie in the polygon's plane.
+///   (Omega + sum over edges of dot(n, m_i) integral dot(n, w(s)) ds) / 3.
+/// Omega is the solid angle, m_i an edge's unit normal towards the inside, s the arc length along
+/// it. It is Stokes' theorem for the field dot(n, w) (n - dot(n, w) w), of divergence 1 - 3 dot(n,
+/// w)^2.
 double squared_cosine(const Polygon& polygon, const Vector3& n);
 
 /// The solid angle of a triangle from the origin in [0, 2 pi), whichever way round (van Oosterom
 /// and Strackee 1983, equation 8).
 double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c);
 
-/// Whether every vertex lies within `tolerance` times the largest distance between vertices of the
-/// plane through the first vertex along area_vector().
+/// True if every vertex lies near the plane through the first vertex along area_vector(). Near is
+/// within `tolerance` times the largest distance between vertices.
 bool is_planar(const Polygon& polygon, double tolerance);
 
-/// Whether a planar polygon turns one way only and once around; vertices on a straight edge are
+/// True if a planar polygon turns one way only and once around. Vertices on a straight edge are
 /// allowed.
 bool is_convex(const Polygon& polygon);
 

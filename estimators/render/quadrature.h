@@ -50,9 +50,9 @@ void add_nodes(std::array<double, N>& sum, const F& f, std::array<double, 2> ran
 }  // namespace detail
 
 /// The integrals over [range[0], range[1]] of the N components of f, by the tanh-sinh rule
-/// (Takahasi & Mori 1974): step halved until no component changes by more than `tolerance` times
-/// its value, at most nine times. Integrands must be analytic inside; integrable singularities at
-/// the ends are harmless.
+/// (Takahasi & Mori 1974). The step is halved at most nine times, until no component changes by
+/// more than `tolerance` times its value. Integrands must be analytic inside. Integrable
+/// singularities at the ends are harmless.
 template <std::size_t N, class F>
 Integrals<N> tanh_sinh(const F& f, std::array<double, 2> range, double tolerance) {
   std::array<double, N> sum{};

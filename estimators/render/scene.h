@@ -34,9 +34,8 @@ struct Ray {
   double far = std::numeric_limits<double>::infinity();
 };
 
-/// A ray in single precision, as Embree takes it. Where it is made is worth a thought: what has
-/// just been written float by float cannot be read back in one piece for a dozen cycles, so who
-/// makes many rays before tracing the first does not wait.
+/// A ray in single precision, as Embree takes it. Make many rays before you trace the first: what
+/// was written float by float is slow to read back as a whole at once.
 class RoundedRay {
  public:
   RoundedRay() = default;
@@ -59,7 +58,7 @@ class RoundedRay {
   std::uint32_t flags_ = 0;
 };
 
-/// What a ray hit first.
+/// The first hit of a ray.
 struct Hit {
   std::uint32_t shape = none;      ///< index into the list the scene was made from, or none
   std::uint32_t primitive = none;  ///< triangle of the mesh
@@ -69,10 +68,10 @@ struct Hit {
 };
 
 /// An immutable scene, shared by any number of threads. Rays and vertices are rounded to single
-/// precision (a relative error of 2^-24 for each coordinate), so put the origin of coordinates
-/// where the rays start: a ray from the zero vector starts exactly, and the error of what it sees
-/// is an angle of about 1e-7, however far away the scene was built. Intersections are watertight
-/// along the edges that triangles of one mesh share (Embree's robust mode).
+/// precision, a relative error of 2^-24 for each coordinate. So put the origin of coordinates where
+/// the rays start: a ray from the zero vector starts exactly. The error of its view is then an
+/// angle of about 1e-7, at any distance. Edges that triangles of one mesh share are watertight
+/// (Embree's robust mode).
 class Scene {
  public:
   /// std::runtime_error with Embree's message when Embree refuses.
@@ -80,7 +79,7 @@ class Scene {
 
   Hit closest_hit(const RoundedRay& ray) const;
   Hit closest_hit(const Ray& ray) const { return closest_hit(RoundedRay(ray)); }
-  /// Whether anything lies on the ray.
+  /// True if anything lies on the ray.
   bool occluded(const RoundedRay& ray) const;
   bool occluded(const Ray& ray) const { return occluded(RoundedRay(ray)); }
 
@@ -88,8 +87,8 @@ class Scene {
   std::shared_ptr<RTCSceneTy> scene_;
 };
 
-/// The instruction set that all scenes use, "avx2" or on older processors "sse4.2": hit decisions
-/// at edges may differ in the last bit between the two, so a record of a run names it.
+/// The instruction set that all scenes use: "avx2", or "sse4.2" on older processors. Hits at edges
+/// may differ in the last bit between the two, so a record of a run names it.
 std::string isa();
 
 }  // namespace assay::render

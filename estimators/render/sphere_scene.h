@@ -10,17 +10,17 @@ struct RTCSceneTy;
 
 namespace assay::render {
 
-/// The unit sphere about the origin. Embree finds that a ray reaches the sphere's box; where it
-/// hits is worked out in double precision, so that the sphere is round to 1e-15.
+/// The unit sphere about the origin. Embree finds the rays that reach the sphere's box. The hit is
+/// worked out in double precision, so that the sphere is round to 1e-15.
 class SphereScene {
  public:
   SphereScene();
 
-  /// Where a ray from inside the sphere, or from its surface, leaves it: a unit vector. A ray from
-  /// the surface is told by `from_surface` and its starting point is not hit again.
+  /// The unit vector where a ray from inside the sphere, or from its surface, leaves it. Set
+  /// `from_surface` for a ray from the surface, whose starting point is not hit again.
   Vector3 exit(const Vector3& origin, const Vector3& direction, bool from_surface) const;
 
-  /// Whether the sphere stands between two points of its surface (it does not: it is convex).
+  /// True if the sphere stands between two points of its surface (it does not: it is convex).
   bool occluded(const Vector3& from, const Vector3& to) const;
 
  private:

@@ -8,16 +8,16 @@
 
 namespace assay::render {
 
-/// A triangle on the unit sphere, smaller than a hemisphere, with the constants of
-/// Arvo (1995), "Stratified sampling of spherical triangles".
+/// A triangle on the unit sphere, smaller than a hemisphere, with the constants of Arvo (1995),
+/// "Stratified sampling of spherical triangles".
 ///
-/// A point is found in two steps: point c' on the arc from a to c cuts off the fraction u of the
-/// solid angle beside edge ab; on the arc from b to c' the cosine is uniform.
+/// A point is found in two steps. Point c' on the arc from a to c cuts off the fraction u of the
+/// solid angle beside edge ab. On the arc from b to c' the cosine is uniform.
 ///
-/// The first step uses the excess E of a triangle with two sides and the angle between them,
-///   tan(E / 2) = tan(ab / 2) tan(ac' / 2) sin(alpha) / (1 + tan(ab / 2) tan(ac' / 2) cos(alpha))
-/// (Todhunter 1886, Spherical Trigonometry, article 103), solved for tan(ac' / 2). It is Arvo's
-/// map; his equation for cos(ac') says the same with differences that lose half the digits in thin
+/// The first step solves the excess E of a triangle for tan(ac' / 2). The triangle has two sides
+/// and the angle between them (Todhunter 1886, Spherical Trigonometry, article 103).
+///   tan(E / 2) = tan(ab / 2) tan(ac' / 2) sin(alpha) / (1 + tan(ab / 2) tan(ac' / 2) cos(alpha)).
+/// It is Arvo's map. His equation for cos(ac') has differences that lose half the digits in thin
 /// triangles.
 class SphericalTriangle {
  public:
@@ -33,8 +33,8 @@ class SphericalTriangle {
   /// Uniform in solid angle for uniform u, v.
   Vector3 sample(double u, double v) const { return arc_point(edge_point(u), v); }
 
-  /// The (u, v) that sample() maps to the unit vector w of the triangle: uniform on the unit square
-  /// when w is uniform in the triangle.
+  /// The (u, v) that sample() maps to the unit vector w of the triangle. It is uniform on the unit
+  /// square if w is uniform in the triangle.
   std::array<double, 2> coordinates(const Vector3& w) const;
   bool contains(const Vector3& w) const;
 

@@ -25,13 +25,14 @@ struct TriangleMesh {
 /// A convex polygon as a fan of triangles about its first vertex; those without area are left out.
 TriangleMesh fan(const Polygon& polygon);
 
-/// Reads a Wavefront OBJ file: `v x y z`, `f` with three or more corners `v`, `v/vt`, `v//vn` or
-/// `v/vt/vn`, positive (from 1) or negative (from the last) indices, comments and blank lines; the
-/// statements vt vn g o s usemtl mtllib have no effect on the shape and are passed over. Polygons
-/// become fans about their first corner, so that a concave one comes out wrong: split it.
+/// Reads a Wavefront OBJ file: `v x y z`, `f`, comments and blank lines. A face has three or more
+/// corners `v`, `v/vt`, `v//vn` or `v/vt/vn`, with positive (from 1) or negative (from the last)
+/// indices. It becomes a fan about its first corner, so split a concave one. The statements vt vn g
+/// o s usemtl mtllib have no effect.
 ///
-/// InputError at `file:line` for a file that cannot be read or holds no face, any other statement,
-/// a malformed or non-finite number, an index out of range, and a face without area.
+/// InputError at `file:line` for a file that cannot be read or holds no face, and for any other
+/// statement. The same for a malformed or non-finite number, an index out of range, and a face
+/// without area.
 TriangleMesh read_obj(const std::string& file);
 
 }  // namespace assay::render

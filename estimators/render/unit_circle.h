@@ -13,12 +13,12 @@ struct CirclePoint {
 };
 
 /// (cos 2 pi t, sin 2 pi t), each within 2.2e-16, exact at quarter turns; |t| < 2^48. Its bits are
-/// the same on every processor, where those of the C library's sincos depend on whether it has
-/// fused multiplication; and it takes a third of the time.
+/// the same on every processor. The C library's sincos depends on fused multiplication, and takes
+/// three times as long.
 ///
-/// Less the nearest quarter turn, an exact difference, t is at most an eighth: there Taylor's
-/// polynomials end with (pi / 2)^15 / 15! and (pi / 2)^16 / 16! (the next terms are below 5e-17),
-/// summed in pairs, so that no term waits for all before it.
+/// The nearest quarter turn is subtracted exactly, which leaves at most an eighth. Taylor's
+/// polynomials end with (pi / 2)^15 / 15! and (pi / 2)^16 / 16! (the next terms are below 5e-17).
+/// They are summed in pairs, so that no term waits for all before it.
 inline CirclePoint on_unit_circle(double t) {
   constexpr double whole = 0x1.8p52;  // added and taken away it rounds; its last bits are the count
   const double counted = 4 * t + whole;

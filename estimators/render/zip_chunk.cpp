@@ -42,7 +42,7 @@ void add_up(Bytes differences, std::span<std::uint8_t> out) {
     const std::size_t place = k % runs * length;
     const std::size_t begin = place + (odd ? half : 0);
     const std::size_t end = k + 1 == runs ? half : begin + length;
-    // Of the byte before, from which 128 was taken as often as there are bytes up to it, less one.
+    // The byte before, less 128 for each byte up to it but one.
     const std::uint8_t before = begin % 2 == 0 ? 128 : 0;
     all[k] = {differences.data() + begin, static_cast<std::uint8_t>(sum + before),
               out.data() + 2 * place + (odd ? 1 : 0)};

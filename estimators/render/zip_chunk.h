@@ -12,8 +12,8 @@ namespace assay::render {
 /// Undoes OpenEXR's ZIP compression, by libdeflate. It takes half the time of the library's own.
 class ZipChunk {
  public:
-  /// False where the bytes are damaged, or not of a chunk of so many; nothing else than whole
-  /// halves or floats comes to an even number of them.
+  /// False if the bytes are damaged, or not of a chunk of so many. Only whole halves or floats come
+  /// to an even number of them.
   bool inflate(std::span<const std::uint8_t> packed, std::span<std::uint8_t> out);
 
  private:

@@ -12,7 +12,6 @@
 
 namespace assay::sky {
 
-/// What came of one sample.
 struct Outcome {
   Rgb value{};
   double below = 0;  ///< 1 if the direction lay below the horizon
@@ -29,8 +28,8 @@ inline Outcome outcome(const Setting& setting, const Direction& direction, Cost&
   return result;
 }
 
-/// A primary: the mean over `strata` samples, the j-th with its first number in [j, j + 1) /
-/// strata. `Follow` is Outcome(const Setting&, const Direction&, Cost&).
+/// A primary: the mean over `strata` samples. The j-th has its first number in [j, j + 1) / strata.
+/// `Follow` is Outcome(const Setting&, const Direction&, Cost&).
 template <class Follow = decltype(&outcome)>
 class StratifiedPrimary {
  public:

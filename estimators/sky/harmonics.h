@@ -20,8 +20,8 @@ using Harmonics = std::array<double, most_harmonics>;
 /// for irradiance environment maps", equation 3.
 Harmonics harmonics(const render::Vector3& w);
 
-/// A_l, by which convolution with the clamped cosine multiplies band l: pi, 2 pi / 3, pi / 4, 0,
-/// -pi / 24 (the same, equation 8). l at most 4.
+/// A_l, the factor of band l in a convolution with the clamped cosine (the same, equation 8). They
+/// are pi, 2 pi / 3, pi / 4, 0, -pi / 24; l at most 4.
 double cosine_factor(std::size_t band);
 
 }  // namespace assay::sky

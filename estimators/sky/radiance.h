@@ -38,7 +38,7 @@ class Radiance {
 
 using SharedRadiance = std::shared_ptr<const Radiance>;
 
-/// What is drawn by: the mean of the colours.
+/// The weight of a direction in sampling: the mean of the colours.
 inline double luminance(const Radiance& radiance, const Vector3& w) {
   const Rgb rgb = radiance(w);
   return radiance.colours() == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
@@ -53,8 +53,8 @@ inline double luminance(const Radiance& radiance, const Vector3& w) {
 ParameterInformation sky_parameter();
 
 /// Reads it. InputError at the offending place for an unknown or missing key, a number that is not
-/// finite, a radiance that is negative somewhere (of harmonics: at a vertex of the octahedron
-/// subdivided six times), and a picture that render::read_environment() refuses.
+/// finite, and a picture that render::read_environment() refuses. The same for a radiance that is
+/// negative somewhere (of harmonics: at a vertex of the octahedron subdivided six times).
 SharedRadiance read_radiance(Parameters&);
 
 }  // namespace assay::sky

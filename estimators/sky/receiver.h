@@ -1,6 +1,6 @@
 #pragma once
 
-// Where a sky is received: a point with a normal, and what stands between it and the sky.
+// A point with a normal that receives a sky, and the occluders between.
 
 #include <optional>
 #include <vector>
@@ -21,7 +21,7 @@ class Receiver {
   const render::Frame& frame() const { return frame_; }
   bool open() const { return !scene_; }  ///< whether there are no occluders
 
-  /// Whether nothing stands in a direction. Counts a shadow ray also under the open sky, which a
+  /// True if nothing stands in a direction. Counts a shadow ray also under the open sky, which a
   /// renderer cannot know beforehand.
   bool visible(const render::Vector3& w, Cost& cost) const {
     ++cost.shadow_rays;

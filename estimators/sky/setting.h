@@ -1,8 +1,8 @@
 #pragma once
 
 // A receiver under a sky. The estimators of the family estimate the irradiance of each colour,
-//   E = integral over directions w of L(w) max(0, n . w) V(w),
-// V(w) = 1 where nothing stands in the way, else 0.
+//   E = integral over directions w of L(w) max(0, n . w) V(w).
+// V(w) = 1 if nothing stands in the way, else 0.
 
 #include <memory>
 #include <optional>
@@ -15,7 +15,8 @@
 
 namespace assay::sky {
 
-/// What does not depend on the sample. Directions are of the receiver's frame, z along its normal.
+/// The parts that do not depend on the sample. Directions are of the receiver's frame, z along its
+/// normal.
 class Setting : public Receiver {
  public:
   Setting(SharedRadiance radiance, Receiver receiver)
@@ -40,7 +41,6 @@ using SharedSetting = std::shared_ptr<const Setting>;
 
 /// sky, normal, position, occluders.
 std::vector<ParameterInformation> parameters();
-/// Reads them.
 SharedSetting read_setting(Parameters&);
 
 /// `irradiance` of a grey sky; r, g and b of a coloured one. Under the open sky with the mean.

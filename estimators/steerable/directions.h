@@ -15,8 +15,8 @@ namespace assay::steerable {
 
 using render::Vector3;
 
-/// The density per solid angle of points of a plane is that per area times this: |q|^3 / d at the
-/// point q of a plane at the distance d from the origin.
+/// The factor |q|^3 / d from density per area to density per solid angle. The point q is on a plane
+/// at the distance d from the origin.
 struct PlaneToSphere {
   double operator()(const Vector3& q, double distance) const {
     const double r = length(q);
@@ -25,10 +25,10 @@ struct PlaneToSphere {
 };
 
 /// Steerable importance sampling (Subr and Arvo 2007). The tree is descended with probabilities in
-/// proportion to the children's weights, the number that chose used again; then a point q of the
-/// triangle with its linear density, and w = q / |q|. The density is
+/// proportion to the children's weights; the number that chose is used again. Then comes a point q
+/// of the triangle with its linear density, and w = q / |q|. The density is
 ///   p(w) = weight(q) / Z |q|^3 / d, Z the root's weight.
-/// `Warp` maps the square to a triangle, `Measure` turns area into solid angle.
+/// The type `Warp` maps the square to a triangle, `Measure` turns area into solid angle.
 template <class Warp = LinearTriangle, class Measure = PlaneToSphere>
 class SteeredDirections : public sky::Directions {
  public:
@@ -77,9 +77,8 @@ class SteeredDirections : public sky::Directions {
   }
 
   double total() const { return total_; }
-  /// A bound of cos+ / density: over each triangle the cosine is no more than the greatest height
-  /// of a vertex over the distance d of the plane, the weight no less than a vertex's, |q| no less
-  /// than d.
+  /// A bound of cos+ / density. Over each triangle the cosine is at most the greatest height of a
+  /// vertex over the distance d of the plane. The weight is at least a vertex's, |q| at least d.
   double gain() const {
     double most = 0;
     for (std::size_t t = 0; t < tree_->count(); ++t) {

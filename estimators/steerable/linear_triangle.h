@@ -18,15 +18,15 @@ struct TrianglePoint {
   double u = 0;
   double v = 0;
 
-  /// The weight there.
   double weight(const VertexWeights& w) const { return (1 - u - v) * w.a + u * w.b + v * w.c; }
 };
 
 /// Maps the unit square to the triangle with density 6 weight / sum per unit of du dv (Subr and
-/// Arvo 2007, "Steerable importance sampling"): with u = s (1 - t), v = s t, first s by its cubic
+/// Arvo 2007, "Steerable importance sampling"). With u = s (1 - t), v = s t it solves a cubic for
+/// s, then a quadratic for t:
 ///   s^2 (3 a (1 - 2 s / 3) + (b + c) s) / (a + b + c) = x,
-/// then t by its quadratic, gamma t^2 + rho t = y with gamma = s (c - b) / T,
-/// rho = 2 ((1 - s) a + s b) / T, T = s (c - b) + 2 ((1 - s) a + s b).
+///   gamma t^2 + rho t = y,  gamma = s (c - b) / T,  rho = 2 ((1 - s) a + s b) / T,
+///   T = s (c - b) + 2 ((1 - s) a + s b).
 struct LinearTriangle {
   TrianglePoint operator()(const VertexWeights& weights, double x, double y) const;
 };

@@ -21,8 +21,8 @@ struct Preparation {
   double floor = 0;  ///< added to the luminance at every vertex, as a part of the sky's mean
 };
 
-/// Nodes are numbered as in a heap: the root is 1, the children of k are 2 k and 2 k + 1, the
-/// leaves count to count + count - 1.
+/// Nodes are numbered as in a heap. The root is 1, and the children of k are 2 k and 2 k + 1.
+/// Leaves are `count` to 2 count - 1.
 class SkyTree {
  public:
   SkyTree(const sky::Radiance& radiance, const Preparation& preparation);
@@ -39,7 +39,6 @@ class SkyTree {
   double node(std::size_t index, const sky::Harmonics& a) const {
     return product(nodes_, index, a);
   }
-  /// The weights at the vertices of a triangle.
   VertexWeights weights(std::size_t triangle, const sky::Harmonics& a) const {
     const auto& [x, y, z] = sphere_.triangles()[triangle];
     return {product(vertices_, x, a), product(vertices_, y, a), product(vertices_, z, a)};

@@ -24,8 +24,8 @@ VertexWeights read_weights(Parameters& given) {
   return {w[0], w[1], w[2]};
 }
 
-// Integrals over the triangle of products of its coordinates (Dirichlet): with density
-// 6 sum w_j l_j / W, E[l_i] = (W + w_i) / (4 W) and E[l_i^2] = (W + 2 w_i) / (10 W).
+// Integrals over the triangle of products of its coordinates (Dirichlet). The density is 6 sum w_j
+// l_j / W. E[l_i] = (W + w_i) / (4 W), and E[l_i^2] = (W + 2 w_i) / (10 W).
 std::vector<Channel> triangle_channels(const VertexWeights& weights, bool with_variance) {
   const std::array<double, 3> w = {weights.a, weights.b, weights.c};
   const std::array<const char*, 3> names = {"a", "b", "c"};

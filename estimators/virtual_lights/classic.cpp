@@ -1,9 +1,9 @@
 // Light after exactly two reflections, by virtual lights and by gathering.
 //
-// Classic: light is shot from a point y0 of what emits (in proportion to its radiance) along a
-// cosine-distributed direction to y1, which becomes a virtual light; X = Phi (a1 / pi) (a / pi) cos
-// cos' V / r^2, Phi the power of a path (Keller 1997, "Instant radiosity"). Unbiased, but X has
-// spikes where the receiver is near the virtual light: the 1 / r^2.
+// Classic: light is shot from a point y0 of an emitter, in proportion to its radiance, along a
+// cosine-distributed direction to y1. That is a virtual light (Keller 1997, "Instant radiosity"):
+//   X = Phi (a1 / pi) (a / pi) cos cos' V / r^2, Phi the power of a path.
+// X is unbiased, but 1 / r^2 makes spikes near the virtual light.
 //
 // Gathering: a ray from the receiver to y1 and one from there to y0, X = a a1 Le. It shares the
 // scene with the others and nothing of their shooting: the trusted reference.

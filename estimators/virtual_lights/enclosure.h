@@ -1,7 +1,6 @@
 #pragma once
 
-// Whether triangles enclose a point, and how: what has to be known of a room before anything about
-// its light is known in closed form.
+// Tests if triangles enclose a point, and how. A room's light has a closed form only after that.
 
 #include <cstdint>
 #include <string>
@@ -16,7 +15,7 @@ struct Enclosure {
   std::string why_open;
   /// Why they do not form one convex room; empty where they do.
   std::string why_not_convex;
-  /// Whether triangles are seen counter-clockwise from inside.
+  /// True if triangles are seen counter-clockwise from inside.
   bool counter_clockwise = true;
   /// The wall that each triangle is part of, in a convex room: triangles of one plane share a
   /// number.

@@ -4,7 +4,7 @@ namespace assay::virtual_lights {
 
 namespace {
 
-// Of light on wall j, the share that comes from elsewhere.
+// The share of the light on wall j that comes from elsewhere.
 double reached(const std::vector<double>& shares, std::uint32_t wall, Weighting weighting) {
   const double elsewhere = 1 - shares[wall];
   if (weighting == Weighting::conditional) return elsewhere;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What is known of the light of a room without sampling it.
+// The exact light of a room, without sampling.
 
 #include <optional>
 #include <string>
@@ -21,19 +21,22 @@ struct Known {
   std::string why_not = {};
 };
 
-/// G, the integral of the target over what the shooting can reach; the target is the density by
-/// area of y1 as the receiver's diffuse reflection would choose it, cos cos' V / (pi r^2). By form
-/// factors F of the walls of a convex room: conditional, sum of F times the share of power that is
-/// not on the wall itself; marginal, sum of F over the walls that some light reaches. 1 for the
-/// marginal density in any closed room that emits evenly.
+/// G, the integral of the target over the points that the shooting can reach. The target is the
+/// density by area of y1 in the receiver's diffuse reflection, cos cos' V / (pi r^2).
+///
+/// A convex room has G by form factors F of its walls. The conditional density sums F times the
+/// share of power that is not on the wall itself. The marginal density sums F over the walls that
+/// some light reaches; it has G = 1 in any closed room that emits evenly.
 Known target_integral(const Room& room, Weighting weighting);
 
 /// The radiance that the receiver sends after exactly two reflections in a closed room that emits
-/// evenly: a Le a' of walls that reflect a' all, and a Le sum F a' of a convex room; in units of
-/// Le. Of the scene as it is described: rays of shooting start and end at points that are moved
-/// (paths::mesh_resolution), which changes what virtual lights bring by some 2^-14 of a wall's
-/// length over the receiver's distance to the nearest other wall: 1e-4 in the middle of a cube, up
-/// to a hundredth at a 200th of its side from two walls.
+/// evenly, in units of Le. It is a Le a' if all walls reflect a', and a Le sum F a' of a convex
+/// room.
+///
+/// It is that of the scene as described. Shooting moves its points (paths::mesh_resolution), which
+/// changes virtual lights by some 2^-14 of a wall's length over the receiver's distance to the
+/// nearest other wall. That is 1e-4 in the middle of a cube, and up to a hundredth at a 200th of
+/// its side from two walls.
 std::optional<Spectrum> twice_reflected(const Room& room);
 
 }  // namespace assay::virtual_lights

@@ -38,7 +38,7 @@ std::vector<Channel> channels(const Scene& scene, const Recipe& recipe) {
     Channel channel{.name = scene.grey ? "radiance" : colour_names[c], .low = 0};
     if (known) {
       channel.mean = (*known).*colours[c];
-      // Of ratios of sums of thousands of terms.
+      // Rounding of ratios of sums of thousands of terms.
       channel.rounding = 1e-12 * *channel.mean;
     }
     all.push_back(channel);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the plugins of virtual lights share: parameters, channels, set-up.
+// The common parts of virtual lights: parameters, channels, set-up.
 
 #include <functional>
 #include <memory>
@@ -16,9 +16,9 @@ struct Scene {
   bool grey = true;
 };
 
-/// Reads `scene` and `shininess`. InputError at the first for a sphere of zones, a mirror, a camera
-/// that sees nothing or something black, and for a scene without light; at the second where a
-/// glossy receiver is not seen from straight above.
+/// Reads `scene` and `shininess`. InputError at the first for a sphere of zones, a mirror, or a
+/// scene without light. The same for a camera that sees nothing or something black. InputError at
+/// the second if a glossy receiver is not seen from straight above.
 Scene read_room(Parameters&);
 
 /// Reads `weighting` and `target_integral`. InputError at the first where the marginal density is
@@ -33,8 +33,8 @@ std::vector<ParameterInformation> weighted_parameters();
 using Observe = std::function<Sums(Stream&, std::uint64_t primaries, Cost&)>;
 using Result = std::function<Spectrum(const Sums&, double primaries)>;
 
-/// How an observation is made, and whether it has the diagnostic channel `target`, the mean of
-/// g / p, with its mean G where that is known.
+/// The way an observation is made. It may have the diagnostic channel `target`, the mean of g / p,
+/// with its mean G if that is known.
 struct Recipe {
   Observe sums;
   Result result;
@@ -44,7 +44,6 @@ struct Recipe {
 
 std::shared_ptr<const Setup> setup(const Scene&, Recipe);
 
-/// The recipe of a kernel.
 template <class Kernel>
 Recipe recipe(const Kernel& kernel) {
   return {[kernel](Stream& random, std::uint64_t primaries, Cost& cost) {

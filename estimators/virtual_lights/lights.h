@@ -1,7 +1,7 @@
 #pragma once
 
-// What virtual lights bring to the receiver: sums over light paths, and what is made of them.
-// Parts that a mutant can replace are members of a template parameter.
+// Sums over light paths of the light that virtual lights bring to the receiver, and estimates from
+// them. Parts that a mutant can replace are members of a template parameter.
 
 #include <numbers>
 #include <utility>
@@ -28,8 +28,8 @@ struct Classic {
   Spectrum result(const Sums& sums, double count) const { return 1 / count * sums.full; }
 };
 
-/// G sum (f / p) / sum (g / p), g = geometry V / pi: weighted importance sampling. 0 where no path
-/// has been seen.
+/// Weighted importance sampling: G sum (f / p) / sum (g / p), g = geometry V / pi. 0 if no path has
+/// been seen.
 struct Weighted : Classic {
   Weighting weighting = Weighting::conditional;
   double target_integral = 1;  ///< G

@@ -20,9 +20,9 @@ using paths::Vertex;
 /// virtual light.
 struct LightPath {
   Vertex from;
-  Vertex at;  ///< without a surface: the light has left the scene
-  /// Emitted power divided by the density of the path: y0 is drawn in proportion to the radiance
-  /// averaged over the colours, the direction in proportion to the cosine.
+  Vertex at;  ///< Without a surface: the light has left the scene.
+  /// Emitted power divided by the density of the path. The point y0 is drawn in proportion to the
+  /// radiance averaged over the colours, the direction in proportion to the cosine.
   Spectrum power;
 
   double from_cosine() const { return dot(at.arriving, from.normal); }
@@ -32,8 +32,8 @@ struct LightPath {
 
 class Room {
  public:
-  /// What emits does so on both sides, in a closed room on the inner side alone. `world` must have
-  /// light, its camera see a surface. The receiver has the lobe of exponent `shininess`.
+  /// Emitters emit on both sides, in a closed room on the inner side alone. `world` must have
+  /// light, and its camera must see a surface. The receiver has the lobe of exponent `shininess`.
   explicit Room(paths::SharedMesh world, double shininess = 0);
 
   const paths::MeshWorld& world() const { return *world_; }
@@ -42,9 +42,9 @@ class Room {
 
   LightPath shoot(Stream& random, Cost& cost) const;
 
-  /// What a receiver of exponent m reflects towards a viewer straight above it, of light at the
-  /// cosine c to its normal, over what a diffuse one does: (m + 2) / 2 c^m, so that the albedo is
-  /// the same (Lafortune and Willems 1994, the mirror's direction being the normal).
+  /// The reflection of a receiver of exponent m towards a viewer straight above it, over a diffuse
+  /// one's: (m + 2) / 2 c^m for light at the cosine c to its normal. The albedo is the same
+  /// (Lafortune and Willems 1994, with the normal as the mirror's direction).
   double lobe(double cosine) const {
     return shininess_ == 0 ? 1 : (shininess_ + 2) / 2 * std::pow(cosine, shininess_);
   }
@@ -68,7 +68,7 @@ class Room {
   const std::optional<Spectrum>& even_emission() const { return even_emission_; }
   /// The form factor from the receiver to a triangle that nothing hides.
   double form_factor(std::size_t triangle) const { return form_factor(receiver_, triangle); }
-  /// Of all power, the share of each wall of a convex room, by the number of the wall.
+  /// The share of all power of each wall of a convex room, by the number of the wall.
   std::vector<double> shares_of_power() const;
 
  private:

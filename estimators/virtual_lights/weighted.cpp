@@ -1,12 +1,14 @@
 // Virtual lights by weighted importance sampling: I^ = G sum (f / p) / sum (g / p).
 //
-// The target g is the density by area with which a reflection at the receiver would choose the
-// virtual light, of a diffuse one cos cos' V / (pi r^2), times its lobe of a glossy one (Balazs,
-// Szirmay-Kalos and Antal 2003, "Weighted importance sampling in shooting algorithms"). It has the
-// spikes of f, so that the ratio has none. p is the shooting density, of y1 given y0 or marginal; G
-// is the integral of g over what is shot at: less than 1 where virtual lights cannot be, as on the
-// lamp's own plane. The bias is (I Var(g/p) / G^2 - Cov(f/p, g/p) / G) / M to first order where the
-// variance of g/p exists.
+// The target g is the density by area with which the receiver's reflection would choose the virtual
+// light. For a diffuse receiver it is cos cos' V / (pi r^2); a glossy one multiplies it by its
+// lobe. It has the spikes of f, so that the ratio has none. The shooting density of y1, given y0 or
+// marginal, is p. (Balazs, Szirmay-Kalos and Antal 2003, "Weighted importance sampling in shooting
+// algorithms".)
+//
+// G is the integral of g over the points that are shot at. It is less than 1 if virtual lights
+// cannot be everywhere, as on the lamp's own plane. If g/p has a variance, the bias to first order
+// is (I Var(g/p) / G^2 - Cov(f/p, g/p) / G) / M.
 
 #include "virtual_lights/family.h"
 

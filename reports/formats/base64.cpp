@@ -15,7 +15,7 @@ std::optional<std::uint32_t> value_of(char digit) {
   return static_cast<std::uint32_t>(value);
 }
 
-/// Of the last group, how many characters are padding; npos where there are more than two.
+/// Number of padding characters in the last group; npos if there are more than two.
 std::size_t padding_of(std::string_view text) {
   std::size_t padding = 0;
   while (padding < 2 && padding < text.size() && text[text.size() - 1 - padding] == '=') ++padding;

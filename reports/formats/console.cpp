@@ -99,7 +99,7 @@ class Screen {
     }
   }
 
-  // What is meant to be pasted is never cut, however long a quoted claim.
+  // A command is never cut, because it is meant to be pasted.
   void command(const std::string& label, const std::string& text) {
     std::string first = pad_right("      " + label, label_width + 6);
     for (const std::string& part : wrap_command(text, beside_width())) {
@@ -144,8 +144,7 @@ class Screen {
       explain(test);
   }
 
-  // What the suites' statements are answered: the answer in a column, beside it the statement and
-  // the tests that answer it.
+  // The answers stand in a column, with the statement and its tests beside them.
   void statements(const Record& record) {
     if (statement_count(record) == 0) return;
     blank();

@@ -7,9 +7,9 @@
 namespace assay::reports {
 
 struct ConsoleOptions {
-  bool colour = false;   ///< with ANSI escape sequences
-  int width = 100;       ///< columns that no line exceeds; below 60 counts as 60
-  bool verbose = false;  ///< explain every test and list the estimators, not only what is not ok
+  bool colour = false;   ///< ANSI escape sequences.
+  int width = 100;       ///< Columns of a line at most; below 60 counts as 60.
+  bool verbose = false;  ///< Explains every test, and lists the estimators.
 };
 
 /// The record for a terminal. The last line is exactly "N passed, N failed, N skipped";

@@ -83,7 +83,7 @@ TestRow row_of(const Test& test, const std::string& common) {
   const Effect effect = deciding_channel(test).effect;
   std::string number = is_evidence(test) ? effect_text(effect) : std::string();
   if (!is_evidence(test)) {
-    // What was computed rests on an assumption that does not hold: the record has it.
+    // The number rests on a violated assumption; the record has it.
   } else if (number.empty()) {
     number = headline_p(test).text();
   } else if (!interval_text(effect).empty() && confidence_text(effect.confidence) != common) {

@@ -18,8 +18,8 @@ struct TestRow {
   std::string cost;
 };
 
-/// Columns of a suite's table. Where the names would be left too little room the cost goes first
-/// (width 0: it stands in the suite's totals), then the number moves below the name.
+/// Columns of a suite's table. If names have too little room, the cost goes first (width 0; the
+/// suite's totals have it). Then the number moves below the name.
 struct RowLayout {
   int verdict = 0;
   int name = 0;

@@ -7,10 +7,10 @@
 namespace assay::reports {
 
 /// The record as JUnit XML, in the subset that GitLab, Jenkins, GitHub's actions and junitparser
-/// share: one case a test with a class name and name of its own; exactly one <error> (verdict
-/// error), <failure type="VERDICT"> (any other test that is not ok) or <skipped> (inconclusive,
-/// skipped) where it is not ok; the numbers both as properties and as text; texts below 64 KiB a
-/// case.
+/// share. A test is one case, with its own class name and name. A case that is not ok has exactly
+/// one of three elements. <error> stands for the verdict error, <skipped> for inconclusive and
+/// skipped, and <failure type="VERDICT"> for the rest. Numbers stand both as properties and as
+/// text. The texts of a case stay below 64 KiB.
 std::string junit(const Record&);
 
 }  // namespace assay::reports

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the ledger of nights says, in the same words in every format.
+// The ledger of nights in words, the same in every format.
 
 #include <string>
 #include <vector>
@@ -25,10 +25,11 @@ std::string e_text(const Number& log_e);
 /// 667".
 std::string series_sentence(const LedgerSeries&);
 
-/// Of an alarm: since when, and when theta moved most likely; empty for the others.
+/// The first night of an alarm, and the night at which theta most likely moved. Empty without an
+/// alarm.
 std::string alarm_sentence(const LedgerSeries&);
 
-/// What is said of all series without an alarm in one sentence: how many, and which stands highest.
+/// One sentence for all series without an alarm: their number, and which stands highest.
 std::string quiet_sentence(const Ledger&);
 
 /// Notes on what this run added, those of several series in one sentence.

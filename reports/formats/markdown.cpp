@@ -128,7 +128,7 @@ std::string ledger_section(const Ledger& ledger) {
   return out + "\n";
 }
 
-// What the suites' statements are answered.
+// The answers to the suites' statements.
 std::string statements_section(const Record& record) {
   if (statement_count(record) == 0) return {};
   std::string out = fmt::format(

@@ -13,9 +13,10 @@ class ReadError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The record that json() wrote. `file_name` is for messages only.
-/// Throws ReadError naming the file and the place inside it: text that is not JSON or was cut
-/// short, another schema version, a missing, unknown or repeated key, a value of the wrong type.
+/// The record that json() wrote; `file_name` is for messages only. Throws ReadError that names the
+/// file and the place inside it. It refuses other text than JSON, text that was cut short, and
+/// another schema version. It also refuses a missing, unknown or repeated key, and a value of the
+/// wrong type.
 Record read_json(std::string_view text, std::string_view file_name);
 
 }  // namespace assay::reports

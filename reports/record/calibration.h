@@ -57,15 +57,15 @@ struct Calibration {
   std::uint64_t runs = 0;
   std::string started;
   double seconds = 0;
-  double tolerance = 1.25;  ///< times alpha: what no rate may exceed for certain
-  double error = 0.001;     ///< probability that a limit is beyond the truth in any cell
-  std::string detect;       ///< what `detect` is of each kind of question, in words
+  double tolerance = 1.25;  ///< Times alpha: the limit of a rate.
+  double error = 0.001;     ///< Probability that any cell's limit is beyond the truth.
+  std::string detect;       ///< The `detect` of each kind of question, in words.
   std::vector<CalibrationCell> cells = {};
 };
 
-/// Whether the procedure's mistakes are too many for certain.
+/// True if the procedure errs too often for certain.
 bool above(const Calibration&, const CalibrationCell&);
-/// Whether the method alone errs too often for certain, and no gate says so.
+/// True if the method alone errs too often for certain, and no gate says so.
 bool unflagged(const Calibration&, const CalibrationCell&);
 /// Cells of which one or the other holds.
 std::size_t defects(const Calibration&);

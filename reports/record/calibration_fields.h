@@ -15,7 +15,7 @@ void fields(Archive& a, T& rate) {
   a("high", rate.high);
 }
 
-/// By which method how many runs were judged.
+/// A method, and the number of runs that it judged.
 struct ChosenMethod {
   std::string method;
   std::uint64_t runs;

@@ -48,7 +48,7 @@ void fields(Archive& a, T& map) {
   a("texels", map.texels);
 }
 
-/// The worst channel's numbers are `repeated` at the test's own level, for readers that want one
-/// number a test; an archive that reads checks their presence and keeps those of `channels`.
+/// The JSON repeats the worst channel's numbers at the test's own level, for readers that want one
+/// number a test. An archive that reads checks their presence and keeps those of `channels`.
 
 }  // namespace assay::reports

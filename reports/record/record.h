@@ -17,7 +17,7 @@ namespace assay::reports {
 
 inline constexpr int schema_version = 1;
 
-/// What a claim's test answers (design: verdicts). `skipped` was not run (another shard's).
+/// The verdict of a test. `skipped` was not run (another shard's).
 enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };
 const char* to_string(Verdict);
 
@@ -62,8 +62,8 @@ struct QuantilePoint {
   bool operator==(const QuantilePoint&) const = default;
 };
 
-/// How the cost of an observation varies with its value: m2, m11 and m21 are sums over the
-/// observations of (c - mean c)^2, (x - mean x)(c - mean c) and (x - mean x)^2 (c - mean c).
+/// The joint variation of the cost c and the value x of an observation. Sums over the observations:
+/// m2 of (c - mean c)^2, m11 of (x - mean x)(c - mean c), m21 of (x - mean x)^2 (c - mean c).
 struct CostMoments {
   std::string kind;  ///< rays, samples
   double mean = 0, m2 = 0, m11 = 0, m21 = 0;
@@ -97,7 +97,9 @@ struct Estimate {
   bool operator==(const Estimate&) const = default;
 };
 
-/// theta of the claim: what it is, its estimate and interval.
+/// theta of the claim: its estimate, and the interval that the verdict rests on. A fail, and a pass
+/// that excludes nothing, have the confidence 1 - the share of alpha. It is 1 - 2 x the share of
+/// beta where a region is excluded, or should have been.
 struct Effect {
   std::string quantity;  ///< "relative difference of means", "ln variance ratio", …
   Number estimate, low, high;
@@ -148,9 +150,9 @@ struct Channel {
   Distribution distribution;
   Number p_value;  ///< of the null hypothesis; may underflow to the least double, see log10_p
   Number log10_p;
-  Number p_adjusted;  ///< Holm over the family; null outside it (mutants, filtered runs)
-  Number p_pass;      ///< p-value of "theta lies in the forbidden region"
-  Number log10_p_adjusted, log10_p_pass;  ///< of these two, which may underflow as well
+  Number p_adjusted;  ///< After Holm; null outside the family (mutants, filtered runs).
+  Number p_pass;      ///< Of "theta lies in the forbidden region".
+  Number log10_p_adjusted, log10_p_pass;  ///< The same, without underflow.
   Effect effect;
   Number reference;  ///< what the mean is marked against in the histogram, if a number
   std::vector<EmpiricalLaw> laws;  ///< of a claim about laws of one coordinate: one or two
@@ -228,7 +230,7 @@ struct EstimatorSummary {
   bool operator==(const EstimatorSummary&) const = default;
 };
 
-/// Where a pair of estimators of a suite stands at its alpha: descriptive, not part of the family.
+/// A pair of estimators of a suite at its alpha: descriptive, not part of the family.
 struct Comparison {
   std::string first, second, channel;
   Number mean_p;                          ///< Welch, two-sided
@@ -236,18 +238,18 @@ struct Comparison {
   Number log10_mean_p, log10_variance_p;  ///< of the same, which may underflow
   bool means_differ = false;              ///< after Holm over the pairs of the suite
   bool variances_differ = false;
-  Number variance_ratio;  ///< first over second, a primary each
+  Number variance_ratio;  ///< first over second, one primary of each
   bool operator==(const Comparison&) const = default;
 };
 
-/// What somebody claims, and the tests of the suite that answer it, by their names. The answer is
-/// not part of the record: it follows from the verdicts (reports/statements.h).
+/// A sentence from elsewhere, and the names of the tests that answer it. The answer is not part of
+/// the record; it follows from the verdicts (reports/statements.h).
 struct Statement {
   std::string text;
-  std::string source;              ///< who says it, and where
-  std::string condition;           ///< completes "only if"; empty but where both lists have tests
-  std::vector<std::string> holds;  ///< tests whose expected verdicts show that it is true
-  std::vector<std::string> fails;  ///< tests whose expected verdicts show that it is not
+  std::string source;              ///< Who says it, and where.
+  std::string condition;           ///< Completes "only if"; empty unless both lists have tests.
+  std::vector<std::string> holds;  ///< Tests whose expected verdicts show it true.
+  std::vector<std::string> fails;  ///< Tests whose expected verdicts show it false.
   int line = 0;                    ///< in the suite's file
   bool operator==(const Statement&) const = default;
 };
@@ -259,7 +261,7 @@ struct Suite {
   std::uint64_t seed = 0;  ///< of this suite's streams
   double alpha = 0;
   double beta = 0;
-  bool timed = false;  ///< seconds decided something: exempt from bit identity
+  bool timed = false;  ///< a budget in seconds ended sampling: another run may end elsewhere
   std::vector<EstimatorSummary> estimators;
   std::vector<Comparison> comparisons;
   std::vector<Test> tests;
@@ -267,8 +269,8 @@ struct Suite {
   bool operator==(const Suite&) const = default;
 };
 
-/// One-pass moments of the finite values of a channel: m2, m3 and m4 are sums of powers of
-/// deviations from the mean, and `rest` is what rounding took from the mean.
+/// One-pass moments of the finite values of a channel. m2, m3 and m4 are sums of powers of
+/// deviations from the mean; `rest` is the rounding error of the mean.
 struct Moments {
   std::uint64_t count = 0;
   double mean = 0, m2 = 0, m3 = 0, m4 = 0;
@@ -285,27 +287,27 @@ struct ShardChannel {
   bool operator==(const ShardChannel&) const = default;
 };
 
-/// What lies behind an estimator of a shard's suite, at the same place in `Suite::estimators`.
+/// The moments behind an estimator of a shard's suite, at the same place in `Suite::estimators`.
 struct ShardPicture {
-  std::uint64_t position = 0;     ///< in the suite's file
-  bool by_tests = false;          ///< a test drew it; else it was drawn for the picture alone
-  std::uint64_t secondaries = 0;  ///< asked for
-  bool drawn = false;             ///< false: the estimator threw
-  double averaged = 1;            ///< primaries that an observation averages
+  std::uint64_t position = 0;     ///< Place in the suite's file.
+  bool by_tests = false;          ///< False: drawn for the report's picture alone.
+  std::uint64_t secondaries = 0;  ///< The number asked for.
+  bool drawn = false;             ///< False: the estimator threw.
+  double averaged = 1;            ///< Primaries that an observation averages.
   bool image = false;
   std::vector<ShardChannel> channels;  ///< none of an image
   bool operator==(const ShardPicture&) const = default;
 };
 
-/// What Holm's method over the whole suite needs of a test, at the same place in `Suite::tests`.
+/// A test's part in Holm's method over the whole suite, at the same place in `Suite::tests`.
 struct ShardTest {
-  std::uint64_t position = 0;         ///< in the suite's file
-  bool inside = false;                ///< of the family; mutants and expected failures are not
-  double weight = 0;                  ///< of one channel, of the family's weights, which sum to 1
-  std::uint64_t untested = 0;         ///< channels without a p-value
-  std::vector<double> log_p;          ///< natural logarithms, of the test's channels in their order
-  std::vector<Effect> refuted;        ///< their effects, should Holm refute the claim
-  std::vector<std::string> compared;  ///< the two estimators of a claim about two
+  std::uint64_t position = 0;         ///< Place in the suite's file.
+  bool inside = false;                ///< In the family; mutants and expected failures are not.
+  double weight = 0;                  ///< One channel's; the family's weights sum to 1.
+  std::uint64_t untested = 0;         ///< Channels without a p-value.
+  std::vector<double> log_p;          ///< Natural logarithms, one a channel of the test.
+  std::vector<Effect> refuted;        ///< The effects to show if Holm refutes the claim.
+  std::vector<std::string> compared;  ///< The estimators of a claim about two.
   bool operator==(const ShardTest&) const = default;
 };
 
@@ -317,7 +319,7 @@ struct ShardSuite {
   bool operator==(const ShardSuite&) const = default;
 };
 
-/// What makes a run one part of several, and what joining the parts takes.
+/// A run that is one part of several, with all that joining the parts takes.
 struct Shard {
   std::uint64_t index = 1;  ///< from 1
   std::uint64_t count = 1;
@@ -340,7 +342,7 @@ struct Record {
   bool operator==(const Record&) const = default;
 };
 
-/// What a test's verdict and expectation together mean for the run.
+/// The meaning of a test's verdict and expectation for the run.
 enum class Outcome {
   passed,        ///< ok
   failed,        ///< not ok: fail, invalid, error, or an expectation not met
@@ -363,10 +365,11 @@ Tally tally(const Record&);
 /// every `seconds`, and `environment.threads`. Two runs agree when these are equal byte for byte.
 Record without_times(Record);
 
-/// What a test cost: the same draws once, though each of their channels has a sample.
+/// The cost of a test. The same draws count once, though each of their channels has a sample.
 Cost total_cost(const Test&);
 
-/// What the suite's tests and the rows of its estimators cost, without pilots: the same draws once.
+/// The costs of the suite's tests and of its estimators' rows, without pilots. The same draws count
+/// once.
 std::vector<Cost> costs_of_draws(const Suite&);
 Cost total_cost(const std::vector<Cost>&);
 

@@ -27,14 +27,14 @@ struct Image {
   std::uint64_t width = 0, height = 0;
   std::vector<std::string> components;
   std::uint64_t replicates = 0;
-  std::uint64_t tested = 0;         ///< elements that vary
-  std::uint64_t constant = 0;       ///< elements that do not, and are as they should be
-  std::uint64_t unseen = 0;         ///< elements that do not, and differ from an exact reference
-  std::uint64_t smallest_cell = 1;  ///< side of the smallest cells in the family; 1: single pixels
-  bool symmetric = true;    ///< else skewed elements' sum of squares took no part without a pilot
-  bool sign_flips = false;  ///< whether the sum of squares was judged by flips of signs
-  ImageFinding winner;      ///< the least adjusted p
-  std::vector<ImageFinding> groups;  ///< the best of each group of sums
+  std::uint64_t tested = 0;          ///< Elements that vary.
+  std::uint64_t constant = 0;        ///< Elements that do not vary and equal the reference.
+  std::uint64_t unseen = 0;          ///< Elements that do not vary and differ from it.
+  std::uint64_t smallest_cell = 1;   ///< Side of the smallest cells in the family, in pixels.
+  bool symmetric = true;             ///< False: skewness kept the sum of squares out.
+  bool sign_flips = false;           ///< True: flips of signs judged the sum of squares.
+  ImageFinding winner;               ///< The least adjusted p.
+  std::vector<ImageFinding> groups;  ///< The best of each group of sums.
   bool operator==(const Image&) const = default;
 };
 
@@ -44,12 +44,15 @@ struct Texels {
   bool operator==(const Texels&) const = default;
 };
 
-/// One number for each element of an image, that of column x, row y and component c at index
-/// (y * width + x) * components + c.
+/// One number an element: column x, row y and component c are at (y * width + x) * components + c.
+/// A map of a sampler's domain has a number a cell: `cells_observed`, `cells_expected`, `cells_z`.
+/// One sample has z = (observed - expected) / sqrt(expected). Two samples are expected to follow
+/// both together. `cells_z_close` enlarges the heaviest cells; it is 0 where fewer than 5 draws are
+/// expected.
 struct Map {
-  std::string name;    ///< z, p_adjusted, mean, variance, reference, other_mean, other_variance
-  std::string source;  ///< of a mean or variance: the estimator
-  std::string file;    ///< an EXR beside the JSON record, where one was written; layer = name
+  std::string name;    ///< `z`, `p_adjusted`, `mean`, `variance`, `reference`, `other_mean`, …
+  std::string source;  ///< The estimator of a mean or variance.
+  std::string file;    ///< The EXR beside the JSON, if written; `name` is its layer.
   std::uint64_t width = 0, height = 0;
   std::vector<std::string> components;
   Texels texels;

@@ -18,18 +18,18 @@ struct LedgerSeries {
   std::string quantity;  ///< theta, as in Effect; empty where nights add up as e-values
   bool relative = false;
   std::uint64_t nights = 0;
-  std::string first, last;           ///< dates of the first and the last night, UTC, ISO 8601
-  Number score, information;         ///< sums over the nights; theta is about score / information
-  Number reference_error;            ///< of theta, the same on all nights: no sum takes it away
-  Number log_e;                      ///< ln of the e-value of all nights
-  Number limit;                      ///< the ln E that is an alarm
-  bool alarm = false;                ///< ln E was at the limit after some night
-  std::string since;                 ///< the first such night
-  std::string moved;                 ///< of an alarm: the night at which theta most likely moved
-  std::string moved_commit;          ///< what ran then
-  std::string moved_from, moved_to;  ///< first and last of the most likely nights, 90 % together
-  bool added = false;                ///< this run is one of the nights
-  std::string note;                  ///< why it is not, or that a new series began
+  std::string first, last;           ///< Dates of the first and last night, UTC, ISO 8601.
+  Number score, information;         ///< Sums over nights; theta is about score / information.
+  Number reference_error;            ///< The standard error of theta that all nights share.
+  Number log_e;                      ///< ln of the e-value of all nights.
+  Number limit;                      ///< The ln E that is an alarm.
+  bool alarm = false;                ///< ln E reached the limit after some night.
+  std::string since;                 ///< The first such night.
+  std::string moved;                 ///< The night at which theta most likely moved, of an alarm.
+  std::string moved_commit;          ///< The commit of that night.
+  std::string moved_from, moved_to;  ///< First and last of the nights that hold 90 % of it.
+  bool added = false;                ///< This run is one of the nights.
+  std::string note;                  ///< Why it is not, or that a new series began.
   bool operator==(const LedgerSeries&) const = default;
 };
 

@@ -12,8 +12,8 @@ std::optional<std::size_t> place_of(const Suite& suite, const std::string& name)
   return std::nullopt;
 }
 
-/// What a test leaves of the answer: one that decided nothing says nothing, whatever was expected,
-/// nor does one that is not ok although its verdict is the expected one.
+/// A test's effect on the answer. A test that decided nothing is silent, whatever was expected. So
+/// is a test that is not ok although its verdict is the expected one.
 enum class Voice { contradicts, silent, speaks };
 
 Voice voice_of(const Suite& suite, const std::optional<std::size_t>& place) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// What a run says of the statements of its suites. The answer follows from the verdicts alone.
+// The answers that a run gives to the statements of its suites. They follow from the verdicts
+// alone.
 
 #include <cstddef>
 #include <optional>
@@ -12,12 +13,11 @@
 namespace assay::reports {
 
 enum class Answer {
-  yes,      ///< every test under `holds` has its expected verdict, and none stands under `fails`
-  only_if,  ///< so have those under `holds` and those under `fails`
-  no,       ///< so have those under `fails`, and none stands under `holds`
-  open,     ///< of some test the verdict is inconclusive, invalid, error or skipped, or it is not
-            ///< in the record
-  contradicted  ///< some test passed that should fail, or failed that should pass
+  yes,          ///< All tests have their expected verdicts, and all are under `holds`.
+  only_if,      ///< All have, under both `holds` and `fails`.
+  no,           ///< All have, and all are under `fails`.
+  open,         ///< Some test is inconclusive, invalid, an error, skipped or not in the record.
+  contradicted  ///< Some test passed that should fail, or failed that should pass.
 };
 
 /// "yes", "only if", "no", "open", "contradicted".
@@ -34,8 +34,8 @@ struct Witness {
   std::optional<std::size_t> test;
 };
 
-/// The tests of one of the statement's lists: first what is not as expected, then what is not
-/// decided, then the rest in the order of the list.
+/// The tests of one of the statement's lists. Those that are not as expected come first, then the
+/// undecided ones, then the rest in the order of the list.
 std::vector<Witness> witnesses(const Suite&, const std::vector<std::string>& names);
 
 /// How many statements a record has.

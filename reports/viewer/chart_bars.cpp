@@ -37,7 +37,7 @@ std::vector<Row> rows_of(const Suite& suite, const std::string& name) {
   return rows;
 }
 
-// What one panel shows of a row.
+// The part of a row that one panel shows.
 struct Bar {
   Estimate estimate;
   Number reference;
@@ -141,7 +141,7 @@ std::string label_tooltip(const EstimatorSummary& estimator) {
   return text;
 }
 
-// Whether the variances are of primary or of secondary estimates: one title where all agree.
+// The title says if variances are of primary or secondary estimates, where all agree.
 std::string variance_title(const std::vector<Row>& rows) {
   std::set<std::string> kinds;
   for (const Row& row : rows) kinds.insert(row.estimator->variance_of);

@@ -86,7 +86,7 @@ Scale scale_of(const Test& test, std::size_t channels, Range pixels) {
   return Scale({extent.padded(0.06), pixels});
 }
 
-// Where on the axis `detect` lies: one place or two.
+// The places of `detect` on the axis: one or two.
 std::vector<double> detect_margins(const Test& test) {
   const Unit unit(test.channels.front().effect);
   const Sides sides(test);

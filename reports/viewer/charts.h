@@ -11,19 +11,19 @@
 
 namespace assay::reports {
 
-/// The estimators of a suite that have a channel, one row each, as bars from zero with their
-/// intervals: the means (red) and the variances (blue); exact values as dashed lines. Variances
-/// whose values span more than a factor 50 are drawn on a logarithmic axis, which says so.
+/// Bars from zero with intervals, one row for each estimator that has the channel. Means are red
+/// and variances blue; dashed lines mark exact values. The axis of variances is logarithmic if
+/// their values span more than a factor of 50.
 std::string mean_bars(const Suite& suite, const std::string& channel);
 std::string variance_bars(const Suite& suite, const std::string& channel);
 
-/// Where each pair of a suite's estimators stands in one channel: above the diagonal whether the
-/// means agree, below it whose variance is smaller. The first 40 estimators.
+/// Pairs of a suite's estimators in one channel, for the first 40. Above the diagonal a cell says
+/// if the means agree; below it, whose variance is smaller.
 std::string pair_matrix(const Suite& suite, const std::string& channel);
 inline constexpr std::size_t most_in_matrix = 40;
 
-/// Mutants against methods (reports/kill_matrix.h): cells shaded by the samples that killed the
-/// mutant, a step a decade, each with its text; empty where no mutant was tested by two methods.
+/// Mutants against methods (reports/kill_matrix.h). The fewer samples killed a mutant, the darker
+/// the cell, a step for each decade. Empty if no mutant was tested by two methods.
 std::string kill_chart(const Suite& suite, const KillMatrix& matrix);
 
 /// A test's effect against none, `allow` and `detect`: one interval a channel, the first 40. A

@@ -24,8 +24,9 @@ struct ColourScale {
   Rgb operator()(double value) const;
 };
 
-/// The scale of a map: z from -L to L, L the largest |z| but from 5 to 15; probabilities from 1e-6
-/// to 1 by their logarithm; others from 0, or the least value below it, to the largest.
+/// The scale of a map. z goes from -L to L, where L is the largest |z|, clamped to [5, 15].
+/// Probabilities go from 1e-6 to 1 by their logarithm. Others go from 0, or the least value below
+/// it, to the largest.
 ColourScale scale_of(const Map& map);
 
 /// One component of a map, in colours.

@@ -6,10 +6,10 @@
 
 namespace assay::reports {
 
-/// The record as one page that needs nothing else: no network, no fonts, no script to be read.
-/// First the answers to the suites' statements, if there are any, and the verdicts of all suites,
-/// then for each suite its estimators side by side, where each pair stands, and every test with its
-/// pictures, numbers and replay command. Light, dark and print. Well-formed as XML too.
+/// The record as one page without network or fonts; it can be read without its script. It begins
+/// with the answers to statements and the verdicts of all suites. Each suite follows with its
+/// estimators, their pairs, and every test with charts, numbers and replay command. The page has a
+/// light, a dark and a printed look, and is well-formed XML.
 std::string html(const Record&);
 
 }  // namespace assay::reports

@@ -44,7 +44,7 @@ Pixels bar_of(const ColourScale& scale) {
   return bar;
 }
 
-/// Whether numbers lie beyond the ends of the scale.
+/// True if numbers lie beyond the ends of the scale.
 bool is_cut(const Map& map, const ColourScale& scale) {
   return std::any_of(map.texels.values.begin(), map.texels.values.end(), [&](float value) {
     return static_cast<double>(value) < scale.low || static_cast<double>(value) > scale.high;
@@ -130,7 +130,7 @@ std::string image_section(const Test& test) {
     if (map.texels.values.empty()) continue;
     const std::size_t worst = index_of(map, winner.component);
     for (std::size_t c = 0; c < map.components.size(); ++c) {
-      // Of several components all z, but of the rest the one that matters most.
+      // Every component has its z; other maps show the component that matters most.
       if (map.name != "z" && c != worst) continue;
       const bool outlined = map.name == "z" && c == worst && winner.width > 0;
       const Shown shown{map, c, outlined ? &winner : nullptr};

@@ -36,7 +36,7 @@ std::string p_markup(const Test& test) {
                                      escape_xml(p.name));
 }
 
-// What was computed where an assumption does not hold is in the record, and is no effect.
+// A number that rests on a violated assumption is no effect; the record has it.
 std::string effect_markup(const Test& test) {
   if (!is_evidence(test)) return {};
   const Effect effect = deciding_channel(test).effect;
@@ -60,7 +60,7 @@ void add(HtmlTable& table, const Test& test, TestPlace place) {
 
 bool needs_a_look(const Test& test) { return urgency(test) < 2; }
 
-// What needs a look stands first, whichever suite it is of.
+// Tests that need a look stand first, whichever suite they belong to.
 void add_urgent(HtmlTable& table, const Record& record, Outcome kind, const char* heading) {
   bool first = true;
   for (std::size_t s = 0; s < record.suites.size(); ++s) {

@@ -19,7 +19,7 @@ extern const char* const page_script;
 /// Everything up to the body.
 std::string page_head(const std::string& title);
 
-/// Where a test stands in the record: its link target.
+/// The place of a test in the record, for its link target.
 struct TestPlace {
   std::size_t suite = 0;
   std::size_t test = 0;
@@ -39,13 +39,13 @@ std::string figure(const std::string& chart, const std::string& caption);
 std::string source_markup(const std::string& name, const std::string& plugin,
                           const std::string& parameters);
 
-/// What something cost: rays or samples, with the CPU time below; all digits on pointing at it.
+/// A cost: rays or samples, with the CPU time below. Hovering shows all digits.
 HtmlTable::Cell cost_cell(const Cost&);
 
 /// The tests of a suite in the order of their urgency (reports/verdict.h).
 std::vector<std::size_t> by_urgency(const Suite&);
 
-/// What the suites' statements are answered, in one table; empty where there are none.
+/// The answers to the suites' statements in one table; empty if there are none.
 std::string statements_section(const Record&);
 
 /// All tests in one table: first what is not ok, then what is undecided, then the suites.
@@ -58,7 +58,7 @@ std::string estimator_pictures(const Suite&);
 /// that was tested by two methods.
 std::string kill_section(const Record& record, std::size_t suite);
 
-/// What the nights of the ledger say, alarms first; empty where none is kept.
+/// The ledger of nights, alarms first; empty if none is kept.
 std::string ledger_section(const Ledger&);
 
 /// One component of a map in colours with its scale below, a rectangle of it outlined if there is

@@ -75,7 +75,7 @@ void add(HtmlTable& table, const Record& record, std::size_t s, const Statement&
             style_of(given));
 }
 
-/// What a reader must look at stands first, whichever suite it is of.
+/// Statements that need a look stand first, whichever suite they belong to.
 void add_with(HtmlTable& table, const Record& record, Answer wanted, const char* heading) {
   bool first = true;
   for (std::size_t s = 0; s < record.suites.size(); ++s) {

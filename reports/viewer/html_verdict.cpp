@@ -86,7 +86,7 @@ std::string law_caption(const Test& test) {
 std::string pictures(const Test& test) {
   const std::vector<const Sample*> samples = drawn_samples(test);
   std::string out;
-  // As wide as the page: beside it the others would stand one by one.
+  // The chart is as wide as the page; beside it the others would stand one by one.
   if (is_evidence(test)) out += figure(interval_chart(test), interval_caption(test));
   out += "<div class=\"figures\">\n";
   out += figure(histogram_chart({samples, worst_channel(test).reference}),

@@ -28,7 +28,7 @@ std::string estimate_fact(const Effect& effect) {
   return text;
 }
 
-// What `detect` means depends on what is claimed.
+// The meaning of `detect` depends on the claim.
 const char* detect_words(const Test& test) {
   const std::string relation = relation_of(test.claim);
   if (relation == "within") return "must be less than";
@@ -108,7 +108,7 @@ int nesting(char c) { return (c == '{' || c == '[') - (c == '}' || c == ']'); }
 
 std::string observations_fact(const Test& test) {
   std::string text;
-  // Where several channels are counted together each has a sample of the same observations.
+  // Channels that are counted together have samples of the same observations.
   std::set<std::tuple<std::string, std::string, std::uint64_t, std::uint64_t>> said;
   for (const Sample* sample : worst_samples(test)) {
     if (text.size() > 1000) break;

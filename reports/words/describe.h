@@ -1,6 +1,6 @@
 #pragma once
 
-// What a test's numbers say, in the same words in every format.
+// A test's numbers in words, the same in every format.
 
 #include <cstdint>
 #include <string>
@@ -18,11 +18,11 @@ std::vector<const Sample*> worst_samples(const Test&);
 /// channels counted once.
 std::uint64_t observations(const Test&);
 
-/// Whether the test's numbers mean what they say: not where an assumption of theirs does not hold.
+/// True unless an assumption of the test's numbers is violated.
 bool is_evidence(const Test&);
 
-/// The number of a test that a reader looks for first: the worst channel's effect with its named
-/// interval, else the p-value that the verdict rests on; empty where nothing was tested.
+/// The first number to look for in a test: the worst channel's effect with its named interval.
+/// Without an effect it is the p-value that the verdict rests on. Empty if nothing was tested.
 std::string key_number(const Test&);
 
 /// "1.05 M rays", or samples where no ray was traced.

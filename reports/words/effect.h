@@ -1,7 +1,7 @@
 #pragma once
 
-// The effect of a claim as a reader wants it: differences in per cent or in the output's unit,
-// logarithms of ratios as the factors they are.
+// The effect of a claim in readable units. Differences are in per cent or the output's unit;
+// logarithms of ratios become factors.
 
 #include <string>
 
@@ -12,7 +12,7 @@ namespace assay::reports {
 /// True where theta is the natural logarithm of a ratio ("ln(ratio of variances)").
 bool is_ratio(const Effect&);
 
-/// What the effect is of, without the logarithm: "ratio of variances".
+/// The name of the effect without the logarithm: "ratio of variances".
 std::string effect_name(const Effect&);
 
 /// One value of theta. A ratio is "+12.3 %" where the whole effect stays within a factor of two of
@@ -31,8 +31,8 @@ std::string effect_text(const Effect&);
 /// effect_text() with the confidence of its interval: "+0.31 % [+0.12 %, +0.5 %] (99 % interval)".
 std::string named_effect_text(const Effect&);
 
-/// How far a value of theta lies from none, in the form of theta_text() without a sign: "0.31 %";
-/// of a ratio "10.9 %", or "a factor of 2.4" where the effect is shown as a factor or this is one.
+/// The distance of theta from no effect, as theta_text() without a sign: "0.31 %". A ratio gives
+/// "10.9 %", or "a factor of 2.4" if the effect is shown as a factor or theta is one.
 std::string size_text(double theta, const Effect&);
 
 /// A margin on the effect, upwards: "0.5 %", "a factor of 2.4".

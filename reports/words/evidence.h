@@ -15,7 +15,7 @@ std::string relation_of(const std::string& claim);
 /// the claim itself says little.
 bool is_proof(const Test&);
 
-/// "a >= b" for "a < b", "a not within x of b" for "a within x of b"; empty for a claim that is no
+/// "a >= b" for "a < b", "a not within x of b" for "a within x of b". Empty for a claim that is no
 /// proof.
 std::string contrary(const std::string& claim);
 
@@ -30,8 +30,8 @@ struct NamedP {
 /// The worst channel's numbers, or those of an untested channel where nothing was tested.
 Channel worst_channel(const Test&);
 
-/// The channel that the verdict rests on: of a fail, or of a claim with nothing to exclude, the one
-/// that speaks most against the claim; else the one whose forbidden region is excluded least.
+/// The channel that the verdict rests on. After a fail, or without a region to exclude, this is the
+/// channel most against the claim. Else it is the channel whose forbidden region is excluded least.
 Channel deciding_channel(const Test&);
 
 /// The p-value that the verdict rests on: of the claim; in a proof that did not fail, of its

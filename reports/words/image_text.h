@@ -6,7 +6,8 @@
 
 namespace assay::reports {
 
-/// What an image test looked at, and where the images differ most; empty where there is no image.
+/// The sums that an image test looked at, and the place that differs most. Empty if the claim is
+/// not on an image.
 std::string image_fact(const Test&);
 
 /// "z", "adjusted p", "mean of luminaire/floor": a map for people.

@@ -68,7 +68,7 @@ std::uint64_t samples_of(const Test& test, const std::string& mutant) {
 
 Number found_from(const Test& test) { return test.detectable ? test.detectable : test.detect; }
 
-/// Whether the first says more of the method than the second.
+/// True if the first says more of the method than the second.
 bool better(const Suite& suite, const KillCell& one, const KillCell& other) {
   if (one.fate != other.fate) return one.fate < other.fate;
   if (one.fate != Fate::survived) return one.samples < other.samples;

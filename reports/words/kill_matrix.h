@@ -12,7 +12,7 @@
 
 namespace assay::reports {
 
-/// What became of a mutant under one method.
+/// The fate of a mutant under one method.
 enum class Fate {
   killed,    ///< the claim was refuted
   broken,    ///< an observation was not finite, which is seen as well
@@ -20,8 +20,8 @@ enum class Fate {
   open       ///< undecided, or no valid test
 };
 
-/// The best that one method did against one mutant: of several tests the one that killed it with
-/// the fewest samples, else the one that would have found the least effect, else the first.
+/// The best result of one method against one mutant. A kill by the fewest samples comes first, then
+/// the survival with the least detectable effect, then the first test.
 struct KillCell {
   std::size_t test = 0;  ///< in the suite
   Fate fate = Fate::open;
@@ -33,27 +33,27 @@ struct KillRow {
   std::vector<std::optional<KillCell>> cells;  ///< one a method; none: not tested by it
 };
 
-/// Rows and columns of a suite's mutants. The methods are named by the textbook test of a claim, in
-/// the order t, Welch, chi-square, F, KS, goodness of fit, image pyramid, then other quantities by
-/// their names; the test's own `method` says what the pilot put in its place.
+/// Rows are mutants and columns are methods of a suite. A method has the name of the claim's
+/// textbook test, in the order t, Welch, chi-square, F, KS, goodness of fit, image pyramid. Other
+/// quantities follow by their names. The test's own `method` says what the pilot chose instead.
 struct KillMatrix {
   std::vector<std::string> methods;
   std::vector<KillRow> rows;
 };
 
-/// Of the mutants that were tested. An estimator is a mutant where the record names its original; a
-/// claim on two mutants counts for the first. Skipped tests and those without a sample are left
+/// The matrix of the tested mutants. An estimator is a mutant if the record names its original. A
+/// claim on two mutants counts for the first. Skipped tests and tests without a sample are left
 /// out.
 KillMatrix kill_matrix(const Suite&);
 
-/// Whether there is something to compare: a mutant that was tested by two methods or more.
+/// True if two methods or more tested some mutant.
 bool is_worth_showing(const KillMatrix&);
 
-/// "6400", "1.05 M": samples at which a mutant was killed; "< 0.36 %": it survived, and an effect
-/// of that size would have been found; "not finite", "undecided", "invalid".
+/// "6400" or "1.05 M" samples killed a mutant. "< 0.36 %": it survived, and an effect of that size
+/// would have been found. Else "not finite", "undecided" or "invalid".
 std::string short_text(const Suite&, const KillCell&);
 
-/// The same as a sentence, with the samples of a survivor too: "killed by 6400 samples", "survives
+/// The same as a sentence: "killed by 6400 samples". A survivor's samples are said too: "survives
 /// 65.5 k samples: an effect of 0.36 % or more would have been found".
 std::string sentence(const Suite&, const KillCell&);
 

@@ -75,12 +75,12 @@ std::string scientific(double log10_value) {
 }
 
 std::string p_text(Number p, Number log10_p) {
-  // What cannot be under the claim has the least logarithm there is, of 300 digits.
+  // An event that is impossible under the claim has a logarithm of 300 digits.
   if (log10_p && std::isfinite(*log10_p) && *log10_p < -1e6) return "below 1e-1000000";
   if (log10_p && std::isfinite(*log10_p) && *log10_p < -4) return scientific(*log10_p);
   if (!p) return log10_p ? p_text(std::pow(10.0, *log10_p), std::nullopt) : no_number;
   if (!std::isfinite(*p)) return non_finite(*p);
-  // What underflowed is stored as the least number there is, or as zero.
+  // A p-value that underflowed is stored as the least double, or as zero.
   if (*p >= 0 && *p < std::numeric_limits<double>::min()) return "below 1e-307";
   if (*p < 1e-4) return *p < 0 ? human(*p, 2) : scientific(std::log10(*p));
   // Two digits would turn 0.9996 into 1: a p-value near one is itself a finding.

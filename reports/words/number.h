@@ -9,7 +9,7 @@
 
 namespace assay::reports {
 
-/// What stands where a number does not exist.
+/// The text for a number that does not exist.
 inline constexpr const char* no_number = "n/a";
 
 /// The shortest decimal form that reads back as the same double; NaN, Infinity, -Infinity.

@@ -21,8 +21,8 @@ std::string statement_totals(const Record&);
 /// How to read the answers.
 extern const char* const statement_legend;
 
-/// What a test shows: "ratio of variances ×0.0717 [×0.07, ×0.0734] (99 % interval)", else its
-/// p-value, else its verdict; "not run".
+/// The finding of a test: "ratio of variances ×0.0717 [×0.07, ×0.0734] (99 % interval)". Without an
+/// effect it is the p-value, without that the verdict; "not run" if the test is not in the record.
 std::string finding(const Suite&, const Witness&);
 
 /// The findings of one of a statement's lists in one line, the rest of more than two counted.

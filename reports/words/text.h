@@ -8,20 +8,20 @@
 
 namespace assay::reports {
 
-/// What stands for a byte or character that cannot be shown.
+/// The substitute for a byte or character that cannot be shown.
 inline constexpr char32_t replacement_character = 0xFFFD;
 
 /// The code point that starts at `position`, which moves behind it. A byte that starts no valid
-/// UTF-8 sequence (overlong forms, surrogates and cut sequences included) gives the replacement
-/// character and is stepped over alone. `position` must be below text.size().
+/// UTF-8 sequence gives the replacement character, and `position` moves by one. Overlong forms,
+/// surrogates and cut sequences are not valid. `position` must be below text.size().
 char32_t next_code_point(std::string_view text, std::size_t& position);
 
 /// Appends a code point as UTF-8.
 void append_code_point(std::string& text, char32_t code_point);
 
-/// Valid UTF-8 without control characters: line feed and tab stay, CR LF becomes LF, everything
-/// that a terminal or an XML reader must not meet (C0, C1, DEL, line and direction controls,
-/// non-characters) becomes U+FFFD. Idempotent.
+/// Valid UTF-8 without control characters. Line feed and tab stay; CR LF becomes LF. Characters
+/// that a terminal or an XML reader must not meet become U+FFFD: C0, C1, DEL, line and direction
+/// controls, non-characters. Idempotent.
 std::string clean(std::string_view text);
 
 /// clean(), with line feeds and tabs as spaces: for names, headings and table cells.

@@ -21,19 +21,18 @@ std::string verdict_text(const Test&);
 /// How many tests had which outcome, as a sentence for a title.
 std::string tally_sentence(const Tally&);
 
-/// What passed, failed and skipped count in the console's last line, where these are not the
-/// verdicts of the same names; else empty.
+/// The meaning of passed, failed and skipped in the console's last line. Empty if they are the
+/// verdicts of the same names.
 std::string last_line_note(const Record&);
 
 /// How many tests had which verdict, the urgent ones first: "1 pass, but fail expected; 57 pass; 20
 /// fail (as expected)".
 std::string verdict_counts(const Record&);
 
-/// What the verdicts of a run may be relied on for: its error rates.
+/// The error rates of a run's verdicts.
 std::string error_rates(const Record&);
 
-/// Where a test stands in lists that begin with what needs a look: not ok, undecided, not run,
-/// ok.
+/// The rank of a test in lists that begin with what needs a look: not ok, undecided, not run, ok.
 int urgency(const Test&);
 
 }  // namespace assay::reports

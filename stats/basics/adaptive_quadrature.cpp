@@ -12,14 +12,15 @@ namespace {
 
 using Rule = boost::math::quadrature::gauss<double, AdaptiveQuadrature::nodes>;
 
-// So near to the end of a part that a border of panels lies outside, rounding included.
+// The ends of a part are looked at this far inside, in units of its width. So borders of panels lie
+// outside, rounding included.
 constexpr double nudge = 1e-9;
-// A jump of J in a part makes its halves err by up to .105 J times the width, and by as little as a
-// ninth of that the polynomials through their nodes depart from the density at their ends times
-// blind_share.
+// A jump of J in a part makes its halves err by up to .105 J times the width. The polynomials
+// through their nodes depart from the density at the ends. That departure times blind_share may be
+// as little as a ninth of the error.
 constexpr double jump_share = 9 * AdaptiveQuadrature::blind_share;
-// Next to a pole x^-a, of which halving leaves a part at 0 however deep, the rule misses less than
-// so many times what it finds there up to a = .94; the density at its end tells nothing of it.
+// Halving leaves a part at 0 next to a pole x^-a however deep. There the rule misses less than this
+// multiple of its result, up to a = .94. The density at the end tells nothing of it.
 constexpr double most_of_a_pole = 16;
 constexpr std::size_t low_end = AdaptiveQuadrature::nodes;
 constexpr std::size_t high_end = low_end + 1;
@@ -34,7 +35,6 @@ AdaptiveQuadrature::Places places_in(Span span) {
   return places;
 }
 
-// Of the nodes, in the order of node_places().
 const std::array<double, AdaptiveQuadrature::nodes>& node_weights() {
   static const std::array<double, AdaptiveQuadrature::nodes> weights = [] {
     std::array<double, AdaptiveQuadrature::nodes> all{Rule::weights()[0]};
@@ -46,8 +46,8 @@ const std::array<double, AdaptiveQuadrature::nodes>& node_weights() {
   return weights;
 }
 
-// What the polynomial through the values at the nodes is at the part's lower end, as their weights;
-// the nodes lie symmetrically, so that those at t stand for -t at the upper one.
+// Weights of the values at the nodes for the polynomial's value at the part's lower end. The nodes
+// lie symmetrically, so those at t stand for -t at the upper end.
 const std::array<double, AdaptiveQuadrature::nodes>& weights_at_end() {
   static const std::array<double, AdaptiveQuadrature::nodes> weights = [] {
     const auto& t = AdaptiveQuadrature::node_places();
@@ -63,8 +63,8 @@ const std::array<double, AdaptiveQuadrature::nodes>& weights_at_end() {
   return weights;
 }
 
-// Mass that a jump may add or take, also beyond the outermost nodes, where neither a part nor its
-// halves look: the density at the ends is then not what the nodes go on to.
+// Mass that a jump may add or take, also beyond the outermost nodes, which neither a part nor its
+// halves see. With a jump the density at the ends departs from the polynomial.
 double unseen(Span span, const AdaptiveQuadrature::Values& at) {
   double low = at[low_end].value - weights_at_end()[0] * at[0].value;
   double high = at[high_end].value - weights_at_end()[0] * at[0].value;
@@ -89,7 +89,8 @@ AdaptiveQuadrature::Sampled sampled_in(Span span, const AdaptiveQuadrature::Valu
   return found;
 }
 
-/// What two halves say of a part, and how far the part itself was from it.
+/// The sum of two halves. Its error is at least theirs, and at least its distance from the whole
+/// part's integral.
 Integral from_halves(Integral whole, Integral one, Integral two) {
   const Integral sum = one + two;
   return {sum.value, std::max(std::abs(sum.value - whole.value), sum.error), sum.given};
@@ -97,7 +98,7 @@ Integral from_halves(Integral whole, Integral one, Integral two) {
 
 bool is_good(const Integral& sum, double tolerance) { return sum.error - sum.given <= tolerance; }
 
-/// Of a part that is halved no further, though its error is above the tolerance.
+/// The integral of a part that is halved no further although its error is above the tolerance.
 Integral given_up(Integral sum) {
   if (sum.value > 0) sum.error = std::min(sum.error, sum.given + most_of_a_pole * sum.value);
   return sum;
@@ -105,17 +106,16 @@ Integral given_up(Integral sum) {
 
 }  // namespace
 
-// A part of a line. Its integral is what its halves say, or the sum of theirs where it was halved.
+// A part of a line. Its integral is the sum over its two halves, halved again or not.
 struct AdaptiveQuadrature::Part {
   double x;
   Span span;
-  Integral whole;  // by its own nodes
+  Integral whole;  // By its own nodes.
   int depth;
   Integral integral = {};
-  std::size_t halves = 0;  // where the first of them stands, behind their part; 0: it has none
+  std::size_t halves = 0;  // Index of the first half, behind its part; 0 if there is none.
 };
 
-// Parts whose densities are asked for together.
 class AdaptiveQuadrature::Level {
  public:
   void add(double x, Span span) {
@@ -127,7 +127,7 @@ class AdaptiveQuadrature::Level {
     densities_.resize(y_.size());
     density(x_, y_, densities_);
   }
-  /// Of the part that was added as this one.
+  /// Densities of that part, by the order of adding.
   std::span<const double, nodes + 2> densities(std::size_t part) const {
     return std::span(densities_).subspan(part * (nodes + 2)).first<nodes + 2>();
   }
@@ -189,8 +189,8 @@ Integral AdaptiveQuadrature::refined(const Function& function, Span span, Integr
   return refined(function, first, one, depth - 1) + refined(function, second, two, depth - 1);
 }
 
-// Looks at the halves of the parts from `first` on and puts those behind all parts whose own halves
-// must be looked at.
+// Evaluates the halves of the parts from `first` on. Appends those whose own halves must be looked
+// at.
 void AdaptiveQuadrature::halve(const PlaneValues& density, std::vector<Part>& parts,
                                std::size_t first, bool ended) {
   const std::size_t last = parts.size();
@@ -217,8 +217,8 @@ void AdaptiveQuadrature::halve(const PlaneValues& density, std::vector<Part>& pa
   }
 }
 
-// Nothing where a level would use up the evaluations, or is larger than is worth keeping: a density
-// that is rough everywhere is halved without end.
+// Nothing if a level would use up the evaluations, or is too large to keep. A density that is rough
+// everywhere is halved without end.
 std::optional<std::vector<Integral>> AdaptiveQuadrature::side_by_side(const PlaneValues& density,
                                                                       std::span<const Line> lines) {
   constexpr std::size_t most_of_a_level = std::size_t{1} << 20;
@@ -240,7 +240,7 @@ std::optional<std::vector<Integral>> AdaptiveQuadrature::side_by_side(const Plan
     if (!ended && (places > most_of_a_level || used_ + places >= limits_.evaluations)) return {};
     halve(density, parts, first, ended);
   }
-  // Halves stand behind what they are halves of.
+  // Halves stand behind their part.
   std::vector<Integral> integrals(lines.size());
   for (std::size_t i = parts.size(); i-- > 0;) {
     const std::size_t halves = parts[i].halves;
@@ -258,7 +258,7 @@ std::vector<Integral> AdaptiveQuadrature::along(const PlaneValues& density,
   if (const auto together = side_by_side(density, lines); together && (ended || !exhausted())) {
     return *together;
   }
-  // Where the evaluations are used up on the way, who gets the last of them is a matter of order.
+  // The evaluations ended on the way. The order of lines decides who gets the last, so start again.
   used_ = used;
   largest_ = largest;
   std::vector<Integral> integrals(lines.size());

@@ -22,38 +22,38 @@ struct Span {
 
 struct Integral {
   double value = 0;
-  double error = 0;  // estimated, absolute
-  double given = 0;  // the part of it that the function's values came with: no halving lessens it
+  double error = 0;  // Estimated, absolute.
+  // Part of the error that came with the function's values. Halving does not lessen it.
+  double given = 0;
 };
 
 inline Integral operator+(Integral a, Integral b) {
   return {a.value + b.value, a.error + b.error, a.given + b.given};
 }
 
-// A function of two variables at many places at once: value i is that at x[i] and y[i].
+// A function of two variables at many places at once. Value i belongs to (x[i], y[i]).
 using PlaneValues = std::function<void(std::span<const double> x, std::span<const double> y,
                                        std::span<double> values)>;
 
-// When an adaptive quadrature stops halving a part: its error is below the tolerance, it has been
-// halved this often, or the evaluations of the whole computation are used up. What is left is in
-// the error estimate.
+// An adaptive quadrature halves a part until one of these holds. The part's error is below the
+// tolerance, the part was halved this often, or all evaluations are used up. The error estimate
+// covers what is left.
 struct QuadratureLimits {
   double tolerance = 1e-10;
   int deepest_bisection = 24;
   std::uint64_t evaluations = 20'000'000;
 };
 
-// Integrates functions of one variable, each value with an error of its own, part by part: 7-point
-// Gauss-Legendre on a part against its two halves. Next to a jump the two may agree by luck, and
-// one in the 2.5 % of a part beyond the outermost node is seen by neither. So what a jump may come
-// to counts as error: how far the function at the ends of a part is from the polynomial through its
-// nodes, which of a smooth one is next to nothing. Two jumps or a peak between nodes stay unseen.
-// Densities are integrated so: a negative or non-finite value throws std::domain_error.
+// Integrates functions of one variable, part by part. Each value has an error of its own. The rule
+// compares 7-point Gauss-Legendre on a part with the same on its two halves. Next to a jump the two
+// may agree by luck, and neither sees the 2.5 % of a part beyond the outermost node. So the error
+// also covers what a jump may come to. That is the distance at a part's ends between the function
+// and the polynomial through its nodes. A peak, or two jumps, between nodes stay unseen. The class
+// integrates densities: a negative or non-finite value throws std::domain_error.
 class AdaptiveQuadrature {
  public:
   static constexpr std::size_t nodes = 7;
-  // Where a part is looked at: at the nodes, in the order of node_places(), and just inside its
-  // ends.
+  // A part is looked at at the nodes, in the order of node_places(), and just inside its ends.
   using Places = std::array<double, nodes + 2>;
   using Values = std::array<Integral, nodes + 2>;
   using Function = std::function<Values(const Places&)>;
@@ -61,20 +61,18 @@ class AdaptiveQuadrature {
   explicit AdaptiveQuadrature(QuadratureLimits limits) : limits_(limits) {}
 
   Integral over(const Function& function, Span span);
-  // Part of a line of equal x.
   struct Line {
     double x;
     Span y;
   };
-  // over() of a density along each line, the same numbers. Lines are halved side by side, a level
-  // at a time, so that the density is asked for hundreds of places at once: of another process each
-  // question takes longer than most densities. It throws as above.
+  // The same numbers as over() along each line. Lines are halved side by side, a level at a time,
+  // so that each call asks for hundreds of places. A density in another process is slow per call.
+  // Throws as above.
   std::vector<Integral> along(const PlaneValues& density, std::span<const Line> lines);
-  // Without halving: the integral and, as error, what the values' own errors and a jump may come
-  // to.
+  // The integral without halving. Its error covers the values' own errors and a jump.
   Integral once(const Function& function, Span span);
-  // The same, and what it was made of: w_i f(x_i) times half the width at the nodes, in the order
-  // of node_places(), and f at the ends, just inside.
+  // The same with its parts: w_i f(x_i) times half the width at each node, and f just inside the
+  // ends. The nodes come in the order of node_places().
   struct Sampled {
     Integral integral;
     std::array<double, nodes> parts = {};
@@ -85,8 +83,8 @@ class AdaptiveQuadrature {
   Sampled sampled(const Function& function, Span span);
   // The nodes in [-1, 1].
   static const std::array<double, nodes>& node_places();
-  // A density as such a function, of one place or of as many as it is given: density(places,
-  // values). Its values count against the limit; it throws as above.
+  // A density as such a function, called as density(place) or density(places, values). Its values
+  // count against the limit. Throws as above.
   template <class Density>
   Function of(Density density) {
     return [this, density](const Places& at) {
@@ -101,7 +99,7 @@ class AdaptiveQuadrature {
   }
   bool exhausted() const { return used_ >= limits_.evaluations; }
   const QuadratureLimits& limits() const { return limits_; }
-  // Of the densities counted since the last call of forget_largest().
+  // Largest density since the last call of forget_largest().
   double largest() const { return largest_; }
   void forget_largest() { largest_ = 0; }
 

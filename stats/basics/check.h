@@ -7,7 +7,7 @@
 
 namespace assay::stats::check {
 
-// Internal: argument checks that throw std::domain_error "function: argument = value, must be …".
+// Internal: argument checks. They throw std::domain_error "function: argument = value, must be …".
 
 struct Argument {
   std::string_view function;
@@ -24,11 +24,11 @@ template <class Value>
 }
 
 void finite(Argument argument, double value);
-void positive(Argument argument, double value);         // finite and > 0
-void non_negative(Argument argument, double value);     // finite and >= 0
-void inside_unit(Argument argument, double value);      // in (0, 1)
-void unit(Argument argument, double value);             // in [0, 1]
-void log_probability(Argument argument, double value);  // <= 0, not NaN
+void positive(Argument argument, double value);         // Finite and > 0.
+void non_negative(Argument argument, double value);     // Finite and >= 0.
+void inside_unit(Argument argument, double value);      // In (0, 1).
+void unit(Argument argument, double value);             // In [0, 1].
+void log_probability(Argument argument, double value);  // At most 0, not NaN.
 void at_least(Argument argument, std::uint64_t value, std::uint64_t minimum);
 
 }  // namespace assay::stats::check

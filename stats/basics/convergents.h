@@ -1,7 +1,7 @@
 #pragma once
 
-// Internal: a continued fraction b_0 + a_1 / (b_1 + a_2 / (b_2 + ...)) by the recurrence of its
-// convergents A_n / B_n, A_n = b_n A_(n-1) + a_n A_(n-2) and B likewise: no division a term.
+// Internal: a continued fraction b_0 + a_1 / (b_1 + a_2 / (b_2 + ...)). The recurrence of its
+// convergents A_n / B_n needs no division a term: A_n = b_n A_(n-1) + a_n A_(n-2), B likewise.
 
 namespace assay::stats::special {
 
@@ -21,7 +21,7 @@ struct Convergents {
     inverse_now = inverse_later;
   }
 
-  /// One over the fraction up to here, B_n / A_n. Rescales, so that nothing overflows.
+  /// One over the fraction so far, B_n / A_n. Rescales, so that nothing overflows.
   double reciprocal() {
     const double scale = 1 / now;
     before *= scale;

@@ -5,8 +5,8 @@
 
 namespace assay::stats {
 
-// Calls work(i) for every i below a count. The calls do not depend on each other: they may come in
-// any order and at the same time, and results are the same to the last bit.
+// Calls work(i) for every i below a count. The calls may come in any order and at the same time.
+// Results are the same to the last bit.
 using ForEach =
     std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 

@@ -6,10 +6,10 @@ namespace assay::stats {
 
 enum class GateState { green, amber, red };
 
-// A diagnosis of one assumption. green: value within the planning bound. red: `low`, the lower
-// confidence limit of the value, exceeds `limit`. amber: in between. On normal data red has
-// probability below 1e-4 at every sample size; at a law whose value is the limit itself about 1e-3
-// (README.md).
+// A diagnosis of one assumption. Green: the value is within the planning bound. Red: `low`, the
+// lower confidence limit of the value, exceeds `limit`. Amber: in between. On normal data red has
+// probability below 1e-4 at every sample size. At a law whose value is the limit it has about 1e-3
+// (measurements.md).
 struct Gate {
   std::string name;
   double value = 0;

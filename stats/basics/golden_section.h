@@ -4,15 +4,15 @@
 
 namespace assay::stats {
 
-// Internal. The largest value of f seen on [low, high], and what is left of the interval.
+// Internal. The largest value of f seen on [low, high], and the remaining interval.
 struct GoldenSection {
   double low = 0;
   double high = 0;
   double largest = 0;
 };
 
-// Of a function with one maximum on [low, high], its ends included, by golden sections (Kiefer
-// 1953), until at most `width` is left or no point between the ends is; 90 sections leave 1e-19.
+// Searches a function with one maximum on [low, high], ends included, by golden sections (Kiefer
+// 1953). It stops at `width` or where no point lies between the ends. 90 sections leave 1e-19.
 template <class Function>
 GoldenSection golden_section(const Function& f, double low, double high, double width = 0) {
   constexpr double ratio = 0.6180339887498949;

@@ -17,10 +17,11 @@ double interval_end(const std::function<double(double)>& excess, double centre, 
     step *= 2;
     if (std::abs(step) > 1e300) return std::copysign(std::numeric_limits<double>::infinity(), step);
   }
-  // Where rounding leaves no number between: the end is the centre to within its last digit.
+  // No number lies between, so the end is the centre to within its last digit.
   if (inside == centre + step) return inside;
   std::uintmax_t iterations = 200;
-  const auto [low, high] = std::minmax({inside, centre + step});  // values, not references
+  // Values, not references.
+  const auto [low, high] = std::minmax({inside, centre + step});
   const auto ends = boost::math::tools::toms748_solve(
       excess, low, high, boost::math::tools::eps_tolerance<double>(50), iterations);
   return std::midpoint(ends.first, ends.second);

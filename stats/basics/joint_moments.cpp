@@ -3,14 +3,14 @@
 namespace assay::stats {
 namespace {
 
-// How far the common mean lies below a part's own mean, in both coordinates.
+// Distance of the common mean below a part's own mean, in both coordinates.
 struct Shift {
   double x;
   double cost;
 };
 
-// sum (d + u)^2 (e + v) over a part with sum d = sum e = 0:
-//   m21 + v m2 + 2 u m11 + n u^2 v
+// The sum of (d + u)^2 (e + v) over a part. Its sums of d and e are 0, so it is m21 + v m2 + 2 u
+// m11 + n u^2 v.
 double moved_m21(const JointMoments& part, Shift shift) {
   const double n = static_cast<double>(part.x.count);
   return part.m21 + shift.cost * part.x.m2 + 2 * shift.x * part.m11 +
@@ -25,14 +25,14 @@ double moved_m11(const JointMoments& part, Shift shift) {
 
 void JointMoments::add(double value, double its_cost) {
   if (x.count > 0 && cost.m2 == 0 && its_cost == cost.mean) {
-    // A cost without spread so far, as rays of an estimator that traces none: the sums of its
-    // deviations stay zero, and a fourth of the arithmetic is left.
+    // The cost has no spread so far, as with rays of an estimator that traces none. The sums of its
+    // deviations stay zero, which saves three fourths of the arithmetic.
     x.add(value);
     ++cost.count;
     cost.nonzero += its_cost != 0;
     return;
   }
-  // One more pair: its own part has no sums, only its distance from the common mean.
+  // One more pair. Its own part has no sums, only its distance from the common mean.
   const double share = 1 / (static_cast<double>(x.count) + 1);
   const double dx = x.count == 0 ? 0 : value - x.mean;
   const double dc = x.count == 0 ? 0 : its_cost - cost.mean;

@@ -6,12 +6,12 @@
 
 namespace assay::stats {
 
-// One-pass moments up to order four, with range and count of non-zero values. `m2`, `m3` and `m4`
-// are sums (not means) of powers of deviations from `mean`. Updating and merging formulas: Pebay,
-// SAND2008-6212, equations 1.5 to 1.7 and 2.1 to 2.9; no raw sum of powers is ever formed.
-// What rounding takes from the mean is kept beside it (compensated summation, Kahan 1965): of
-// values of 1e14 that spread over 1 every step would be lost, and with the mean m2. Values must be
-// finite: the caller counts the others and keeps them out.
+// One-pass moments up to order four, with range and count of non-zero values. The members `m2`,
+// `m3` and `m4` are sums (not means) of powers of deviations from `mean`. Updating and merging
+// formulas: Pebay, SAND2008-6212, equations 1.5 to 1.7 and 2.1 to 2.9. No raw sum of powers is ever
+// formed. The mean keeps what rounding takes from it (compensated summation, Kahan 1965). Otherwise
+// values near 1e14 with spread 1 would lose every step, and m2 with them. Values must be finite:
+// the caller counts the others and keeps them out.
 struct Moments {
   std::uint64_t count = 0;
   double mean = 0;
@@ -21,34 +21,34 @@ struct Moments {
   double minimum = std::numeric_limits<double>::infinity();
   double maximum = -std::numeric_limits<double>::infinity();
   std::uint64_t nonzero = 0;
-  double rest = 0;  // by which the mean is more than `mean`, half its last digit at most
+  double rest = 0;  // The true mean less `mean`, at most half its last digit.
 
   void add(double value);
 
-  // The mean less this value, with what the mean's own rounding took.
+  // The mean less this value, including what the mean's own rounding took.
   double mean_less(double value) const { return (mean - value) + rest; }
 
-  // As if the other sample's values had been added here. Merging in a fixed order gives fixed bits.
+  // Same as adding the other sample's values here. Merging in a fixed order gives fixed bits.
   void merge(const Moments& other);
 
-  // m2 / (count - 1). Throws std::domain_error when count < 2, as do the next two. Here, since maps
-  // of images ask for millions.
+  // m2 / (count - 1). This and the next two throw std::domain_error when count < 2. It is inline
+  // because maps of images ask for millions.
   double variance() const {
     if (count < 2) refuse_variance();
     return m2 / (static_cast<double>(count) - 1);
   }
   double standard_deviation() const;
-  // Of the mean: sqrt(variance / count).
+  // Standard error of the mean: sqrt(variance / count).
   double standard_error() const;
 
-  // g1 = (m3 / n) / (m2 / n)^1.5 and b2 = (m4 / n) / (m2 / n)^2; a normal law has 0 and 3.
-  // Throw std::domain_error when count < 2, ZeroVariance when m2 is zero.
+  // g1 = (m3 / n) / (m2 / n)^1.5 and b2 = (m4 / n) / (m2 / n)^2. A normal law has 0 and 3. They
+  // throw std::domain_error when count < 2, ZeroVariance when m2 is zero.
   double skewness() const;
   double kurtosis() const;
 
   friend bool operator==(const Moments&, const Moments&) = default;
 
-  void refuse_variance() const;  // of fewer than two values
+  void refuse_variance() const;  // Throws for fewer than two values.
   void move_mean(double step);
 };
 
@@ -63,7 +63,7 @@ inline void Moments::add(double value) {
   const double before = static_cast<double>(count);
   ++count;
   const double n = before + 1;
-  // The reciprocal does not wait for the mean: the chain from one value to the next has no
+  // The reciprocal does not wait for the mean, so the chain from one value to the next has no
   // division.
   const double inverse = 1 / n;
   const double delta = value - mean - rest;

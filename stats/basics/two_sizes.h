@@ -4,7 +4,7 @@
 
 namespace assay::stats {
 
-// Of two samples.
+// Sizes of two samples.
 struct TwoSizes {
   std::uint64_t m = 1;
   std::uint64_t n = 1;

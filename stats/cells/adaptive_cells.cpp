@@ -13,12 +13,11 @@ namespace assay::stats {
 namespace {
 
 constexpr int most_halvings = 48;
-// Places at which a cell is looked at to find the side to halve.
+// A cell is looked at at these places to find the side to halve.
 constexpr std::size_t looks_a_side = 16;
 
 enum class Along { x, y };
 
-// What is asked of a density, cell by cell.
 struct Questions {
   std::function<Integral(const PlaneCell&)> integral;
   std::function<std::optional<Along>(const PlaneCell&, int halvings)> side;
@@ -34,7 +33,7 @@ std::array<PlaneCell, 2> halves_of(const PlaneCell& cell, Along along) {
   return {{{cell.x, cell.y.halves()[0]}, {cell.x, cell.y.halves()[1]}}};
 }
 
-// The heaviest cell is halved, then the heaviest of what there is then, and so on.
+// Halves the heaviest cell, then the heaviest of the result, and so on.
 class Halving {
  public:
   Halving(const PlaneGrid& grid, std::span<const Integral> masses, const Questions& ask)
@@ -66,12 +65,12 @@ class Halving {
     std::size_t grid_cell = 0;
     int halvings = 0;
     Along along = Along::x;
-    std::size_t halves = 0;  // where its halves are, 0 where it has none
+    std::size_t halves = 0;  // Number of its halves, 0 if it has none.
   };
   struct Candidate {
     double mass;
     std::size_t number;
-    // Of two that weigh the same the first.
+    // Among equal weights the first counts as heavier.
     bool operator<(const Candidate& other) const {
       return mass != other.mass ? mass < other.mass : number > other.number;
     }
@@ -82,8 +81,8 @@ class Halving {
     known_.push_back(known);
   }
 
-  // A cell with no number between its ends stays whole. False where halving takes more evaluations
-  // than are left: numbers that the last of them had to do for would be worse than the whole's.
+  // A cell with no number between its ends stays whole. False if halving takes more evaluations
+  // than are left: the halves would be worse than the whole.
   bool halve(std::size_t number) {
     const Known whole = known_[number];
     const std::optional<Along> along = ask_.side(whole.cell, whole.halvings);
@@ -139,7 +138,7 @@ AdaptiveCells halved(const PlaneGrid& grid, std::span<const Integral> masses, do
   return halving.numbered();
 }
 
-// The standard deviation of where the mass is along one side, in units of the side.
+// Standard deviation of the mass's place along one side, in units of the side.
 double spread(std::span<const double, looks_a_side> masses) {
   double total = 0;
   double mean = 0;
@@ -156,8 +155,8 @@ double spread(std::span<const double, looks_a_side> masses) {
   return std::sqrt(sum / total) / static_cast<double>(masses.size());
 }
 
-// The side along which the mass of a cell lies closer together, as a share of the side; nothing
-// where there is little between them.
+// The side along which the mass of a cell lies closer together, as a share of the side. Nothing if
+// the two are nearly equal.
 std::optional<Along> narrower_along(const PlaneDensity& density, const PlaneCell& cell) {
   constexpr std::size_t n = looks_a_side;
   std::vector<double> x;
@@ -197,7 +196,7 @@ AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
   check::positive({"adaptive_cells", "tolerance"}, limits.tolerance);
   CellQuadrature rule(density, limits);
   const std::vector<Integral> masses = integrals_over(grid, rule);
-  // The other half of one that shows no density has some.
+  // A cell that shows no density lies beside one that shows some.
   const auto integral = [&](const PlaneCell& cell) {
     const Integral mass = rule.over(cell);
     if (mass.value > 0) return mass;

@@ -9,24 +9,23 @@
 
 namespace assay::stats {
 
-// What a law gives each of some cells.
+// The probability of each of some cells under a law.
 struct CellProbabilities {
   std::vector<double> probability;
-  std::vector<double> error;  // estimated absolute error of each
-  double total = 0;           // sum of probability: 1 minus it is the mass of "no point"
+  std::vector<double> error;  // Estimated absolute error of each.
+  double total = 0;           // Sum of probability. The rest to 1 is the mass of "no point".
   double total_error = 0;
 };
 
-// Cells of no more than a share of a density's mass each, chosen from the density alone and never
-// from data: those of a grid, the heaviest halved until none holds more, each along the coordinate
-// in which its mass lies closer together (of an interval, its own). So a density that is about even
-// over the grid is counted in the grid's cells, and a narrow lobe in its own. A cell stays whole,
-// and may hold more, where it was halved 48 times, where no number lies between its ends, and once
-// the quadrature's evaluations are used up. A density of mass below 1, one lobe of several, has its
-// share of 1.
+// Cells that hold at most a share of a density's mass each. They depend on the density alone, never
+// on data. A grid's heaviest cell is halved until none holds more, along the coordinate in which
+// its mass lies closer together. So an even density keeps the grid's cells, and a narrow lobe gets
+// cells of its own. A cell that was halved 48 times may hold more. So may one with no number
+// between its ends, and any cell once the quadrature's evaluations are used up. A density of mass
+// below 1 counts as a share of 1.
 struct AdaptiveCells {
   HalvedCells cells;
-  CellProbabilities mass;  // by quadrature, with its errors
+  CellProbabilities mass;  // By quadrature, with its errors.
 };
 
 // Throws std::domain_error: borders that do not ascend, a share that is not in (0, 1], a density
@@ -34,13 +33,13 @@ struct AdaptiveCells {
 AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
                              double largest_share, QuadratureLimits limits = {.tolerance = 1e-9});
 
-// A density of one coordinate at many places, and its panels (PlaneDensity).
+// A density of one coordinate at many places, with its panels (see PlaneDensity).
 struct LineDensity {
   std::function<void(std::span<const double> x, std::span<double> values)> values;
   std::size_t panels = 1;
 };
 
-// The same of an interval between these borders; y of its cells is [0, 1].
+// The same for an interval between these borders. The y of its cells is [0, 1].
 AdaptiveCells adaptive_cells(const std::vector<double>& borders, const LineDensity& density,
                              double largest_share, QuadratureLimits limits = {.tolerance = 1e-9});
 

@@ -8,7 +8,7 @@
 namespace assay::stats {
 namespace {
 
-// Of the direction in which the data lie, when it is stretched to the null effect.
+// The data's direction is stretched at most this much to the null effect.
 constexpr double most_stretched = 2;
 
 double variance_of(Noncentral law) { return 2 * (law.degrees + 2 * law.noncentrality); }
@@ -34,8 +34,8 @@ CellEffect::CellEffect(std::span<const PooledCell> cells, std::uint64_t observat
 }
 
 struct CellEffect::AtNull {
-  double variance;  // of U
-  double third;     // cumulant of n U
+  double variance;  // Variance of U.
+  double third;     // Third cumulant of n U.
 };
 
 CellEffect::AtNull CellEffect::at_null(double null_effect) const {
@@ -53,7 +53,7 @@ CellEffect::AtNull CellEffect::at_null(double null_effect) const {
           .third = 8 * (cells_ - 1 + 3 * n_ * squared) + excess};
 }
 
-/// U at as many standard deviations from the mean of that law as it is from its own.
+/// U, moved so that it is as many standard deviations from that law's mean as from its own.
 double CellEffect::moved(const AtNull& law, double null_effect, Noncentral to) const {
   const double z = (squared_ - null_effect * null_effect) / std::sqrt(law.variance);
   return std::max(0.0, to.degrees + to.noncentrality + z * std::sqrt(variance_of(to)));

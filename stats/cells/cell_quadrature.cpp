@@ -8,12 +8,11 @@ namespace assay::stats {
 namespace {
 
 constexpr std::size_t probes_a_side = 256;
-// Points of each side that are looked at together.
 constexpr std::size_t probes_at_once = 32;
-// Panels of a cell that shows a corner of the support at its side only.
+// Panels of a cell that shows only a corner of the support at its side.
 constexpr std::size_t panels_of_a_corner = 32;
 
-// The densities of so many lines stay in the cache.
+// The densities of this many lines stay in the cache.
 constexpr std::size_t lines_at_once = 36;
 
 }  // namespace
@@ -50,7 +49,7 @@ Integral CellQuadrature::over(const PlaneCell& cell) {
   return sum;
 }
 
-// Whether the density shows at some of the points of each side from this one on.
+// True if the density shows at some of the points of each side from this one on.
 bool CellQuadrature::shown_at(const PlaneCell& cell, std::size_t first) {
   constexpr double inside = 1e-9;
   std::vector<double> x;

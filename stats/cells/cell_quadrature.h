@@ -6,8 +6,8 @@
 
 namespace assay::stats {
 
-// A density per dx dy on a rectangle, and how finely it must be looked at: no feature of it lies
-// between the nodes of these many equal panels, and jumps along lines of a coordinate lie on their
+// A density per dx dy on a rectangle. The panels say how finely it must be looked at. No feature
+// lies between the nodes of that many equal panels. Jumps along lines of a coordinate lie on their
 // borders.
 struct PlaneDensity {
   Span x;
@@ -17,7 +17,6 @@ struct PlaneDensity {
   std::size_t y_panels = 1;
 };
 
-// A function of one place as one of many.
 template <class Density>
 PlaneValues point_by_point(Density density) {
   return [density](std::span<const double> x, std::span<const double> y, std::span<double> values) {
@@ -25,7 +24,8 @@ PlaneValues point_by_point(Density density) {
   };
 }
 
-// The density at x, integrated over part of the other coordinate. `density` must outlive it.
+// The density at x, integrated over part of the other coordinate. `density` must outlive the
+// result.
 AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, AdaptiveQuadrature& rule);
 
 // The density of x alone: integrated over all of y.
@@ -34,16 +34,15 @@ inline AdaptiveQuadrature::Function marginal_density(const PlaneDensity& density
   return across(density, density.y, rule);
 }
 
-// A rectangle of two coordinates.
 struct PlaneCell {
   Span x;
   Span y;
 };
 
-// Integrates a density over one rectangle after another, all within the limits together: along y
-// within x, each adaptively, so that a jump along any curve is a border that bisection finds in y
-// and at most a kink in x. `tolerance` is that of each inner and each outer part. Throws
-// std::domain_error where the density is negative or not finite.
+// Integrates a density over one rectangle after another, all within the limits together. It
+// integrates adaptively along y within x. So a jump along any curve is a border in y, which
+// bisection finds. In x it is at most a kink. The tolerance applies to each inner and each outer
+// part. Throws std::domain_error where the density is negative or not finite.
 class CellQuadrature {
  public:
   // Keeps a reference to the density.
@@ -51,11 +50,11 @@ class CellQuadrature {
       : density_(density), rule_(limits) {}
 
   Integral over(const PlaneCell& cell);
-  // Of a cell in which over() met no density, next to one in which it did: looks for it along the
-  // sides, at 256 points each. What may still hide there is not part of the error.
+  // For a cell in which over() met no density, next to one in which it did. It looks for density
+  // along the sides, at 256 points each. The error does not cover what may still hide there.
   Integral beside_support(const PlaneCell& cell);
-  double densest() const { return densest_; }                 // of all met so far
-  double densest_of_last() const { return rule_.largest(); }  // in the last cell asked for
+  double densest() const { return densest_; }                 // Largest density so far.
+  double densest_of_last() const { return rule_.largest(); }  // Largest in the last cell.
   bool exhausted() const { return rule_.exhausted(); }
 
  private:
@@ -67,8 +66,8 @@ class CellQuadrature {
   double densest_ = 0;
 };
 
-// The mass that a support may hide from beside_support() in a cell: a corner of half a step squared
-// between the points, as dense as what was met next to it.
+// The mass that a support may hide from beside_support() in a cell. The hidden corner is half the
+// squared step between the points, as dense as what was met next to it.
 double hidden_beside_support(const PlaneCell& cell, double densest);
 
 }  // namespace assay::stats

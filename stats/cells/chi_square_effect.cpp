@@ -12,7 +12,7 @@
 namespace assay::stats {
 namespace {
 
-// Beyond the reciprocal root of any probability that a cell is given: infinite.
+// Larger than the reciprocal root of any cell's probability: counts as infinite.
 constexpr double largest_effect = 1e12;
 
 LogTails effect_tails(const ChiSquareStatistic& statistic, double effect) {
@@ -46,7 +46,7 @@ Interval effect_interval(const std::function<LogTails(double)>& tails, double st
                          double confidence) {
   check::inside_unit({"effect_interval", "confidence"}, confidence);
   const double log_tail = std::log((1 - confidence) / 2);
-  // Both tails are monotone in w; the low end is 0 when even w = 0 is not rejected from that side.
+  // Both tails are monotone in w. The low end is 0 when even w = 0 is not rejected from that side.
   const auto end = [&](auto excess) {
     if (excess(0.0) >= 0) return 0.0;
     double high = start;

@@ -7,8 +7,8 @@
 
 namespace assay::stats {
 
-// Internal. X2 of two samples of m and n values in cells (chi_square_two_sample.h), whose
-// noncentrality is `observations` w^2, m n / (m + n) of them.
+// Internal. X2 of two samples of m and n values in cells (chi_square_two_sample.h). Its
+// noncentrality is observations w^2, observations = m n / (m + n).
 struct ChiSquareStatistic {
   double value = 0;
   double degrees_of_freedom = 1;
@@ -25,10 +25,10 @@ TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_ef
 // Central interval of w: effect_interval below.
 Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence);
 
-// Central interval of an effect w >= 0, where `tails(w)` are those of the data if w were the
-// effect: the upper rises with w and the lower falls. Low end at least 0; the high end, sought from
-// `start` on, is infinite where no w is too large. Where the lower tail rejects even w = 0, as of
-// data closer to the null law than chance leads to expect, no w is left: both ends are NaN.
+// Central interval of an effect w >= 0. `tails(w)` are the data's tails if w were the effect. The
+// upper one rises with w and the lower one falls. The low end is at least 0. The high end is sought
+// from `start` on, and infinite if no w is too large. Both ends are NaN if the lower tail rejects
+// even w = 0: such data are closer to the null law than chance allows.
 Interval effect_interval(const std::function<LogTails(double)>& tails, double start,
                          double confidence);
 

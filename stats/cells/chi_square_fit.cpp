@@ -47,7 +47,7 @@ void absorb(PooledCell& into, const PooledCell& from) {
 struct Pools {
   std::vector<PooledCell> large;
   std::vector<PooledCell> gathered;
-  PooledCell rest;  // the incomplete last pool
+  PooledCell rest;  // The incomplete last pool.
 };
 
 Pools gather(const CellCounts& counts, double observations, double minimum) {
@@ -131,7 +131,7 @@ double effect_of(const ChiSquareFit& fit) {
   return std::sqrt(squared + beyond * beyond / t);
 }
 
-/// Of the number of impossible observations where w is null_effect by them alone: both 0 where
+/// Tails of the number of impossible observations if w is null_effect by them alone. Both are 0 if
 /// there are none.
 LogTails impossible_tails(const ChiSquareFit& fit, double null_effect) {
   if (fit.impossible == 0) return {0, 0};

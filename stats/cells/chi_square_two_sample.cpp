@@ -31,8 +31,8 @@ void absorb(PooledPair& into, const PooledPair& from) {
   into.members.insert(into.members.end(), from.members.begin(), from.members.end());
 }
 
-/// Neighbours together until the smaller sample expects enough of them; what is left at the end
-/// joins the last pool.
+/// Pools neighbours until the smaller sample expects enough of them. The rest at the end joins the
+/// last pool.
 std::vector<PooledPair> pooled(const TwoSampleCounts& counts, double enough) {
   std::vector<PooledPair> pools;
   PooledPair open;

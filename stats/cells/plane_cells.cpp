@@ -24,7 +24,7 @@ std::size_t slot(const std::vector<double>& borders, double x) {
   return std::min(slot, borders.size() - 2);
 }
 
-// The greatest density met in a cell's neighbours, 0 where none showed any.
+// The greatest density met in a cell's neighbours, 0 if none showed any.
 double densest_beside(const PlaneGrid& grid, const std::vector<double>& densest,
                       std::size_t index) {
   const std::size_t columns = grid.columns();
@@ -65,7 +65,7 @@ std::vector<Integral> integrals_over(const PlaneGrid& grid, CellQuadrature& quad
     found.push_back(quadrature.over(grid.cell(i)));
     densest.push_back(quadrature.densest_of_last());
   }
-  // What is found beside the support is support, with cells beside it.
+  // A cell found beside the support is support too, with cells beside it.
   std::vector<bool> searched(grid.size());
   for (bool more = true; more;) {
     more = false;

@@ -7,8 +7,8 @@
 
 namespace assay::stats {
 
-// Cells between lines of two coordinates (a square's; a hemisphere's polar angle and azimuth), the
-// second running fastest. Borders ascend strictly.
+// Cells between lines of two coordinates, such as a hemisphere's polar angle and azimuth. The
+// second runs fastest. Borders ascend strictly.
 struct PlaneGrid {
   std::vector<double> x_borders;
   std::vector<double> y_borders;
@@ -22,12 +22,12 @@ struct PlaneGrid {
   PlaneCell cell(std::size_t index) const;
 };
 
-// Throws std::domain_error where borders do not ascend.
+// Throws std::domain_error if borders do not ascend.
 void check_borders(const PlaneGrid& grid);
 
-// Integral of the density over every cell. One in which the density was zero at every node, next to
-// one in which it was not, is searched along its sides (CellQuadrature::beside_support). Throws
-// std::domain_error when a density is negative or not finite.
+// Integral of the density over every cell. If a cell shows no density at its nodes but a neighbour
+// does, its sides are searched (CellQuadrature::beside_support). Throws std::domain_error when a
+// density is negative or not finite.
 std::vector<Integral> integrals_over(const PlaneGrid& grid, CellQuadrature& quadrature);
 
 }  // namespace assay::stats

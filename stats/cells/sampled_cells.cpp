@@ -10,8 +10,8 @@ namespace {
 
 using Points = std::span<PlanePoint>;
 
-/// Values at which the sorted ones are cut into about equal parts; none before the smallest, none
-/// twice.
+/// Borders that cut sorted values into about equal parts. None is the smallest value, and none
+/// occurs twice.
 template <class Coordinate>
 std::vector<double> borders(Points sorted, std::size_t parts, Coordinate coordinate) {
   std::vector<double> all;

@@ -43,7 +43,7 @@ double normal_kurtosis_quantile(double n) {
   return mean + x * std::sqrt(variance) - 3;
 }
 
-// ---- How much wider g1 and b2 spread for a gamma law of given shape
+// ---- Spread of g1 and b2 for a gamma law of given shape
 
 // Standardised moments 3 to 8 of a gamma law, from its cumulants kappa_r = (r - 1)! (g / 2)^(r -
 // 2).
@@ -67,7 +67,7 @@ std::array<double, 9> gamma_moments(double skewness) {
   return mu;
 }
 
-// sqrt(n Var(g1) / 6), delta method; 6 is the normal law's.
+// sqrt(n Var(g1) / 6) by the delta method; 6 is the normal law's.
 double skewness_widening(double skewness) {
   const auto mu = gamma_moments(skewness);
   const double g = mu[3];
@@ -75,7 +75,7 @@ double skewness_widening(double skewness) {
   return std::sqrt(variance / 6);
 }
 
-// sqrt(n Var(b2) / 24), likewise; the gamma law of excess kurtosis k has skewness sqrt(2 k / 3).
+// sqrt(n Var(b2) / 24) likewise. The gamma law of excess kurtosis k has skewness sqrt(2 k / 3).
 double kurtosis_widening(double excess) {
   const auto mu = gamma_moments(std::sqrt(2 * excess / 3));
   const double variance = mu[8] - mu[4] * mu[4] + 16 * mu[3] * mu[3] * (1 + mu[4]) +
@@ -86,8 +86,8 @@ double kurtosis_widening(double excess) {
 
 // ---- Skewness of a contrast
 
-// One sample's share in 2a = (1/3) sum psi^3 / (sum psi^2)^1.5, and what normal data would make of
-// it.
+// One sample's share in 2a = (1/3) sum psi^3 / (sum psi^2)^1.5, and the share that normal data
+// would have.
 struct SkewnessPart {
   double value = 0;
   double allowance = 0;
@@ -116,7 +116,7 @@ double checked_cube(double critical_value) {
   return critical_value * critical_value * critical_value;
 }
 
-// Largest deviation over s a sample of n can show at `probability`, n times the tail of one
+// Largest deviation over s that a sample of n shows at `probability`: n times the tail of one
 // residual.
 double grubbs(double n, double probability) {
   const double t = student_t_quantile({Tail::upper, std::log(probability / (2 * n))}, n - 2);
@@ -250,7 +250,7 @@ Gate kurtosis_gate(const Moments& x) {
 
 double kurtosis_upper_limit(const Moments& x) {
   check::at_least({"kurtosis_upper_limit", "count"}, x.count, 4);
-  constexpr double z = 1.6448536269514722;  // the normal law's upper quantile at .05
+  constexpr double z = 1.6448536269514722;  // The normal law's upper quantile at .05.
   const double excess = x.kurtosis() - 3;
   const double error = std::sqrt(24 / static_cast<double>(x.count));
   return std::max(0.0, excess + z * error * kurtosis_widening(std::max(0.0, excess)));

@@ -10,7 +10,6 @@
 namespace assay::stats {
 namespace {
 
-// A checked sequence with its mean and n c_0.
 class Sequence {
  public:
   Sequence(const char* function, std::span<const double> values, std::size_t fewest)
@@ -58,7 +57,7 @@ double effective_sample_size(std::span<const double> values) {
   const Sequence sequence("effective_sample_size", values, 4);
   const double n = static_cast<double>(values.size());
   double sum = 0;
-  double previous = 2;  // no pair of correlations is larger
+  double previous = 2;  // No pair of correlations is larger.
   for (std::size_t m = 0; 2 * m + 1 < values.size(); ++m) {
     const double pair = sequence.correlation(2 * m) + sequence.correlation(2 * m + 1);
     if (pair <= 0) break;

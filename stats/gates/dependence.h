@@ -8,34 +8,36 @@
 
 namespace assay::stats {
 
-// Samples in the order in which they were made. Throughout, c_k = (1/n) sum_(t > k) (x_t - mean)
-// (x_(t-k) - mean) and r_k = c_k / c_0.
+// Samples in the order in which they were made. Throughout,
+//   c_k = (1/n) sum_(t > k) (x_t - mean) (x_(t-k) - mean),  r_k = c_k / c_0.
 
 // r_lag. Throws std::domain_error (lag >= n, non-finite values), ZeroVariance.
 double autocorrelation(std::span<const double> values, std::size_t lag);
 
 // Null hypothesis: independent values of one law.
-//   Z = (r_1 + 1/n) / sqrt(V),  V = (n^4 - 4 n^3 + 3 n^2 + 4 n - 4) / ((n + 1) n^2 (n - 1)^2)
-// referred to the normal law: mean and variance of r_1 exact for normal data (Dufour & Roy 1985,
-// J. Econometrics 29), to first order for any law with a variance (Anderson & Walker
-// 1964). log_p_upper is the tail of positive correlation. Throws for n < 4; ZeroVariance.
+//   Z = (r_1 + 1/n) / sqrt(V).
+//   V = (n^4 - 4 n^3 + 3 n^2 + 4 n - 4) / ((n + 1) n^2 (n - 1)^2).
+// The law of Z is taken for normal. Mean and variance of r_1 are exact for normal data (Dufour &
+// Roy 1985, J. Econometrics 29). They hold to first order for any law with a variance (Anderson &
+// Walker 1964). log_p_upper is the tail of positive correlation. Throws for n < 4; ZeroVariance.
 TestResult lag_one_test(std::span<const double> values);
 
-// Effective sample size n / tau, tau = -1 + 2 sum Gamma_m, Gamma_m = r_2m + r_(2m+1) summed while
-// positive and made monotone (Geyer 1992, Stat. Sci. 7, section 3.3). Of independent values about
-// n, of an AR(1) chain n (1 - phi) / (1 + phi). May exceed n for alternating sequences; at most
-// n log10 n (Vehtari et al. 2021, Bayesian Anal. 16). Time n tau. Throws for n < 4; ZeroVariance.
+// Effective sample size n / tau, tau = -1 + 2 sum Gamma_m, Gamma_m = r_2m + r_(2m+1). The sum runs
+// while Gamma_m is positive, made monotone (Geyer 1992, Stat. Sci. 7, section 3.3). It is about n
+// for independent values, and n (1 - phi) / (1 + phi) for an AR(1) chain. It may exceed n for
+// alternating sequences, up to n log10 n (Vehtari et al. 2021, Bayesian Anal. 16). Time n tau.
+// Throws for n < 4; ZeroVariance.
 double effective_sample_size(std::span<const double> values);
 
 // floor(sqrt n), the default length of a batch.
 std::size_t default_batch(std::size_t n);
-// The moments of the means of floor(n / length) whole batches; the rest at the end is left out.
-// student_t on them tests the mean of a stationary sequence; asymptotic, it needs batches of about
-// ten integrated autocorrelation times and at least 20 of them (Glynn & Iglehart 1990).
-// Throws std::domain_error for fewer than two batches or length 0.
+// The moments of the means of floor(n / length) whole batches. The rest at the end is left out.
+// student_t on them tests the mean of a stationary sequence, asymptotically. It needs at least 20
+// batches of about ten integrated autocorrelation times (Glynn & Iglehart 1990). Throws
+// std::domain_error for fewer than two batches or length 0.
 Moments batch_means(std::span<const double> values, std::size_t length);
 
-// lim n Var(mean), estimated as length times the variance of batch means.
+// Estimates lim n Var(mean) as length times the variance of batch means.
 double batch_variance(std::span<const double> values, std::size_t length);
 
 }  // namespace assay::stats

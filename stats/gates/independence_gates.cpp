@@ -17,7 +17,7 @@ namespace {
 constexpr double false_red = 5e-5;
 constexpr double false_amber = 0.01;
 constexpr double false_allowance = 0.05;
-// Correlations cost up to the square of their number.
+// Correlations cost up to the square of this number.
 constexpr std::size_t most_correlated = 8192;
 
 GateState state_of(double value, double green_up_to, double limit) {
@@ -27,8 +27,8 @@ GateState state_of(double value, double green_up_to, double limit) {
 
 double upper_z(double probability) { return normal_quantile({Tail::upper, std::log(probability)}); }
 
-// 0 where there is none. The correlations of values with an autocorrelation time spread about 0 by
-// the root of it more.
+// The farthest lag with a correlation beyond chance, 0 if there is none. An autocorrelation time
+// widens the spread of the correlations by its root.
 std::size_t farthest_correlated(std::span<const double> values, double time) {
   const std::vector<LaggedCorrelation> all = lagged_correlations(values);
   if (all.empty()) return 0;
@@ -41,7 +41,6 @@ std::size_t farthest_correlated(std::span<const double> values, double time) {
   return farthest;
 }
 
-/// Between batches against within them.
 struct BatchRatio {
   double value;
   FDegrees degrees;
@@ -60,7 +59,8 @@ BatchRatio batch_ratio(std::span<const double> values, std::size_t length) {
   const FDegrees degrees{.numerator = static_cast<double>(means.count - 1),
                          .denominator = static_cast<double>(used - means.count)};
   if (all.m2 == 0) throw ZeroVariance("batch_gate: zero variance");
-  // Batches that are constant within themselves leave nothing to divide by: as dependent as can be.
+  // Batches that are constant within themselves leave nothing to divide by. They are as dependent
+  // as can be.
   const double ratio = within > 0 ? b * means.variance() / (within / degrees.denominator)
                                   : std::numeric_limits<double>::infinity();
   return {.value = ratio, .degrees = degrees};
@@ -72,7 +72,7 @@ Gate lag_one_gate(std::span<const double> values) {
   const double z = lag_one_test(values).statistic;
   const double r = autocorrelation(values, 1);
   const double n = static_cast<double>(values.size());
-  // z = (r + 1/n) / deviation: the limit is the r of the same sign that is as far out.
+  // z = (r + 1/n) / deviation. The limit is the r of the same sign that is as far out.
   const double deviation = z == 0 ? 1 / std::sqrt(n) : (r + 1 / n) / z;
   const double sign = z < 0 ? -1 : 1;
   Gate gate{.name = "correlation of successive values", .value = r, .low = r};

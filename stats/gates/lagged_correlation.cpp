@@ -14,12 +14,11 @@ namespace {
 constexpr std::size_t most_lags = 1000;
 constexpr std::size_t most_products = 200'000'000;
 
-// A number that is as good as random, and the same whenever it is asked for.
+// A fixed number that is as good as random.
 std::uint64_t scattered(std::uint64_t number) {
   return splitmix64_finalised(number + 0x9e3779b97f4a7c15);
 }
 
-// Ranks about their mean.
 std::vector<double> centred_ranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -11,15 +11,16 @@
 namespace assay::stats {
 namespace {
 
-// Two-sided normal, of probability 1e-4.
+// Two-sided normal quantile of probability 1e-4.
 constexpr double scatter_quantile = 3.9;
-// Beyond it e^x is left to the library.
+// Larger arguments of e^x are left to the library.
 constexpr double largest = 700;
 
-// e^x for |x| <= `largest`, right to two units in the last place, without branches or calls: many
-// of them are worked out at a time. 2^k e^r with |r| <= ln 2 / 2, and e^r by its series.
+// e^x for |x| <= `largest`, right to two units in the last place. It has no branches or calls, so
+// that many are computed at a time. It is 2^k e^r with |r| <= ln 2 / 2, and e^r by its series.
 inline double exponential(double x) {
-  constexpr double to_integer = 0x1.8p52;  // added to a number, leaves it rounded in the last bits
+  // Added to a number, leaves it rounded in the last bits.
+  constexpr double to_integer = 0x1.8p52;
   constexpr double ln2_high = 0x1.62e42fefa38p-1;
   constexpr double ln2_low = 0x1.ef35793c7673p-45;
   const double shifted = x * 0x1.71547652b82fep0 + to_integer;
@@ -54,8 +55,8 @@ constexpr std::size_t block_size = 256;
 using Block = std::array<double, block_size>;
 
 struct Factors {
-  Block argument;  // of the hyperbolic cosine
-  Block scatter;   // its variance
+  Block argument;  // Argument of the hyperbolic cosine.
+  Block scatter;   // Its variance.
   Block factor;
   Block excess;
 };

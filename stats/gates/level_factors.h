@@ -9,11 +9,11 @@ namespace assay::stats {
 struct Cumulants {
   double variance = 0;
   double third = 0;
-  double third_variance = 0;  // of the estimate of `third`, were the law normal
+  double third_variance = 0;  // Variance of the estimate of `third`, were the law normal.
 };
 
-// Of factor times the mean of so many replicates, from moments of `count` values: sums of the
-// second and third powers of their deviations from their mean. m2 > 0.
+// Cumulants of factor times the mean of `replicates` replicates. The members m2 and m3 are sums of
+// the second and third powers of deviations of `count` values from their mean. m2 > 0.
 struct MomentsOfMean {
   double m2 = 0;
   double m3 = 0;
@@ -41,19 +41,19 @@ class LevelFactors {
  public:
   explicit LevelFactors(double x) : scale_(x * x * x / 3) {}
 
-  // Those of them that vary.
+  // Adds those cells that vary.
   void add(std::span<const Cumulants> cells);
-  // As if the other's had been added here.
+  // Same as adding the other's cells here.
   void merge(const LevelFactors& other);
 
   double count() const { return count_; }
   double factor() const { return sum_ / count_; }
-  double excess() const { return excess_ / count_; }  // that scatter alone gives
-  // The larger of two, with their signs, each less what scatter alone gives it with probability
-  // 1e-4: the mean of the cells' skewnesses, and that of the law whose third cumulant and variance
-  // are the means of theirs. Where each cell seldom meets what skews it (fireflies), most have not,
-  // and the first sees nothing. Every cell is counted `copies` times, which may depend on each
-  // other.
+  double excess() const { return excess_ / count_; }  // Excess that scatter alone gives.
+  // The larger of two skewnesses, with their signs. Each is reduced by what scatter alone gives it
+  // with probability 1e-4. One is the mean of the cells' skewnesses. The other is that of the law
+  // whose third cumulant and variance are the means of theirs. The second sees skewness that most
+  // cells have not met yet (fireflies). Every cell is counted `copies` times, which may depend on
+  // each other.
   double common_skewness(double copies) const;
   double factor_of(double skewness) const;
 
@@ -62,9 +62,9 @@ class LevelFactors {
   double count_ = 0;
   double sum_ = 0;
   double excess_ = 0;
-  double arguments_ = 0;  // c g, with its sign
-  double scatters_ = 0;   // their variances
-  Cumulants cells_ = {};  // summed
+  double arguments_ = 0;  // c g, with its sign.
+  double scatters_ = 0;   // Their variances.
+  Cumulants cells_ = {};  // Summed.
 };
 
 }  // namespace assay::stats

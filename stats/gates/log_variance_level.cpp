@@ -9,16 +9,11 @@
 namespace assay::stats {
 namespace {
 
-// exp(700) is near the largest double.
 constexpr double largest_exponent = 700;
 
-// Of the skewness's part and the bend's together what stands for the next order where the two
-// cancel, as they do for rare values of some weight: of normal values with one of 41 deviations in
-// a thousand a test at .01 would be planned with 2110 of them and err 12 times as often. Of normal
-// values the two differ by a seventh of their sum, and no others are taken to be better. Costs are
-// counts, often of few outcomes: with a seventh the lower tail of costs that are 1, or 1701 once in
-// a thousand times, is off by 2.9, with a quarter by 1.5 at most. Exponential costs, whose parts
-// differ by a seventh too, pay for it with three times the observations that they need.
+// Least |B| as a share of the skewness's and the bend's parts together. It stands for the next
+// order where the two cancel. The two parts differ by a seventh of their sum for normal values.
+// Costs are often of few outcomes, and need a quarter (measurements.md).
 constexpr double least_share_of_variance = 1 / 7.0;
 constexpr double least_share_of_mean = 1 / 4.0;
 
@@ -31,7 +26,7 @@ LogMeanSlope slope(PositiveShape psi, double least_share) {
   return difference > least ? LogMeanSlope{difference, 1} : LogMeanSlope{least, least_share};
 }
 
-// B sqrt n of one sample of n values; `share` of the variance of the difference.
+// B sqrt n of one sample of n values with this `share` of the variance of the difference.
 double slope(const SixthOrderShape& x, double share) {
   const double square = x.kurtosis - 1;
   if (!(square > 0)) return 0;

@@ -7,10 +7,10 @@
 
 namespace assay::stats {
 
-// Standardised central moments 3 to 6 of one value: what the level of log_variance.h depends on.
+// Standardised central moments 3 to 6 of one value. The level of log_variance.h depends on them.
 struct SixthOrderShape {
   double skewness = 0;
-  double kurtosis = 3;  // not the excess
+  double kurtosis = 3;  // Not the excess.
   double fifth = 0;
   double sixth = 15;
 };
@@ -18,26 +18,25 @@ struct SixthOrderShape {
 // Throws std::domain_error: fewer than two values, no spread, a value that is not finite.
 SixthOrderShape sixth_order_shape(std::span<const double> values);
 
-// Of means of `count` such values, through their cumulants: kappa_r / count^(r / 2 - 1).
+// The shape of means of `count` such values, by their cumulants: kappa_r / count^(r / 2 - 1).
 SixthOrderShape averaged(const SixthOrderShape& shape, std::uint64_t count);
 
-// A planned test of one sample of `count` values, or of two, the second of count * allocation.
+// A planned test of one sample of `count` values, or of two. The second has count * allocation.
 struct PlannedLogVariance {
   std::uint64_t count = 2;
   double critical_value = 0;
   double allocation = 1;
 };
 
-// The factor by which the worse tail of the test of ln s2 departs from nominal,
-//   exp(|B| x^3),   B = (g / 3 - c / 2) / sqrt n,
-// where psi = (x - mean)^2 / variance - 1 has variance c^2 = kurtosis - 1 and skewness
-//   g = (sixth - 3 kurtosis + 2) / c^3:
-// g / 3 from the Studentised mean of psi (self-normalised moderate deviations: Jing, Shao & Wang
-// 2003), c / 2 from the bend of the logarithm. Where the two nearly cancel the next order is what
-// counts: |B| is taken to be at least a seventh of their sum, |g| / 3 + c / 2, over sqrt n. With
-// two samples the B of each, weighted by its share of the variance of the difference to the power
-// 3/2, are subtracted; the factor takes their absolute values added, a bound. 1 for a two-valued
-// law at 1/2, whose ln s2 has no first order.
+// The factor exp(|B| x^3) by which the worse tail of the test of ln s2 departs from nominal.
+//   B = (g / 3 - c / 2) / sqrt n.
+// Here psi = (x - mean)^2 / variance - 1 has variance c^2 = kurtosis - 1. Its skewness is g =
+// (sixth - 3 kurtosis + 2) / c^3. The term g / 3 is that of the Studentised mean of psi
+// (self-normalised moderate deviations: Jing, Shao & Wang 2003). The term c / 2 is the bend of the
+// logarithm. If the two nearly cancel the next order rules. So |B| is at least a seventh of (|g| /
+// 3 + c / 2) / sqrt n. With two samples each B is weighted by its share of the variance of the
+// difference to the power 3/2. Their absolute values add up, which is a bound. The factor is 1 for
+// a two-valued law at 1/2.
 double log_variance_level_factor(const SixthOrderShape& x, PlannedLogVariance plan);
 double log_variance_level_factor(const SixthOrderShape& x, const SixthOrderShape& y,
                                  PlannedLogVariance plan);
@@ -49,16 +48,16 @@ std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrder
                                       double critical_value, double level_factor = 1.25,
                                       double allocation = 1);
 
-// The same of ln of a mean of positive values with standard deviation over mean c and skewness g, a
-// cost: psi is then value / mean - 1, and a quarter stands for the seventh. Of costs that are rare
-// and dear the tails are up to 1.7 times their level at this count (exact, binomial).
+// The same for ln of a mean of positive values such as costs. They have standard deviation over
+// mean c and skewness g. Then psi is value / mean - 1, and a quarter replaces the seventh. With
+// rare and dear costs the tails are up to 1.7 times their level at this count.
 struct PositiveShape {
   double variation = 0;
   double skewness = 0;
 };
 std::uint64_t values_for_log_mean(PositiveShape x, double critical_value,
                                   double level_factor = 1.25);
-// |B| sqrt n of that, and how much of an error of |g| / 3 enters it.
+// The |B| sqrt n of it, and the share of an error of |g| / 3 that enters.
 struct LogMeanSlope {
   double value = 0;
   double share_of_skewness = 1;

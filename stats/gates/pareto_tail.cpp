@@ -65,7 +65,7 @@ double posterior_mean(std::span<const double> y) {
   return sum / total;
 }
 
-// What exceeds the smallest of the values, ascending; nothing where all are equal.
+// Excess of the values over the smallest, ascending. Nothing if all are equal.
 std::vector<double> exceedances_of(std::span<const double> tail) {
   std::vector<double> exceedances;
   for (const double value : tail) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double limit = 0.05;
 constexpr double most_steps = 0x1p20;
-// Of a step: values written with a fixed number of decimals are off their lattice by rounding.
+// In steps. Values written with a fixed number of decimals are off their lattice by rounding.
 constexpr double tolerance = 0.01;
 
 double smallest_gap(std::span<const double> sorted) {
@@ -26,7 +26,7 @@ bool is_lattice(std::span<const double> sorted) {
   const double gap = smallest_gap(sorted);
   const double range = sorted.back() - sorted.front();
   if (!(range / gap <= most_steps)) return false;
-  // The mean step: one gap alone is known to rounding only.
+  // The mean step, because one gap alone is known to rounding only.
   const double steps = std::round(range / gap);
   for (const double value : sorted) {
     const double position = (value - sorted.front()) / range * steps;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double chance = 1e-5;
 
-/// Numbers of values in three patterns, of which expectations (E middle)^2 <= (factor)^2 E below
-/// E above.
+/// Numbers of values in three patterns, whose expectations satisfy (E middle)^2 <= (factor)^2 E
+/// below E above.
 struct Triple {
   double below;
   double middle;
@@ -26,8 +26,8 @@ double log_likelihood(double count, double share) {
   return count > 0 ? count * std::log(share) : 0;
 }
 
-/// ln of the greatest likelihood within the bound over that without; 0 within. On the bound the
-/// three are as 1, factor b, b^2, with b from the mean of the places 0, 1, 2.
+/// ln of the greatest likelihood within the bound over that without it; 0 if within. On the bound
+/// the three are as 1, factor b, b^2, with b from the mean of the places 0, 1, 2.
 double log_ratio(const Triple& n) {
   const double total = n.below + n.middle + n.above;
   if (n.middle * n.middle <= n.factor * n.factor * n.below * n.above) return 0;
@@ -59,7 +59,6 @@ std::vector<double> sorted_stays(std::span<const double> values) {
   return sorted(std::move(stays));
 }
 
-/// Times that a value occurs, and how many values do.
 using Occurrences = std::map<std::size_t, std::size_t>;
 
 Occurrences occurrences_of(const std::vector<double>& sorted) {

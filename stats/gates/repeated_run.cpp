@@ -19,7 +19,6 @@ bool same(double x, double y) {
   return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
 }
 
-/// Equal values that follow each other: a stay.
 struct Stay {
   double value;
   std::size_t begin;
@@ -44,12 +43,13 @@ Stays stays_of(std::span<const double> values) {
   return stays;
 }
 
-/// Stays of a run with so many changes: at most `chance` over all pairs of places.
+/// Number of stays, so that a run occurs twice with probability at most `chance` over all pairs of
+/// places.
 std::size_t stays_needed(double pairs) {
   return 1 + static_cast<std::size_t>(std::ceil(std::max(2.0, std::log2(pairs / chance))));
 }
 
-/// Hashes of all windows of so many stays, one after the other; whether a window has three values.
+/// Hashes of all windows of so many stays in turn. It also says if a window has three values.
 class Windows {
  public:
   Windows(const Stays& stays, std::size_t size) : stays_(stays), size_(size) {
@@ -60,7 +60,7 @@ class Windows {
   bool done() const { return at_ + size_ > stays_.size(); }
   std::size_t at() const { return at_; }
   std::uint64_t hash() const { return hash_; }
-  /// Neighbours differ: the third value of a window is the first that is not that two before it.
+  /// Neighbours differ. So the third value of a window is the first that is not that two before it.
   bool has_three_values() const { return third_ >= at_ + 2; }
   void advance() {
     hash_ -= highest_ * stays_[at_].hash();
@@ -79,19 +79,20 @@ class Windows {
   const Stays& stays_;
   std::size_t size_;
   std::size_t at_ = 0;
-  std::size_t third_ = 0;  ///< the last stay that is not that two before it
+  /// The last stay that is not that two before it.
+  std::size_t third_ = 0;
   std::uint64_t highest_ = 1;
   std::uint64_t hash_ = 0;
 };
 
-/// Windows that do not overlap, by their hashes: a run of twice their size less one has one of
+/// Windows that do not overlap, by their hashes. A run of twice their size less one has one of
 /// them.
 class Anchors {
  public:
   explicit Anchors(std::size_t size) : size_(size) {}
 
   void add(const Windows& window) {
-    // Many of one hash are a short pattern over and over: one of them will do as well as another.
+    // Many windows of one hash are a short pattern over and over, and one of them will do.
     constexpr std::size_t most = 4;
     if (window.at() % size_ != 0 || !window.has_three_values()) return;
     if (places_.count(window.hash()) < most) places_.emplace(window.hash(), window.at());
@@ -109,7 +110,7 @@ class Anchors {
   std::unordered_multimap<std::uint64_t, std::size_t> places_;
 };
 
-/// Stays that are the same around two windows, and in them.
+/// Number of equal stays around and in two windows.
 std::size_t shared(const Stays& a, std::size_t i, const Stays& b, std::size_t j) {
   std::size_t count = 0;
   while (i + count < a.size() && j + count < b.size() && a[i + count] == b[j + count]) ++count;

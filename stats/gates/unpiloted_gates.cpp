@@ -11,12 +11,12 @@ namespace {
 
 constexpr double least_values = 50;
 constexpr double values_a_cube = 6;
-// Above it a sample's skewness is too uncertain for the correction by it.
+// Above it a sample's skewness is too uncertain to correct by.
 constexpr double skewness_of_mean = 0.15;
 constexpr double skewness_times_critical = 0.4;
 constexpr double false_red = 5e-5;
 
-// One sample's share in the skewness of a contrast, and what normal data would make of it.
+// One sample's share in the skewness of a contrast, and the share that normal data would have.
 struct Part {
   double value = 0;
   double allowance = 0;

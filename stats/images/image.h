@@ -8,8 +8,8 @@
 
 namespace assay::stats {
 
-// Images as numbers: the element of column x, row y and channel c stands at
-// (y * width + x) * channels + c.
+// Images as numbers. The element of column x, row y and channel c stands at (y * width + x) *
+// channels + c.
 struct ImageExtent {
   std::size_t width = 0;
   std::size_t height = 0;
@@ -22,30 +22,29 @@ struct ImageExtent {
 
 struct ElementRange {
   std::size_t first = 0;
-  std::size_t last = std::numeric_limits<std::size_t>::max();  // one past the end
+  std::size_t last = std::numeric_limits<std::size_t>::max();  // One past the end.
 
   std::size_t size() const { return last - first; }
 };
 
-// Rows of an image.
 struct RowRange {
   std::size_t first = 0;
-  std::size_t last = 0;  // one past the end
+  std::size_t last = 0;  // One past the end.
 
   ElementRange elements(const ImageExtent& extent) const {
     return {first * extent.row(), last * extent.row()};
   }
 };
 
-// Replicates of one image: independent, of one law, each with extent.elements() finite values, or
-// with those alone that are `there`.
+// Replicates of one image: independent, of one law. Each has extent.elements() finite values, or
+// only those that are `there`.
 template <class Real>
 struct ImageStack {
   ImageExtent extent;
   std::vector<std::span<const Real>> images;
   ElementRange there = {};
 
-  // From that element on.
+  // Pointer to that element of an image.
   const Real* at(std::size_t image, std::size_t element) const {
     return images[image].data() + (element - there.first);
   }
@@ -67,7 +66,8 @@ struct ImageReference {
   std::span<const double> standard_error = {};
 };
 
-// A stack and what it is held against, a second stack or a reference: exactly one is not null.
+// A stack, and a second stack or a reference to hold it against. Exactly one of the two is not
+// null.
 template <class Real>
 struct ImagePair {
   const ImageStack<Real>& a;
@@ -84,14 +84,14 @@ ImagePair<Real> pair_of(const ImageStack<Real>& a, const ImageReference& b) {
   return {a, nullptr, &b};
 }
 
-// What the methods on images need as a variance of its own: with fewer, Student's tails at the
-// level that thousands of elements demand reject nothing (15 degrees: |t| > 12 at 5e-9).
+// Methods on images need this many replicates for a variance of their own. With fewer, Student's
+// tails at the level of thousands of elements reject nothing (15 degrees: |t| > 12 at 5e-9).
 inline constexpr std::size_t least_replicates = 16;
 
 namespace check {
-// Throw std::domain_error: empty extent, wrong sizes (of a stack: other than what it says is
-// there), fewer than least_replicates images (saying why); reference_error: 0 without standard
-// errors, throws when negative or not finite.
+// These throw std::domain_error: empty extent, wrong sizes, fewer than least_replicates images. A
+// stack's size must match what it says is there. reference_error is 0 without standard errors, and
+// throws if negative or not finite.
 template <class Real>
 void image_stack(const char* function, const ImageStack<Real>& stack);
 void image_reference(const char* function, const ImageReference& reference);

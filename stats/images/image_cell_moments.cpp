@@ -35,7 +35,6 @@ ASSAY_VECTOR_COPIES void update(const Row& row, double count, std::size_t size) 
   }
 }
 
-// Sums and moments of a row of numbers.
 struct Level {
   std::vector<double> sum;
   std::vector<double> mean;
@@ -60,7 +59,7 @@ ASSAY_VECTOR_COPIES void double_side(const double* from, double* to, std::size_t
   }
 }
 
-// What one image adds to a row: weight (x - x of the first image).
+// The part of one image in a row: weight (x - x of the first image).
 struct WeighedRow {
   const double* weight;
   double* out;
@@ -101,8 +100,8 @@ ASSAY_VECTOR_COPIES void part(const double* from, const ThreeRows& to, std::size
 
 std::size_t tiles_in(std::size_t count, std::size_t side) { return (count + side - 1) / side; }
 
-// A tile's sums, which stay 0 beyond the edge, and moments: of each channel those of sides 1, 2, 4,
-// … up to its own.
+// A tile's sums and moments. Sums stay 0 beyond the edge. Each channel has moments of sides 1, 2,
+// 4, … up to its own.
 class TileLevels {
  public:
   TileLevels(std::size_t side, std::size_t channels) : side_(side), row_(side * channels) {
@@ -112,8 +111,8 @@ class TileLevels {
     }
   }
 
-  // Row y of an image's tile: where its numbers are to be put, channels side by side, and then
-  // taken from.
+  // Row y of an image's tile. The caller puts numbers here, channels side by side, and they are
+  // then taken.
   double* row() { return row_.data(); }
   void take_row(std::size_t y, std::size_t width) {
     const auto to = [&](std::size_t c) { return channels_[c][0].sum.data() + y * side_; };
@@ -126,7 +125,6 @@ class TileLevels {
       for (std::size_t x = 0; x < width; ++x) to(c)[x] = row_[x * count + c];
     }
   }
-  // The rows of one more image.
   void take_image(double count) {
     for (std::vector<Level>& levels : channels_) {
       levels[0].take(count);
@@ -154,11 +152,11 @@ class Band {
   Band(const WeightedImages<Real>& images, const ImageExtent& tiles, std::size_t side)
       : images_(images), extent_(images.stack.extent), tiles_(tiles), side_(side) {}
 
-  // Where the cells of a size that begin in the band's rows go, of each channel.
+  // Destination of a channel's cells of one size that begin in the band's rows.
   struct Cells {
     std::size_t size;
-    std::size_t first;  // in the channel's moments
-    std::size_t row;    // of cells that the first is in
+    std::size_t first;  // Index in the channel's moments.
+    std::size_t row;    // The row of cells that the first is in.
   };
 
   void take_tile(std::size_t x, std::size_t y, std::span<const std::size_t> taken,
@@ -206,7 +204,6 @@ class Band {
   TileLevels levels_{side_, extent_.channels};
 };
 
-// A group's windows in tiles of that side.
 WindowGroup in_tiles(WindowGroup group, std::size_t side) {
   for (Rectangle& window : group.windows) {
     const auto tiles = [&](std::uint32_t end) {

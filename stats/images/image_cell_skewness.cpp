@@ -22,13 +22,11 @@ constexpr const char* function_name = "cell_tails";
 
 using Groups = std::vector<WindowGroup>;
 
-// Choices of weights that are looked at, where the pilot has so many.
 constexpr std::size_t most_choices = 8;
 
-// One side's part in them.
 struct SidePart {
   const std::vector<CellMoments>& cells;
-  double count;  // images that the moments are of
+  double count;  // Images that the moments are of.
   double factor;
   double replicates;
 };
@@ -51,8 +49,7 @@ ASSAY_VECTOR_COPIES void add_part(std::vector<Cumulants>& cells, const SidePart&
   }
 }
 
-// Weights come from every `step`-th image of a side's pilot, the rest of it is what they are given
-// to.
+// Weights come from every `step`-th image of a side's pilot, and the rest of it takes them.
 std::size_t step_of(const CellPilot& side, WeightsFrom from) {
   if (from == WeightsFrom::pilot) return halves;
   const double half = std::max(side.replicates / halves, 1.0);
@@ -60,8 +57,8 @@ std::size_t step_of(const CellPilot& side, WeightsFrom from) {
   return static_cast<std::size_t>(std::max(steps, static_cast<double>(halves)));
 }
 
-// What every `step`-th image of a side from `start` on adds to the variance of the difference, of
-// the elements from `first` on.
+// Adds the part of every `step`-th image from `start` on to the variance of the difference, for the
+// elements from `first` on.
 void add_variance(const CellPilot& side, EveryImage which, std::size_t first,
                   std::span<double> variance) {
   std::vector<double> mean(variance.size());
@@ -76,7 +73,7 @@ void add_variance(const CellPilot& side, EveryImage which, std::size_t first,
   for (std::size_t i = 0; i < m2.size(); ++i) variance[i] += scale * m2[i];
 }
 
-// Of these rows and their neighbours, right of the rows alone.
+// Weights of these rows and their neighbours. They are right in these rows alone.
 std::vector<double> weights_of(std::span<const CellPilot> sides,
                                const std::vector<EveryImage>& which, RowRange rows,
                                const ForEach& for_each) {
@@ -107,7 +104,7 @@ Groups aligned_groups(const ImageExtent& extent) {
   return groups;
 }
 
-// Of each group, at the critical value where one cell must be.
+// Empty factors of each group, at the critical value that one cell must reach.
 std::vector<LevelFactors> no_factors(const Groups& groups, const ImageExtent& extent,
                                      double level) {
   std::vector<LevelFactors> factors;
@@ -235,7 +232,7 @@ void RowCellTails::add_cells(const ChannelCumulants& cells, RowRange rows, Choic
   });
 }
 
-// Of weights from the first of these rows on.
+// Counts weights, which begin with the first of these rows.
 void RowCellTails::count_weighted(std::span<const double> weights, RowRange rows,
                                   Choice& choice) const {
   const RowCellMoments& cells = choice.cells[0];
@@ -259,7 +256,7 @@ void RowCellTails::add_larger(Choice& choice) const {
   for (std::size_t c = 0; c < extent_.channels; ++c) {
     const std::vector<double> weighted = choice.cells[0].larger_sums(choice.weighted[c]);
     for (std::size_t i = 0; i < weighted.size(); ++i) {
-      // Nothing varied in it: what is left is the rounding of larger sums that it was taken from.
+      // Nothing varied in it. The value is only the rounding of the larger sums it was taken from.
       if (weighted[i] == 0) cells[c][i] = {};
     }
   }
@@ -295,7 +292,7 @@ std::vector<CellTails> RowCellTails::tails() {
     tail.common_skewness =
         factors.common_skewness(static_cast<double>(choices_.size() * extent_.channels));
     tail.common = factors.factor_of(tail.common_skewness);
-    // Channels may depend on each other, cells count.
+    // Channels may depend on each other, so only cells count.
     tail.scatter =
         factors.excess() / std::sqrt(static_cast<double>(aligned_cells(extent_, groups_[g].size)));
   }
@@ -310,7 +307,7 @@ std::vector<double> cell_weights(std::span<const CellPilot> sides) {
 
 std::vector<CellTails> cell_tails(std::span<const CellPilot> sides, double level, WeightsFrom from,
                                   const ForEach& for_each) {
-  // What is known of cells is not kept of all rows at a time.
+  // The cells' data is not kept for all rows at a time.
   constexpr std::size_t rows_at_a_time = 256;
   RowCellTails tails(sides, level, from, for_each);
   const std::size_t height = extent_of(sides[0].stack).height;

@@ -9,7 +9,7 @@
 namespace assay::stats {
 namespace {
 
-// Elements whose sums, and whose values in a hundred images, stay in a cache near by.
+// The sums of this many elements, and their values in a hundred images, stay in the cache.
 constexpr std::size_t block_size = 512;
 using Block = std::array<double, block_size>;
 

@@ -26,7 +26,7 @@ struct LeftOut {
   double count;
 };
 
-// Without one replicate: its value leaves mean and m2 by Welford's step backwards.
+// Leaves one replicate out of mean and m2, by Welford's step backwards.
 template <class Real>
 inline void step_back(const Real* values, const LeftOut& of, Estimates& out, std::size_t size) {
   const double rest = of.count - 1;
@@ -52,7 +52,6 @@ ASSAY_VECTOR_COPIES void leave_out(const double* values, const LeftOut& of, Esti
   step_back(values, of, out, size);
 }
 
-// An image's block with and without one replicate.
 template <class Real>
 class StackBlock {
  public:

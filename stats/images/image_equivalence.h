@@ -6,15 +6,13 @@
 
 namespace assay::stats {
 
-// Squared norms of the bias E a - E b of two images, without the noise of their means, which
-// ||mean a - mean b||^2 alone would add:
-//   U = sum over elements w ((mean a - mean b)^2 - va - vb),    E U = sum w (E a - E b)^2
-// with va, vb the squared errors of the means, or se^2 of a reference. U may be negative.
-// The standard error is the jackknife over replicates (Efron & Stein 1981: on average not too
-// small), each stack's replicates left out in turn; correlated elements are in it. Degrees: the
-// smaller count of replicates, less one. A reference's own error is subtracted; the variance that
-// it adds is with_reference_error's (image_reference_error.h). All throw std::domain_error as
-// welch_z does.
+// Squared norm of the bias E a - E b of two images, without the noise of their means:
+//   U = sum over elements w ((mean a - mean b)^2 - va - vb),    E U = sum w (E a - E b)^2.
+// Here va and vb are the squared errors of the means, or se^2 of a reference. U may be negative.
+// The standard error is the jackknife over replicates, each stack's left out in turn (Efron & Stein
+// 1981: on average not too small). It allows for correlated elements. Degrees: the smaller count of
+// replicates, less one. A reference's own error is subtracted, but the variance that it adds is not
+// included; image_reference_error.h adds that. All throw std::domain_error as welch_z does.
 struct SquaredBias {
   double estimate = 0;
   double standard_error = 0;
@@ -27,8 +25,8 @@ SquaredBias squared_bias(const ImageStack<Real>& a, const ImageStack<Real>& b);
 template <class Real>
 SquaredBias squared_bias(const ImageStack<Real>& a, const ImageReference& b);
 
-// Relative mean squared error: w = 1 / (elements (b^2 + constant)), b the mean of the second image
-// or the reference, never of both. constant > 0, in squared units of the image.
+// Relative mean squared error: w = 1 / (elements (b^2 + constant)). Here b is the mean of the
+// second image, or the reference. The constant is above 0, in squared units of the image.
 template <class Real>
 SquaredBias relative_bias(const ImageStack<Real>& a, const ImageStack<Real>& b, double constant);
 template <class Real>
@@ -37,8 +35,8 @@ SquaredBias relative_bias(const ImageStack<Real>& a, const ImageReference& b, do
 // Student's interval around the estimate. Throws for a confidence outside (0, 1).
 Interval squared_bias_interval(const SquaredBias& bias, double confidence);
 
-// The squared bias beside the squared norm that a margin is relative to, N = sum (mean b^2 - vb),
-// unbiased for ||E b||^2, with the jackknife's covariance of the two.
+// The squared bias beside the squared norm that a margin is relative to. N = sum (mean b^2 - vb) is
+// unbiased for ||E b||^2. The jackknife gives the covariance of the two.
 struct ImageDistance {
   double squared_bias = 0;
   double squared_norm = 0;
@@ -48,7 +46,7 @@ struct ImageDistance {
   double degrees = 0;
 };
 
-// Throw std::domain_error as welch_z does.
+// These throw std::domain_error as welch_z does.
 template <class Real>
 ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b,
                              const ForEach& for_each = one_by_one);
@@ -56,14 +54,14 @@ template <class Real>
 ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b,
                              const ForEach& for_each = one_by_one);
 
-// The same with a norm that is a number without error: a margin in units of its root.
+// The same with an exact norm: a margin in units of its root.
 ImageDistance with_norm(ImageDistance distance, double squared_norm);
 
 // Null hypothesis: ||E a - E b||^2 >= squared_margin N. Statistic: (U - squared_margin N) / its
-// jackknife standard error; Student's t. log_p_lower is the p-value: small when the images are
+// jackknife standard error; Student's t. log_p_lower is the p-value, small when the images are
 // equivalent within the margin. log_p_upper tests ||E a - E b||^2 <= squared_margin N. Asymptotic.
-// A negative squared margin is no hypothesis of images, but ends of intervals of U / N may lie
-// there. ZeroVariance for a zero standard error.
+// A negative squared margin only serves to invert for an interval of U / N. ZeroVariance for a zero
+// standard error.
 TestResult squared_margin_test(const ImageDistance& distance, double squared_margin);
 
 // The same for ||E a - E b|| >= margin ||E b||. Throws for a margin that is not positive.

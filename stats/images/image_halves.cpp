@@ -72,8 +72,9 @@ std::vector<double> smoothed(const ImageExtent& extent, std::vector<double> valu
   return values;
 }
 
-// The reference leaves the difference, and its error joins the variance. It joins no weight: where
-// the reference is bright by chance its error is large, and the sums would lean to the dark.
+// Subtracts the reference from the difference and adds its error to the variance. It joins no
+// weight: a reference that is bright by chance has a large error, and the sums would lean to the
+// dark.
 void add_reference(const ImageReference& reference, Half& half) {
   for (std::size_t i = 0; i < half.difference.size(); ++i) {
     const double error = check::reference_error("image_pyramid", reference, half.first + i);

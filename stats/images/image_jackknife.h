@@ -16,7 +16,8 @@
 namespace assay::stats::jackknifed {
 
 inline constexpr std::size_t block_size = 512;
-inline constexpr std::size_t range_size = 64 * block_size;  // what a thread takes at a time
+// Elements that a thread takes at a time.
+inline constexpr std::size_t range_size = 64 * block_size;
 using Block = std::array<double, block_size>;
 
 // Means and squared errors of the elements of a block.
@@ -29,7 +30,7 @@ struct Estimates {
 template <std::size_t count>
 using Sums = std::array<double, count>;
 
-// The terms of a block, the first kind of all its elements, then the second.
+// The terms of a block: the first kind for all its elements, then the second.
 template <std::size_t count>
 using Terms = std::array<Block, count>;
 
@@ -47,7 +48,7 @@ double jackknife_covariance(const std::vector<Sums<count>>& values, std::size_t 
   return products * (n - 1) / n;
 }
 
-// The sums over elements of the terms of (estimate of a, estimate of b), and without each
+// Sums over elements of the terms of (estimate of a, estimate of b), whole and without each
 // replicate.
 template <std::size_t count>
 struct Jackknife {
@@ -65,8 +66,8 @@ struct Jackknife {
   }
 };
 
-// Sums of several replicates take their terms in step: each in the order of the elements, but none
-// waits for the other's addition.
+// Sums of several replicates take their terms in step. Each keeps the order of the elements, but
+// none waits for the other's addition.
 inline constexpr std::size_t in_step = 8;
 
 template <std::size_t count>
@@ -83,8 +84,8 @@ void add_in_step(std::span<Sums<count>> sums, const Step<count>& terms, std::siz
   for (std::size_t k = 0; k < sums.size(); ++k) sums[k][kind] = sum[k];
 }
 
-// What adds up without each replicate in turn, of as many kinds of terms. `terms_without` fills in
-// the terms without replicate r.
+// Sums without each replicate in turn, of `kinds` kinds of terms. `terms_without` fills in the
+// terms without replicate r.
 template <std::size_t count, class TermsWithout>
 void add_without(std::vector<Sums<count>>& sums, std::size_t kinds, std::size_t size,
                  Step<count>& step, const TermsWithout& terms_without) {
@@ -132,7 +133,7 @@ void add(std::vector<Sums<count>>& to, const std::vector<Sums<count>>& others) {
   for (std::size_t i = 0; i < to.size(); ++i) add(to[i], others[i]);
 }
 
-// Of elements in their order: the sums over equal ranges of them, added up in theirs.
+// Takes elements in their order. Sums over equal ranges are added up in order.
 template <std::size_t count>
 class RunningJackknife {
  public:
@@ -157,7 +158,7 @@ class RunningJackknife {
     for (const Jackknife<count>& part : parts) take(part);
   }
 
-  // After the last of them. The first `kinds_of_a` terms depend on a.
+  // To be called after the last elements. The first `kinds_of_a` terms depend on a.
   Jackknife<count> finish(std::size_t kinds_of_a) {
     if (!open_.without_a.empty()) take(open_);
     for (Sums<count>& without : sums_.without_a) {
@@ -179,7 +180,7 @@ class RunningJackknife {
   }
 
   Jackknife<count> sums_;
-  Jackknife<count> open_;  // of a range that is not complete
+  Jackknife<count> open_;  // A range that is not complete.
 };
 
 }  // namespace assay::stats::jackknifed

@@ -9,7 +9,7 @@
 namespace assay::stats {
 namespace {
 
-// Elements whose sums stay in the first-level cache while the images pass by.
+// The sums of this many elements stay in the first-level cache while the images pass by.
 constexpr std::size_t block_size = 1024;
 
 struct Sums {
@@ -52,7 +52,7 @@ ASSAY_VECTOR_COPIES void add_four_images(const FourImages<double>& from, Sums to
   add_four(from, to, size);
 }
 
-// Images that are missing to the last four are the origin itself, which adds nothing.
+// The origin itself, which adds nothing, fills up the last four images.
 template <class Real>
 std::size_t moments_of_block(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,
                              EveryImage which) {

@@ -9,11 +9,11 @@
 namespace assay::stats {
 namespace {
 
-// Standard errors: one error of all elements moves all differences alike, and with them what is
-// taken for its own variance.
+// In standard errors. One error common to all elements moves all differences alike, and with them
+// its own estimated variance.
 constexpr double reach = 2;
 
-/// What errors of elements add to the variances of U and N.
+/// The parts that errors of elements add to the variances of U and N.
 struct Added {
   double bias = 0;
   double norm = 0;
@@ -21,8 +21,8 @@ struct Added {
 };
 
 struct Element {
-  double mean;           // of the stack
-  double squared_error;  // of that
+  double mean;           // Mean of the stack.
+  double squared_error;  // Its squared error.
   double reference;
   double reference_error;
 };

@@ -5,13 +5,13 @@
 
 namespace assay::stats {
 
-// image_distance of images of which some rows are there at a time, with the same bits.
+// image_distance for images that are read rows after rows, with the same bits.
 template <class Real>
 class RowDistance {
  public:
-  // Rows that follow on those before.
+  // Takes rows that follow on those before.
   void take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each = one_by_one);
-  // After the last rows.
+  // To be called after the last rows.
   ImageDistance distance();
 
  private:

@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t block_size = 256;
 constexpr std::size_t most_enumerated = 25;
 
-// Differences of a block of elements: replicate by replicate, then element by element, each with
-// so many numbers that the replicates fill whole pieces.
+// Differences of a block of elements, replicate by replicate, then element by element. Each element
+// has enough numbers that the replicates fill whole pieces.
 constexpr std::size_t piece = 16;
 struct FlipBlock {
   explicit FlipBlock(std::size_t count)
@@ -40,8 +40,7 @@ inline void subtract(const Real* a, const Other* b, double* out, std::size_t siz
   }
 }
 
-// Each element is to be divided by its root sum of squares. One that never differs drops out as
-// zeros.
+// Each element is to be divided by its root sum of squares. One that never differs becomes zeros.
 ASSAY_VECTOR_COPIES void add_squares(const double* difference, double* sum, std::size_t size) {
   double* const __restrict squares = sum;
   for (std::size_t i = 0; i < size; ++i) squares[i] += difference[i] * difference[i];
@@ -66,11 +65,11 @@ void studentise(FlipBlock& block, std::size_t size) {
   }
 }
 
-// Of four replicates, side by side, and the first `count` of all of them, whole pieces: the sums
-// over the block's elements.
+// Four replicates side by side, against the first `count` of all of them in whole pieces. The sums
+// are over the block's elements.
 struct FourRows {
   const double* replicates;
-  double* sums;  // four rows of `count`
+  double* sums;  // Four rows of `count`.
   std::size_t count;
 };
 ASSAY_VECTOR_COPIES void add_products(const FlipBlock& block, const FourRows& four,
@@ -96,7 +95,7 @@ ASSAY_VECTOR_COPIES void add_products(const FlipBlock& block, const FourRows& fo
   }
 }
 
-// The matrix has rows of `stride`, of which those up to the diagonal are meant.
+// The matrix has rows of `stride`. Entries up to the diagonal count.
 void add_block(std::vector<double>& matrix, const FlipBlock& block, std::size_t size) {
   std::vector<double> sums(4 * block.stride);
   for (std::size_t r = 0; r < block.stride; r += 4) {
@@ -280,8 +279,8 @@ void check_flip_plan(const FlipMatrix& matrix, const FlipPlan& plan) {
   check::at_least({"sign_flip", "enough"}, plan.enough, 1);
 }
 
-// Sign vectors whose Q equals the observed one but for rounding count as reaching it, which can
-// only raise the p-value.
+// A Q that equals the observed one but for rounding counts as reaching it. That can only raise the
+// p-value.
 double flip_threshold(const FlipMatrix& matrix) {
   return matrix.energy(std::vector<double>(matrix.replicates(), 1)) * (1 - 1e-12);
 }

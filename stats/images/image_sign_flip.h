@@ -16,14 +16,13 @@
 namespace assay::stats {
 
 // The energy of the difference of two images whose elements are correlated. Null hypothesis: the
-// differences d_r = a_r - b_r of replicates (or a_r - reference) are independent and each as likely
-// as its negative, all elements together. Exactly so when a_r and b_r have one law; the test of
-// equal means alone is asymptotic. Correlation between elements is free: a whole image flips its
-// sign.
-//   Q(s) = sum over elements (sum_r s_r d_r)^2 / sum_r d_r^2,      s_r = +-1
+// differences d_r = a_r - b_r of replicates (or a_r - reference) are independent and symmetric
+// about 0, all elements together. That holds exactly if a_r and b_r have one law. As a test of
+// equal means it is asymptotic. A whole image flips its sign, so elements may be correlated.
+//   Q(s) = sum over elements (sum_r s_r d_r)^2 / sum_r d_r^2,      s_r = +-1.
 // The divisor studentises each element and does not change with the signs. Q is s' G s with the
-// matrix G below, so a flip costs replicates^2 operations whatever the size of the image.
-// p = share of sign vectors with Q(s) >= Q(observed). It cannot be below 2^(1 - replicates).
+// matrix G below. So a flip costs replicates^2 operations for any image size. The p-value is the
+// share of sign vectors with Q(s) >= Q(observed). It is at least 2^(1 - replicates).
 class FlipMatrix {
  public:
   FlipMatrix(std::size_t replicates, std::vector<double> values)
@@ -32,17 +31,18 @@ class FlipMatrix {
   std::size_t replicates() const { return replicates_; }
   double energy(const std::vector<double>& signs) const;
 
-  // Of so many sign vectors at a time, whose sums do not wait for each other: of vector k the sign
-  // of replicate r is signs[r * together + k]. The same bits as energy().
+  // Energies of so many sign vectors at a time, with the bits of energy(). The sign of replicate r
+  // in vector k is signs[r * together + k]. The sums do not wait for each other.
   static constexpr std::size_t together = 32;
   std::array<double, together> energies(const std::vector<double>& signs) const;
 
  private:
   std::size_t replicates_;
-  std::vector<double> values_;  // G_rs = sum over elements d_r d_s / sum_t d_t^2, row by row
+  // Matrix G_rs = sum over elements d_r d_s / sum_t d_t^2, row by row.
+  std::vector<double> values_;
 };
 
-// Throw std::domain_error as welch_z does, and for stacks of different counts.
+// These throw std::domain_error as welch_z does, and for stacks of different counts.
 template <class Real>
 FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageStack<Real>& b,
                        const ForEach& for_each = one_by_one);
@@ -50,14 +50,14 @@ template <class Real>
 FlipMatrix flip_matrix(const ImageStack<Real>& a, const ImageReference& b,
                        const ForEach& for_each = one_by_one);
 
-// The same of images of which some rows are there at a time, with the same bits.
+// The same for images that are read rows after rows, with the same bits.
 template <class Real>
 class RowFlips {
  public:
-  // Rows that follow on those before: multiples of row_unit, but for the last.
+  // Takes rows that follow on those before, in multiples of row_unit but for the last.
   static constexpr std::size_t row_unit = 16;
   void take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each = one_by_one);
-  // After the last rows.
+  // To be called after the last rows.
   FlipMatrix matrix() const;
 
  private:
@@ -68,25 +68,22 @@ class RowFlips {
 enum class FlipMethod { enumerated, monte_carlo };
 
 struct SignFlip {
-  double statistic = 0;     // Q(observed)
-  double log_p = 0;         // never below -(replicates - 1) ln 2, never of zero
-  std::uint64_t flips = 0;  // sign vectors looked at, beside the observed one
+  double statistic = 0;     // Q(observed).
+  double log_p = 0;         // At least -(replicates - 1) ln 2.
+  std::uint64_t flips = 0;  // Sign vectors looked at, beside the observed one.
   FlipMethod method = FlipMethod::enumerated;
-  Exactness exactness = Exactness::asymptotic;  // exact only for exchangeable a_r and b_r
+  Exactness exactness = Exactness::asymptotic;  // Exact only for exchangeable a_r and b_r.
 };
 
-// `share` is the level that the p-value will be held against.
-// Throw std::domain_error for fewer than 2 + log2(1 / share) replicates, where no image at all
-// could be rejected or hardly one. Enumeration takes up to 25 replicates.
+// `share` is the level that the p-value is held against. Throws std::domain_error for fewer than 2
+// + log2(1 / share) replicates, which could hardly reject. Enumeration takes up to 25 replicates.
 SignFlip sign_flip(const FlipMatrix& matrix, double share);
 
-// Monte Carlo (Besag & Clifford 1991): random sign vectors, until `enough` of them have reached Q,
-// and never more than `flips` >= 2 / share - 1. p = enough / vectors drawn, or, where fewer reached
-// Q, (1 + #{Q(s) >= Q}) / (flips + 1). Exact for any `enough`: that the l-th vector is the first to
-// make them enough, or a later one, means that fewer than `enough` of l - 1 reached Q, and among
-// these and the observed one every rank has probability 1 / l. A p-value far from its level, as
-// nearly all are where images are equal, takes some hundred vectors in place of all, and is known
-// up to 1 / sqrt(enough) of itself; where p <= enough / flips nothing changes.
+// Monte Carlo (Besag & Clifford 1991). Draws random sign vectors until `enough` of them have
+// reached Q, and at most `flips` >= 2 / share - 1. Then p = enough / vectors drawn. If fewer
+// reached Q, p = (1 + #{Q(s) >= Q}) / (flips + 1). Exact for any `enough`: among l - 1 vectors and
+// the observed one every rank has probability 1 / l. If the images are equal, a p-value far from
+// its level takes some hundred vectors. It is known up to 1 / sqrt(enough) of itself.
 struct FlipPlan {
   double share = 0;
   std::uint64_t flips = 0;
@@ -97,15 +94,15 @@ namespace detail {
 void check_flip_plan(const FlipMatrix& matrix, const FlipPlan& plan);
 double flip_threshold(const FlipMatrix& matrix);
 
-// How many of so many sign vectors were looked at, and had an energy of at least the threshold.
+// Number of sign vectors looked at, and of those with an energy of at least the threshold.
 struct FlipCount {
   std::uint64_t vectors = 0;
   std::uint64_t reached = 0;
 };
 SignFlip flip_result(const FlipMatrix& matrix, const FlipPlan& plan, const FlipCount& count);
 
-// Looks at so many sign vectors, or until `enough` have reached the threshold. `sign(k, r)` is
-// asked for in order, all replicates r of one vector k after the other.
+// Looks at so many sign vectors, or until `enough` have reached the threshold. It asks for sign(k,
+// r) in order, all replicates r of one vector k after the other.
 template <class Sign>
 FlipCount count_reached(const FlipMatrix& matrix, std::uint64_t vectors, std::uint64_t enough,
                         Sign sign) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t in_step = 8;
 
-// Images that are missing to the last eight are the last one again.
+// The last image, repeated, fills up the last eight.
 template <class Real>
 void add_in_step(std::span<double> sums, const ImageStack<Real>& stack, std::size_t first,
                  ElementRange range) {
@@ -25,7 +25,7 @@ void add_in_step(std::span<double> sums, const ImageStack<Real>& stack, std::siz
   std::copy_n(sum.begin(), sums.size(), sums.begin());
 }
 
-// Of as many channels as are known here: their sums stay in registers.
+// The number of channels is known at compile time, so their sums stay in registers.
 template <std::size_t channels, class Real>
 void add_channels(std::span<double> sums, std::span<const Real> elements) {
   std::array<double, channels> sum{};

@@ -30,7 +30,7 @@ struct Side {
 struct Students {
   Block t;
   Block degrees;
-  Block total;  // squared standard error of the difference
+  Block total;  // Squared standard error of the difference.
 };
 
 // Shares of the variance, so that tiny variances do not underflow when squared.

@@ -9,12 +9,14 @@
 
 namespace assay::stats {
 
-// Element by element, null hypothesis: E a = E b, variances free (Welch 1947; welch_t.h):
-//   T  = (mean a - mean b) / sqrt(va + vb),   v = m2 / (n (n - 1)), or se^2 of a reference
-//   nu = (va + vb)^2 / (va^2 / (na - 1) + vb^2 / (nb - 1)),   a reference's term being 0
-// and z with the normal tail of T (t_to_z.h): z > 0 where a is brighter. Where neither side
-// varies there is no T: equal constants have z = 0 and do not count as tested; different constants
-// have z = +-infinity, a certain difference.
+// Welch's test element by element. Null hypothesis: E a = E b, variances free (Welch 1947;
+// welch_t.h).
+//   T  = (mean a - mean b) / sqrt(va + vb),   v = m2 / (n (n - 1)).
+//   Degrees:  (va + vb)^2 / (va^2 / (na - 1) + vb^2 / (nb - 1)).
+// A reference has v = se^2, and its term of the degrees is 0. The result z has the normal tail of T
+// (t_to_z.h), and z > 0 where a is brighter. If neither side varies there is no T. Equal constants
+// then have z = 0 and do not count as tested. Different constants have z = +-infinity, a certain
+// difference.
 struct WelchCounts {
   std::size_t tested = 0;
   std::size_t equal_constants = 0;
@@ -23,9 +25,9 @@ struct WelchCounts {
   void merge(const WelchCounts& other);
 };
 
-// z of the elements [first, first + z.size()). One thread; ranges are independent of each other.
-// All throw std::domain_error: extents that differ, fewer than 16 replicates (image.h), a range
-// beyond the image, non-finite values (naming the element). `a` and `b` may differ in count.
+// z of the elements [first, first + z.size()), in one thread. Ranges are independent of each other.
+// `a` and `b` may differ in count. All throw std::domain_error: extents that differ, fewer than 16
+// replicates (image.h), a range beyond the image, non-finite values (naming the element).
 template <class Real>
 WelchCounts welch_z(const ImageStack<Real>& a, const ImageStack<Real>& b, std::size_t first,
                     std::span<double> z);

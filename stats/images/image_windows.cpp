@@ -61,7 +61,8 @@ void add_level(std::vector<WindowGroup>& groups, const ImageExtent& extent, std:
   std::erase_if(shifted, [&](const Rectangle& w) { return w.x % size == 0 && w.y % size == 0; });
 }
 
-// Every level the same share, the whole image twice that; a level's parts the same part of it.
+// Gives every level the same share and the whole image twice that. A level's parts have equal parts
+// of it.
 void share_out(std::vector<WindowGroup>& groups, std::size_t levels, double share) {
   const double each = share / static_cast<double>(levels + 1);
   const std::uint32_t whole = groups.back().size;

@@ -18,29 +18,28 @@ struct Rectangle {
   friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
 
-// Which sums of an image are looked at. Level `size` has the cells of a grid of that size, the last
-// ones cut off at the edge (aligned), and all whole cells at steps of size / 4 that are not of the
-// grid (shifted): a block of that size anywhere overlaps one of them by 49/64 or more. Sizes are 1,
-// 2, 4, … and the whole image. Beside them the whole image with alternating signs, by column, by
-// row and as a checkerboard: what defects of interleaved samplers and threads look like, and what
-// every even-sized cell cancels.
+// The sums of an image that are looked at. Level `size` has the cells of a grid of that size, the
+// last cut off at the edge (aligned). It also has all other whole cells at steps of size / 4
+// (shifted). A block of that size anywhere overlaps one of them by at least 49/64. Sizes are 1, 2,
+// 4, … and the whole image. Beside them stands the whole image with alternating signs, by column,
+// by row and as a checkerboard. Those find defects of interleaved samplers and threads, which every
+// even-sized cell cancels.
 enum class Grid { aligned, shifted, alternating };
 
 struct WindowGroup {
   std::uint32_t size = 1;
   Grid grid = Grid::aligned;
-  double share = 0;  // of the level; all groups together have `share` of window_groups
+  double share = 0;  // Share of the level. All groups together have `share` of window_groups.
   std::vector<Rectangle> windows;
 };
 
-// The groups and their shares: one for every level and two for the whole image, half of it each for
-// a level's aligned and its shifted cells; the three alternating sums .025. The measured reasons
-// are in README.md.
-// Windows of sizes below `listed`, but for the whole image, are not listed: there are millions.
+// The groups and their shares. Every level has one share and the whole image two, halved between a
+// level's aligned and shifted cells. The three alternating sums have .025. Windows of sizes below
+// `listed`, but for the whole image, are not listed: there are millions.
 std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share,
                                        std::uint32_t listed = 1);
 
-// How many cells of that size the aligned grid has.
+// Number of cells of that size in the aligned grid.
 std::size_t aligned_cells(const ImageExtent& extent, std::uint32_t size);
 
 // Sums over rectangles of one channel by a summed-area table (Crow 1984), in double.
@@ -48,7 +47,7 @@ class WindowSums {
  public:
   explicit WindowSums(const ImageExtent& extent);
 
-  // values[y * width + x] of one channel.
+  // Takes values[y * width + x] of one channel.
   void load(std::span<const double> values);
 
   // The sum of window `index` of a group.
@@ -59,8 +58,8 @@ class WindowSums {
   double of(const Rectangle& window) const;
 
   std::size_t width_;
-  std::vector<double> table_;   // (width + 1) x (height + 1)
-  double alternating_[3] = {};  // by column, by row, checkerboard
+  std::vector<double> table_;   // (width + 1) x (height + 1).
+  double alternating_[3] = {};  // By column, by row, checkerboard.
 };
 
 }  // namespace assay::stats

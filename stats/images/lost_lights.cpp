@@ -8,7 +8,7 @@
 namespace assay::stats {
 namespace {
 
-// Whether an element differs among the images that weigh, and among the others.
+// Flags of an element that differs among the images that weigh, and among the others.
 struct Varied {
   std::vector<unsigned char> weighing;
   std::vector<unsigned char> others;

@@ -14,8 +14,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double largest_double = std::numeric_limits<double>::max();
 
-// One term of the series times e^x, by Chebyshev's rule: with v = w - 4k = cos(phi) the weight
-// 1 / sqrt(1 - v^2) cancels the ends' singularities, and the rule converges geometrically.
+// One term of the series times e^x, by Chebyshev's rule. With v = w - 4k = cos(phi) the weight 1 /
+// sqrt(1 - v^2) cancels the ends' singularities. So the rule converges geometrically.
 double series_term(int k, double x) {
   // The factor e^(-3 x (w - 3) / 4) must be resolved at the edge of the first interval.
   const int nodes = 40 + static_cast<int>(8 * std::sqrt(x));
@@ -35,7 +35,7 @@ double series_term(int k, double x) {
 double log_limit_upper(double x) {
   // Below this the law has less than 1e-26.
   if (x < 0.02) return 0;
-  // Laplace's value of the first term at that edge, off by .2 / x.
+  // Laplace's value of the first term at that edge, relative error .2 / x.
   if (x > 1e6) return std::log(1.5) - std::log(0.75 * pi * x) / 2 - x;
   double sum = 0;
   for (int k = 1;; ++k) {

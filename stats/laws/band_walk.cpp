@@ -121,12 +121,13 @@ double BandWalk::ratio(std::size_t point, std::uint64_t x) const {
   const Step& step = steps_[point];
   const double left = real(n_) - real(x);
   if (!two_) return left / (real(x) + 1) * step.z / (1 - step.z);
-  const double others = real(total_) - real(step.rank) - left + 1;  // of the other sample, beyond
+  // Left over in the other sample.
+  const double others = real(total_) - real(step.rank) - left + 1;
   return (real(step.rank) - real(x)) / (real(x) + 1) * left / others;
 }
 
-// The sum of the probabilities from x outwards, each relative to that of x: they fall from the
-// median on.
+// The sum of the probabilities from x outwards, relative to that of x. They fall from the median
+// on.
 double BandWalk::log_tail(std::size_t point, std::uint64_t x, bool upwards) const {
   const double at = log_probability(point, x);
   if (at == -infinity) return at;
@@ -149,7 +150,8 @@ double BandWalk::log_upper(std::size_t point, std::uint64_t x) const {
 }
 
 BandWalk::Range BandWalk::inside(std::size_t point, double log_tail) const {
-  // Below the rounded mean the upper tail, above it the lower one, is about half: not the limit.
+  // Below the rounded mean the upper tail is about half, above it the lower one. Neither is the
+  // limit.
   std::uint64_t low = 0;
   std::uint64_t high = median(point);
   while (low < high) {

@@ -31,7 +31,7 @@ std::vector<std::uint64_t> equal_ranks(std::uint64_t total, std::size_t points) 
 double log_half(double gamma) { return std::log(gamma) - std::numbers::ln2; }
 
 // The largest gamma whose band the path leaves with probability <= 1 - confidence, to 1e-6
-// relative: between Bonferroni's and the pointwise one.
+// relative. It lies between Bonferroni's and the pointwise one.
 DistributionBand widest(const BandWalk& walk, double confidence) {
   const double error = 1 - confidence;
   const double negligible = 1e-12 * error;
@@ -57,7 +57,6 @@ DistributionBand widest(const BandWalk& walk, double confidence) {
   return band;
 }
 
-// Where the smaller of two tails is smallest, and what the recursion makes of it.
 BandTest test_path(const BandWalk& walk, const std::vector<std::uint64_t>& counts) {
   double smallest = 0;
   std::size_t worst = 0;
@@ -73,8 +72,8 @@ BandTest test_path(const BandWalk& walk, const std::vector<std::uint64_t>& count
   const double log_gamma = std::min(0.0, smallest + std::numbers::ln2);
   result.test = {std::exp(log_gamma), {"bound", {}}, 0, 0, Exactness::exact};
   if (log_gamma == 0) return result;
-  // Counts whose tail equals the observed one have left the band too; the rounding of factorials,
-  // 1e-10 of a tail at n = 1e5, must not keep them in.
+  // Counts whose tail equals the observed one have left the band too. Rounding of factorials, 1e-10
+  // of a tail at n = 1e5, must not keep them in.
   const double log_tail = smallest + 1e-9;
   const BandWalk::Range range = walk.inside(worst, log_tail);
   result.worst = {.low = range.low, .high = range.high};

@@ -31,7 +31,7 @@ double law_value(const std::function<double(double)>& cdf, double x) {
   return value;
 }
 
-// Of the law that has these probabilities up to each value, and these below it.
+// The distance from a law with these probabilities up to each value, and these below it.
 OneSampleDistance largest_gap(std::span<const double> sorted, std::span<const double> at,
                               std::span<const double> before) {
   const double n = static_cast<double>(sorted.size());
@@ -150,7 +150,7 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
     const double x = sorted_x[i];
     const double y = sorted_y[j];
     const double value = std::min(x, y);
-    // Without ties one of the two advances by one: branch-free, as the order is unpredictable.
+    // Without ties one of the two advances by one. Branch-free, because the order is unpredictable.
     const bool take_x = x <= y;
     const bool take_y = y <= x;
     i += take_x;
@@ -165,7 +165,7 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
       result.location = value;
     }
   }
-  // Beyond the end of one sample the gap only shrinks to zero: its largest size was just seen.
+  // Beyond the end of one sample the gap only shrinks to zero. Its largest size was just seen.
   result.lattice.steps = static_cast<std::uint64_t>(largest);
   return result;
 }

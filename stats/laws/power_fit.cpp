@@ -28,7 +28,7 @@ TwoSizes sizes_of(const DistancePlan& plan, double n) {
   return {static_cast<std::uint64_t>(n), second};
 }
 
-// Smallest lattice distance of two samples that the law rejects, a step beyond 1 when none.
+// Smallest lattice distance of two samples that the law rejects, a step beyond 1 if there is none.
 double two_sample_critical(double log_alpha, TwoSizes sizes) {
   const std::uint64_t steps = std::lcm(sizes.m, sizes.n);
   std::uint64_t low = 0;
@@ -59,8 +59,8 @@ double found_critical_distance(const DistancePlan& plan, double n) {
                          : two_sample_margin_critical(log_alpha, sizes);
 }
 
-// The same, which takes up to milliseconds, and is asked for twice in a row: for the detectable
-// distance and for the power.
+// The same with the last answer kept. One takes up to milliseconds, and the detectable distance and
+// the power ask for it in a row.
 double critical_distance(const DistancePlan& plan, double n) {
   using Key = std::tuple<double, bool, bool, double, double>;
   thread_local std::optional<std::pair<Key, double>> last;
@@ -69,7 +69,7 @@ double critical_distance(const DistancePlan& plan, double n) {
   return last->second;
 }
 
-// The observations of one sample that are worth as many: m n / (m + n) of two.
+// The equivalent number of observations of one sample: m n / (m + n) of two.
 double effective(const DistancePlan& plan, double n) {
   return plan.two_samples ? n * plan.allocation / (1 + plan.allocation) : n;
 }
@@ -100,8 +100,8 @@ class FitPower {
 
   double at(double effect) const { return std::exp(tails(effect).upper); }
 
-  // The effect with a power of 1 - beta, nearly: the power's normal score is all but linear in it,
-  // as if X2 were normal with mean nu + l and variance 2 nu + 4 l at noncentrality l.
+  // The effect with a power of nearly 1 - beta. The power's normal score is almost linear in it.
+  // That is as if X2 were normal with mean nu + l and variance 2 nu + 4 l at noncentrality l.
   double about() const {
     const double z = planning::z_upper(plan_.rates.beta);
     const double nu = plan_.degrees_of_freedom;
@@ -159,8 +159,8 @@ std::optional<std::uint64_t> ks_sample_size(const DistancePlan& plan, double det
   const double gap = detect - plan.allow;
   const double guess = scale * (root / gap) * (root / gap);
   if (guess > planning::most_samples) return std::nullopt;
-  // Massart's bound in place of d_alpha, which is at most that: enough, a few in a thousand more
-  // than the exact law asks for, and its quantile takes milliseconds.
+  // Massart's bound replaces d_alpha, whose quantile takes milliseconds. It is at least d_alpha, so
+  // the size suffices and is a few in a thousand too large.
   if (!plan.two_samples) return static_cast<std::uint64_t>(std::ceil(guess));
   const auto enough = [&](double n) { return power_bound(plan, n, detect) >= 1 - plan.rates.beta; };
   return planning::smallest_sample(enough, guess, 1);

@@ -24,7 +24,7 @@ void check_sorted(const char* function, std::span<const double> sorted) {
   }
 }
 
-// The smallest k with P(K <= k) > e^log_level: the lower critical count, by bisection.
+// The smallest k with P(K <= k) > e^log_level, the lower critical count, by bisection.
 std::uint64_t smallest_kept(Trials trials, double log_level) {
   std::uint64_t low = 0;
   std::uint64_t high = trials.trials;
@@ -77,10 +77,10 @@ struct Side {
   }
 };
 
-// The largest product over v of P(so many of `lower` below v), which falls with v, and P(so few of
-// `upper` up to v), which rises. The counts below v step just after an observation and those up to
-// v at one, so the largest is taken at an observation of either; a range of observations cannot
-// exceed the first factor at its start times the second at its end, which prunes the search.
+// The largest product over v of two probabilities. P(so many of `lower` below v) falls with v, and
+// P(so few of `upper` up to v) rises. The counts change only at observations, so the largest is
+// taken at one. A range of observations cannot exceed the first factor at its start times the
+// second at its end. That prunes the search.
 class LargestProduct {
  public:
   LargestProduct(const Side& lower, const Side& upper, double probability)
@@ -118,7 +118,6 @@ class LargestProduct {
   double largest_ = -infinity;
 };
 
-// ln p of "Q(lower) >= Q(upper)".
 double log_p_below(const Side& lower, const Side& upper, double probability) {
   return log_fisher(LargestProduct(lower, upper, probability).logarithm());
 }
@@ -195,7 +194,7 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
   };
   const double middle =
       sample_quantile(sorted_x, probability) - sample_quantile(sorted_y, probability);
-  // Further apart than any two values: nothing can be more extreme.
+  // Further apart than any two values, so nothing can be more extreme.
   const double reach = sorted_x.back() - sorted_x.front() + sorted_y.back() - sorted_y.front() + 1;
   const auto end = [&](const auto& rejected, double outside) {
     if (!rejected(outside)) return std::copysign(infinity, outside - middle);

@@ -10,65 +10,64 @@
 namespace assay::stats {
 
 // A quantile of a law is any number v with P(X < v) <= probability <= P(X <= v). Two counts say all
-// that a sample knows about it; no density is needed, and atoms and ties are allowed.
+// that a sample knows about it. No density is needed, and atoms and ties are allowed.
 struct QuantileCounts {
-  std::uint64_t below = 0;    // values < v
-  std::uint64_t at_most = 0;  // values <= v
+  std::uint64_t below = 0;    // Values < v.
+  std::uint64_t at_most = 0;  // Values <= v.
   std::uint64_t n = 0;
 };
 QuantileCounts count_around(std::span<const double> sorted, double value);
 
-// Null hypothesis: v is the quantile of this probability (Thompson 1936).
-//   log_p_lower = ln P(Binomial(n, probability) >= below):   rejects "quantile >= v"
-//   log_p_upper = ln P(Binomial(n, probability) <= at_most): rejects "quantile <= v"
-// Exact for every law, conservative where X = v has positive probability. statistic = probability -
-// (below + at_most) / 2n, positive when the sample's quantile lies above v; the tails are binomial.
-// Throws std::domain_error: n = 0, below > at_most, at_most > n, probability outside (0, 1).
+// Null hypothesis: v is the quantile of this probability (Thompson 1936). The p-values are
+//   log_p_lower = ln P(Binomial(n, probability) >= below) rejects "quantile >= v".
+//   log_p_upper = ln P(Binomial(n, probability) <= at_most) rejects "quantile <= v".
+// Exact for every law, conservative if X = v has positive probability. The statistic is probability
+// - (below + at_most) / 2n, positive when the sample's quantile lies above v. Its tails are
+// binomial. Throws std::domain_error: n = 0, below > at_most, at_most > n, probability outside (0,
+// 1).
 TestResult quantile_test(const QuantileCounts& counts, double probability);
 
-// Central interval of the quantile: two order statistics, or infinite where the sample is too
-// small. It contains exactly the values that quantile_test rejects on neither side at (1 -
-// confidence) / 2. The values must be sorted ascending and finite (std::domain_error).
+// Central interval of the quantile: two order statistics, or infinite if the sample is too small.
+// Each value outside is rejected by quantile_test at (1 - confidence) / 2. Values must be sorted
+// ascending and finite (std::domain_error).
 Interval quantile_interval(std::span<const double> sorted, double probability, double confidence);
 
 struct QuantileContrast {
   double probability = 0.5;
-  double scale = 1;  // > 0
+  double scale = 1;  // > 0.
   double offset = 0;
 };
 
-// Where in sorted values, of which there is one at least, the sample quantile stands: floor(q n),
-// of q = 1 the last.
+// Index of the sample quantile in sorted values, at least one: floor(q n), for q = 1 the last.
 std::size_t sample_quantile_rank(std::size_t count, double probability);
 
 // Null hypothesis: Q(x) = scale Q(y) + offset for the quantiles Q of one probability, independent
-// samples. To reject "Q(x) <= scale Q(y) + offset" is to reject, for every number v, "Q(x) <= v or
-// v <= scale Q(y) + offset": the two exact p-values at v are independent, their product c has
-// P(c <= a) <= a (1 - ln a) (Fisher 1932), and the largest over v is the p-value. Exact and
-// conservative: at level .001 the gap between two equal samples must be 4.7 standard errors of one
-// of them, where the normal limit would ask for 4.4 and two disjoint intervals for 6.6. statistic =
-// the difference of the two sample quantiles; law "bound".
+// samples. Take the hypothesis Q(x) <= scale Q(y) + offset. It says that some v lies between the
+// two sides. So it is rejected if every v is. The exact p-values of the two inequalities at v are
+// independent. Their product c has P(c <= a) <= a (1 - ln a) (Fisher 1932). The largest over v is
+// the p-value. Exact and conservative (law "bound"). The statistic is the difference of the two
+// sample quantiles.
 TestResult quantile_compare(std::span<const double> sorted_x, std::span<const double> sorted_y,
                             QuantileContrast contrast);
 
 // Central interval of Q(x) - Q(y): the offsets not rejected (scale 1), by bisection to double
-// precision. Ends are infinite where no offset is rejected.
+// precision. Ends are infinite if no offset is rejected.
 Interval quantile_difference_interval(std::span<const double> sorted_x,
                                       std::span<const double> sorted_y, double probability,
                                       double confidence);
 
-// Planning in terms of the true law: the smallest n for which quantile_test at v rejects
-// "probability up to v = allow" with power 1 - beta when P(X <= v) is `detect`; exact binomial,
-// one-sided (or alpha / 2 a side), for a law without an atom at v.
+// The smallest n that finds P(X <= v) = detect with power 1 - beta. The test is quantile_test at v
+// of "probability up to v = allow". Exact binomial, one-sided (or alpha / 2 a side), for a law
+// without an atom at v.
 struct QuantilePlan {
-  double allow = 0.5;   // P(X <= v) under the null hypothesis
-  double detect = 0.6;  // P(X <= v) to be found, on either side
+  double allow = 0.5;   // P(X <= v) under the null hypothesis.
+  double detect = 0.6;  // P(X <= v) to be found, on either side.
   ErrorRates rates;
 };
 std::optional<std::uint64_t> quantile_sample_size(const QuantilePlan& plan);
 
-// The standard deviation of one observation in the normal limit of a sample quantile,
-// sqrt(q (1 - q)) / density: what normal_sample_size needs to plan in units of the value.
+// Standard deviation of one observation in the normal limit of a sample quantile, sqrt(q (1 - q)) /
+// density. Pass it to normal_sample_size to plan in units of the value.
 double quantile_standard_deviation(double probability, double density);
 
 }  // namespace assay::stats

@@ -18,7 +18,7 @@ double log_massart(double a, std::uint64_t n) {
 }  // namespace
 
 // With grid points b_0 = 0 < … < b_K = gap:
-//   P(A + B >= gap) <= sum_k P(b_k <= B < b_{k+1}) P(A >= gap - b_{k+1}) + P(B >= gap)
+//   P(A + B >= gap) <= sum_k P(b_k <= B < b_{k+1}) P(A >= gap - b_{k+1}) + P(B >= gap).
 double log_two_suprema_bound(double gap, TwoSizes sizes) {
   if (gap <= 0) return 0;
   constexpr int cells = 2000;

@@ -11,15 +11,15 @@ struct Successes {
   std::uint64_t trials = 0;
 };
 
-// Null hypothesis: P(success) = null_probability. Exact binomial tails; discrete, so P(p <= a) <=
-// a. Throws std::domain_error: no trials, successes > trials, probability outside [0, 1].
+// Null hypothesis: P(success) = null_probability. Exact binomial tails. They are discrete, so P(p
+// <= a) <= a. Throws std::domain_error: no trials, successes > trials, probability outside [0, 1].
 TestResult binomial(Successes observed, double null_probability);
 
 // Clopper & Pearson (1934): central interval of P(success), coverage at least `confidence`.
 Interval clopper_pearson(Successes observed, double confidence);
 
-// The largest probability of a value that n observations can have missed: the p with
-// (1 - p)^n = exp(log_error), i.e. 1 - exp(log_error / n). Throws for n = 0 or log_error >= 0.
+// The largest probability of a value that n observations can have missed. It is the p with (1 -
+// p)^n = exp(log_error). Throws for n = 0 or log_error >= 0.
 double unseen_probability_bound(std::uint64_t trials, double log_error);
 
 }  // namespace assay::stats

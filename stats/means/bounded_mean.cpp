@@ -12,7 +12,7 @@
 namespace assay::stats {
 namespace {
 
-// A mean on the unit scale, as its distances from both ends of the range: near an end the nearer
+// A mean on the unit scale, as its distances from both ends of the range. Near an end the nearer
 // one keeps the digits.
 struct UnitMean {
   double above_low = 0;
@@ -79,12 +79,13 @@ double log_variance_bound(const UnitSample& x, UnitMean m) {
   return std::numbers::ln2 - y * y;
 }
 
-// Small bets are what the variance's bound is for.
+// The variance's bound covers smaller bets.
 constexpr std::array bets{0.875, 0.5, 0.25, 0.125};
 
-// ln of what a bet has grown to at least, over n. It grows with m, its bound
-//   l r - psi(l) (v (1 + r)^2 + r^2),   r = (m - mean) / (1 - m),  v = M2 / n / (1 - mean)^2,
-// only up to an r of its own: what it is there it is beyond.
+// Lower bound on ln of a bet's wealth over n. Here r = (m - mean) / (1 - m) and v = M2 / n / (1 -
+// mean)^2.
+//   Bound: l r - psi(l) (v (1 + r)^2 + r^2).
+// The wealth grows with m, but this bound only up to some r. Beyond, its maximum stands.
 double growth(double bet, double r, double v) {
   const double psi = -special::log1p_minus(-bet);
   const double best = std::clamp((bet / (2 * psi) - v) / (1 + v), 0.0, r);
@@ -111,7 +112,7 @@ double log_p_below(const UnitSample& x, UnitMean m) {
   return special::clamp_log(std::log(3.0) + smallest);
 }
 
-// How far above the mean the largest m lies that is not rejected at log_error; p falls with m.
+// The distance above the mean of the largest m not rejected at log_error. p falls with m.
 double room_above(const UnitSample& x, double log_error) {
   const auto kept = [&](double room) {
     return log_p_below(x, {x.mean.above_low + room, x.mean.below_high - room}) > log_error;

@@ -25,10 +25,11 @@ void check_arguments(const ConstantSample& sample, const Reference& reference) {
   }
 }
 
-// The two ways in which a constant and a reference may differ though the claim holds.
+// The two ways in which a constant and a reference may differ although the claim holds.
 struct Difference {
-  double size = 0;   // d of the header
-  double reach = 0;  // from the constant to the end of the range on the reference's side
+  double size = 0;  // d of the header.
+  // Distance from the constant to the end of the range on the reference's side.
+  double reach = 0;
   double error = 0;
   double count = 0;
 
@@ -37,7 +38,7 @@ struct Difference {
     if (shift >= reach) return shift > 0 ? probability_zero : 0;
     return count * std::log1p(-shift / reach);
   }
-  // With the reference `errors` of its standard errors off.
+  // ln p with the reference off by `errors` of its standard errors.
   double log_p(double errors) const {
     const double shift = std::max(0.0, size - errors * error);
     const double off = std::min(0.0, std::numbers::ln2 + normal_tails(errors).upper);

@@ -11,8 +11,8 @@ struct Margins {
   double high = 0;
 };
 
-// Two one-sided tests (Schuirmann 1987). Null hypothesis: theta <= low or theta >= high.
-// p = max(p of "theta <= low", p of "theta >= high"); no factor for two tests, P(p <= a) <= a.
+// Two one-sided tests (Schuirmann 1987). Null hypothesis: theta <= low or theta >= high. p = max(p
+// of "theta <= low", p of "theta >= high"). Two tests need no factor: P(p <= a) <= a.
 struct Equivalence {
   TestResult at_low;
   TestResult at_high;
@@ -26,8 +26,8 @@ Equivalence equivalence(const TestResult& at_low, const TestResult& at_high);
 Equivalence student_t_equivalence(const Moments& x, Reference reference, Margins margins);
 // theta = E x - E y.
 Equivalence welch_equivalence(const Moments& x, const Moments& y, Margins margins);
-// theta = E x / E y - 1, tested as the contrasts E x - (1 + margin) E y (for E y > 0; the roles of
-// the two margins are exchanged when mean y < 0).
+// theta = E x / E y - 1, tested as the contrasts E x - (1 + margin) E y. That is for E y > 0. If
+// mean y < 0 the two margins exchange their roles.
 Equivalence welch_relative_equivalence(const Moments& x, const Moments& y, Margins margins);
 
 }  // namespace assay::stats

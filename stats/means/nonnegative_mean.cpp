@@ -44,7 +44,8 @@ void NonnegativeMean::merge(const NonnegativeMean& other) {
 double NonnegativeMean::log_e() const {
   if (null_mean_ < 0 || (null_mean_ == 0 && mean_ > 0)) return infinity;
   const double largest = *std::max_element(log_wealth_.begin(), log_wealth_.end());
-  if (largest == infinity) return infinity;  // value / null_mean overflowed
+  // value / null_mean overflowed.
+  if (largest == infinity) return infinity;
   return special::log_sum_of(log_wealth_) - std::log(static_cast<double>(scales));
 }
 
@@ -66,7 +67,7 @@ double nonnegative_mean_lower_limit(std::span<const double> values, double confi
     return nonnegative_mean(values, m).log_p_upper <= log_error;
   };
   if (!rejected(0)) return 0;
-  // Every gain is negative once the null mean exceeds the mean enough: E < 1 at the largest value.
+  // Every gain is negative once the null mean exceeds the mean enough. At the largest value E < 1.
   double below = 0;
   double above = *std::max_element(values.begin(), values.end());
   while (true) {

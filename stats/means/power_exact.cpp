@@ -11,11 +11,11 @@
 namespace assay::stats {
 namespace {
 
-// The plan with the effect above the null value: the mirror image where it is below.
+// The plan with the effect above the null value. An effect below it is mirrored.
 struct Upward {
   Range range;
-  double null_mean;  // the nearer end of what is allowed
-  double mean;       // with the effect
+  double null_mean;  // The nearer end of the allowed range.
+  double mean;       // With the effect.
   double log_level;
 };
 
@@ -36,9 +36,10 @@ double probability(const Upward& plan, double mean) {
   return (mean - plan.range.low) / (plan.range.high - plan.range.low);
 }
 
-// The least count whose upper tail under p is at most the level; n + 1 where none is.
+// The least count whose upper tail under p is at most the level; n + 1 if there is none.
 std::uint64_t critical_count(std::uint64_t n, double p, double log_level) {
-  std::uint64_t kept = 0;  // never rejected: its tail is the whole
+  // Never rejected: its tail is the whole.
+  std::uint64_t kept = 0;
   std::uint64_t rejected = n + 1;
   while (rejected - kept > 1) {
     const std::uint64_t middle = kept + (rejected - kept) / 2;
@@ -56,7 +57,6 @@ Moments ideal(std::uint64_t n, double mean, double deviation) {
   return moments;
 }
 
-// The least sample mean that bounded_mean rejects.
 double critical_mean(const Upward& plan, std::uint64_t n, double deviation) {
   double kept = plan.null_mean;
   double rejected = plan.range.high;
@@ -72,7 +72,7 @@ double critical_mean(const Upward& plan, std::uint64_t n, double deviation) {
   return rejected;
 }
 
-// Whether every sample mean rejects the null value at alpha or the effect at beta.
+// True if every sample mean rejects the null value at alpha or the effect at beta.
 bool decides(const ExactMeanPlan& plan, std::uint64_t n, double effect) {
   const Upward up = upward("exact_sample_size", plan, effect);
   if (up.null_mean < up.range.low || up.mean > up.range.high) return true;
@@ -133,12 +133,12 @@ std::optional<std::uint64_t> exact_sample_size(ExactMethod method, const ExactMe
                                                double effect) {
   constexpr std::uint64_t most = std::uint64_t{1} << 40;
   const auto enough_at = [&](std::uint64_t n) {
-    // Of counts the two are the same.
+    // For counts the two are the same.
     return method == ExactMethod::bounded ? decides(plan, n, effect)
                                           : binomial_power(plan, n, effect) >= 1 - plan.rates.beta;
   };
   const auto enough = [&](std::uint64_t n) { return enough_at(n) && enough_at(2 * n); };
-  std::uint64_t missed = 1;  // too few for a variance
+  std::uint64_t missed = 1;  // Too few for a variance.
   std::uint64_t found = 2;
   while (!enough(found)) {
     if (found >= most) return std::nullopt;

@@ -28,8 +28,8 @@ class Power {
 
   double at(EffectPlan effect) const { return with_far(near(effect), effect); }
 
-  // Whether it is 1 - beta or more. Far from the question the tail on the other side, a fifth of
-  // the work and never above its level alpha / 2, need not be known.
+  // True if the power is at least 1 - beta. The tail on the other side is a fifth of the work and
+  // never above alpha / 2. Far from the question it need not be known.
   bool suffices_at(EffectPlan effect) const {
     constexpr double rounding = 1e-9;
     const double power = near(effect);
@@ -38,8 +38,9 @@ class Power {
     return with_far(power, effect) >= wanted;
   }
 
-  // The effect with a power of 1 - beta, nearly: the power's normal score is all but linear in it,
-  // (d - t (1 - 1 / 4 nu)) / sqrt(1 + t^2 / 2 nu) at noncentrality d (Johnson & Welch 1940).
+  // The effect with a power of nearly 1 - beta. Its normal score at noncentrality d is almost
+  // linear (Johnson & Welch 1940).
+  //   Score: (d - t (1 - 1 / 4 nu)) / sqrt(1 + t^2 / 2 nu).
   double about(double allow) const {
     const double z = z_upper(rates_.beta);
     const double spread = std::sqrt(1 + critical_ * critical_ / (2 * scale_.degrees));
@@ -50,8 +51,8 @@ class Power {
   }
 
  private:
-  // Power is monotone in it, and 1 to the last digit a hundred critical values away; farther out
-  // nothing is left of the integrals but rounding.
+  // Power is monotone in it, and 1 to the last digit a hundred critical values away. Farther out
+  // only rounding is left of the integrals.
   double noncentrality(double effect) const {
     const double most = 100 * std::max(1.0, std::abs(critical_));
     return std::clamp(effect / scale_.standard_error, -most, most);
@@ -127,7 +128,7 @@ double z_sum(const ErrorRates& rates) {
   return normal_quantile(critical_tail(rates)) + z_upper(rates.beta);
 }
 
-// What t needs beyond the normal formula: z_alpha^2 / 2 (Guenther 1981), nearly exact.
+// Observations that t needs beyond the normal formula: z_alpha^2 / 2 (Guenther 1981), nearly exact.
 double beyond_normal(const ErrorRates& rates) {
   const double z = normal_quantile(critical_tail(rates));
   return z * z / 2;
@@ -157,7 +158,7 @@ double student_t_detectable(const MeanPlan& plan, double n) {
 std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double detect) {
   check_plan("student_t_sample_size", plan);
   planning::check_effect("student_t_sample_size", plan.allow, detect);
-  // In the limit of many samples only the reference's own error is left.
+  // With ever more samples only the reference's own error is left.
   const double gap = detect - plan.allow;
   const double attainable = gap / z_sum(plan.rates);
   const double own =
@@ -196,10 +197,10 @@ std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double 
   return planning::smallest_sample(enough, guess, minimum);
 }
 
-// int_0^{s_max} [Phi((margin - effect) / se - t s) - Phi(-(margin + effect) / se + t s)] f(s) ds
-// with nu s^2 ~ chi-square(nu), se = sigma / sqrt(n) and s_max = margin / (t se), where the
-// acceptance region of the mean is empty. (The difference of two noncentral t tails goes negative
-// instead.)
+// With nu s^2 ~ chi-square(nu) and se = sigma / sqrt(n) the power is
+//   int_0^{s_max} [Phi((margin - effect) / se - t s) - Phi(-(margin + effect) / se + t s)] f(s) ds.
+// Beyond s_max = margin / (t se) the acceptance region of the mean is empty. The difference of two
+// noncentral t tails goes negative instead.
 double equivalence_power(const EquivalencePlan& plan, double n, double effect) {
   planning::check_rates("equivalence_power", {plan.alpha, plan.beta, false});
   check::positive({"equivalence_power", "standard_deviation"}, plan.standard_deviation);

@@ -30,7 +30,8 @@ struct Law {
 };
 
 Law law_of(const Moments& x, Reference reference) {
-  const TestResult plain = student_t(x, reference);  // checks its arguments
+  // Checks its arguments.
+  const TestResult plain = student_t(x, reference);
   const double n = static_cast<double>(x.count);
   const double error = reference.standard_error;
   const double influence = x.m2 / n / n + error * error;
@@ -48,7 +49,8 @@ double influence_variance(const Moments& x, double factor) {
 double skewness_or_zero(const Moments& x) { return x.m2 > 0 ? x.skewness() : 0; }
 
 Law law_of(const Moments& x, const Moments& y, double scale) {
-  const TestResult plain = welch_t(x, y, {scale, 0});  // checks its arguments
+  // Checks its arguments.
+  const TestResult plain = welch_t(x, y, {scale, 0});
   const double nx = static_cast<double>(x.count);
   const double ny = static_cast<double>(y.count);
   const double of_x = influence_variance(x, 1);
@@ -78,7 +80,7 @@ Interval interval_of(double difference, const Law& law, double confidence) {
 
 // ---- Intervals of a ratio
 
-// How far E x - ratio E y = 0 is beyond its critical value: negative where it is not rejected.
+// Distance of E x - ratio E y = 0 beyond its critical value. Negative if it is not rejected.
 struct Excess {
   const Moments& x;
   const Moments& y;
@@ -92,9 +94,8 @@ struct Excess {
   }
 };
 
-// ---- What the correction leaves
+// ---- The remaining error
 
-// The sums of corrected_level_factor.
 struct Residue {
   double a = 0;
   double kurtosis = 0;  // k

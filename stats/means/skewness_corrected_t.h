@@ -10,17 +10,17 @@
 
 namespace assay::stats {
 
-// Student's and Welch's t with the first-order effect of skewness taken out, for data whose
-// skewness gate is not green. With T and nu of student_t.h and welch_t.h, and a, the skewness of
-// the mean over 6, from influence values psi ((x_i - mean x) / nx, and -scale (y_i - mean y) / ny;
-// the error of a reference adds to the variance only),
-//   a   = sum psi^3 / (6 (sum psi^2 + standard_error^2)^1.5)       one sample: g1 / (6 sqrt n)
-//   T_H = ((1 + 2 a T)^3 - 1) / (6 a) + a = T + a (2 T^2 + 1) + (4/3) a^2 T^3
-// (Hall 1992, "On the removal of skewness by transformation", J. R. Statist. Soc. B 54),
-// referred to Student's t with nu degrees of freedom. T_H rises with T, so intervals are exact
-// inversions. Hall refers it to the normal law: that is 1.9 times the level of .001 on 50 normal
-// values, Student's t 1.1 (README.md). Asymptotic; for its range of validity see
-// corrected_level_factor. Throw as the tests they correct.
+// Student's and Welch's t with the first-order effect of skewness taken out. T and nu are those of
+// student_t.h and welch_t.h, and a is the skewness of the mean over 6. The influence values psi are
+// (x_i - mean x) / nx and -scale (y_i - mean y) / ny. A reference's error adds to the variance
+// only.
+//   a   = sum psi^3 / (6 (sum psi^2 + standard_error^2)^1.5).
+//   T_H = ((1 + 2 a T)^3 - 1) / (6 a) + a = T + a (2 T^2 + 1) + (4/3) a^2 T^3.
+// (Hall 1992, "On the removal of skewness by transformation", J. R. Statist. Soc. B 54.) For one
+// sample a = g1 / (6 sqrt n). T_H is referred to Student's t with nu degrees of freedom, not to
+// Hall's normal law. That exceeds the level .001 by a factor 1.9 for 50 normal values. T_H rises
+// with T, so intervals are exact inversions. Asymptotic: use it where corrected_level_factor is
+// small. All throw as the tests they correct.
 
 // Null hypothesis: E x = null_mean.value.
 TestResult skewness_corrected_t(const Moments& x, Reference null_mean);
@@ -31,35 +31,35 @@ Interval skewness_corrected_t_interval(const Moments& x, Reference reference, do
 TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value);
 // Central interval of E x - E y.
 Interval skewness_corrected_welch_interval(const Moments& x, const Moments& y, double confidence);
-// Central interval of E x / E y - 1 by inversion of E x - r E y = 0: the ends nearest the estimate
-// that are not rejected. Unbounded as welch_ratio_interval.
+// Central interval of E x / E y - 1 by inversion of E x - r E y = 0. Its ends are the rejected
+// ratios nearest the estimate. Unbounded as welch_ratio_interval.
 Interval skewness_corrected_ratio_interval(const Moments& x, const Moments& y, double confidence);
 
-// ---- Where the correction holds
+// ---- Validity of the correction
 
-// What is left after it, predicted at critical value x: the factor by which the worse tail of T_H
-// may exceed its nominal level,
-//   exp(max(0, x^4 (k/4 - 44 a^2 / 3)) + |a| x^3 (1 + x^2 / 24) (16.5 e + 121.5 a^2) + x^6 f / 3)
-// with shares p_j of the variance, k = sum p_j^2 kappa_j / n_j, e = sum p_j^2 / n_j,
-// f = sum p_j^3 / n_j^2, kappa_j the excess kurtosis.
-// First term: the next order of the self-normalised large deviation of T_H, whose rate is
-// y^2 / 2 - y^4 ((kappa + 1) / 4 - 11 gamma^2 / 27); Student's law has the 1 / 4 already. Second:
-// the bias of g1 for a gamma law, and its growth with x as measured on the exponential law. Third:
-// the noise of g1 for normal data. Held against simulated levels down to 5e-7 in README.md: use the
-// test where the factor is at most 1.25.
+// Predicts at critical value x the factor by which the worse tail of T_H may exceed its nominal
+// level. Use the test where it is at most 1.25 (measurements.md). The factor is
+//   exp(max(0, x^4 (k/4 - 44 a^2 / 3)) + |a| x^3 (1 + x^2 / 24) (16.5 e + 121.5 a^2) + x^6 f / 3).
+// Each sample has a share p_j of the variance and excess kurtosis kappa_j. Then k = sum p_j^2
+// kappa_j / n_j, e = sum p_j^2 / n_j, f = sum p_j^3 / n_j^2.
+//
+// The first term is the next order of the self-normalised large deviation of T_H. Its rate is y^2 /
+// 2 - y^4 ((kappa + 1) / 4 - 11 gamma^2 / 27); Student's law has the 1 / 4 already. The second is
+// the bias of g1 for a gamma law, with its growth in x as measured on the exponential law. The
+// third is the noise of g1 for normal data.
 double corrected_level_factor(const Moments& x, Reference null_mean, double critical_value);
 double corrected_level_factor(const Moments& x, const Moments& y, double scale,
                               double critical_value);
-// Planned: one sample of `count` values of this shape.
+// A plan: one sample of `count` values of this shape.
 struct PlannedMean {
   std::uint64_t count = 2;
   double critical_value = 0;
 };
 double corrected_level_factor(PrimaryShape shape, PlannedMean plan);
 
-// The gates of it: value as above, limit 2, green up to 1.25. `low` takes from the kurtosis what
-// normal data show by themselves (kurtosis_gate); the last term stays, as too few values for the
-// correction is no matter of chance: 50 values at x = 4.9 are red whatever they are.
+// Gates of the correction. Value as above, limit 2, green up to 1.25. `low` subtracts from the
+// kurtosis what normal data show by themselves (kurtosis_gate). The last term stays, because too
+// few values is no matter of chance: 50 values at x = 4.9 are red for any law.
 Gate residual_skewness_gate(const Moments& x, Reference null_mean, double critical_value);
 Gate residual_skewness_gate(const Moments& x, const Moments& y, double scale,
                             double critical_value);

@@ -41,7 +41,7 @@ Trials trials_at(Successes observed, double probability) {
   return {observed.trials, std::clamp(probability, 0.0, 1.0)};
 }
 
-// The null line, by the probability q of y: p = start + slope q inside [0, 1] for q in [first,
+// The null line by the probability q of y. p = start + slope q lies inside [0, 1] for q in [first,
 // last].
 struct NullLine {
   double start = 0;
@@ -79,7 +79,7 @@ struct LogProduct {
 double log_p_lower(const TwoValued& x, const TwoValued& y, Contrast null_value) {
   const NullLine line = null_line(x, y, null_value);
   if (line.empty()) return line.start > 0 ? special::lowest_log() : 0;
-  // Concave on the line; a maximum missed by 1e-9 of it is missed by second order.
+  // Concave on the line. A maximum missed by 1e-9 of it is missed by second order.
   const double log_w =
       golden_section(LogProduct{x.high, y.high, line}, line.first, line.last).largest;
   return special::clamp_log(log_w + std::log1p(-log_w));

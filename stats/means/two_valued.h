@@ -17,35 +17,35 @@ struct TwoValued {
 };
 
 // The count in a sample that is declared two-valued, recovered from its moments. Throws
-// std::domain_error when the smallest or largest value is neither of the two, or when n (mean -
-// low) / (high - low) is not within 1/4 of a whole number. It proves nothing about values in
-// between.
+// std::domain_error if the smallest or largest value is neither of the two. It also throws if n
+// (mean - low) / (high - low) is not within 1/4 of a whole number. That proves nothing about values
+// in between.
 TwoValued two_valued(const Moments& x, Range range);
 
 // Null hypothesis: E x = null_mean, i.e. P(x = high) = (null_mean - low) / (high - low). The exact
 // binomial test of that probability (binomial.h); statistic: the count of high values. A null mean
-// outside the range is impossible: the tail that rejects it has the lowest logarithm.
-// Throws std::domain_error: range empty or infinite, no values, non-finite null mean.
+// outside the range is impossible: the tail that rejects it has the lowest logarithm. Throws
+// std::domain_error: range empty or infinite, no values, non-finite null mean.
 TestResult two_valued_mean(const TwoValued& x, double null_mean);
 // Clopper & Pearson's interval of E x; coverage at least `confidence`.
 Interval two_valued_mean_interval(const TwoValued& x, double confidence);
 
 // Null hypothesis: E x - scale E y = offset (1 and d: a difference; r and 0: a ratio). A scale
-// below 0 is one above it of -y; 0 leaves the exact test of E x. Along the line of the
-// probabilities (p, q) of the null, the tails of the two counts are independent and exact; Fisher's
-// product of them, at the least favourable point:
-//   A = P(X <= hits of x | p),  B = P(Y >= hits of y | q),  W = max over the line of A B
-//   p-value of "E x - scale E y >= offset" = W (1 - ln W)
-// (Fisher 1932; conservative for discrete counts, hence for every p, q of the null; the maximum
-// over the nuisance probability: Barnard 1945.) ln A and ln B are concave in their probabilities,
-// so the maximum has one top. The mirrored tail likewise. Exact and conservative (law "bound"), at
-// about 200 binomial tails of work. Where the normal approximation holds, samples of equal size
-// need 1.2 times its values at p = .01 and 1.1 times at 3e-5; with one sample much the larger, 1.4
-// and 1.2. The statistic is mean x - scale mean y - offset. A null that no pair of probabilities
-// can meet: the tail that rejects it has the lowest logarithm.
-// Throws std::domain_error: as above, non-finite scale or offset.
+// below 0 is one above it of -y. With 0 it is the exact test of E x.
+//
+// On the null's line of probabilities (p, q) the tails of the two counts are independent and exact.
+// Fisher's product of them is taken at the least favourable point:
+//   A = P(X <= hits of x | p),  B = P(Y >= hits of y | q).
+//   W = max over the line of A B.
+//   P-value of "E x - scale E y >= offset" = W (1 - ln W).
+// (Fisher 1932, conservative for discrete counts; maximum over the nuisance probability: Barnard
+// 1945.) ln A and ln B are concave in their probabilities, so there is one maximum. The mirrored
+// tail is likewise. Exact and conservative (law "bound"), about 200 binomial tails of work. The
+// statistic is mean x - scale mean y - offset. If no pair of probabilities meets the null, the tail
+// that rejects it has the lowest logarithm. Throws std::domain_error: as above, non-finite scale or
+// offset.
 TestResult two_valued_contrast(const TwoValued& x, const TwoValued& y, Contrast null_value);
-// Central interval of E x - E y by inversion; p falls with the distance from the estimate.
+// Central interval of E x - E y by inversion. p falls with the distance from the estimate.
 Interval two_valued_difference_interval(const TwoValued& x, const TwoValued& y, double confidence);
 
 }  // namespace assay::stats

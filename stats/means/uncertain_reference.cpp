@@ -13,7 +13,7 @@ namespace {
 
 constexpr double share_of_references = 0.1;
 constexpr int places_a_reference = 9;
-constexpr double precision = 1e-9;  // of ln p
+constexpr double precision = 1e-9;  // In ln p.
 
 using LogP = std::function<double(std::span<const double>)>;
 
@@ -29,7 +29,7 @@ std::vector<double> places(const UncertainReference& reference, double errors) {
   return all;
 }
 
-// The largest over all places of the references from this one on.
+// The largest ln p over all places of the references from this one on.
 double largest(const LogP& log_p, std::span<const std::vector<double>> all,
                std::vector<double>& at) {
   if (at.size() == all.size()) return log_p(at);
@@ -42,7 +42,7 @@ double largest(const LogP& log_p, std::span<const std::vector<double>> all,
   return most;
 }
 
-// The largest ln p where the references may be, at this level of the whole.
+// The largest ln p over the region of the references, at this level of the whole.
 double largest_at(const LogP& log_p, std::span<const UncertainReference> references,
                   double log_level) {
   const double log_miss =

@@ -40,7 +40,7 @@ double critical_value(double confidence, double degrees) {
   return student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, degrees);
 }
 
-// How far E x - ratio E y = 0 is beyond its critical value: negative inside the interval.
+// Distance of E x - ratio E y = 0 beyond its critical value. Negative inside the interval.
 struct Excess {
   const Moments& x;
   const Moments& y;
@@ -56,7 +56,7 @@ struct Excess {
 }  // namespace
 
 double contrast_of_means(const Moments& x, const Moments& y, Contrast contrast) {
-  // What rounding takes from the product and from the difference (Dekker 1971, Knuth's two-sum).
+  // The rounding errors of the product and of the difference (Dekker 1971, Knuth's two-sum).
   const double product = contrast.scale * y.mean;
   const double of_product = std::fma(contrast.scale, y.mean, -product);
   const double difference = x.mean - product;

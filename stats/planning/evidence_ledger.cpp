@@ -35,14 +35,14 @@ double log_ratio(double r, Widening variance) {
 
 double square(double x) { return x * x; }
 
-// The score's variance for a given information, and what the effect adds to it.
+// The score's variance for a given information, and the part that the effect adds to it.
 Widening score_variance(double information, const LedgerPrior& prior) {
   const double v = information;
   return {v + square(v * prior.reference_error), square(v * prior.effect)};
 }
 
-// ln likelihood ratio of a change between two series. The estimate after it, given the one before,
-// is normal around what the common error of the reference lets expect.
+// ln likelihood ratio of a change between two series. Given the estimate before, that after is
+// normal about the value that the common error of the reference predicts.
 double log_change(const Evidence& before, const Evidence& after, const LedgerPrior& prior) {
   const double u2 = square(prior.reference_error);
   double expected = 0;

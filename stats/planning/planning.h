@@ -14,7 +14,7 @@
 
 namespace assay::stats::planning {
 
-// Internal: what every method's planning shares.
+// Internal: planning code that the methods share.
 
 inline void check_rates(const char* function, const ErrorRates& rates) {
   check::inside_unit({function, "alpha"}, rates.alpha);
@@ -34,18 +34,18 @@ inline double z_upper(double probability) {
   return normal_quantile({Tail::upper, std::log(probability)});
 }
 
-// The normal score of a power whose complement this is, finite also where it rounds to 0 or 1.
+// The normal score of a power 1 - miss. It is finite also where miss rounds to 0 or 1.
 inline double score_of_miss(double miss) { return z_upper(std::clamp(miss, 1e-300, 1 - 1e-15)); }
 
 constexpr double most_samples = 0x1p53;
 
-// The smallest whole n >= minimum at which `enough(n)`, which must be monotone; galloping from a
-// guess, which is often exact: every step four times the last.
+// The smallest whole n >= minimum at which `enough(n)`, which must be monotone. It gallops from a
+// guess, which is often exact, with steps that grow fourfold.
 template <class Enough>
 std::optional<std::uint64_t> smallest_sample(const Enough& enough, double guess, double minimum) {
   double n = std::max(minimum, std::floor(guess));
   double step = 1;
-  double low = minimum - 1;  // not enough, as far as is known
+  double low = minimum - 1;  // Not enough, as far as is known.
   double high = n;
   if (enough(n)) {
     while (high > minimum) {
@@ -71,12 +71,12 @@ std::optional<std::uint64_t> smallest_sample(const Enough& enough, double guess,
 }
 
 struct Bracket {
-  double low = 0;  // not enough
+  double low = 0;  // Not enough.
   double high = 0;
 };
 
-// Around the smallest x > from at which `enough(x)`, to 1e-12 relative; infinite when there is
-// none.
+// Bracket around the smallest x > from at which `enough(x)`, to 1e-12 relative. Infinite if there
+// is none.
 template <class Enough>
 Bracket effect_bracket(const Enough& enough, double from, double first_step) {
   Bracket found{from, from + first_step};
@@ -101,8 +101,8 @@ double smallest_effect(const Enough& enough, double from, double first_step) {
   return effect_bracket(enough, from, first_step).high;
 }
 
-// The same, bit by bit, where a good guess is known: the bracket that halving would end with if the
-// guess were right is looked at first, two questions in place of forty.
+// The same bits where a good guess is known. It tries the bracket that halving would end with if
+// the guess were right: two questions in place of forty.
 template <class Enough>
 double smallest_effect(const Enough& enough, double from, double first_step, double guess) {
   const Bracket likely = effect_bracket([guess](double x) { return x >= guess; }, from, first_step);
@@ -111,14 +111,14 @@ double smallest_effect(const Enough& enough, double from, double first_step, dou
   return right ? likely.high : smallest_effect(enough, from, first_step);
 }
 
-// Near a root, and the slope there, as far as they are known without looking.
+// An approximate root, and the approximate slope there.
 struct Guess {
   double root = 0;
   double slope = 1;
 };
 
-// Where a nearly linear increasing function is zero, by secants: each is off by a small part of the
-// product of the last two steps. Some number where they do not get there.
+// The zero of a nearly linear increasing function, by secants. Each error is a small part of the
+// product of the last two steps. If it does not converge it returns some number.
 template <class Function>
 double secant_root(const Function& function, Guess guess) {
   double before = guess.root;

@@ -6,7 +6,7 @@
 namespace assay::stats {
 namespace {
 
-// The larger |z|; of equal ones that which comes first in the image.
+// The larger |z|. Among equals the first in the image.
 bool beats(const ImageFinding& a, const ImageFinding& b) {
   const double ours = std::abs(a.z);
   const double theirs = std::abs(b.z);

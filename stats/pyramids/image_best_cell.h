@@ -5,20 +5,19 @@
 
 namespace assay::stats {
 
-// Internal to image_pyramid: the largest |z| of a group of cells so far, and
-// how many cells it was chosen from. Of equal ones the first by channel, row
-// and column, in whichever order they come.
+// Internal to image_pyramid: the largest |z| of a group of cells so far, and the number of cells it
+// was chosen from. Among equals the first by channel, row and column wins, in whichever order they
+// come.
 struct BestCell {
   ImageFinding finding;
   StudentValue value;
   double windows = 0;
 };
 
-// A cell's candidate without its z, which is worked out from `value` where it
-// can be the largest.
+// Offers a cell without its z. z is computed from `value` only if it may be the largest.
 void offer(BestCell& best, const ImageFinding& candidate, StudentValue value);
 
-// As if the other's cells had been offered here.
+// Same result as offering the other's cells here.
 void join(BestCell& best, const BestCell& other);
 
 }  // namespace assay::stats

@@ -45,7 +45,6 @@ std::size_t count_windows(const Groups& groups) {
   return count;
 }
 
-// The sums of one channel's cells from those of blocks.
 class CoarseSums {
  public:
   CoarseSums(const ImageExtent& extent, std::size_t channel)
@@ -67,7 +66,7 @@ class CoarseSums {
     }
     return sums_.of(group, index);
   }
-  // Of all elements in the window, those that alternate too.
+  // Sum over all elements in the window, also for those that alternate.
   double total_of(const WindowGroup& group, std::size_t index) const {
     return group.grid == Grid::alternating ? sums_.of_all() : sums_.of(group, index);
   }
@@ -80,7 +79,7 @@ class CoarseSums {
   const BlockSums* image_ = nullptr;
 };
 
-// Of one channel's windows, all groups in a row.
+// Moments of one channel's windows, all groups in a row.
 WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std::size_t channel) {
   WelchCells moments;
   moments.start(count_windows(groups));
@@ -99,7 +98,8 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
       }
       sums.load(coarse.varied[h]);
       for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-        // The sum did not vary; what is left is the rounding of larger sums that it was taken from.
+        // The sum did not vary. The value is only the rounding of the larger sums it was taken
+        // from.
         if (sums.total_of(group, i) == 0) moments.m2[window] = 0;
       });
       moments.finish_part(count, side == 0 ? 0.5 : -0.5);
@@ -118,7 +118,7 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
 void offer_windows(std::vector<BestCell>& best, const Groups& groups, const Groups& coarse,
                    const WelchCells& moments, std::size_t channel) {
   for_each_window(coarse, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-    // Of two images, constants that differ were found before.
+    // Different constants of two images were found before.
     if (!moments.varied(window)) return;
     const bool alternating = group.grid == Grid::alternating;
     const auto g = static_cast<std::size_t>(&group - coarse.data());

@@ -9,9 +9,8 @@
 
 namespace assay::stats {
 
-// Internal to image_pyramid: offers the cells of one channel that are not fine,
-// and the sums with alternating signs, to the best of their groups, from the
-// sums over blocks.
+// Internal to image_pyramid. Offers one channel's coarse cells and alternating sums to the best of
+// their groups, from the sums over blocks.
 void offer_coarse_cells(const CoarseImages& coarse, const std::vector<WindowGroup>& groups,
                         std::size_t channel, std::vector<BestCell>& best);
 

@@ -77,8 +77,8 @@ ASSAY_VECTOR_COPIES void add_row(const ColumnSums& to, double sign, std::size_t 
   }
 }
 
-// Asks for the rows of a tile before they are needed: a tile's rows are too short for the machine
-// to see that more of them follow.
+// Asks for the rows of a tile before they are needed. A tile's rows are too short for the machine
+// to foresee the next.
 template <class Real>
 void fetch_ahead(const Tile& tile, const ImageStack<Real>& stack, std::size_t image) {
   constexpr std::size_t line = 64 / sizeof(Real);
@@ -222,9 +222,8 @@ class FineTiles {
     }
   }
 
-  // Sums of squares of that side did not vary where none of their elements did:
-  // they are the same in every replicate, to the last bit. Those of larger
-  // cells need the count.
+  // Squares of that side did not vary if none of their elements did. Their sums are then equal in
+  // every replicate, to the last bit. Sums of larger cells need the count.
   void count_varied(const Tile& tile, std::size_t h) {
     fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
       const double* const weight =
@@ -239,10 +238,9 @@ class FineTiles {
     keep_blocks(tile, coarse_.varied[h]);
   }
 
-  // A reference's error is one for both halves, independent between elements,
-  // and has no degrees of freedom to lose. A sum that did not vary stays
-  // without variance, untested: the error is not what values never seen could
-  // add.
+  // A reference's error is one for both halves, independent between elements, and known without
+  // degrees of freedom. A sum that did not vary stays untested, without variance. The error says
+  // nothing of values never seen.
   void add_reference_error(const Tile& tile) {
     fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
       for (std::size_t i = 0; i < out.size(); ++i) {
@@ -299,16 +297,16 @@ class FineTiles {
   const ImageExtent& extent_;
   std::vector<BestCell> best_;
   CoarseImages& coarse_;
-  std::size_t alternating_;  // where the band's sums with alternating signs are
+  std::size_t alternating_;  // Index of the band's sums with alternating signs.
   TileSums sums_;
   std::vector<double> column_sums_;
   std::vector<double> signed_column_sums_;
-  std::array<WelchCells, fine_squares.size()> moments_;  // of the squares that begin in the tile
+  std::array<WelchCells, fine_squares.size()> moments_;  // Squares that begin in the tile.
   std::array<GroupsOfSide, fine_squares.size()> groups_;
 };
 
-// Rows of an image are looked at in bands of tiles, which have sums with alternating signs of their
-// own until all are there.
+// Rows of an image are looked at in bands of tiles. Each band has alternating sums of its own until
+// all are there.
 constexpr std::size_t band_rows = 2 * Tile::rows;
 static_assert(fine_rows % band_rows == 0 && fine_rows_ahead == Tile::halo);
 

@@ -12,40 +12,38 @@
 
 namespace assay::stats {
 
-// Internal to image_pyramid. Nearly all cells are small, and an image has many
-// replicates: cells of sides 2, 4 and 8 are tested tile by tile, each tile over
-// all replicates while what is known of its cells stays in the cache. Sums of
-// larger cells are taken from those of blocks of 4 x 4, which are left behind.
+// Internal to image_pyramid. Nearly all cells are small, and an image has many replicates. So cells
+// of sides 2, 4 and 8 are tested tile by tile over all replicates, which keeps a tile in the cache.
+// Larger cells are summed from blocks of 4 x 4, which this pass leaves behind.
 
-inline constexpr std::size_t sides_of_pair = 2;  // a and b
-inline constexpr std::size_t alternations = 3;   // by column, by row, checkerboard
+inline constexpr std::size_t sides_of_pair = 2;
+inline constexpr std::size_t alternations = 3;  // By column, by row, checkerboard.
 inline constexpr std::uint32_t block_side = 4;
-// That cover so many elements of a row or column.
+// Blocks that cover so many elements of a row or column.
 inline std::size_t blocks_of(std::size_t count) { return (count + block_side - 1) / block_side; }
 
-// The smallest size that is not, but for a whole image.
+// The smallest size that is not fine, but for a whole image.
 inline constexpr std::uint32_t coarse_size = 16;
-// Whether the cells of a group are tested here.
+// True if the cells of a group are tested here.
 bool is_fine(const WindowGroup& group);
 
-// One image's weighted sums over blocks of 4 x 4 elements, the last ones cut
-// off at the edge, and those with alternating signs over all of it,
-// `alternations` a channel.
+// One image's weighted sums over blocks of 4 x 4 elements, the last cut off at the edge. Beside
+// them its sums with alternating signs, `alternations` a channel.
 struct BlockSums {
   std::vector<double> blocks;
   std::vector<double> alternating;
 };
 
 struct CoarseImages {
-  ImageExtent extent;  // in blocks
+  ImageExtent extent;  // In blocks.
   // [half][side][replicate of the half]
   std::array<std::array<std::vector<BlockSums>, sides_of_pair>, halves> images;
-  std::array<BlockSums, halves> varied;  // how many elements vary and have a weight
-  BlockSums squared_error;               // of a reference, weighted; empty where it has none
+  std::array<BlockSums, halves> varied;  // Number of elements that vary and have a weight.
+  BlockSums squared_error;               // Of a reference, weighted; empty if it has none.
 };
 
-// What fine cells are tested on: the replicates, their halves with the weights
-// that each gives the other, and the groups of cells.
+// Input of the test of fine cells: replicates, halves with the weights that each gives the other,
+// and groups of cells.
 template <class Real>
 struct FineCells {
   const ImagePair<Real>& pair;
@@ -55,14 +53,14 @@ struct FineCells {
 
 struct FineFindings {
   CoarseImages coarse;
-  std::vector<BestCell> best;  // by group
+  std::vector<BestCell> best;  // One per group.
 };
 
 template <class Real>
 CoarseImages empty_blocks(const ImagePair<Real>& pair);
 
-// Rows are taken in multiples of so many, but for the image's last. Cells that begin in them reach
-// into so many rows more, which the images and the halves must have.
+// Rows are taken in multiples of fine_rows, but for the image's last. Cells that begin in them
+// reach fine_rows_ahead rows further. The images and halves must have those rows.
 inline constexpr std::size_t fine_rows = 64;
 inline constexpr std::size_t fine_rows_ahead = 8;
 
@@ -72,7 +70,7 @@ template <class Real>
 void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
                       const ForEach& for_each = one_by_one);
 
-// After the last rows.
+// To be called after the last rows.
 void add_up_alternating(CoarseImages& coarse);
 
 }  // namespace assay::stats

@@ -87,7 +87,7 @@ void add_windows(ImageFamily& family, const ZMap& map) {
   }
 }
 
-// The energy of each channel; channels may depend on each other, so the union bound joins them.
+// The energy of each channel. Channels may depend on each other, so the union bound joins them.
 void add_energy(ImageFamily& family, const ZMap& map) {
   ImageFinding best = whole_image(ImageStatistic::energy, map.extent);
   double channels = 0;

@@ -9,22 +9,22 @@
 
 namespace assay::stats {
 
-// image_pyramid of images of which some rows are there at a time, with the same bits. What it keeps
-// of each element is z, and of 4 x 4 elements a number for each replicate.
+// image_pyramid for images that are read rows after rows, with the same bits. It keeps z for each
+// element, and for each 4 x 4 elements one number a replicate.
 template <class Real>
 class RowPyramid {
  public:
-  // `pair` tells the extent and the number of replicates.
+  // Only the extent and the number of replicates of `pair` are read.
   RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& options);
 
-  // Rows that follow on those before: multiples of row_unit, but for the last. The pair must have
-  // `rows_before` and `rows_ahead` more, as far as the image has.
+  // Takes rows that follow on those before, in multiples of row_unit but for the last. The pair
+  // must have `rows_before` and `rows_ahead` more, as far as the image has.
   static constexpr std::size_t row_unit = fine_rows;
   static constexpr std::size_t rows_before = 1;
   static constexpr std::size_t rows_ahead = fine_rows_ahead + 1;
   void take(const ImagePair<Real>& pair, RowRange rows);
 
-  // After the last rows.
+  // To be called after the last rows.
   ImageFamily family();
 
  private:
@@ -46,10 +46,10 @@ class RowPyramid {
   std::span<double> z_;
   WelchCounts counts_;
   std::size_t best_element_ = 0;
-  double best_log_p_ = 0;  // of one element
+  double best_log_p_ = 0;  // The smallest so far, for one element.
   std::vector<WindowGroup> groups_;
   FineFindings found_;
-  std::vector<Energy> energy_;  // of each channel
+  std::vector<Energy> energy_;
 };
 
 }  // namespace assay::stats

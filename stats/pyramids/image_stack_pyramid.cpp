@@ -20,8 +20,8 @@ namespace {
 
 constexpr const char* function_name = "image_pyramid";
 
-// Of images that are there as a whole, so many rows are taken at a time: what is known of their
-// elements is not kept of all of them.
+// Whole images are also taken in pieces of so many rows, because intermediate data is not kept for
+// all elements.
 constexpr std::size_t rows_at_a_time = 512;
 
 LogTails tails_of(StudentValue value) {
@@ -29,7 +29,7 @@ LogTails tails_of(StudentValue value) {
                                    : student_t_tails(value.t, value.degrees);
 }
 
-// u of the header, of an element.
+// u of the header for one element.
 double energy_of(const std::array<Half, halves>& half, std::size_t element,
                  const ImageReference* reference) {
   const std::size_t i = element - half[0].first;
@@ -124,7 +124,7 @@ void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
   if (counts_.different_constants == 0) take_cells(pair, rows);
 }
 
-// These elements' z count for nothing, as if both sides were equal there.
+// The z of these elements count for nothing, as if both sides were equal there.
 template <class Real>
 void RowPyramid<Real>::leave_to_sums(ElementRange range) {
   const std::span<const std::size_t> all = options_.only_in_sums;
@@ -136,7 +136,7 @@ void RowPyramid<Real>::leave_to_sums(ElementRange range) {
   }
 }
 
-// The best by z, its p-value exactly.
+// The best element by z, with its exact p-value.
 template <class Real>
 void RowPyramid<Real>::take_elements(const ImagePair<Real>& pair, RowRange rows) {
   const ElementRange range = rows.elements(extent_);
@@ -198,7 +198,7 @@ void RowPyramid<Real>::add_best_windows(ImageFamily& family) const {
   }
 }
 
-// The largest of the channels; they may depend on each other: the union bound joins them.
+// The largest energy of the channels. They may depend on each other, so the union bound joins them.
 template <class Real>
 void RowPyramid<Real>::add_best_energy(ImageFamily& family) const {
   ImageFinding best = whole_image(ImageStatistic::energy, extent_);

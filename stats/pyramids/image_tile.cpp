@@ -11,7 +11,6 @@ constexpr std::size_t multiple = 8;
 
 std::size_t padded(std::size_t count) { return (count + multiple - 1) / multiple * multiple; }
 
-// Four rows of numbers to be added.
 struct Four {
   const double* first;
   const double* second;
@@ -28,11 +27,11 @@ ASSAY_VECTOR_COPIES void add(const Four& from, double* to, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) sum[i] = (a[i] + b[i]) + (c[i] + d[i]);
 }
 
-// Squares of twice the side, from squares that are `apart` numbers and `lines`
-// rows from each other.
+// Sums squares of twice the side from squares that are `apart` numbers and `lines` rows from each
+// other.
 struct Doubling {
   std::size_t rows;
-  std::size_t size;  // of a row of sums
+  std::size_t size;  // Length of a row of sums.
   std::size_t stride;
   std::size_t apart;
   std::size_t lines;

@@ -8,19 +8,19 @@
 namespace assay::stats {
 
 // Internal to image_pyramid: Welch's statistic of the mean difference of many cells. Replicates
-// come in parts, the halves of either side: each has means and variances of its own, and the
+// come in parts, the halves of either side. Each part has means and variances of its own. The
 // difference is the sum over the parts of factor * mean.
 struct WelchCells {
-  // Of the part under way: mean and sum of squared deviations of each cell's sums (Welford 1962).
+  // The current part: mean and sum of squared deviations of each cell's sums (Welford 1962).
   std::vector<double> mean;
   std::vector<double> m2;
-  // Of the parts that are done.
-  std::vector<double> effect;              // of a - b, averaged over the halves
-  std::vector<double> variance;            // its squared standard error
-  std::vector<double> reciprocal_degrees;  // sum of variance_g^2 / (n_g - 1) over the parts
+  // The parts that are done.
+  std::vector<double> effect;              // Estimate of a - b, averaged over the halves.
+  std::vector<double> variance;            // Its squared standard error.
+  std::vector<double> reciprocal_degrees;  // Sum of variance_g^2 / (n_g - 1) over the parts.
 
   void start(std::size_t cells);
-  // The replicates that came since the last call are a part, whose mean enters with this factor.
+  // The replicates since the last call are a part, whose mean enters with this factor.
   void finish_part(double count, double factor);
 
   // Sums that did not vary have no variance and no value.

@@ -21,9 +21,9 @@ constexpr double boost_minimum = 1e-280;
 // The fraction takes about sqrt(min(alpha, beta)) terms near the mean, 70 at this bound.
 constexpr double most_for_fraction = 1e4;
 
-// 1 / (b0 + a1 / (b1 + a2 / (b2 + …))) of Didonato & Morris (1992), equation 9: two steps of the
-// fraction in DLMF 8.17.22 in one. In this form convergents are A_n / B_n with
-// A_n = b_n A_(n-1) + a_n A_(n-2), and B likewise; a division each only where they are compared.
+// The fraction 1 / (b0 + a1 / (b1 + a2 / (b2 + …))) of Didonato & Morris (1992), equation 9. It
+// takes two steps of DLMF 8.17.22 in one. Its convergents divide only where they are compared.
+//   A_n = b_n A_(n-1) + a_n A_(n-2), B_n likewise.
 double beta_fraction(BetaPoint point, BetaShape shape) {
   const auto [a, b] = shape;
   const auto [x, y] = point;
@@ -101,8 +101,8 @@ LogTails f_tails(double f, FDegrees degrees) {
 
 namespace {
 
-// P(|T| < t) = x^a y^b / (a B(a, b)) (1 + sum of (a+b)_n / (a+1)_n x^n) at x = t^2 / (nu + t^2), a
-// = 1/2, b = nu/2; DLMF 8.17.8. Positive terms, about t^2 / 2 times the one before over n.
+// P(|T| < t) = x^a y^b / (a B(a, b)) (1 + sum of (a+b)_n / (a+1)_n x^n). Here x = t^2 / (nu + t^2),
+// a = 1/2, b = nu/2; DLMF 8.17.8. Positive terms, about t^2 / 2 times the one before over n.
 double central_student_t(BetaPoint point, double degrees) {
   const BetaShape shape{0.5, degrees / 2};
   double term = 1;
@@ -114,8 +114,8 @@ double central_student_t(BetaPoint point, double degrees) {
   return 2 * std::exp(special::log_beta_prefix(shape, point)) * sum;
 }
 
-// Up to here, and to nu, either tail is above .02 and one minus the middle costs it no digit that
-// is promised; beyond, the fraction takes fewer terms than the series.
+// Up to here, and to nu, either tail is above .02. One minus the middle then costs no promised
+// digit. Beyond, the fraction takes fewer terms than the series.
 constexpr double most_central_square = 4;
 
 }  // namespace
@@ -123,9 +123,11 @@ constexpr double most_central_square = 4;
 LogTails student_t_tails(double t, double degrees) {
   check::positive({"student_t_tails", "degrees"}, degrees);
   check::finite({"student_t_tails", "t"}, t);
-  // The laws agree to 1e-10 in p >= 1e-300 (t <= 37) from here on, and 1e18 + t^2 would absorb t^2.
+  // From here on the laws agree to 1e-10 in p >= 1e-300 (t <= 37). Also, 1e18 + t^2 would absorb
+  // t^2.
   if (degrees > 1e18) return normal_tails(t);
-  const double magnitude = std::min(std::abs(t), 1e150);  // t^2 must not overflow
+  // t^2 must not overflow.
+  const double magnitude = std::min(std::abs(t), 1e150);
   const double square = magnitude * magnitude;
   const double sum = degrees + square;
   if (square == 0) return {-std::numbers::ln2, -std::numbers::ln2};

@@ -9,7 +9,7 @@
 namespace assay::stats {
 namespace {
 
-// A square matrix times 2^exponent: powers leave the range of a double long before the end.
+// A square matrix times 2^exponent. Powers leave the range of a double long before the end.
 struct ScaledMatrix {
   std::size_t size;
   std::vector<double> entries;
@@ -20,8 +20,8 @@ struct ScaledMatrix {
 };
 
 /// Divides by the power of two next to the largest entry; returns its exponent. All entries of a
-/// high power are alike in size. Those of the first powers that are 2^-500 of the largest reach no
-/// bit of it, but their products are denormal and made it fifty times as slow.
+/// high power are alike in size. In the first powers entries below 2^-500 of the largest become
+/// zero. They reach no bit of it, but their denormal products are slow.
 int rescale(std::vector<double>& entries) {
   const int shift = std::ilogb(*std::max_element(entries.begin(), entries.end()));
   const double scale = std::ldexp(1.0, -shift);
@@ -29,13 +29,13 @@ int rescale(std::vector<double>& entries) {
   return shift;
 }
 
-// Durbin's matrix is symmetric about its other diagonal, and so are its powers: half of the entries
-// are worked out.
+// Durbin's matrix and its powers are symmetric about the other diagonal, so half of the entries are
+// computed.
 ASSAY_VECTOR_COPIES void square(const double* a, std::size_t size, double* c) {
   const std::size_t last = size - 1;
   for (std::size_t i = 0; i < size; ++i) {
     double* const row = c + i * size;
-    // Four rows at a time, each added after the other: the sum is stored once for the four.
+    // Four rows at a time, so that the sum is stored once for the four.
     for (std::size_t k = 0; k < size; k += 4) {
       const std::size_t most = size - 1 - k;
       const auto factor = [&](std::size_t m) { return m <= most ? a[i * size + k + m] : 0; };
@@ -73,7 +73,6 @@ void multiply(const ScaledMatrix& matrix, ScaledVector& vector) {
   vector.exponent += matrix.exponent + rescale(vector.entries);
 }
 
-/// The column of matrix^exponent of this index.
 ScaledVector power_column(ScaledMatrix matrix, std::uint64_t exponent, std::size_t column) {
   ScaledVector result{std::vector<double>(matrix.size, 0.0)};
   result.entries[column] = 1;
@@ -84,8 +83,8 @@ ScaledVector power_column(ScaledMatrix matrix, std::uint64_t exponent, std::size
   return result;
 }
 
-// 1 / (i - j + 1)! below the superdiagonal, with the first column and last row reduced by powers of
-// h = k - n d, the part of a step by which the boundary misses the lattice.
+// Entries are 1 / (i - j + 1)! below the superdiagonal. The first column and last row are reduced
+// by powers of h = k - n d. By this part of a step the boundary misses the lattice.
 ScaledMatrix durbin_matrix(std::size_t size, double h) {
   ScaledMatrix matrix{size, std::vector<double>(size * size, 0.0), 0};
   for (std::size_t i = 0; i < size; ++i) {

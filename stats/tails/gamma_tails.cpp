@@ -14,11 +14,11 @@ using Quiet = policies::policy<policies::overflow_error<policies::ignore_error>,
                                policies::evaluation_error<policies::ignore_error>,
                                policies::promote_double<false>>;
 
-// Below this Boost's result may be denormal; the log forms take over long before.
+// Below this Boost's result may be denormal. The log forms take over long before.
 constexpr double boost_minimum = 1e-280;
 
-// ln P(a, x) = prefix - ln a + ln sum x^k / ((a+1) … (a+k)); DLMF 8.7.1. Four terms at a time:
-// their factors do not wait for one another.
+// ln P(a, x) = prefix - ln a + ln sum x^k / ((a+1) … (a+k)); DLMF 8.7.1. It takes four terms at a
+// time, whose factors do not wait for one another.
 double log_far_lower(double shape, double x) {
   double term = 1;
   double sum = 1;
@@ -33,8 +33,8 @@ double log_far_lower(double shape, double x) {
   return special::log_gamma_prefix(shape, x, sum / shape);
 }
 
-// ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2; convergents A_n / B_n by their
-// recurrence, a division only where they are compared. All is divided by b_0, which may be huge.
+// ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2. The recurrence of its convergents
+// divides only where they are compared. All is divided by b_0, which may be huge.
 double log_far_upper(double shape, double x) {
   const double per_first = 1 / (x + 1 - shape);
   special::Convergents fraction{.inverse_now = per_first};
@@ -52,7 +52,8 @@ double log_far_upper(double shape, double x) {
   return special::log_gamma_prefix(shape, x, last);
 }
 
-// Up to here the sum and the fraction take 200 terms at most, cheaper than Boost's expansion.
+// Up to here the sum and the fraction take at most 200 terms and are cheaper than Boost's
+// expansion.
 constexpr double most_for_sum = 2000;
 
 double log_upper(double shape, double x) {

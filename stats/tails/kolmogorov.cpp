@@ -21,7 +21,7 @@ struct OneSidedTerm {
   double n;
   double d;
 
-  // ln of term j without the leading d. Deviance form: with x = j/n the powers and the binomial
+  // ln of term j without the leading d. In deviance form, with x = j/n, the powers and the binomial
   // coefficient are e^(-n KL(x || x + d)) up to Stirling's errors.
   double operator()(double j) const {
     const double x = j / n;
@@ -33,14 +33,14 @@ struct OneSidedTerm {
     const double binomial = special::stirling_error(n) - special::stirling_error(j) -
                             special::stirling_error(rest) -
                             0.5 * std::log(2 * std::numbers::pi * j * (rest / n));
-    // (j/n + d) / (j/n) and (1 - x - d) / (1 - x) as ratios; the linear parts n d - n d cancel.
+    // Ratios are (j/n + d) / (j/n) and (1 - x - d) / (1 - x). Their linear parts n d cancel.
     return binomial + special::log_deviance(j, 1 + d / x) +
            special::log_deviance(rest, 1 - d / (1 - x)) - std::log(up);
   }
 };
 
-// From here on the terms are sampled: they are a smooth function of j that vanishes with all its
-// derivatives at both ends, so a sum over every s-th term times s converges faster than any power.
+// From here on the sum takes every s-th term times s. The terms are a smooth function of j that
+// vanishes with all derivatives at both ends. So it converges faster than any power.
 constexpr double densest_sum = 4000;
 
 double log_one_sided_sum(const OneSidedTerm& term, double last) {
@@ -56,8 +56,8 @@ double log_one_sided_sum(const OneSidedTerm& term, double last) {
 
 // ---- Two-sided
 
-// P(D >= d) = 2 P(D+ >= d) - P(both sides cross). The second is 2 e^(-8 z^2) - 2 e^(-18 z^2) at
-// z = sqrt(n) d + 1 / (6 sqrt n) to the leading order in 1/n (Pelz & Good's shift).
+// P(D >= d) = 2 P(D+ >= d) - P(both sides cross). To the leading order in 1/n the second is 2 e^(-8
+// z^2) - 2 e^(-18 z^2). Here z = sqrt(n) d + 1 / (6 sqrt n), Pelz & Good's shift.
 double log_upper_from_one_sided(double d, std::uint64_t n) {
   const double root = std::sqrt(static_cast<double>(n));
   const double z = root * d + 1 / (6 * root);
@@ -66,10 +66,10 @@ double log_upper_from_one_sided(double d, std::uint64_t n) {
   return d >= 0.5 ? one : one + std::log1p(-std::exp(both - one));
 }
 
-// Where each form serves; n d^2 is the square of the limit law's argument. Against Durbin's matrix:
-// the corrected upper tail is within 2e-9 relative from n d^2 = 3 on for n > 500 and within 2e-10
-// from 4 on for every n; the expansion is within 4e-9 where the matrix (10 ms at n d = 60) is not
-// used.
+// Bounds between the forms; n d^2 is the square of the limit law's argument. The corrected upper
+// tail is within 2e-9 relative of Durbin's matrix from n d^2 = 3 on for n > 500. From 4 on it is
+// within 2e-10 for every n. The expansion is within 4e-9 where the matrix is not used (10 ms at n d
+// = 60).
 double upper_tail_from(std::uint64_t n) { return n <= 500 ? 4 : 3; }
 
 bool durbin_affordable(double d, std::uint64_t n) {
@@ -90,7 +90,8 @@ LogTails tails_by(Body by, double distance, std::uint64_t n) {
   const double t = size * distance;
   if (t <= 0.5) return special::from_lower(special::lowest_log());
   if (distance == 1) return special::from_upper(special::lowest_log());
-  if (t <= 1) {  // n! ((2 t - 1) / n)^n
+  // n! ((2 t - 1) / n)^n.
+  if (t <= 1) {
     return special::from_lower(std::lgamma(size + 1) + size * std::log((2 * t - 1) / size));
   }
   if (distance >= 0.5 || t * distance >= upper_tail_from(n)) {
@@ -99,7 +100,8 @@ LogTails tails_by(Body by, double distance, std::uint64_t n) {
   return body(distance, n, by);
 }
 
-/// The upper end of where ln P(D >= d) falls to log_probability, the tails worked out like that.
+/// The upper end of the bracket in which ln P(D >= d), computed by this form, falls to
+/// log_probability.
 double solve_quantile(Body by, double log_probability, std::uint64_t n, double low, double high) {
   const auto excess = [&](double d) { return log_probability - tails_by(by, d, n).upper; };
   std::uintmax_t iterations = 100;
@@ -147,12 +149,12 @@ double kolmogorov_upper_quantile(double log_probability, std::uint64_t n) {
     check::fail({"kolmogorov_upper_quantile", "log_probability"}, log_probability, "below 0");
   }
   const double size = static_cast<double>(n);
-  // Massart's bound 2 e^(-2 n d^2) lies above the law: the quantile is at most its inverse.
+  // Massart's bound 2 e^(-2 n d^2) lies above the law, so the quantile is at most its inverse.
   const double bound = std::sqrt((std::numbers::ln2 - log_probability) / (2 * size));
   const double highest = std::min(1.0, bound * (1 + 1e-12));
   const double lowest = 0.5 / size;
-  // The expansion finds the place and the slope in microseconds; the matrix, at milliseconds, is
-  // asked twice or so.
+  // The expansion finds the place and the slope in microseconds. The matrix takes milliseconds and
+  // is asked about twice.
   double near = solve_quantile(Body::expansion, log_probability, n, lowest, highest);
   const double other = near * (1 - 1e-4);
   const double slope =
@@ -161,8 +163,8 @@ double kolmogorov_upper_quantile(double log_probability, std::uint64_t n) {
   for (int i = 0; i < 10 && slope < 0; ++i) {
     const double step = (log_probability - kolmogorov_tails(near, n).upper) / slope;
     near = std::clamp(near + step, lowest, highest);
-    // The matrix gives a p-value of .01 to 1e-12: no closer. The upper side is the conservative
-    // one.
+    // The matrix gives a p-value of .01 to 1e-12, so no closer is needed. The upper side is the
+    // conservative one.
     if (std::abs(step) <= 0x1p-38 * near) return std::min(near * (1 + 0x1p-38), highest);
   }
   return solve_quantile(Body::exact, log_probability, n, lowest, highest);

@@ -17,7 +17,7 @@ constexpr double negligible = 46;
 // ---- Noncentral chi-square: a Poisson mixture of central laws
 
 // P(X >= x) = sum_j Poisson(j; ncp/2) Q(nu/2 + j, x/2), and P for the lower tail. Both factors are
-// log-concave in j, so the terms have one mode and can be bracketed by bisection.
+// log-concave in j. So the terms have one mode and can be bracketed by bisection.
 struct PoissonMixture {
   double half_x;
   double half_degrees;
@@ -61,11 +61,12 @@ double edge(const PoissonMixture& mixture, double centre, int direction) {
   return std::max(0.0, outside);
 }
 
-// Sum from one edge to the other in the direction in which the central tail grows, by
-//   Q(a+1, y) = Q(a, y) + y^a e^-y / Gamma(a+1)  upwards,
-//   P(a-1, y) = P(a, y) + y^(a-1) e^-y / Gamma(a)  downwards: positive terms only.
-// Carried along are the products weight x tail and weight x increment over the largest term, which
-// stay in range however small the tail; the factors alone would not.
+// Sums from one edge to the other in the direction in which the central tail grows. All terms are
+// positive.
+//   Upwards:   Q(a+1, y) = Q(a, y) + y^a e^-y / Gamma(a+1).
+//   Downwards: P(a-1, y) = P(a, y) + y^(a-1) e^-y / Gamma(a).
+// It carries the products weight x tail and weight x increment over the largest term. They stay in
+// range however small the tail; the factors alone would not.
 double log_mixture(const PoissonMixture& mixture) {
   const double centre = mode(mixture);
   const double low = edge(mixture, centre, -1);
@@ -95,28 +96,29 @@ double log_mixture(const PoissonMixture& mixture) {
 
 // ---- Noncentral t: an integral over the chi law of s
 
-// ln of the integrand of P(T >= t) = int P(Z >= t s - delta) f(s) ds over u = ln s, where
-// nu s^2 ~ chi-square: f(u) = 2 (nu/2)^(nu/2) / Gamma(nu/2) exp(nu u - nu e^(2u) / 2), without the
-// factors that do not depend on u.
+// ln of the integrand of P(T >= t) = int P(Z >= t s - delta) f(s) ds over u = ln s. Here nu s^2 ~
+// chi-square, and factors without u are left out.
+//   Density: f(u) = 2 (nu/2)^(nu/2) / Gamma(nu/2) exp(nu u - nu e^(2u) / 2).
 struct UpperIntegrand {
   double t;
   Noncentral parameters;
 
   double operator()(double u) const {
     const double growth = std::expm1(2 * u);
-    // 2 u - growth; near 0 without cancellation, which many degrees would make much of.
+    // 2 u - growth. Near 0 many degrees would magnify cancellation.
     const double fall = std::abs(growth) < 0.1 ? special::log1p_minus(growth) : 2 * u - growth;
     return parameters.degrees / 2 * fall + normal_upper(t * std::exp(u) - parameters.noncentrality);
   }
 };
 
-// What the integrand varies over at u: 1 / sqrt(2 nu) by the chi law, 1 in t s by the normal one.
+// The scale on which the integrand varies at u: 1 / sqrt(2 nu) by the chi law, 1 in t s by the
+// normal one.
 double scale_at(const UpperIntegrand& f, double u) {
   return 1 / (std::abs(f.t) * std::exp(u) + std::sqrt(2 * f.parameters.degrees));
 }
 
-// Near enough for where to begin: within a tenth of what the integrand varies over. It is
-// log-concave, and its maximum may lie beyond `high` where it still rises there.
+// The maximum to within a tenth of that scale, which is enough to start from. The integrand is
+// log-concave. If it still rises at `high` the maximum lies beyond.
 double maximise(const UpperIntegrand& f, double low, double high) {
   const double rising = 0.1 / std::sqrt(f.parameters.degrees);
   while (f(high) > f(high - rising)) high += high - low;
@@ -133,10 +135,9 @@ double support_edge(const UpperIntegrand& f, double centre, double direction) {
   return centre + direction * step;
 }
 
-// The integral over the maximum from the centre to an edge, by Gauss's rule in panels that begin
-// as wide as what the integrand varies over and double. On the side of small s it falls like e^(nu
-// u), so slowly for few degrees that even steps of the width which the other side wants
-// would be a million.
+// The integral over the maximum from the centre to an edge, by Gauss's rule in panels. They begin
+// at the integrand's scale and double. For few degrees it falls slowly, like e^(nu u), on the side
+// of small s. Even steps would be a million there.
 double side_over_peak(const UpperIntegrand& f, double centre, double edge) {
   using Rule = boost::math::quadrature::gauss<double, 20>;
   const double peak = f(centre);
@@ -165,13 +166,14 @@ double log_noncentral_upper(double t, Noncentral parameters) {
   return std::log(2.0) + special::log_gamma_prefix(half, half) + f(centre) + std::log(sum);
 }
 
-// Beyond this the mixture has a hundred thousand terms and more; what a saddlepoint leaves out is
-// of the order of ncp^(-3/2).
+// The mixture has a hundred thousand terms and more beyond this. The saddlepoint's error is of
+// order ncp^(-3/2).
 constexpr double largest_mixture = 1e8;
 
-// Barndorff-Nielsen's r* = w + ln(v / w) / w at the saddlepoint s of K(s) - s x, for K(s) =
-// ncp s / (1 - 2s) - nu / 2 ln(1 - 2s): with 1 / (1 - 2s) = 1 + d,
-//   w^2 / 2 = ncp d^2 / 2 + nu / 2 (d - ln(1 + d)),   v = s sqrt K''(s).
+// Barndorff-Nielsen's r* = w + ln(v / w) / w at the saddlepoint s of K(s) - s x. With 1 / (1 - 2s)
+// = 1 + d:
+//   K(s) = ncp s / (1 - 2s) - nu / 2 ln(1 - 2s).
+//   And w^2 / 2 = ncp d^2 / 2 + nu / 2 (d - ln(1 + d)),   v = s sqrt K''(s).
 LogTails saddlepoint_tails(double x, Noncentral parameters) {
   const auto [degrees, noncentrality] = parameters;
   const double beyond_mean = x - noncentrality - degrees;

@@ -9,8 +9,8 @@
 namespace assay::stats {
 namespace {
 
-// ln P(X >= x) for x >= 30 from Laplace's continued fraction of Mills' ratio (DLMF 7.9.2), which
-// forty terms carry to full precision there.
+// ln P(X >= x) for x >= 30 from Laplace's continued fraction of Mills' ratio (DLMF 7.9.2). Forty
+// terms reach full precision there.
 double log_far_upper(double x) {
   constexpr double half_log_two_pi = 0.91893853320467274178;
   double fraction = x;

@@ -12,7 +12,7 @@
 namespace assay::stats {
 namespace {
 
-// A tail below one half that says the same: there a log probability has all its digits.
+// The equivalent tail below one half, where a log probability has all its digits.
 LogTail smaller(LogTail tail) {
   if (tail.log_probability <= -std::numbers::ln2) return tail;
   const Tail other = tail.tail == Tail::lower ? Tail::upper : Tail::lower;
@@ -37,8 +37,8 @@ double root(const Function& f, Bracket bracket) {
   return std::midpoint(ends.first, ends.second);
 }
 
-// The x > 0 at which `distance` (increasing in x, negative below the root) is zero: the bracket
-// grows from the guess by factors that square. Infinite or zero when the root is not representable.
+// The x > 0 at which `distance` is zero. It increases in x. The bracket grows from the guess by
+// factors that square. Infinite or zero when the root is not representable.
 template <class Function>
 double positive_root(const Function& distance, double guess) {
   const bool below = distance(guess) < 0;
@@ -61,7 +61,7 @@ void check_tail(const char* function, LogTail tail) {
   }
 }
 
-// Of a positive law given by its tails: increasing in x for either tail.
+// The quantile of a positive law given by its tails. The distance increases in x for either tail.
 template <class Tails>
 double positive_quantile(LogTail tail, double guess, const Tails& tails) {
   const LogTail small = smaller(tail);
@@ -73,7 +73,6 @@ double positive_quantile(LogTail tail, double guess, const Tails& tails) {
   return positive_root(distance, guess);
 }
 
-// Of a law symmetric about 0.
 template <class Tails>
 double symmetric_quantile(LogTail tail, double guess, const Tails& tails) {
   const LogTail small = smaller(tail);

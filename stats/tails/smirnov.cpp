@@ -46,8 +46,8 @@ double log_equal_sizes(std::uint64_t steps, std::uint64_t n) {
 
 // ---- m != n: v(i, j) = P(a path to (i, j) has touched the boundary)
 
-// 1 outside |i/m - j/n| < d, else (i v(i-1, j) + j v(i, j-1)) / (i + j). Only sums of positive
-// terms. `Real` holds `one` in place of 1, so that the smallest of all path probabilities is in
+// The result is 1 outside |i/m - j/n| < d, else (i v(i-1, j) + j v(i, j-1)) / (i + j). Only sums of
+// positive terms. `Real` holds `one` in place of 1, so that the smallest path probability is in
 // range.
 template <class Real>
 Real touching_probability(const LatticeDistance& distance, Real one) {
@@ -61,8 +61,8 @@ Real touching_probability(const LatticeDistance& distance, Real one) {
   for (std::size_t k = 1; k < reciprocal.size(); ++k) reciprocal[k] = 1 / static_cast<Real>(k);
   for (std::uint64_t i = 0; i <= distance.m; ++i) {
     const std::int64_t gap = static_cast<std::int64_t>(i) * row_step;
-    // Columns with |gap - j column_step| < bound. The band only moves to higher columns: beyond it
-    // `row` is still 1, and what it has left behind is not read again.
+    // Columns with |gap - j column_step| < bound. The band only moves to higher columns. Beyond it
+    // `row` is still 1, and columns left behind are not read again.
     const std::int64_t below = gap - bound;
     const auto first = static_cast<std::uint64_t>(below < 0 ? 0 : below / column_step + 1);
     const auto last =
@@ -80,13 +80,13 @@ Real touching_probability(const LatticeDistance& distance, Real one) {
 double log_lattice(const LatticeDistance& distance) {
   const double m = static_cast<double>(distance.m);
   const double n = static_cast<double>(distance.n);
-  // The limit law tells whether a double will do; denormal numbers would be slow as well as wrong.
+  // The limit law tells if a double will do. Denormal numbers would be slow as well as wrong.
   const double expected = log_kolmogorov_limit(std::sqrt(m / (m + n) * n) * distance.value());
   if (expected > -400) {
     const double p = touching_probability<double>(distance, 1.0);
     if (p > 1e-250) return std::log(p);
   }
-  // C(m + n, m) is below 2^20001 for m n <= 1e8 (and m or n = 1 gives no small p): with 1 raised to
+  // C(m + n, m) is below 2^20001 for m n <= 1e8. (With m or n = 1 no p is small.) With 1 raised to
   // 2^16000 a long double's range covers it.
   constexpr int raised = 16000;
   const long double q = touching_probability<long double>(distance, std::ldexp(1.0L, raised));

@@ -16,15 +16,15 @@ struct LatticeDistance {
 };
 
 struct SmirnovTail {
-  double log_p = 0;  // ln P(max |F_m - G_n| >= distance)
+  double log_p = 0;  // ln P(max |F_m - G_n| >= distance).
   Exactness exactness = Exactness::exact;
 };
 
-// For two samples of one continuous law. m = n of any size: the reflection formula in nested form
-// (Gnedenko & Korolyuk 1951). Otherwise, up to m n = 1e8, a recursion over the lattice of paths for
-// the upper tail itself, free of cancellation (in the manner of Hodges 1957 and Schroeer & Trenkler
-// 1995); beyond, the limit law at sqrt(m n / (m + n)) d, tagged asymptotic.
-// Throws std::domain_error for empty samples, and when lcm(m, n) is beyond 2^62.
+// The tail for two samples of one continuous law. For m = n of any size it is the reflection
+// formula in nested form (Gnedenko & Korolyuk 1951). Otherwise, up to m n = 1e8, a recursion over
+// the lattice of paths gives the upper tail itself, free of cancellation. (In the manner of Hodges
+// 1957 and Schroeer & Trenkler 1995.) Beyond it is the limit law at sqrt(m n / (m + n)) d,
+// asymptotic. Throws std::domain_error for empty samples, and when lcm(m, n) is beyond 2^62.
 SmirnovTail smirnov_upper_tail(LatticeDistance distance);
 
 }  // namespace assay::stats

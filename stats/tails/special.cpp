@@ -42,7 +42,7 @@ LogTails from_upper(double log_upper) {
 
 double stirling_error(double z) {
   constexpr double half_log_two_pi = 0.91893853320467274178;
-  if (z == 0.5) return 0.5 - std::numbers::ln2 / 2;  // Student's t asks for it every time
+  if (z == 0.5) return 0.5 - std::numbers::ln2 / 2;  // Student's t asks for it every time.
   if (z < 8) return std::lgamma(z) - ((z - 0.5) * std::log(z) - z + half_log_two_pi);
   // Asymptotic series with Bernoulli numbers; the first term left out is below 1e-16 at z = 8.
   const double w = 1 / (z * z);
@@ -58,8 +58,8 @@ double stirling_error(double z) {
 double log1p_minus(double z) {
   // Half a digit is lost at .15.
   if (std::abs(z) > 0.15) return std::log1p(z) - z;
-  // With r = z / (2 + z), ln(1 + z) = 2 atanh r and z = 2 r / (1 - r); their difference is
-  // -r z + 2 r^3 (1/3 + r^2/5 + r^4/7 + …), of which the second part is the smaller.
+  // With r = z / (2 + z), ln(1 + z) = 2 atanh r and z = 2 r / (1 - r). Their difference is -r z + 2
+  // r^3 (1/3 + r^2/5 + r^4/7 + …), with a smaller second part.
   const double r = z / (2 + z);
   const double w = r * r;
   const double sum =

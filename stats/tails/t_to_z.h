@@ -4,13 +4,13 @@
 
 namespace assay::stats {
 
-// The standard normal z with the tail of Student's t: Phi(z) = F_nu(t), approximately.
+// The standard normal z with the tail of Student's t: Phi(z) = F_nu(t). The approximation is Hill's
+// (1970, Algorithm 395, Communications of the ACM 13, 617):
 //   y = (nu - 1/2) ln(1 + t^2 / nu),  b = 48 (nu - 1/2)^2
 //   z = sign(t) sqrt(y) (1 + (y + 3 - (.4 y^3 + 3.3 y^2 + 24 y + 85.5) / (.8 y^2 + 100 + b)) / b)
-// Hill 1970, Algorithm 395, Communications of the ACM 13, 617. Largest error of z for |z| <= 6 and
-// <= 8 against the exact law (tests/tables/t_to_z.csv): 5e-4 and 8e-3 at nu = 7, 9e-7 and 9e-5 at
-// 15, 2e-8 and 7e-7 at 30, 1.1e-8 and 1.1e-8 at 60. For maps and for choosing a maximum;
-// a reported p-value comes from the exact law. nu must be above 1/2; for an infinite nu z is t.
+// For |z| <= 6 the error is at most 5e-4 at nu = 7, 9e-7 at 15 and 2e-8 at 30
+// (tests/tables/t_to_z.csv). Use it for maps and for choosing a maximum. A reported p-value comes
+// from the exact law. nu must be above 1/2. For an infinite nu z is t.
 struct StudentValue {
   double t = 0;
   double degrees = 1;

@@ -37,13 +37,13 @@ const std::array<Slopes, nodes>& legendre_at_nodes() {
   return table;
 }
 
-// A part's mass and how it is spread: int_-1^t P_k = (P_k+1 - P_k-1) / (2 k + 1), and the k-th
+// A part's mass and how it is spread. int_-1^t P_k = (P_k+1 - P_k-1) / (2 k + 1). The k-th
 // coefficient of the interpolant is (2 k + 1) / 2 sum w_i f_i P_k(t_i), exact for degree 6.
 struct Spread {
   Integral mass;
   Slopes slopes = {};
-  // Mass that a jump beyond the outermost nodes, where neither the part nor its halves look, may
-  // add or take: the density at the ends is then not what the interpolant goes on to.
+  // Mass that a jump beyond the outermost nodes may add or take. Neither the part nor its halves
+  // see it. The density at the ends then departs from the interpolant.
   double unseen = 0;
 
   Spread(const AdaptiveQuadrature::Sampled& sampled, double width) : mass(sampled.integral) {
@@ -58,8 +58,8 @@ struct Spread {
   }
 
  private:
-  // The interpolant at t = -1 or 1, whose integral over t is the mass: P_k(1) = 1, P_k(-1) =
-  // (-1)^k.
+  // The interpolant at t = -1 or 1, from P_k(1) = 1 and P_k(-1) = (-1)^k. Its integral over t is
+  // the mass.
   double density_at(int end) const {
     double sum = mass.value / 2;
     double sign = end;
@@ -82,7 +82,7 @@ double mass_below(double t, const Spread& spread) {
   return mass_below(t, spread.mass.value, spread.slopes);
 }
 
-// Between what a part says of the law inside it and what its halves do.
+// The distance between a part's law inside it and that of its halves.
 double largest_distance(const Spread& whole, const Spread& first, const Spread& second) {
   double largest = 0;
   for (int k = 1; k <= places_compared; ++k) {
@@ -96,17 +96,17 @@ double largest_distance(const Spread& whole, const Spread& first, const Spread& 
 
 struct Part {
   Span span;
-  Spread first;   // of the lower half
-  Spread second;  // of the upper half
+  Spread first;   // Lower half.
+  Spread second;  // Upper half.
   double error = 0;
   double departure = 0;
-  double badness = 0;  // above 1: to be halved
+  double badness = 0;  // Above 1: to be halved.
   int depth = 0;
 
   bool operator<(const Part& other) const { return badness < other.badness; }
 };
 
-// The worst part is halved first, so that the evaluations that there are go where they help most.
+// Halves the worst part first, so that the evaluations go where they help most.
 class Table {
  public:
   Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule, TableLimits limits)
@@ -142,7 +142,7 @@ class Table {
   }
 
  private:
-  // Of the part that this is a half of: two that agree by luck do so once.
+  // Departure of the part that this is a half of. Two halves that agree by luck do so once.
   struct Inherited {
     double departure = 0;
     int depth = 0;
@@ -176,7 +176,7 @@ class Table {
   const AdaptiveQuadrature::Function& density_;
   AdaptiveQuadrature& rule_;
   TableLimits limits_;
-  std::vector<Part> parts_;  // a heap, the worst first
+  std::vector<Part> parts_;  // A heap, the worst first.
 };
 
 constexpr std::size_t lanes = 16;
@@ -190,7 +190,7 @@ struct SideBySide {
   std::array<Lanes, nodes - 1> slopes{};
 };
 
-// mass_below of each, and what operator() makes of it.
+// mass_below for each, and the rest of operator().
 ASSAY_VECTOR_COPIES Lanes probabilities_of(const SideBySide& at, double total) {
   std::array<Lanes, nodes + 1> p;
   Lanes sum;

@@ -7,8 +7,8 @@
 namespace assay::stats {
 
 // Natural logarithms of the two tails at x: ln P(X <= x) and ln P(X >= x). The smaller one is
-// computed as a tail; as one minus the other only where it is above .02. Where the probability is
-// above 1e-300 it is right to 1e-10 relative; below, ln p is, and beyond -1e6 too. Always finite.
+// computed as a tail, or as one minus the other if above .02. Relative accuracy is 1e-10 in p above
+// 1e-300, and 1e-10 in ln p below. Always finite.
 struct LogTails {
   double lower = 0;
   double upper = 0;
@@ -19,7 +19,7 @@ double log_p_two_sided(LogTails tails);
 
 enum class Tail { lower, upper };
 
-// A tail given by its log probability: the quantile q of {lower, ln a} has P(X <= q) = a, that of
+// A tail given by its log probability. The quantile q of {lower, ln a} has P(X <= q) = a. That of
 // {upper, ln a} has P(X >= q) = a.
 struct LogTail {
   Tail tail = Tail::lower;
@@ -46,20 +46,23 @@ struct Noncentral {
 // Degrees of freedom need not be whole. All throw std::domain_error for parameters out of range and
 // for non-finite arguments.
 LogTails normal_tails(double x);
-double normal_upper(double x);  // ln P(X >= x); one alone is half the work
+// ln P(X >= x). One tail alone is half the work.
+double normal_upper(double x);
 LogTails student_t_tails(double t, double degrees);
 LogTails chi_square_tails(double x, double degrees);
-LogTails gamma_tails(double x, double shape);  // unit scale
+LogTails gamma_tails(double x, double shape);  // Unit scale.
 LogTails f_tails(double f, FDegrees degrees);
 LogTails beta_tails(double x, BetaShape shape);
-LogTails binomial_tails(std::uint64_t successes, Trials trials);  // P(K <= k), P(K >= k)
-double binomial_lower(std::uint64_t successes, Trials trials);    // one alone is half the work
+// P(K <= k), P(K >= k).
+LogTails binomial_tails(std::uint64_t successes, Trials trials);
+// One tail alone is half the work.
+double binomial_lower(std::uint64_t successes, Trials trials);
 double binomial_upper(std::uint64_t successes, Trials trials);
 LogTails noncentral_t_tails(double t, Noncentral parameters);
 LogTails noncentral_chi_square_tails(double x, Noncentral parameters);
 
-// Quantiles, by inversion of the log tails. An overflowing quantile (Student's t with few degrees
-// of freedom, far out) is infinite. log_probability must be below 0.
+// Quantiles, by inversion of the log tails. A quantile too large for a double is infinite.
+// log_probability must be below 0.
 double normal_quantile(LogTail tail);
 double student_t_quantile(LogTail tail, double degrees);
 double chi_square_quantile(LogTail tail, double degrees);

@@ -5,35 +5,38 @@
 
 namespace assay::stats {
 
-// The law of a statistic under the null hypothesis, by name and parameters:
+// The law of a statistic under the null hypothesis, by name and parameters.
 //   "normal" {}, "student-t" {nu}, "chi-square" {nu}, "F" {nu1, nu2}, "binomial" {n, p},
-//   "noncentral-chi-square" {nu, ncp}, "kolmogorov" {n}, "smirnov" {m, n}, "bound" {} (a
-//   probability inequality: the p-value is an upper bound, the statistic has no stated law),
-//   "image-family" {sums} (the smallest p-value of so many sums over an image, of other laws).
+//   "noncentral-chi-square" {nu, ncp}, "kolmogorov" {n}, "smirnov" {m, n}, "bound" {},
+//   "image-family" {sums}.
+// A "bound" is a probability inequality: the p-value is an upper bound, the statistic has no law.
+// An "image-family" has the smallest p-value of so many sums over an image.
 struct Distribution {
   std::string family;
   std::vector<double> parameters;
 };
 
-// exact: under the method's stated assumptions P(p <= a) <= a for every sample size.
-// asymptotic: in the limit of large samples.
+// Exact: under the method's stated assumptions P(p <= a) <= a for every sample size. Asymptotic: in
+// the limit of large samples.
 enum class Exactness { exact, asymptotic };
 
-// One statistic S and its two one-sided p-values, as natural logarithms that are always finite: a
-// value too small for a double's logarithm is its most negative finite value.
+// One statistic S and its two one-sided p-values, as natural logarithms. They are always finite:
+// the most negative finite double stands for smaller values.
 struct TestResult {
   double statistic = 0;
   Distribution distribution;
-  double log_p_lower = 0;  // ln P(S <= statistic): rejects "parameter >= null value" when small
-  double log_p_upper = 0;  // ln P(S >= statistic): rejects "parameter <= null value" when small
+  // ln P(S <= statistic). Small: rejects "parameter >= null value".
+  double log_p_lower = 0;
+  // ln P(S >= statistic). Small: rejects "parameter <= null value".
+  double log_p_upper = 0;
   Exactness exactness = Exactness::exact;
 };
 
 // ln p of the point null: min(0, ln 2 + min(log_p_lower, log_p_upper)).
 double log_p_two_sided(const TestResult& result);
 
-// A central interval: each of the two tails carries (1 - confidence) / 2. Two one-sided tests each
-// at beta therefore correspond to confidence = 1 - 2 beta. An end may be infinite.
+// A central interval: each of the two tails carries (1 - confidence) / 2. So two one-sided tests at
+// beta correspond to confidence = 1 - 2 beta. An end may be infinite.
 struct Interval {
   double low = 0;
   double high = 0;

@@ -22,7 +22,7 @@ NormalEstimate log_ratio(const char* function, const Moments& cost_x, const Mome
   return {x.value - y.value, std::hypot(x.standard_error, y.standard_error)};
 }
 
-// Both sides of an exact comparison: nothing against what holds, everything against what does not.
+// An exact comparison: no evidence against equal numbers, certainty against others.
 TestResult deterministic(double cost, double claimed) {
   constexpr double impossible = std::numeric_limits<double>::lowest();
   const bool equal = std::abs(cost - claimed) <= cost_rounding * std::max(cost, claimed);

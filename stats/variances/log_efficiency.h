@@ -5,10 +5,10 @@
 
 namespace assay::stats {
 
-// Efficiency = 1 / (error x cost): error is the variance, or for a biased estimator the mean
-// squared error about a reference; cost is the mean cost of one observation.
+// Efficiency = 1 / (error x cost). The error is the variance or, for a biased estimator, the mean
+// squared error about a reference. The cost is the mean cost of one observation.
 //
-// `value` is ln efficiency, with variance spread / count: plan with it.
+// `value` is ln efficiency, with variance spread / count. Plan with it.
 struct LogEfficiency {
   double value = 0;
   double spread = 0;
@@ -17,16 +17,16 @@ struct LogEfficiency {
   double standard_error() const;
 };
 
-// ln(1 / (s2 mean cost)). The influence of one observation on its negative is
-//   psi = (d^2 / s2 - 1) + (cost / mean cost - 1),  d = x - mean x,
-// so spread = (b2 - (n-3)/(n-1)) + Var(cost) / mean^2 + 2 Cov(d^2, cost) / (s2 mean): the delta
-// method with the covariance of squared deviation and cost, the variance term as in log_variance.h.
-// A constant cost contributes nothing. Throws std::domain_error (count < 4, mean cost not
-// positive), ZeroVariance.
+// ln(1 / (s2 mean cost)). One observation's influence on its negative is
+//   psi = (d^2 / s2 - 1) + (cost / mean cost - 1).
+// Here d = x - mean x. The delta method then gives
+//   spread = (b2 - (n-3)/(n-1)) + Var(cost) / mean^2 + 2 Cov(d^2, cost) / (s2 mean).
+// The variance term is as in log_variance.h. A constant cost contributes nothing. Throws
+// std::domain_error (count < 4, mean cost not positive), ZeroVariance.
 LogEfficiency log_efficiency_of(const JointMoments& sample);
 
-// ln(1 / (MSE mean cost)) with MSE = mean (x - truth)^2; the influence uses (x - truth)^2 in the
-// place of d^2. A truth that is known up to an error: uncertain_reference.h, turning at mean x.
+// ln(1 / (MSE mean cost)) with MSE = mean (x - truth)^2. The influence uses (x - truth)^2 in the
+// place of d^2. For a truth known up to an error use uncertain_reference.h, turning at mean x.
 // Throws as above.
 LogEfficiency log_efficiency_of(const JointMoments& sample, double truth);
 
@@ -45,7 +45,7 @@ TestResult log_efficiency_ratio(const LogEfficiency& x, const LogEfficiency& y, 
 Interval log_efficiency_ratio_interval(const LogEfficiency& x, const LogEfficiency& y,
                                        double confidence);
 
-// Sample sizes: log_variance_power, _detectable and _sample_size with kurtoses of `spread` + 1 and
-// ratios of efficiencies as effects. A reference's error is not part of them.
+// Sample sizes: log_variance_power, _detectable and _sample_size. Pass `spread` + 1 as kurtosis and
+// ratios of efficiencies as effects. They ignore a reference's error.
 
 }  // namespace assay::stats

@@ -39,8 +39,8 @@ SlopeData ordered(SlopeData data) {
   return data;
 }
 
-// The quadratic form of V^-1, V = diag + u^2 1 1', split into the part around the weighted mean and
-// the mean's own, so that a large u cancels nothing.
+// The quadratic form of V^-1, V = diag + u^2 1 1'. It is split into the part around the weighted
+// mean and the mean's own part, so that a large u cancels nothing.
 class Metric {
  public:
   explicit Metric(const SlopeData& data) {
@@ -72,7 +72,7 @@ class Metric {
   double mean_weight_ = 0;
 };
 
-// Q(s), the squared length of what the best multiple of the shape leaves.
+// Q(s), the squared length of the residual from the best multiple of the shape.
 class Misfit {
  public:
   explicit Misfit(const SlopeData& data) : metric_(data), scale_(data.scale) {
@@ -88,7 +88,7 @@ class Misfit {
     if (scale_ == SlopeScale::logarithms) {
       for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= slope * (log_size_[i] - middle());
     } else {
-      // Scaled so that its largest entry is 1: any slope up to the steepest is representable.
+      // Scaled so that its largest entry is 1. Any slope up to the steepest is then representable.
       const double anchor = slope > 0 ? log_size_.back() : log_size_.front();
       for (std::size_t i = 0; i < rest.size(); ++i) {
         shape[i] = std::exp(slope * (log_size_[i] - anchor));
@@ -108,7 +108,6 @@ class Misfit {
     return 40 / gap;
   }
 
-  // Least squares on logarithms: the slope in closed form.
   double log_slope() const {
     std::vector<double> position = log_size_;
     for (double& x : position) x -= middle();
@@ -136,9 +135,9 @@ double minimum_between(const Misfit& misfit, double low, double high) {
   return boost::math::tools::brent_find_minima(misfit, low, high, 50).first;
 }
 
-// Slopes from the steepest fall to the steepest rise, every local minimum of Q among them. The
-// steps are a hundredth of the scale on which the shape changes: 1 / ln(largest / smallest size)
-// around zero, relative further out.
+// Slopes from the steepest fall to the steepest rise, with every local minimum of Q among them.
+// Around zero the steps are a hundredth of the scale 1 / ln(largest / smallest size). Further out
+// they are relative.
 std::vector<Node> scan(const Misfit& misfit) {
   const double unit = 1 / misfit.extent();
   const double far = std::asinh(misfit.steepest() / unit);
@@ -158,13 +157,13 @@ std::vector<Node> scan(const Misfit& misfit) {
   return nodes;
 }
 
-// On logarithms Q is a parabola: three nodes say all.
+// On logarithms Q is a parabola, so three nodes suffice.
 std::vector<Node> candidates(const SlopeData& data, const Misfit& misfit) {
   if (data.scale == SlopeScale::values) return scan(misfit);
   const double best = misfit.log_slope();
   const double least = misfit(best);
   const double curvature = misfit(best + 1) - least;
-  // Where Q - least is 1e8: beyond any threshold of use.
+  // Here Q - least is 1e8, beyond any threshold of use.
   const double far = 1e4 / std::sqrt(curvature);
   return {{best - far, misfit(best - far)}, {best, least}, {best + far, misfit(best + far)}};
 }
@@ -173,7 +172,7 @@ double degrees_of(const SlopeData& data) { return static_cast<double>(data.point
 
 double log_p(double misfit, double degrees) { return chi_square_tails(misfit, degrees).upper; }
 
-// Where Q crosses the threshold between a slope inside the set and one outside.
+// The slope between one inside the set and one outside at which Q crosses the threshold.
 double crossing(const Misfit& misfit, double threshold, double a, double b) {
   std::uintmax_t iterations = 200;
   const auto [low, high] = std::minmax({a, b});

@@ -1,11 +1,9 @@
-// What the largest share of a density's mass that a cell may hold costs in power. Normal peaks of
-// several widths beside and about the pole of coordinates in a unit square, its grid 16 x 32 cells,
-// and 10,000 points of
-//   wide    a peak 3 % wider
-//   moved   the peak, a tenth of the points of one quarter of it mirrored at its middle
-//   spot    the peak, half of the points in a spot of 1 % of its mass mirrored so
-// Rates at which the chi-square test rejects at .01, of 400 samples each.
-//   cells_power
+// Power lost to a large cell, by the largest share of a density's mass that a cell may hold. Normal
+// peaks of several widths lie at the pole of coordinates and beside it, in a unit square. The grid
+// has 16 x 32 cells. The chi-square test is at .01, on 400 samples of 10,000 points of each kind:
+//   wide    A peak 3 % wider.
+//   moved   The peak, with a tenth of the points of one quarter mirrored at its middle.
+//   spot    The peak, with half of the points in a spot of 1 % of its mass mirrored so.
 
 #include <cmath>
 #include <cstdio>

@@ -1,8 +1,8 @@
-// What the harness adds to the bare loop of an estimator, and what a second thread gives.
+// The harness's time over the bare loop of an estimator, and the gain of a second thread.
 //
-// The bare loop calls the estimator's secondary() once with all primaries, on one stream: nothing
-// but primaries. The harness draws the same number of primaries in observations of 64 (`auto`'s
-// least), with blocks, streams, moments, histograms and kept values. Ratios in pairs, one process.
+// The bare loop calls the estimator's secondary() once with all primaries, on one stream. The
+// harness draws the same number of primaries in observations of 64 (`auto`'s least). It adds
+// blocks, streams, moments, histograms and kept values. Ratios are taken in pairs, in one process.
 
 #include <cstdio>
 #include <memory>

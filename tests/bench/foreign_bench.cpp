@@ -1,14 +1,14 @@
-// What it costs to have an estimator elsewhere: numbers a second across the interface of a library,
-// through the pipes of a program, draws and densities of a library's sampler either way, and of a
-// program in Python against its own loop.
+// The cost of an estimator elsewhere, in numbers a second. It takes the interface of a library, the
+// pipes of a program, draws and densities of a sampler either way, and a program in Python.
 //
-//   foreign_bench EXAMPLES HEADERS ASSAY     the folders of the example programs and of
-//                                            plugin_abi.h, and the program that hosts libraries
+//   foreign_bench EXAMPLES HEADERS ASSAY
 //
-// The programs that are measured do next to nothing, so that all that is left is the way. The best
-// of nine, wall clock. Of Python the medians of ratios taken in pairs: the loop and the program get
-// different shares of a machine that does other work too, so that the clock's ratio is of the
-// machine as well; that of the processor time, the harness's side counted in, is not.
+// EXAMPLES and HEADERS are the folders of the example programs and of plugin_abi.h. ASSAY is the
+// program that hosts libraries.
+//
+// The measured programs do next to nothing, so that the way alone costs time. The best of nine
+// wall-clock times counts. A program in Python is compared with its own loop by medians of ratios
+// in pairs. The ratio of processor times is reliable on a busy machine; that of the clock is not.
 
 #include <stdlib.h>
 
@@ -139,7 +139,7 @@ std::shared_ptr<const Setup> process(const std::vector<std::string>& command) {
   return set_up("process", Value::map({{"command", Value::list(std::move(words))}}));
 }
 
-/// As the harness draws: blocks are announced.
+/// Draws as the harness does: blocks are announced.
 struct Drawn {
   std::uint64_t observations;
   std::uint64_t block;
@@ -175,7 +175,7 @@ std::shared_ptr<const Setup> library(const Workshop& workshop, const std::string
                 Value::map({{"file", Value::scalar(file)}, {"isolated", Value::scalar(isolated)}}));
 }
 
-/// As tables ask for densities: those of a level of halvings at once, or one.
+/// Asks as tables do: for all densities of a level of halvings at once, or for one.
 void ask_densities(const Sampler& sampler, std::size_t count, std::size_t at_once) {
   const std::vector<Point> points(at_once, Point{.5, 0, 0});
   std::vector<double> densities(at_once);

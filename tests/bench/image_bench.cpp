@@ -1,8 +1,8 @@
-// Welch's t with its z map of two stacks of 64 images of WIDTH x HEIGHT x 3 floats in memory, on
-// one thread and on as many as there are processors, with the rate at which memory is read beside
-// it.
-//   image_bench [WIDTH HEIGHT]      default 1920 1080: 3.2 GB
+// Welch's t with its z map, on two stacks of 64 images of WIDTH x HEIGHT x 3 floats in memory. It
+// runs on one thread and on all processors, and also prints the rate of reading memory.
 // tests/bench/image_scipy.py does the same with scipy.
+
+//   image_bench [WIDTH HEIGHT]      Default 1920 1080: 3.2 GB.
 
 #include <algorithm>
 #include <atomic>

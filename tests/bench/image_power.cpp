@@ -1,9 +1,10 @@
-// The study behind stats/image_pyramid.h: power and false alarms of the family of an image pair.
-//   image_power known REPETITIONS     defects at 128 x 128, variances known
-//   image_power stacks REPETITIONS    the same with 16 and 64 replicates a side
-//   image_power level REPETITIONS [LAW]     false alarms under six laws, 16 and 64 replicates
-//   image_power samples REPETITIONS   2 million samples of a 48 x 48 image
-// Prints one line a row: what, repetitions, rates. Seed 1.
+// Power and false alarms of the family of an image pair (stats/image_pyramid.h). Prints one line a
+// row: name, repetitions, rates. Seed 1.
+
+//   image_power known REPETITIONS           Defects at 128 x 128, variances known.
+//   image_power stacks REPETITIONS          The same with 16 and 64 replicates a side.
+//   image_power level REPETITIONS [LAW]     False alarms under six laws.
+//   image_power samples REPETITIONS         2 million samples of a 48 x 48 image.
 
 #include <cmath>
 #include <cstdio>

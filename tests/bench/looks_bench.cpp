@@ -1,15 +1,15 @@
-// What the engine takes for itself. Of each suite that is named, run on one thread as `assay run`
-// runs it (budgets in seconds apart), CPU seconds of
-//   set-up    plugins' scenes, tables and references
-//   pilots    drawing them
-//   plans     methods, sizes, masses in cells of the densities that a size depends on
-//   tables    the other densities' masses in cells, and distribution functions, once a run
-//   draws     all observations
-//   looks     all that happens between one round of draws and the next, and after the last:
-//             gates, evidence, verdicts, effects, sentences
-//   record    what the reports draw
-// then, as shares of the draws, the looks, and all that is the engine's: plans, tables, looks,
-// record.
+// The engine's own CPU seconds in each named suite, run on one thread as `assay run` does. Budgets
+// in seconds are left out.
+
+//   set-up    Plugins' scenes, tables and references.
+//   pilots    Drawing them.
+//   plans     Methods, sizes, and the masses in cells that a size depends on.
+//   tables    The other densities' masses in cells, and distribution functions, once a run.
+//   draws     All observations.
+//   looks     Gates, evidence, verdicts, effects and sentences between the draws, and after them.
+//   record    The numbers that reports draw.
+// The last lines give the looks, and all of the engine (plans, tables, looks, record), as shares of
+// the draws.
 //   looks_bench SUITE...
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 #pragma once
 
-// Two pieces of work timed in turn, A B B A A B …, so that a machine whose speed drifts does not
-// favour one; the median of the ratios of neighbours is the answer.
+// Times two pieces of work in turn, A B B A A B …, so that a drift of the machine favours none. The
+// answer is the median of the ratios of neighbours.
 
 #include <algorithm>
 #include <chrono>

@@ -1,8 +1,7 @@
 // `assay images` on 64 + 64 OpenEXR pictures, beside the bare decoding of the same files by the
-// library on as many threads: processor seconds, and elapsed ones, which a busy machine makes
-// longer.
-//   pictures_bench ASSAY [WIDTH HEIGHT [REPETITIONS]]      ASSAY the program; default 480 270 3
-// The pictures are 32-bit R, G and B, compressed by ZIP, of one law: a ramp with noise.
+// library. Both use as many threads. Prints processor seconds and elapsed seconds. The pictures are
+// 32-bit R, G and B, compressed by ZIP: a ramp with noise.
+//   pictures_bench ASSAY [WIDTH HEIGHT [REPETITIONS]]      Default 480 270 3.
 
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -38,7 +37,7 @@ double cpu_seconds(int who) {
   return of(usage.ru_utime) + of(usage.ru_stime);
 }
 
-/// What each run took.
+/// The times of each run.
 struct Times {
   std::vector<double> cpu = {};
   std::vector<double> elapsed = {};
@@ -54,7 +53,7 @@ struct Times {
   }
 };
 
-/// Of the largest program run so far, in GB.
+/// Most memory of any program run so far, in GB.
 double most_memory() {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
@@ -65,8 +64,8 @@ std::string name_of(const std::string& folder, std::size_t i) {
   return folder + (i < pictures / 2 ? "/a" : "/b") + std::to_string(100 + i) + ".exr";
 }
 
-/// The finaliser of SplitMix64 on a Weyl sequence. A congruential generator of 32 bits, far apart
-/// by a multiple of a power of two as pixels of two pictures are, gives numbers that go together.
+/// The finaliser of SplitMix64 on a Weyl sequence. A congruential generator of 32 bits would
+/// correlate numbers that are a multiple of a power of two apart, as pixels are.
 std::uint64_t scattered(std::uint64_t count) {
   std::uint64_t z = count * 0x9e3779b97f4a7c15;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;

@@ -30,7 +30,7 @@ constexpr double silver = 0.41421356237309503;
 /// Degrees of freedom from 5 to 2000, alike in every decade.
 double degrees(std::uint64_t i) { return 5 * std::pow(400.0, spread(i, silver)); }
 
-// Of the processor, not of the clock: other work on the machine does not count.
+// Processor time, so that other work on the machine does not count.
 template <class Work>
 double processor_seconds(const Work& work) {
   const std::clock_t start = std::clock();

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Drives the program as a user does: exit codes, what goes to which stream, files, other readers.
-#   assay_test.sh ASSAY SOURCE_FOLDER TEST        TEST is one of the functions test_… below
-# Runs in a temporary folder of its own and says what was wrong.
+# Drives the program as a user does: exit codes, streams, files, other readers. Runs in a temporary
+# folder of its own. TEST is one of the functions test_… below.
+#   assay_test.sh ASSAY SOURCE_FOLDER TEST
 set -uo pipefail
 
 source "$(dirname "$0")/program.sh"
@@ -85,8 +85,8 @@ test_plan_prints_and_draws_no_test() {
   expect 2 plan no-such-suite.yaml
 }
 
-# Three tenths of a standard deviation, 100 observations: three standard errors a night, too few for
-# a test at alpha 1e-9 and more than enough for ten nights.
+# Three tenths of a standard deviation and 100 observations make three standard errors a night. That
+# is too few for a test at alpha 1e-9, and enough for ten nights.
 test_ledger_alarm_is_1() {
   local night code=0
   write_suite nights.yaml '  - {name: off, claim: mean(normal) == 2.3, secondaries: 100}'

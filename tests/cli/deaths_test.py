@@ -36,9 +36,9 @@ import jsonschema
 
 # A test's observations are means of so many primaries, a pilot's of one: so phases are told apart.
 PRIMARIES = 16
-TIMEOUT = 0.5  # seconds, of sources that hang
-PICTURE_TIMEOUT = 0.05  # a renderer of several has it for each picture
-PATIENCE = 100  # seconds that a run of Assay may take, whatever its sources do
+TIMEOUT = 0.5  # Seconds that a hanging source gets.
+PICTURE_TIMEOUT = 0.05  # Seconds that a renderer of several gets for each picture.
+PATIENCE = 100  # Seconds that a run of Assay may take, whatever its sources do.
 
 # A message must match the pattern of its way, and name the estimator and the observation. A source
 # says "no light" on its standard error or in the message of its library.

@@ -1,4 +1,4 @@
-# What the tests of estimators of other programs share, behind program.sh.
+# The common part of the tests of other programs' estimators, behind program.sh.
 
 # tells FILE TEXT: that the text is in it, whatever the width at which the program broke its lines.
 tells() { tr -s ' \n' ' ' <"$1" | grep -qF -- "$2" || fail "no \`$2\` in $1"; }

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Estimators of other programs, through the program itself: verdicts, exit codes, replay, isolation.
-#   foreign_test.sh ASSAY SOURCE_FOLDER TEST        TEST is one of the functions test_… below
-# Runs in a temporary folder of its own; no process that it started may be left at the end.
+# Runs in a temporary folder of its own, and leaves no process behind. TEST is one of the functions
+# test_… below.
+#   foreign_test.sh ASSAY SOURCE_FOLDER TEST
 set -uo pipefail
 
 source "$(dirname "$0")/program.sh"
@@ -235,7 +236,7 @@ interrupt_by() {
 }
 
 test_a_value_outside_of_its_declared_range_is_an_error() {
-  # Of every hundredth observation.
+  # Every hundredth observation lies beyond the range.
   cat >beyond.sh <<'END'
 printf 'assay 1 text\nchannel x low 0 high 3\nready\n'
 while read -r high low first count primaries; do

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# What new users get wrong, and the answer: it names the place and what to write, in 80 columns.
-#   mistakes_test.sh ASSAY SOURCE_FOLDER TEST        TEST is one of the functions test_… below
+# Mistakes of new users: the answer names the place and the mend, in 80 columns. TEST is one of the
+# functions test_… below.
+#   mistakes_test.sh ASSAY SOURCE_FOLDER TEST
 set -uo pipefail
 
 source "$(dirname "$0")/program.sh"

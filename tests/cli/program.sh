@@ -1,5 +1,5 @@
-# What the tests of the program share; read by them with the arguments ASSAY SOURCE_FOLDER.
-# Moves into a temporary folder of the test's own, which is removed at its end.
+# The common part of the tests of the program, which source it with the arguments ASSAY
+# SOURCE_FOLDER. Moves into a temporary folder of the test's own, which is removed at its end.
 assay=$1
 source_folder=$2
 work=$(mktemp -d)

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Samplers of a shared library, through the program itself: in a process of its own and in the run's.
-#   sampler_test.sh ASSAY SOURCE_FOLDER TEST        TEST is one of the functions test_… below
+# Samplers of a shared library, in a process of their own and in the run's. TEST is one of the
+# functions test_… below.
+#   sampler_test.sh ASSAY SOURCE_FOLDER TEST
 set -uo pipefail
 
 source "$(dirname "$0")/program.sh"
 source "$(dirname "$0")/foreign.sh"
 
-# library NAME [OF_SAMPLE [OF_DENSITY [OF_EVALUATE]]]: with samplers `cosine` (directions), `disc`
-# (a jump on a square, and draws that yield no point) and `ramp` (an interval), in whose functions
-# these statements come first.
+# library NAME [OF_SAMPLE [OF_DENSITY [OF_EVALUATE]]] writes a library whose functions begin with
+# these statements. Its samplers are `cosine` (directions), `disc` (a jump on a square, with draws
+# that yield no point) and `ramp` (an interval).
 library() {
   cat >"$1.c" <<SOURCE
 #include "plugin_abi.h"

@@ -30,7 +30,7 @@ run ctest --test-dir build || true
 contains 'claims/mean(normal) == 2 '
 contains "claims/a name; with [brackets, 'quotes' \"and\" \$signs "
 contains 'again:claims/mean(normal) == 2 '
-# As the second set-up sets it, the mean is 3.
+# The second set-up makes the mean 3.
 contains 'darts/mean(darts) == 3.141592653589793 '
 contains '80% tests passed, 1 tests failed out of 5'
 

@@ -72,9 +72,9 @@ TEST(Analytic, MeansAreClosedForms) {
   EXPECT_DOUBLE_EQ(*channel("analytic/two_level").mean, 17.0 / 6);
 }
 
-// u^-s of all 2^52 values that u takes: by zeta(s, 1/2) = (2^s - 1) zeta(s) they miss the share
-// -(1 - s) zeta(s, 1/2) 2^(-52 (1 - s)) of the integral 1 / (1 - s). Below 1e-4 for what is
-// declared.
+// The mean of u^-s over all 2^52 values of u misses a share of the integral 1 / (1 - s). By zeta(s,
+// 1/2) = (2^s - 1) zeta(s) the share is -(1 - s) zeta(s, 1/2) 2^(-52 (1 - s)). It is below 1e-4 for
+// the declared values.
 TEST(Analytic, HeavyTailsDeclareOnlyWhatTheirStreamCanReach) {
   const auto missed = [](double s) {
     return -(1 - s) * std::exp2(-52 * (1 - s)) * (std::exp2(s) - 1) * std::riemann_zeta(s);

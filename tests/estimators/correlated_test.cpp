@@ -82,7 +82,8 @@ TEST(Correlated, WhereNothingIsHiddenTheEstimateIsTheIntegral) {
 }
 
 TEST(Correlated, ThePublishedLambdaIsNotOneWhereNothingIsHidden) {
-  // d = 1, 3 and f = J - d, J = 5: sum d (mean f - f) = 2, sum d^2 = 10, about the mean 2.
+  // With d = 1, 3, J = 5 and f = J - d: sum d (mean f - f) = 2, sum d^2 = 10. About the mean it is
+  // 2.
   Sums sums;
   sums.add(4, 1);
   sums.add(2, 3);

@@ -108,7 +108,7 @@ struct Pearson {
     statistic += (count - expected) * (count - expected) / expected;
     freedom += 1;
   }
-  /// Whether the statistic is within the bound; the pooled cell counts if it is large enough.
+  /// True if the statistic is within the bound. The pooled cell counts if it is large enough.
   bool passes() {
     if (pooled_expected >= 20) {
       const double count = pooled_count, expected = pooled_expected;

@@ -68,8 +68,8 @@ TEST(Environment, BothEstimatorsHaveOneMean) {
   EXPECT_EQ(a[2].name, "b");
 }
 
-// A wall at x = -0.001 hides w_x < 0 but for a millionth: what is left is the sum over the texels
-// with w_x > 0, whose columns end at the wall. Single precision rays. False alarm: 6 at 1e-6.
+// A wall at x = -0.001 hides w_x < 0 but for a millionth. The sum over the texels with w_x > 0 is
+// left; their columns end at the wall. Single precision rays. False alarm: 6 at 1e-6.
 TEST(Environment, AWallHidesHalfTheSky) {
   const EnvironmentMap map = render::read_environment(data + "/sky.exr");
   Rgb expected{};

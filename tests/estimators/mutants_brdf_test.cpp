@@ -38,8 +38,8 @@ TEST(BrdfMutants, HaveTheBiasOfTheirDefect) {
   }
 }
 
-/// What a sampler says of its draws is wrong, not the draws: claims of consistency see it, the
-/// mean need not move.
+/// True if a sampler misreports its draws, but the draws are right. Claims of consistency see it;
+/// the mean need not move.
 bool only_misreports(const std::string& mutant) {
   return mutant == "mutants/ward_density_sector" || mutant == "mutants/ward_weight_mirrored";
 }

@@ -1,9 +1,9 @@
-// How much an estimator costs beside the bare calls of Embree that it must make.
+// The cost of an estimator beside the bare calls of Embree that it must make.
 //
-// A rectangle shines on a receiver past a sphere of 2,000 triangles. For shadow rays and for
-// closest-hit rays the program times the estimator's primaries, and the same number of bare calls
-// on a like scene along directions made beforehand. Rows: nanoseconds a primary, a bare ray, and
-// rays a second relative to bare.
+// A rectangle shines on a receiver past a sphere of 2,000 triangles. The program times the
+// estimator's primaries, for shadow rays and for closest-hit rays. It times the same number of bare
+// calls on a like scene along directions made beforehand. Rows: nanoseconds a primary, a bare ray,
+// and rays a second relative to bare.
 
 #include <embree3/rtcore.h>
 

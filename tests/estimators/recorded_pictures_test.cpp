@@ -172,7 +172,7 @@ TEST_F(Pictures, WithTheirVarianceAreReferences) {
   EXPECT_DOUBLE_EQ(channel.mean_error, std::sqrt(1.5 / 16));
 }
 
-// Five pixels in a row, of which samples have seen the last vary: from few of them an error of zero
+// Five pixels in a row; samples have seen only the last vary. With few of them an error of zero
 // would make the others exact.
 TEST_F(Pictures, OfFewSamplesHaveErrorsNoSmallerThanAroundThem) {
   draws::write_exr(file("a.exr"), {.width = 5,

@@ -266,7 +266,7 @@ TEST_F(Recorded, AsksOfOneRowWhetherItsNumbersAreObservations) {
   EXPECT_THAT(refused.message, HasSubstr("one row of 2001 numbers"));
   const std::string file = (folder_ / "data.txt").string();
   EXPECT_THAT(refused.message, HasSubstr("`tr -s ', \\t\\r' '\\n' < " + file + " > lines.txt`"));
-  // What is to be pasted does what it says.
+  // The line to be pasted does what it says.
   const std::string lines = (folder_ / "lines.txt").string();
   EXPECT_EQ(std::system(("tr -s ', \\t\\r' '\\n' < " + file + " > " + lines).c_str()), 0);
   const auto table = recorded::read_table(lines, recorded::Rows::several);

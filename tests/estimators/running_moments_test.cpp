@@ -22,7 +22,7 @@ TEST(RunningMoments, AreThoseOfTheSample) {
   EXPECT_DOUBLE_EQ(of(0).variance(), 32. / 7);
 }
 
-// Where raw sums of squares leave nothing but rounding: squares of 1e9 have a last place of 128.
+// Raw sums of squares would leave nothing but rounding: squares of 1e9 have a last place of 128.
 TEST(RunningMoments, KeepTheVarianceFarFromZero) {
   EXPECT_DOUBLE_EQ(of(1e9).mean(), 1e9 + 5);
   EXPECT_NEAR(of(1e9).variance(), 32. / 7, 1e-6);

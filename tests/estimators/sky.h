@@ -12,8 +12,9 @@ namespace assay::draws {
 inline constexpr std::size_t sky_width = 64;
 inline constexpr std::size_t sky_height = 32;
 
-/// Red, green and blue of texel (row, column): L = 1 + bx wx + bz wz at its middle, (bx, bz) =
-/// (0.3, 0.2), (0.1, 0.4), (-0.2, 0.7), and in eight texels a sun of radiance 60, 50, 40 on top.
+/// Red, green and blue of texel (row, column): L = 1 + bx wx + bz wz at its middle. The slopes (bx,
+/// bz) are (0.3, 0.2), (0.1, 0.4) and (-0.2, 0.7). Eight texels have a sun of radiance 60, 50, 40
+/// on top.
 inline std::vector<float> sky_texel(std::size_t row, std::size_t column) {
   const double theta = std::numbers::pi * (static_cast<double>(row) + 0.5) / sky_height;
   const double phi = 2 * std::numbers::pi * (static_cast<double>(column) + 0.5) / sky_width;

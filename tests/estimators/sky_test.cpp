@@ -89,8 +89,8 @@ TEST(Skies, HaveTheIrradiancesOfTheirClosedForms) {
               pi + 2 * pi / 3 * .5, 1e-12);
 }
 
-// Along its axis a lobe gives 2 pi times the integral of c e^(k (c - 1)) over [0, 1]; a lobe of
-// sharpness 1e-9 is a uniform sky.
+// Along its axis a lobe gives 2 pi times the integral of c e^(k (c - 1)) over [0, 1]. With
+// sharpness 1e-9 it is a uniform sky.
 TEST(Skies, APeakHasItsIrradianceWhateverTheNormal) {
   const std::string up = "{peak: {base: .2, height: 20, sharpness: 60, direction: [0, 0, 1]}}";
   const double k = 60;
@@ -99,8 +99,8 @@ TEST(Skies, APeakHasItsIrradianceWhateverTheNormal) {
   EXPECT_NEAR(irradiance("{peak: {base: 0, height: 1, sharpness: 1e-9, direction: [1, 0, 1]}}",
                          "[0, 1, 2]"),
               pi, 1e-8);
-  // Light below the horizon of one normal is above that of its opposite: together the integral of
-  // |cos|, the same seen from the lobe's two ends.
+  // Light below the horizon of one normal is above that of its opposite. Together they make the
+  // integral of |cos|, the same from the lobe's two ends.
   const std::string tilted = "{peak: {base: .2, height: 20, sharpness: 3, direction: [1, 1, 1]}}";
   const auto both = [&](const std::string& n, const std::string& opposite) {
     return irradiance(tilted, n) + irradiance(tilted, opposite);

@@ -114,7 +114,7 @@ TEST(Stream, SubstreamsAreDistinct) {
     first.insert(parent());
     for (std::uint32_t i = 0; i < 100; ++i) first.insert(parent.substream(i)());
   }
-  // Of 10,100 random 64-bit words two agree with probability 3e-12.
+  // Two of 10,100 random 64-bit words agree with probability 3e-12.
   EXPECT_EQ(first.size(), 100u * 101u);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the fuzz targets share: a promise that ends the program where it is broken, and a case as a
+// The common part of fuzz targets: a promise that ends the program if it is broken, and a case as a
 // file.
 
 #include <unistd.h>

@@ -1,7 +1,6 @@
-// Claims as users type them (harness/claim.h). Whatever the text is, it is a claim or is refused
-// with the column of what cannot be understood; and what was understood is written and read again
-// as the same.
-//
+// Claims as users type them (harness/claim.h). Every text is a claim, or is refused with a column.
+// A claim is written and read again as the same.
+
 // sources: harness/claim.cpp harness/claim_lexer.cpp harness/claim_rules.cpp harness/claim_text.cpp
 // sources: harness/laws.cpp harness/suite_keys.cpp harness/yaml.cpp harness/text_file.cpp
 // sources: estimators/value.cpp estimators/value_checks.cpp

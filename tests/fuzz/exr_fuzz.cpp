@@ -1,6 +1,6 @@
-// OpenEXR pictures of other programs (estimators/exr_file.h, estimators/pictures.h).
-// Whatever the bytes are, the file is read or refused with its name.
-//
+// OpenEXR pictures of other programs (estimators/exr_file.h, estimators/pictures.h). Every file is
+// read, or refused with its name.
+
 // sources: estimators/render/exr_file.cpp estimators/render/exr_header.cpp
 // sources: estimators/render/exr_scan_lines.cpp estimators/render/zip_chunk.cpp estimators/pictures.cpp
 // sources: estimators/value.cpp estimators/estimator.cpp estimators/image.cpp estimators/text_pattern.cpp
@@ -33,7 +33,7 @@ void read_all(const std::string& file) {
   }
 }
 
-/// What is refused must be refused with the file's name and a reason.
+/// A refusal names the file and a reason.
 template <class Work>
 void guarded(const std::string& file, const Work& work) {
   try {

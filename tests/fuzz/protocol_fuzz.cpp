@@ -1,7 +1,6 @@
-// What other programs say to Assay: hellos and replies (estimators/foreign/). Whatever the bytes
-// are, they are understood or refused; in pieces as in one; and what was understood is written and
-// read again as the same.
-//
+// Hellos and replies of other programs (estimators/foreign/). All bytes are understood or refused,
+// in pieces as in one. A reply that was understood is written and read again as the same.
+
 // sources: estimators/estimator.cpp estimators/foreign/hello.cpp estimators/foreign/reply.cpp
 // sources: estimators/image.cpp
 
@@ -24,7 +23,7 @@ using assay::fuzz::require;
 void hello(std::string_view text) {
   is_whole_hello(text);
   try {
-    // As many numbers as a hello may announce would only try the memory.
+    // More than 1024 numbers would only try the memory.
     const Hello said = parse_hello(text, 1024);
     const std::string again = to_text(said);
     require(to_text(parse_hello(again)) == again);

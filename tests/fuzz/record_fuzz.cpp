@@ -1,7 +1,7 @@
-// Records of runs (reports/read_json.h) and the reports that are made from them. Whatever the bytes
-// are, they are a record or are refused with the file's name; a record is written and read again as
-// the same; and every report can be made from it.
-//
+// Records of runs (reports/read_json.h), and the reports made from them. All bytes are a record, or
+// are refused with the file's name. A record is written and read again as the same, and every
+// report can be made from it.
+
 // options: -max_len=32768
 // sources: reports/*.cpp
 // libraries: -lfmt -lpng

@@ -1,7 +1,7 @@
-// Rows of other programs: text, arrays of numpy, both also packed (estimators/recorded/table.h).
-// Whatever the bytes are, they are read or refused with the file's name and a place in it; and what
-// was read is whole.
-//
+// Rows of other programs: text and numpy's arrays, both also packed (estimators/recorded/table.h).
+// All bytes are read, or refused with the file's name and a place in it. A table that was read is
+// whole.
+
 // sources: estimators/recorded/table.cpp estimators/recorded/byte_source.cpp
 // sources: estimators/recorded/npy.cpp estimators/recorded/foreign_formats.cpp
 // sources: estimators/recorded/fields.cpp estimators/foreign/child.cpp estimators/value.cpp

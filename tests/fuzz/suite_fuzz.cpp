@@ -1,6 +1,5 @@
-// Suite files (harness/suite.h). Whatever the bytes are, they are a suite or are refused at a place
-// in the file.
-//
+// Suite files (harness/suite.h). All bytes are a suite, or are refused at a place in the file.
+
 // sources: harness/suite.cpp harness/suite_entries.cpp harness/suite_keys.cpp
 // sources: harness/suite_options.cpp harness/suite_statements.cpp
 // sources: harness/claim.cpp harness/claim_lexer.cpp harness/claim_rules.cpp harness/claim_text.cpp

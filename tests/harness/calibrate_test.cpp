@@ -43,8 +43,8 @@ TEST(Calibrate, TheTTestKeepsItsLevelAndFindsItsEffectOnNormalData) {
   EXPECT_EQ(reports::defects(result), 0U);
 }
 
-// F at nominal .01 rejects about a quarter of the pairs of exponential samples; under a probability
-// of .2 fewer than 20 of 300 would come with probability 1e-11.
+// F at nominal .01 rejects about a quarter of the pairs of exponential samples. Under a probability
+// of .2, fewer than 20 of 300 have probability 1e-11.
 TEST(Calibrate, FAloneIsFarOffOnExponentialDataAndItsGateIsRed) {
   const auto result = measured(
       {.methods = {"F"}, .laws = {"exponential"}, .alphas = {0.01}, .runs = 300, .threads = 1});
@@ -97,8 +97,8 @@ TEST(Calibrate, ThreadsChangeNoCount) {
   }
 }
 
-// Chi-square and F test data that are flatter than normal as normal ones, and are planned so: as
-// for data of this kurtosis, F found .73 of what it should .99 of, and left the rest undecided.
+// Chi-square and F treat flat data as normal, so they need as many observations as with normal
+// data.
 TEST(Calibrate, FlatDataAreGivenTheObservationsThatTheirTestNeeds) {
   const auto result = measured({.methods = {"chi-square", "F"},
                                 .laws = {"uniform"},

@@ -59,8 +59,8 @@ double density_of(const Sampler& ward, double theta, double phi) {
       {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
 }
 
-// Column by column against the midpoint rule over 64 x 400 points, which is within 1e-3 of it here;
-// what was drawn is binomial: 5.5 standard deviations, 32 columns, false alarm 2e-6.
+// The reference is the midpoint rule over 64 x 400 points, within 1e-3 of the integral here. Counts
+// are binomial: 32 columns within 5.5 standard deviations, false alarm 2e-6.
 TEST(CellRecord, HasAzimuthsFromLeftToRight) {
   const reports::Test test = tested("distribution(ward.direction) == density");
   ASSERT_EQ(test.maps.size(), 3u);
@@ -146,8 +146,8 @@ TEST(CellRecord, ShowsTheCellsOfANarrowLobeAsLargeAsTheyAre) {
   EXPECT_GT(phi[1], .5 + std::numbers::pi);
   EXPECT_LT(theta[1] - theta[0], .3);
   EXPECT_LT(phi[1] - phi[0], .3);
-  // The grid shows the same cells' farthest; many cells are seen, some with too many draws and
-  // some with too few, as a wrong azimuth has them.
+  // The grid shows the same cells' farthest. Many cells are seen; a wrong azimuth gives some too
+  // many draws and others too few.
   const auto far = [](const reports::Map& map) {
     return std::ranges::max(map.texels.values, {}, [](float z) { return std::abs(z); });
   };
@@ -158,9 +158,9 @@ TEST(CellRecord, ShowsTheCellsOfANarrowLobeAsLargeAsTheyAre) {
   EXPECT_GT(*seen.rbegin(), 5);
 }
 
-// Of both samples together each cell has its part, so what is expected of the first sums to what it
-// has, and where nothing differs the differences are of one standard deviation: their mean square
-// over 256 cells is 1 within five of its own standard deviations, sqrt(2 / 256).
+// Both samples together give each cell its part, so the expected counts of the first sum to its
+// count. Under the null hypothesis the differences have unit variance. The mean square over 256
+// cells is 1 within five of its standard deviations, sqrt(2 / 256).
 TEST(CellRecord, ShowsALobeAcrossTheStartOfTheAzimuthInOnePiece) {
   const auto close = [](const std::string& azimuth, const char* draws) {
     return run_test(
@@ -180,11 +180,11 @@ TEST(CellRecord, ShowsALobeAcrossTheStartOfTheAzimuthInOnePiece) {
   EXPECT_LT(phi[0], 2 * std::numbers::pi);
   EXPECT_GT(phi[1], 2 * std::numbers::pi);
   EXPECT_LT(phi[1] - phi[0], 1);
-  // Of a sound sampler these are standard normal, in some dozens of cells.
+  // A sound sampler has standard normal values here, in some dozens of cells.
   const auto& z = across.maps[3].texels.values;
   EXPECT_LT(*std::ranges::max_element(z), 5);
   EXPECT_GT(*std::ranges::min_element(z), -5);
-  // Of the usual 1000 draws most of it is shown; of 100 there is nothing to show.
+  // The usual 1000 draws show most of it; 100 show nothing.
   const reports::Test few = close("0.5", "1000");
   ASSERT_EQ(few.maps.size(), 4u);
   EXPECT_LT(std::ranges::count(few.maps[3].texels.values, 0.f), 64 * 64 / 2);

@@ -1,5 +1,5 @@
-// Claims of any kind are made from a description of them, written and read again; and no text,
-// however made, does anything but make a claim or an InputError.
+// Claims are made from a description, written and read again. Every text makes a claim or an
+// InputError.
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

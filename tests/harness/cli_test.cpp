@@ -294,8 +294,8 @@ TEST(CommandLine, RefusesValuesOutOfRange) {
             "--secondaries must be a whole number, 2 or more, but it is `1`");
 }
 
-// GCC 12 destroys the members of an aggregate in nested braces twice when a later member's
-// initialiser throws; texts longer than a std::string's own buffer make that a double free.
+// GCC 12 destroys members of an aggregate in nested braces twice if a later member's initialiser
+// throws. Texts longer than a std::string's own buffer make that a double free.
 TEST(CommandLine, RefusesAWrongValueBesideLongTexts) {
   const std::string claim = "mean(an_estimator_with_a_long_name) == 1";
   const std::string estimator = "an_estimator_with_a_long_name=analytic/dart_throwing";

@@ -80,8 +80,9 @@ TEST(Constant, EqualToItsReferencePassesAClassicalTest) {
   EXPECT_EQ(judge("classical", 10, {0.5}).verdict, Verdict::pass);
 }
 
-// What was unseen n times has probability at most 1 - 0.01^(1/n) at beta = 0.01; it can add at most
-// 10 times that, and must stay below the margin of 0.1: n >= ln 0.01 / ln(1 - 0.01) = 458.2.
+// A value that was unseen n times has probability at most 1 - 0.01^(1/n) at beta = 0.01. It can add
+// at most 10 times that, which must be below the margin of 0.1. So n >= ln 0.01 / ln(1 - 0.01) =
+// 458.2.
 TEST(Constant, EqualToItsReferencePassesWhenTheRangeBoundsTheUnseen) {
   EXPECT_EQ(judge("detect", 459, {0.5}).verdict, Verdict::pass);
   EXPECT_EQ(judge("detect", 458, {0.5}).verdict, Verdict::inconclusive);

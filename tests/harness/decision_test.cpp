@@ -105,10 +105,10 @@ TEST(Decision, PassesOnlyWhenEveryChannelIsExcluded) {
   EXPECT_EQ(decide({excluded, open, rejected}, regions, 0.01), Verdict::fail);
 }
 
-// What the p-values promise, by simulation: whatever theta in C, "theta in C" is rejected at most
-// as often as the level; whatever theta in F, "theta in F" likewise; and where a region ends at one
-// point, exactly that often. Each rate is judged by an exact binomial test at 1e-7; there are fewer
-// than 100 of them, so that a sound decision is called wrong with probability below 1e-5.
+// A simulation checks the levels of p-values. For theta in C, "theta in C" is rejected at most as
+// often as the level; the same holds for F. Where a region ends at one point, it is rejected
+// exactly that often. An exact binomial test at 1e-7 judges each rate. Fewer than 100 rates give a
+// false alarm below 1e-5.
 
 using LogP = std::function<double(const Evidence&, const Regions&)>;
 struct Decider {
@@ -150,7 +150,7 @@ std::vector<Case> cases() {
 constexpr double level = 0.05;
 constexpr std::uint64_t repetitions = 20000;
 
-/// Whether `log_p` is at most the level no more often (or, when sharp, just as often) as it may.
+/// True if `log_p` is at most the level no more often than it may; when sharp, just as often.
 bool keeps_level(const LogP& log_p, const Regions& regions, double theta, bool sharp,
                  tests::Philox& random) {
   std::uint64_t rejected = 0;

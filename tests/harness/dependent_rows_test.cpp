@@ -75,7 +75,7 @@ TEST(DependentRows, OfDependentValuesHaveNoVarianceToTest) {
   EXPECT_THAT(test.message, HasSubstr("are not independent"));
 }
 
-/// Of two files of rows.
+/// The test of two files of rows.
 reports::Test compared(const std::vector<double>& a, const std::vector<double>& b,
                        const std::string& test) {
   const Workplace place;
@@ -89,9 +89,9 @@ reports::Test compared(const std::vector<double>& a, const std::vector<double>& 
       .tests[0];
 }
 
-// Worth 420 independent rows a side: Welch's test of the rows themselves fails under some 55 % of
-// the seeds, fewer than 2 of 15 with probability 1e-4, that of their batches under more than 3 of
-// 30 with 3e-4.
+// A side is worth 420 independent rows. Welch's test of the rows fails under some 55 % of the
+// seeds: fewer than 2 of 15 have probability 1e-4. Its test of batches fails under more than 3 of
+// 30 with probability 3e-4.
 TEST(DependentRows, OfTwoChainsAreComparedByTheirBatches) {
   int failed = 0;
   int as_if_independent = 0;

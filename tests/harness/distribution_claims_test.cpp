@@ -1,5 +1,5 @@
-// Claims about laws beyond the default methods, from YAML to verdict: what is true passes, what is
-// broken fails, what a method cannot answer is refused.
+// Claims about laws beyond the default methods, from YAML to verdict. True claims pass, broken ones
+// fail, and a method refuses what it cannot answer.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -69,8 +69,8 @@ TEST(Means, OfASamplerAreRefusedByName) {
               testing::HasSubstr("`direction` is a sampler of `ward`"));
 }
 
-// A pool that two entries of one plugin share is first drawn for a claim that needs no density: its
-// draws are counted in the cells of the density nevertheless. So of two suites in one run.
+// Two entries of one plugin share a pool. A claim that needs no density draws it first; its draws
+// are still counted in the cells of the density. Two suites of one run do the same.
 TEST(CellsOfADensity, AreCountedWhoeverElseDrawsOfThePool) {
   const std::string head =
       "suite: s\nestimators:\n  a: {plugin: brdf/ward}\n  b: {plugin: brdf/ward}\ntests:\n";

@@ -36,8 +36,9 @@ ChannelData point(double mean, double standard_error) {
                       .maximum = mean + 1}};
 }
 
-/// 1, 1, 1/4 and 1/8 lie on no power law. With these errors the best one has Q = 14 of 3 degrees, p
-/// = .0029, so that a test at .01 rejects them all and one at .001 none of those around it.
+/// 1, 1, 1/4 and 1/8 lie on no power law. With these errors the best slope has Q = 14 with 3
+/// degrees of freedom, p = .0029. A test at .01 rejects every slope, and one at .001 none of those
+/// around it.
 std::array<ChannelData, 4> bent() {
   constexpr double error = 0.1066;
   return {point(1, error), point(1, error), point(.25, error), point(.125, error)};
@@ -56,7 +57,7 @@ std::string state_of(const std::string& test, ErrorShare share, std::span<const 
   return gates.empty() ? "none" : gates.back().name + " " + gates.back().state;
 }
 
-// What "shown" rested on: all slopes outside of the margin are rejected, as are all inside.
+// All slopes outside of the margin are rejected, as a proof demands, and so are all inside.
 TEST(EvidenceOfSlope, WhereEverySlopeIsRejectedTheGateIsRed) {
   const auto asked = ask_text(suite);
   const std::array<ChannelData, 4> data = bent();
@@ -67,8 +68,8 @@ TEST(EvidenceOfSlope, WhereEverySlopeIsRejectedTheGateIsRed) {
   EXPECT_EQ(state_of("within", {.alpha = 1e-4, .beta = beta}, data), "p of a power law red");
 }
 
-// A fail rests on the rejection of the claimed slopes alone at alpha, a pass on that of the others
-// at beta; where neither empties the set the gate is green.
+// A fail rests on rejecting the claimed slopes at alpha, a pass on rejecting the others at beta.
+// The gate is green if neither empties the set.
 TEST(EvidenceOfSlope, TheGateIsAtTheLevelsThatTheVerdictUses) {
   const std::array<ChannelData, 4> data = bent();
   EXPECT_EQ(state_of("within", {.alpha = 1e-4, .beta = 1e-4}, data), "p of a power law green");
@@ -117,10 +118,10 @@ TEST(EvidenceOfSlope, PointsWithoutSpreadAreInvalidForThatReasonInARunToo) {
   }
 }
 
-// A forced method shows its gates only; what no slope fits is shown of none all the same. In so few
-// observations every slope is rejected at beta, and the claimed ones are not at alpha, except with
-// a probability below .04 (misfits near 12 and 19.5 of 3 degrees beyond chance; limits 2.9 and
-// 44.8: scipy.stats.ncx2).
+// A forced method shows its gates only; if no slope fits, it is invalid all the same. With so few
+// observations, every slope is rejected at beta. The claimed slopes are rejected at alpha with
+// probability below .04. Misfits are near 12 and 19.5 beyond chance, with 3 degrees of freedom;
+// limits are 2.9 and 44.8 (scipy.stats.ncx2).
 TEST(EvidenceOfSlope, AForcedMethodShowsNothingByRejectingEverySlope) {
   const reports::Test test = run_test(R"(suite: forced
 alpha: 1e-9

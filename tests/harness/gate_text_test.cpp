@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// What would help a mean of 1000 observations whose gate of this name is red.
+/// The advice for a mean of 1000 observations whose gate of this name is red.
 std::string help_for(const std::string& gate) {
   const auto asked = ask_text(R"(suite: gates
 estimators:

@@ -64,7 +64,7 @@ struct Defect {
   const char* statistic;
 };
 
-// Each defect is found with probability above 0.99 (README.md), and where it is.
+// Each defect is found and located with probability above 0.99.
 TEST(ImageClaims, MutantsAreCaughtByTheSumThatFitsThem) {
   for (const Defect& defect :
        {Defect{"tile", "window"}, Defect{"hot_pixels", "window"}, Defect{"last_column", "window"},

@@ -87,8 +87,8 @@ TEST(ImageConstants, APixelThatWasNeverLitIsHeldAgainstItsRangeAlone) {
   EXPECT_NEAR(varying.unseen()[0].log_p, 64 * std::log1p(-0.005014548794971263 / 7.98), 1e-9);
 }
 
-// A pixel that the pilot saw vary keeps its difference in sums over several; one that it did not
-// see vary is in none of them.
+// A pixel that varied in the pilot keeps its difference in sums. A pixel that did not vary there is
+// in no sum.
 TEST(ImageConstants, APixelThatStaysDarkStaysInSumsByItsWeight) {
   const auto asked = ask_text(suite);
   const Question& question = asked->questions[0];
@@ -149,7 +149,7 @@ TEST(ImageConstants, ConstantsOfTwoImagesAreEqualWithinRoundingOnly) {
   });
 }
 
-// One image that never lit a pixel, and one that did now and then, are no contradiction: at 0.0052
+// One image never lit a pixel, and the other did now and then; that is no contradiction. At 0.0052
 // above 0.02 a value of 8 has probability 0.0007.
 TEST(ImageConstants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
   const auto asked = ask_text(suite);
@@ -168,10 +168,8 @@ TEST(ImageConstants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
   EXPECT_NEAR(varying.unseen()[0].log_p, 16 * std::log1p(-0.0052 / 7.98), 1e-3);
 }
 
-// 147 of 432 pixels see one surface that is alike everywhere: their values differ from the closed
-// form by up to 1.5e-15. False alarm 1e-5 at each seed. (Predicted counts leave pixels one sample
-// each, that see a light once in a hundred: too skewed for cells of 2 x 2, false alarms in 7
-// of 40.)
+// 147 of 432 pixels see one surface that is alike everywhere. Their values differ from the closed
+// form by rounding, up to 1.5e-15. False alarm 1e-5 at each seed.
 TEST(ImageConstants, PixelsThatAreConstantAreNoEvidence) {
   const Workplace place;
   const std::string file = place.write("suite.yaml", R"(suite: uniform

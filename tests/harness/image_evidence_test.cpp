@@ -1,4 +1,4 @@
-// What a test's own images say of the level that their cells keep.
+// A test's own images judge the level that their cells keep.
 
 #include "harness/image/image_evidence.h"
 

@@ -49,9 +49,8 @@ TEST(ImageLevel, TrueClaimsFailNoMoreOftenThanTheyMay) {
   EXPECT_FALSE(tests::too_many(1 - outcomes.at("looks").share(Verdict::pass), 0.1, 150));
 }
 
-// Rarely lit pixels: 8 in 100 of them are dark in all 64 images, and what is left of the others is
-// too bright on average. Judged without the dark ones, a true claim failed under nine seeds in ten.
-// A skewness of 10 in 16 images leaves the largest cells alone. Wrong alarms: 2.5e-6 each.
+// Pixels are rarely lit: 8 in 100 are dark in all 64 images, and the others are too bright on
+// average. A skewness of 10 in 16 images leaves the largest cells alone. Wrong alarms: 2.5e-6 each.
 TEST(ImageLevel, RarelyLitPixelsAreNotMissedWhereTheyStayDark) {
   const auto outcomes = outcomes_of(
       60,
@@ -67,10 +66,8 @@ TEST(ImageLevel, RarelyLitPixelsAreNotMissedWhereTheyStayDark) {
   }
 }
 
-// One primary of 10,000 is lit, 7 in a pilot: what was lit there stays dark in the test, and what
-// is lit in the test was dark there. Weighed and judged by the same images the pilot's pixels
-// seemed to keep their level, and the true claim on the darkest failed under 28 of 30 seeds. Wrong
-// alarms: 2.5e-6 each.
+// One primary of 10,000 is lit, 7 in a pilot. Pixels that were lit there stay dark in the test, and
+// pixels lit in the test were dark there. Wrong alarms: 2.5e-6 each.
 TEST(ImageLevel, FirefliesFailNoTrueClaim) {
   const auto outcomes = outcomes_of(
       40,
@@ -90,9 +87,8 @@ TEST(ImageLevel, FirefliesFailNoTrueClaim) {
   }
 }
 
-// Unlit, the images of `rare` are .836 times those of `dim` and their spread is zero, so that they
-// seem to lie within any margin of it; their mean is 19.6 % larger. It was shown under half of the
-// seeds. Wrong alarm: 2.5e-6.
+// Unlit images of `rare` are .836 times those of `dim`, with zero spread, so they seem to lie
+// within any margin. Their mean is 19.6 % larger. Wrong alarm: 2.5e-6.
 TEST(ImageLevel, FirefliesThatAreNotMetShowNoMargin) {
   const auto outcomes = outcomes_of(
       20,

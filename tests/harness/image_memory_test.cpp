@@ -39,7 +39,7 @@ class ImageMemory : public ::testing::Test {
   std::map<std::string, PreparedEstimator> estimators_;
 };
 
-// Of the pictures of `a` alone: a reference has none to keep, and the other is no image.
+// Only the pictures of `a` count: a reference keeps none, and the other is no image.
 TEST_F(ImageMemory, IsThatOfEveryNumberAndMore) {
   EXPECT_GT(picture_bytes(estimators_, {}), 4 * pictures * elements);
   EXPECT_LT(picture_bytes(estimators_, {}), 100 * pictures * elements);

@@ -11,7 +11,7 @@
 namespace assay::harness {
 namespace {
 
-// What is inverted numerically has a closed form here: mean -+ t s / sqrt n.
+// The numerical inverse has a closed form here: mean -+ t s / sqrt n.
 TEST(Inversion, OfStudentTIsItsInterval) {
   const stats::Moments x = tests::moments_of(tests::golden_x);
   for (const double confidence : {.5, .9, .99, 1 - 1e-8}) {

@@ -29,8 +29,8 @@ inline std::map<std::string, std::string> with_known_effects(
   return entries;
 }
 
-/// w of the triangle's draws over its cells: u and v / (1 - u) are uniform, where the declared
-/// density, 2, would have P(u <= x) = 1 - (1 - x)^2. The grid has 16 rows of equal area.
+/// The effect w of the triangle's draws over its cells. Draws of u and v / (1 - u) are uniform.
+/// The declared density, 2, has P(u <= x) = 1 - (1 - x)^2. The grid has 16 rows of equal area.
 inline double effect_of_triangle() {
   double w2 = 0;
   for (int row = 0; row < 16; ++row) {

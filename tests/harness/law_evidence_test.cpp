@@ -48,8 +48,8 @@ TEST(LawEvidence, SharesTheLevelBetweenPointsAndMissingMass) {
   EXPECT_NEAR(p_of(points_against_law(points, uniform_law(0.02))) / (4 * tail), 1, 1e-6);
 }
 
-// Of 20000 draws .04 yield no point where .01 should: some hundreds of standard errors of so rare a
-// thing, and less than the points' distance of .07.
+// In 20000 draws .04 yield no point where .01 should. That is some hundreds of standard errors, and
+// less than the points' distance of .07.
 TEST(LawEvidence, SaysOfWhichPartThePIsAtTheMarginThatIsTested) {
   tests::Philox random(1);
   Points points = uniform_points(20000, 800, random);
@@ -88,7 +88,7 @@ TEST(LawEvidence, AnIntervalReachesAsFarAsThatOfEitherPart) {
   }
 }
 
-// Of a table that is off by e the distance counts e less against the claim, e more for it.
+// A table's error e reduces the distance against the claim, and raises it for the claim.
 TEST(LawEvidence, TheTablesErrorCountsAgainstEveryConclusion) {
   tests::Philox random(1);
   const Points points = uniform_points(10000, 0, random);

@@ -200,9 +200,9 @@ TEST_F(Ledger, IsNotTouchedByARunWithoutIt) {
   EXPECT_FALSE(std::filesystem::exists(file()));
 }
 
-/// Ledgers of one test each, kept side by side: suites of estimators that differ in their mean have
-/// streams of their own. `shift` is theta, and `spread` the standard deviation of the reference's
-/// error, in standard errors of a night of 100 secondaries of standard deviation 1.
+/// Ledgers of one test each. Suites of estimators with different means have streams of their own.
+/// `shift` is theta, and `spread` the standard deviation of the reference's error. Both are in
+/// standard errors of a night of 100 secondaries of standard deviation 1.
 struct Series {
   std::uint64_t count;
   std::uint64_t nights;

@@ -1,6 +1,6 @@
-// False alarms: the p-values of single true claims, from YAML to the record, nothing taken apart.
-// Each is valid at .1, .01 and .001, and uniform where its method is exact: 1.3e-5 for each claim
-// that a sound engine is called wrong. The seeds are 1, 2, 3, ….
+// False alarms: p-values of single true claims, from YAML to the record. Each p-value is valid at
+// .1, .01 and .001, and uniform if its method is exact. A sound engine is called wrong with
+// probability 1.3e-5 for each claim. The seeds are 1, 2, 3, ….
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::string suite_of(const std::vector<TrueClaim>& claims) {
          tests;
 }
 
-/// Of tests of one look.
+/// Levels of tests of one look.
 void expect_level(std::uint64_t seeds, const std::vector<TrueClaim>& claims) {
   const std::string text = suite_of(claims);
   const auto outcomes = first_looks(seeds, text);
@@ -55,7 +55,7 @@ void expect_level(std::uint64_t seeds, const std::vector<TrueClaim>& claims) {
   expect_as_in_runs(text);
 }
 
-/// Of tests in looks, whole runs.
+/// Levels of tests in looks, over whole runs.
 void expect_level_in_looks(std::uint64_t runs, const TrueClaim& claim) {
   const auto outcomes = over_seeds(runs, [&](std::uint64_t) { return suite_of({claim}); });
   expect_p_value(claim.test, outcomes.at("0").log_p, Shape::at_most_uniform);
@@ -153,8 +153,8 @@ TEST(Level, AgainstAnUncertainReferenceIsWhatThePValuesSay) {
   expect_p_value("== up to 5 %", outcomes.at("2").log_p, Shape::at_most_uniform);
 }
 
-// x is nearly noiseless and E y lies .78 standard errors from 0: which side of it y falls on is
-// chance, and with it the sign of a relative margin.
+// x is nearly noiseless and E y lies .78 standard errors from 0. The side of 0 that y falls on is
+// chance, and so is the sign of a relative margin.
 TEST(Level, OfARelativeMarginOfAMeanNearZeroIsKept) {
   const std::string text = R"(suite: near zero
 estimators:

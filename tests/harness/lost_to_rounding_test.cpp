@@ -10,7 +10,7 @@ namespace {
 using reports::Verdict;
 using testing::HasSubstr;
 
-/// Of a true claim: a fail has probability 1e-6.
+/// A true claim: a fail has probability 1e-6.
 reports::Test at_offset(const std::string& mean, const std::string& test) {
   return run_test(
       "suite: offsets\nalpha: 1e-6\nestimators:\n  it: {plugin: analytic/normal, mean: " + mean +

@@ -23,7 +23,7 @@
 
 namespace assay::harness {
 
-/// What came of one test, seed after seed.
+/// The outcomes of one test, seed after seed.
 struct Outcomes {
   std::vector<double> log_p;       ///< of the claimed region; 0 where there was no test
   std::vector<double> log_p_pass;  ///< of the forbidden region, likewise
@@ -81,9 +81,8 @@ inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
   return prepared;
 }
 
-/// The first look of every test under a seed: ln p of both regions, without what a record adds to
-/// them, which takes a hundred times as long. That a run finds the same numbers is a test of its
-/// own.
+/// Takes ln p of both regions at the first look of every test, without what a record adds. A record
+/// takes a hundred times as long. Another test checks that a run finds the same numbers.
 inline void take_first_looks(const Prepared& prepared, std::uint64_t seed,
                              std::map<std::string, Outcomes>& outcomes) {
   Silence silence;

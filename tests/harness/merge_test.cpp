@@ -18,9 +18,9 @@ namespace {
 using reports::Verdict;
 using testing::HasSubstr;
 
-// Statements whose tests are of several shards, an estimator without a test, two of one plugin, a
-// mutant, an image, several channels, a law, and an estimator that a test's own observations do not
-// show (its draws alone are tested).
+// Statements have tests of several shards. The estimators include one without a test, two of one
+// plugin, a mutant, an image, one of several channels and a law. One estimator has only its draws
+// tested, so that a test's own observations do not show it.
 constexpr const char* suite = R"(suite: good
 estimators:
   uniform: {plugin: analytic/exponential_uniform, primaries: 64}
@@ -51,7 +51,7 @@ tests:
   - {name: no cosine, claim: mean(no_cosine) == analytic, detect: 5%, expect: fail}
 )";
 
-/// As it is written and read again.
+/// The record, written and read again.
 reports::Record saved(const reports::Record& record) {
   return reports::read_json(reports::json(record), "record");
 }
@@ -91,8 +91,8 @@ TEST(Merge, OfFilteredShardsIsOneFilteredRun) {
   EXPECT_EQ(numbers_of(merge(shards_of({file}, 3, options))), numbers_of(whole));
 }
 
-// The claim `close` is off by 2.7 standard errors of its 1000 observations, p = .007: above its
-// share .005 of alpha .01 and, once `far` is refuted, below the .01 that Holm leaves to it.
+// The claim `close` is off by 2.7 standard errors of its 1000 observations, p = .007. That is above
+// its share .005 of alpha .01. Once `far` is refuted, it is below the .01 that Holm leaves.
 TEST(Merge, RefutesWhatHolmOverTheWholeSuiteRefutes) {
   const std::string head =
       "suite: two\nestimators:\n  normal: {plugin: analytic/normal, mean: 2, primaries: 1}\n"
@@ -134,7 +134,7 @@ class Refusing : public testing::Test {
   std::string refused(const std::vector<ShardFile>& shards) {
     return refusal([&] { merge(shards); });
   }
-  /// Of the second shard run again with these options.
+  /// The refusal of a second shard that was run again with these options.
   std::string refused_with(RunOptions options) {
     options.shard = {2U, 2U};
     return refused({shards_[0], {"b.json", run_files({file_}, options)}});

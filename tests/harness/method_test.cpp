@@ -49,7 +49,7 @@ tests:
   - {name: fit, claim: distribution(hemisphere.direction) == density}
 )";
 
-/// What a side's data have here: they cannot be copied.
+/// A side's data, which cannot be copied.
 struct Side {
   std::uint64_t primaries = 1;
   stats::Moments moments = {};
@@ -70,8 +70,8 @@ Evidence evidence(const std::string& name, const std::vector<Side>& sides,
                      question, 0, data);
 }
 
-// Values 1, 2, 3, 4: mean 2.5, variance 5/3, standard error sqrt(5/12) = 0.645497; against 2
-// t = 0.774597 with 3 degrees of freedom, two-sided p = 0.495025 (R: t.test(1:4, mu = 2)).
+// Values 1, 2, 3, 4 have mean 2.5, variance 5/3 and standard error sqrt(5/12) = 0.645497. Against
+// 2, t = 0.774597 with 3 degrees of freedom; p = 0.495025 two-sided (R: t.test(1:4, mu = 2)).
 TEST(Method, TComparesAMeanWithItsReference) {
   const Evidence mean = evidence("mean", {{.moments = moments_of({1, 2, 3, 4})}});
   EXPECT_NEAR(mean.at(0).statistic, 0.774597, 1e-6);
@@ -156,7 +156,7 @@ TEST(Method, IntervalsEndWhereTheTestBeginsToReject) {
   check(evidence("variances", {{.moments = x}, {.moments = y}}, "log-variance"), "of two");
 }
 
-// Of 0.1, 0.2, …, 0.9 as probabilities of the claimed law the distance is 0.1.
+// Probabilities 0.1, 0.2, …, 0.9 of the claimed law have the distance 0.1.
 TEST(Method, KolmogorovSmirnovMeasuresTheLargestDistance) {
   std::vector<double> values;
   for (int i = 1; i <= 9; ++i) {

@@ -60,9 +60,9 @@ void expect_passes_at_beta(const std::string& name, const Outcomes& outcomes, do
   }
 }
 
-// One look at an alpha that nothing reaches, or little where a method is not valid so far out:
-// passes are then beta's alone, and the p-value of the forbidden region is uniform where its method
-// is exact. Wrong alarms: 1.3e-5 for each claim.
+// One look has so small an alpha that beta alone decides passes. `level` is larger for methods that
+// are not valid so far out. The p-value of the forbidden region is uniform if its method is exact.
+// Wrong alarms: 1.3e-5 for each claim.
 void expect_misses(const std::vector<AtTheEdge>& claims, double level = 1e-6) {
   const std::string text = suite_of(claims, level, true);
   const auto outcomes = first_looks(2000, text);

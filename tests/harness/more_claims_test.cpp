@@ -1,6 +1,6 @@
-// Claims about bias, cost, efficiency, quantiles, total and worst variance and slopes, from YAML to
-// verdict: what is true passes, each quantity's defect fails, and true claims raise an alarm no
-// more often than alpha says.
+// Claims about bias, cost, efficiency, quantiles, variances and slopes, from YAML to verdict. True
+// claims pass, and each quantity's defect fails. True claims raise an alarm no more often than
+// alpha.
 
 #include <gtest/gtest.h>
 
@@ -54,8 +54,8 @@ TEST(MoreClaims, OfAFactorSayWhatTheEffectIsAgainst) {
   EXPECT_EQ(quantity("mean(uniform) == mean(scaled)"), "relative difference of means");
 }
 
-// As many zeros as ones have kurtosis 1, which rounding takes below it: what would have been
-// noticed was asked for all the same, and ended the run.
+// Zeros and ones in equal number have kurtosis 1, and rounding takes it below 1. That must not end
+// the run with an error.
 TEST(MoreClaims, AVarianceOfTwoValuesIsComparedWhateverItsRounding) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const reports::Test test = run_test(
@@ -192,8 +192,9 @@ TEST(EfficiencyClaim, WeighsVarianceAgainstCost) {
 }
 
 TEST(EfficiencyClaim, OfABiasedEstimatorTakesTheMeanSquaredError) {
-  // Of 64 primaries the original has the variance 0.416, the mutant 1.1025 times that: efficiency
-  // 0.907. Its bias of 0.318 makes the mean squared error 0.560: efficiency 0.743.
+  // With 64 primaries the original has the variance 0.416. The mutant has 1.1025 times that, so its
+  // efficiency is 0.907. Its bias of 0.318 makes the mean squared error 0.560, and the efficiency
+  // 0.743.
   EXPECT_EQ(verdict_of("{claim: efficiency(scaled) >= 0.85 * efficiency(uniform), cost: samples, "
                        "detect: 10%}"),
             Verdict::pass);
@@ -331,8 +332,8 @@ TEST(WorstVarianceClaim, IsAboutEveryChannel) {
   EXPECT_EQ(verdict_of("{claim: worst_variance(normal) <= 0.7, detect: 20%}"), Verdict::fail);
 }
 
-/// Whether so many alarms in 200 runs of true claims are likelier than 1e-5 at a rate of alpha =
-/// 0.1 (the suite's); seeds 1, 2, 3, ….
+/// True if so many alarms in 200 runs of true claims are likelier than 1e-5 at alpha = 0.1, the
+/// suite's. The seeds are 1, 2, 3, ….
 bool keeps_alpha(const std::string& test) {
   constexpr std::uint64_t runs = 200;
   std::string text = estimators + test + "\n";

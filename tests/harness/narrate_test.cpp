@@ -43,7 +43,8 @@ TEST(Narrate, PassSaysWhatIsExcluded) {
   expect_said(test, Verdict::pass, " % or more is excluded");
 }
 
-// What only the pilot knows is no mistake for certain: a seed could make it one.
+// Only the pilot knows the other mean, and another seed may change it. So this is no mistake for
+// certain.
 TEST(Narrate, PassByAMarginBeyondTheOtherMeanSaysSo) {
   const auto beside_rows = [](double mean, const std::string& margin) {
     const Workplace place;
@@ -123,7 +124,7 @@ TEST(Narrate, WithoutANumberSaysThatThereIsNone) {
                        "(98 % interval), p = "));
 }
 
-// Of an interval that even no effect lies outside of, its end excludes nothing.
+// An interval that excludes even no effect has an end that excludes nothing.
 TEST(Narrate, PassWithAnEmptyIntervalSaysWhatTheTestExcludes) {
   const auto asked = ask_text(R"(suite: even
 estimators: {area: {plugin: luminaire/area}}
@@ -172,7 +173,7 @@ TEST(Narrate, NeverSaysThatAClaimIsAccepted) {
   EXPECT_EQ(told("claim: mean(normal) == 2").message.find("accept"), std::string::npos);
 }
 
-// Of an inequality, how much of its room is left; an effect the other way is no threat.
+// An inequality tells how much of its room is left; an effect the other way is no threat.
 TEST(Narrate, OneSidedPassSaysHowMuchThereIsToSpare) {
   expect_said(told("claim: mean(normal) <= 4, detect: 10%, secondaries: 1000"), Verdict::pass,
               "no evidence against the claim, which holds with 4");
@@ -220,9 +221,9 @@ TEST(Narrate, InconclusiveSaysHowManyPrimariesThatWouldBe) {
   EXPECT_NEAR(primaries / secondaries, 16, 1) << "two digits of each are shown";
 }
 
-// (2.576 + 2.326)^2 / .8^2 = 37.5 observations of deviation 1. From three the deviation is read off
-// a t interval with 2 degrees of freedom, nine times as wide as a normal one in the square. That
-// the mean of s^2 over 20 seeds exceeds 2 has the probability 2e-4.
+// (2.576 + 2.326)^2 / .8^2 = 37.5 observations of deviation 1 are needed. Three observations
+// estimate the deviation with 2 degrees of freedom. Their squared t interval is nine times as wide
+// as a normal one. The mean of s^2 over 20 seeds exceeds 2 with probability 2e-4.
 TEST(Narrate, AdviceFromFewObservationsIsNotThatOfTheirWideInterval) {
   double sum = 0;
   int told = 0;

@@ -29,7 +29,7 @@ using ::testing::Not;
 constexpr int width = 16;
 constexpr int height = 12;
 
-// Pictures of R, G, B with mean 1 + x / 16 and a normal error of a tenth of it; in `block` of them
+// Pictures of R, G, B with mean 1 + x / 16 and a normal error of a tenth of it. In `block` of them,
 // 8 x 8 pixels are brighter by a tenth.
 struct Stack {
   std::string name;
@@ -149,7 +149,7 @@ TEST(PictureClaims, WithATexelThatIsNoNumberSayWhichAndWhere) {
   EXPECT_THAT(test.message, HasSubstr("b07.exr`"));
 }
 
-// Of what is kept beside them: values for the second claim, costs for the third.
+// The second claim keeps values beside the pictures, the third costs.
 constexpr const char* three_claims =
     "mean(a) == mean(b)\n"
     "  - claim: distribution(a.average) == distribution(b.average)\n"
@@ -209,10 +209,8 @@ TEST(PictureClaims, PicturesOfOneValueAreNoCopies) {
               HasSubstr("all images of `a` are alike, and all of `b` are alike: without spread"));
 }
 
-// Sixteen pictures whose pixels have skewness 2, against the exact one. Judged pixel by pixel, as
-// pictures too few for a pilot were, a true claim failed in 26 of 40 at this level; with flips of
-// signs, which take differences for symmetric, in as many. Wrong alarm: 10 or more of 40 by chance
-// in one of 2e4 runs, each.
+// Sixteen pictures, whose pixels have skewness 2, stand against the exact one. Chance makes 10 or
+// more of 40 fail with probability 5e-5.
 void expect_few_skewed_pictures_to_hold(const std::string& pixels) {
   const Workplace place;
   tests::Philox random(77);
@@ -246,8 +244,8 @@ TEST(PictureClaims, FewSkewedPicturesOfDependentPixelsAreJudgedInLargeCells) {
   expect_few_skewed_pictures_to_hold("dependent");
 }
 
-// What a renderer gives that uses three bits of its seed: files that stand for one are refused, but
-// a program's pictures may repeat by right.
+// A renderer uses three bits of its seed. Repeated files are refused, but a program's pictures may
+// repeat.
 TEST(PictureClaims, PicturesThatAProgramRepeatsAreCounted) {
   const Workplace place;
   write_stack(place, {"a", 1, false, 8});
@@ -322,7 +320,7 @@ TEST(PictureClaims, AReferenceIsHeldAgainstWithItsError) {
   };
   EXPECT_EQ(verdict(", exact: true"), Verdict::fail);
   EXPECT_THAT(message, HasSubstr("`b` is one picture, taken as exact"));
-  // Of an error a hundred times as large nothing can be said: it is within.
+  // The variance of one sample hides the difference.
   EXPECT_EQ(verdict(", variance: Variance.*, samples: 1"), Verdict::pass);
   EXPECT_EQ(verdict(", variance: Variance.*, samples: 1000"), Verdict::fail);
   EXPECT_THAT(message, Not(HasSubstr("taken as exact")));

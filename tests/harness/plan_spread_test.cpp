@@ -9,8 +9,8 @@
 namespace assay::harness {
 namespace {
 
-// A ratio of sums over 4096 has the shape of a normal law, of which a pilot of 512 shows a kurtosis
-// beyond the bound in one of four runs.
+// A ratio of sums over 4096 is near normal. One pilot of 512 in four shows a kurtosis beyond the
+// bound.
 TEST(Plan, OfFewNearNormalObservationsChiSquareStands) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const Planned few = plan_text("  - {claim: variance(ratio) <= 1, secondaries: 500}\n", seed);
@@ -21,8 +21,9 @@ TEST(Plan, OfFewNearNormalObservationsChiSquareStands) {
   EXPECT_NE(skewed.plans[0].invalid, "");
 }
 
-// Each allows for the kurtosis that the pilot cannot exclude, where that is beyond what it bears:
-// of 512 values some .36, of 8192 primaries in means of 64 next to nothing. A forced one does not.
+// Each plan allows for the kurtosis that the pilot cannot exclude, beyond what the test bears. That
+// is some .36 with 512 values, and next to nothing with 8192 primaries in means of 64. A forced
+// test does not allow for it.
 TEST(Plan, OfFewNearNormalObservationsTheirKurtosisIsAllowedFor) {
   const Planned planned = plan_text(
       "  - {name: few, claim: variance(ratio) <= 1, secondaries: 500}\n"
@@ -43,8 +44,8 @@ TEST(Plan, OfFewNearNormalObservationsTheirKurtosisIsAllowedFor) {
   EXPECT_EQ(allowed(3).y, limit);
 }
 
-// Variances of eight fair coins are skewed to the left (-2.2), and so is their mean's logarithm: of
-// 1000 coins `<=` failed at .001 eight times too often. Of normal values they are not.
+// Variances of eight fair coins are skewed to the left (-2.2), and so is the logarithm of their
+// mean. Variances of normal values are not.
 TEST(Plan, OfTotalVariancesTheGroupsAreNearNormal) {
   const Planned planned = plan_text(
       "  - {name: coin, claim: total_variance(coin) <= 0.25}\n"
@@ -54,7 +55,7 @@ TEST(Plan, OfTotalVariancesTheGroupsAreNearNormal) {
   EXPECT_EQ(planned.plans[0].invalid, "");
 }
 
-// What is drawn decides nothing: no more of it than a test without `detect` takes.
+// The draws decide nothing, so there are no more than a test without `detect` takes.
 TEST(Plan, OfAClaimThatIsInvalidDrawsLittle) {
   const Planned planned = plan_text(
       "  - {claim: variance(heavier-single) <= 100, detect: 1%}\n"
@@ -65,8 +66,8 @@ TEST(Plan, OfAClaimThatIsInvalidDrawsLittle) {
   EXPECT_EQ(planned.plans[1].looks.sizes, std::vector<std::uint64_t>{2000});
 }
 
-// Both show a heavy tail in the 512 values of their pilots, with kurtoses of some 500 and of 23; in
-// 400,000 values the second has one of 24.
+// Both pilots of 512 values show a heavy tail, with kurtoses of some 500 and of 23. In 400,000
+// values the second has a kurtosis of 24.
 TEST(Plan, OfFewValuesATailIsHeavyWhereTheKurtosisIsToo) {
   const Planned heavy = plan_text("  - {claim: variance(corners) <= 100}\n");
   EXPECT_NE(heavy.plans[0].invalid.find("tail is too heavy"), std::string::npos);

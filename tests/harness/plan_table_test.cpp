@@ -90,9 +90,9 @@ TEST(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
   EXPECT_GT(cost.seconds, 0);
 }
 
-// What a plan says that a fixed number of observations finds, the run then says of its own data.
-// The spreads of logarithms come from pilots of 8192 primaries: both agree to a tenth, where they
-// would be off by the square root of two for a second source that is forgotten.
+// A plan foretells the effect that a fixed number of observations finds, and the run finds it in
+// its data. Pilots of 8192 primaries give the spreads of logarithms, so both agree to a tenth. A
+// forgotten second source would make them differ by the square root of two.
 TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
   const Workplace place;
   const std::string text =
@@ -117,9 +117,8 @@ TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
   }
 }
 
-// 500 means of four normal values of deviation 1: with alpha and beta .05, both one-sided tests
-// reject where the margin is (1.645 + 1.960) .5 / sqrt 500. The deviation is a pilot's of 2048 of
-// them.
+// 500 means of four normal values of deviation 1, with alpha and beta .05. Both one-sided tests
+// reject where the margin is (1.645 + 1.960) .5 / sqrt 500. A pilot of 2048 gives the deviation.
 TEST(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
   const Workplace place;
   const std::string text =
@@ -214,9 +213,9 @@ TEST(PlanTable, NothingSelectedIsNothingPlanned) {
   EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 4);
 }
 
-// The bound on the share must hold for the mean of runs: 40 seeds, normal data, theta = 0. The mean
-// share of the runs has a standard error below 0.05 (each lies in (0, 1], most near the bound), so
-// that it exceeds the bound by 0.2, four of them, with probability 3e-5 at most.
+// The bound on the share must hold for the mean of 40 seeds; data are normal and theta = 0. A share
+// lies in (0, 1], so its mean has a standard error below 0.05. It exceeds the bound by 0.2, four
+// errors, with probability 3e-5 at most.
 TEST(Forecast, BoundsTheMeanShareOfALastLook) {
   const Workplace place;
   const std::vector<Suite> suites = {load_suite(place.write("share.yaml", R"(suite: share

@@ -21,8 +21,8 @@ TEST(Plan, WithoutDetectIsClassical) {
   EXPECT_EQ(planned.plans[0].method.name, "t");
 }
 
-// Values in [0.4, 10.6]: whatever their deviation, the empirical bound is at least 7 ln(2 / .01)
-// 10.2 / (3 (n - 1)) wide (Maurer and Pontil 2009), below 0.5 from n = 253 on.
+// Values lie in [0.4, 10.6]. The empirical bound is at least 7 ln(2 / .01) 10.2 / (3 (n - 1)) wide
+// (Maurer and Pontil 2009). It is below 0.5 from n = 253 on.
 TEST(Plan, AMarginIsPlannedByTheMethodThatDecides) {
   const Planned planned = plan_text("  - {claim: mean(spike) within 0.5 of analytic}\n");
   EXPECT_EQ(planned.plans[0].method.name, "bounded");
@@ -35,8 +35,8 @@ TEST(Plan, ObeysFixedSecondaries) {
   EXPECT_EQ(planned.plans[0].most_secondaries(), 123);
 }
 
-// sigma = 1 is known to the pilot of 8192 up to exp(3.09 sqrt(2 / 8192)) - 1 = 4.9 % of the
-// variance (its own error as much again): between the n of sigma^2 = 1 and that of 1.12.
+// A pilot of 8192 knows the variance 1 up to exp(3.09 sqrt(2 / 8192)) - 1 = 4.9 %. Its own error
+// is as much. So n lies between that of variance 1 and that of 1.12.
 TEST(Plan, FindsDetectWithTheSuitesErrorRates) {
   const Planned planned = plan_text("  - {claim: mean(single) == 2, detect: 2%}\n");
   // Doubling from 100 to some 15,000 takes nine looks, each with a ninth of the errors.
@@ -58,9 +58,9 @@ TEST(Plan, FindsDetectWithTheSuitesErrorRates) {
   EXPECT_LE(static_cast<double>(planned.plans[0].most_secondaries()), exact(1.12));
 }
 
-// Two one-sided tests at the last look's share of beta, each missing with half of it: SE = margin /
-// (z_b + z_b/2). The variance of ln s2 is (kurtosis - 1) / n, and the pilot of 8192 has a
-// kurtosis of 3 +- .054: four of these are 11 % of n, 1e-4.
+// Two one-sided tests share the last look's beta, each with half of it: SE = margin / (z_b +
+// z_b/2). The variance of ln s2 is (kurtosis - 1) / n. A pilot of 8192 has a kurtosis of 3 +- .054;
+// four of these are 11 % of n, 1e-4.
 TEST(Plan, OfWithinGivesBothMarginsTheirShareOfBeta) {
   const Planned planned = plan_text("  - {claim: variance(single) within 25% of 1}\n");
   const stats::LookSchedule& looks = planned.plans[0].looks;
@@ -71,9 +71,9 @@ TEST(Plan, OfWithinGivesBothMarginsTheirShareOfBeta) {
   EXPECT_NEAR(n * wanted * wanted / 2, 1, 0.11);
 }
 
-// SE^2 = (.05 / (z_.005 + z_.01))^2 of a median whose spread is sqrt(1 / 4) over the density: 1 on
-// the unit interval, where a normal law of the same deviation has 1.38 and too few would be drawn.
-// The pilot's count of 410 within .05 is taken two of its errors too low: 11 %, and 1.23 of n.
+// SE^2 = (.05 / (z_.005 + z_.01))^2 of a median whose spread is sqrt(1 / 4) over the density. The
+// density is 1 on the unit interval; a normal law of that deviation has 1.38. The pilot counts 410
+// within .05, less two errors: 11 %, and 1.23 of n.
 TEST(Plan, OfAQuantileCountsThePilotsValues) {
   const Planned planned = plan_text("  - {claim: \"quantile(flat, 0.5) == 0.5\", detect: 0.05}\n");
   const double share = 0.01 * planned.plans[0].looks.weights.back();
@@ -150,8 +150,8 @@ TEST(Plan, MovesToLogVarianceWhereSecondariesAreNotNormal) {
   EXPECT_NE(skewed.plans[0].invalid.find("tail is too heavy"), std::string::npos);
 }
 
-// 8192 primaries see nothing of a spike of probability 1e-9: as many are planned as bound what it
-// may add, where that is within reach, and the classical number where it is not.
+// 8192 primaries miss a spike of probability 1e-9. The plan takes as many as bound its contribution
+// if that is within reach, else the default number.
 TEST(Plan, OfAConstantInADeclaredRangeBoundsWhatWasNotSeen) {
   const Planned planned = plan_text(
       "  - {claim: mean(unseen) == 0.5, detect: 1%}\n"
@@ -165,8 +165,8 @@ TEST(Plan, OfAConstantInADeclaredRangeBoundsWhatWasNotSeen) {
   EXPECT_EQ(planned.plans[2].most_secondaries(), usual_secondaries);
 }
 
-// A Pareto law of index 3 shows a skewness of some 5 in its pilot: the t test is right within a
-// quarter from some 10,000 values on, the corrected one from some 1000.
+// A Pareto law of index 3 has a skewness of some 5 in its pilot. The t test is right within a
+// quarter from some 10,000 values on, the corrected test from some 1000.
 TEST(Plan, CorrectsForSkewnessWhereTheTTestWouldNeedMore) {
   const Planned heavy = plan_text("  - {claim: mean(heavy-single) == 1.5, secondaries: 3000}\n");
   EXPECT_EQ(heavy.plans[0].method.name, "skewness-corrected-t");
@@ -222,8 +222,8 @@ TEST(Plan, AForcedLogarithmShowsThatItHasTooFewValues) {
   EXPECT_FALSE(too_few("claim: cost(hemisphere) <= 2, test: log-cost"));
 }
 
-// Of the mean of `corners` 512 values of its pilot are known, of its variance 8192, the same 512
-// among them. `ratio` is near normal, and who asks for 600 observations needs no more.
+// The pilot has 512 values for the mean of `corners`. It has 8192 for its variance, the same 512
+// among them. The law of `ratio` is near normal; a test of 600 observations needs no more.
 TEST(Plan, OfAVarianceFarFromNormalThePilotIsLarger) {
   const Workplace place;
   const auto piloted = [&](const std::string& tests, RunOptions options = {}) {

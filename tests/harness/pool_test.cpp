@@ -120,8 +120,8 @@ class NotingSetup final : public Setup {
   std::string& order_;
 };
 
-// What is compared by its seconds is timed side by side: at any time as large a part of one pool is
-// drawn as of the other, but for a block, though one has four times as many observations.
+// Pools whose seconds are compared are drawn side by side. At any time, equal parts of both are
+// drawn, up to a block, though one has four times as many observations.
 TEST(Pool, OfWhichSecondsAreComparedAreDrawnSideBySide) {
   std::string order;
   std::vector<std::shared_ptr<Pool>> pools;
@@ -160,7 +160,7 @@ TEST(Pool, OfEveryThreadCountHasTheSameBits) {
   }
 }
 
-// Of 5 primaries, and nothing drawn.
+// A pool of 5 primaries, with nothing drawn.
 std::shared_ptr<Pool> marked(std::uint64_t count) {
   const StreamKey key = stream_key(1, "test/sums", "", 0);
   auto pool = std::make_shared<Pool>(std::make_shared<SumsSetup>(), key, 5);

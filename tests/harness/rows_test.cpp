@@ -71,8 +71,8 @@ TEST(Rows, TooFewToShowThatTheyAreIndependentAreInvalid) {
   EXPECT_EQ(enough.verdict, Verdict::pass) << enough.message;
 }
 
-// A column that never varies beside one that does: what is said is of the one that does, and where
-// the constant decides it is named.
+// A column that never varies stands beside one that does. The message is about the column that
+// varies; if the constant decides, the message names it.
 TEST(Rows, AConstantColumnSpeaksForItselfAlone) {
   std::string text = "# columns: moving still\n";
   for (const double value : rows_of(500, 3, normal)) text += fmt::format("{} 2\n", 2 + value);
@@ -281,7 +281,7 @@ TEST(Rows, OfBothSidesMustNotBeTheSame) {
                 AllOf(HasSubstr("`a` and `b` are no independent samples: rows 1 to 40 of `"),
                       HasSubstr("left.txt` are rows 61 to 100 of `"), HasSubstr("right.txt`")));
   }
-  // What is not held against each other may be the same.
+  // Files that are not compared with each other may be the same.
   EXPECT_EQ(refusal_of_two(left, right, "mean(a) == 0}\n  - {claim: mean(c) == 0"),
             "(nothing was refused)");
 }

@@ -126,7 +126,7 @@ tests:
   EXPECT_EQ(refused("seed2.txt"), "(nothing was refused)");
 }
 
-// What `sample` prints, `recorded` reads: the moments are those of the estimator itself.
+// `recorded` reads the output of `sample`; its moments are those of the estimator.
 TEST(Sample, IsWhatRecordedReads) {
   const Workplace place;
   place.write("data.txt",

@@ -74,7 +74,7 @@ class Elsewhere final : public Ramp {
   static void require(bool there, const char* what) {
     if (!there) throw std::runtime_error(what);
   }
-  /// Of the first few, up to one that cannot be had; it throws where that is the first.
+  /// Writes up to the first that cannot be had, and returns the count; throws if that is the first.
   std::size_t some(std::size_t count, const auto& write) const {
     for (std::size_t i = 0; i < std::min(count, limits_.at_once); ++i) {
       try {
@@ -97,7 +97,7 @@ struct Drawn {
   std::string trouble = "";
 };
 
-/// As a pool draws them, block by block, up to the first that cannot be had.
+/// Draws as a pool does, block by block, up to the first draw that cannot be had.
 Drawn draw(const Setup& setup, std::uint64_t count, StreamKey key) {
   Drawn drawn;
   const auto estimator = setup.make();

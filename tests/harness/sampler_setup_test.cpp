@@ -20,8 +20,8 @@ std::shared_ptr<const SamplerSetup> setup_around(const Sampler& sampler) {
       NamedSampler{"test", std::shared_ptr<const Sampler>(std::shared_ptr<void>(), &sampler)});
 }
 
-// With the incident direction along the normal the half vector's angle is theta / 2 and
-// P(theta <= t) = 1 - exp(-tan^2(t / 2) / alpha^2), over its value at the horizon (Walter 2005).
+// The incident direction is the normal, so the half vector's angle is theta / 2. P(theta <= t) = 1
+// - exp(-tan^2(t / 2) / alpha^2), over its value at the horizon (Walter 2005).
 TEST(SamplerSetup, PolarAngleOfANarrowLobeFollowsItsClosedForm) {
   for (const double alpha : {0.02, 0.05, 0.4}) {
     const std::string a = std::to_string(alpha);
@@ -75,7 +75,7 @@ TEST(SamplerSetup, IsOneForOneSampler) {
   EXPECT_EQ(asked->question("a").subjects[0].setup, asked->question("b").subjects[0].setup);
 }
 
-// Of the grid's cells one has a fifth of the lobe.
+// One of the grid's cells has a fifth of the lobe.
 TEST(SamplerSetup, ANarrowLobeIsCountedInCellsOfItsOwn) {
   const auto setup = setup_of(
       "{plugin: brdf/ward, alpha_x: 0.02, alpha_y: 0.02, theta_i: 0.8, phi_i: 0}", "direction");

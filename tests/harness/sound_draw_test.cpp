@@ -12,7 +12,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Of a domain, whose draws are all the same.
+/// A sampler of this domain whose draws are all the same.
 class Always final : public Sampler {
  public:
   struct Terms {
@@ -98,7 +98,7 @@ TEST(SoundDraw, RoundingIsTakenToTheBorder) {
             1000.2);
   EXPECT_EQ(settled({Domain::square}, {-1e-7, 1.0000001, 0}), (Point{0, 1, 0}));
   EXPECT_EQ(settled({Domain::triangle}, {-1e-7, .5, 0}), (Point{0, .5, 0}));
-  // As much as the sampler says of itself, and no more.
+  // Rounding counts as far as the sampler declares it, and no further.
   EXPECT_EQ(settled({.domain = Domain::square, .rounding = 1e-3}, {1.0005, 0, 0})[0], 1);
   EXPECT_NE(refused({.domain = Domain::square, .rounding = 1e-3}, Point{1.002, 0, 0}), "");
   EXPECT_NE(refused({Domain::square}, Point{1.00001, 0, 0}), "");

@@ -20,7 +20,7 @@ using testing::ElementsAreArray;
 
 const std::string suites = std::string(ASSAY_SOURCE_DIR) + "/suites/";
 
-/// What the schema says of a key of a test. JSON is YAML.
+/// The schema of a test's key. JSON is YAML.
 Value schema_of(const std::string& key) {
   static const Document schema = read_yaml_file(suites + "suite.schema.json");
   return *schema.root().find("definitions")->find("test")->find("properties")->find(key);

@@ -44,8 +44,8 @@ TEST(SuiteStatements, NamesTestsByNameClaimOrGlob) {
   EXPECT_EQ(suite.statements[2].where.line, 13);
 }
 
-// Seed 1. A mean that is twice itself and a variance half of itself are off by 60 standard errors
-// and more; a right mean fails with probability 0.01 at most.
+// Seed 1. The doubled mean and the halved variance are off by 60 standard errors and more. A right
+// mean fails with probability 0.01 at most.
 TEST(SuiteStatements, AreAnsweredByTheVerdictsOfARun) {
   const reports::Record record = run_text(suite_text, {.threads = 1});
   ASSERT_EQ(record.suites.at(0).statements.size(), 3U);

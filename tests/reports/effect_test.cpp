@@ -55,7 +55,7 @@ TEST(Effects, AnOpenEndIsNotShownAsANumber) {
   EXPECT_EQ(interval_text({"difference", 1.0, {}, {}, 0.99, false}), "");
 }
 
-// As it is written in a suite: detect: 20% of a ratio is ln 1.2.
+// A suite writes it as `detect: 20%`; for a ratio that is ln 1.2.
 TEST(Effects, AMarginIsShownInTheFormOfItsEffect) {
   EXPECT_EQ(margin_text(std::log(1.2), ratio(1, 1, 1)), "20\u00A0%");
   EXPECT_EQ(margin_text(std::log(1.2), ratio(3, 2, 4)), "a factor of 1.2");

@@ -1,8 +1,8 @@
 #pragma once
 
-// Records to look at and to compare with approved files: every verdict, several channels, missing
-// numbers, and text that no writer may pass on as it is. Made without random numbers and without
-// functions whose last digit depends on the machine.
+// Records for approved files: every verdict, several channels, missing numbers, and text that every
+// writer must escape. No random numbers, and no functions whose last digit depends on the machine,
+// take part.
 
 #include "reports/record/record.h"
 

@@ -81,7 +81,7 @@ Channel channel(const std::string& name, const Effect& effect) {
 
 namespace {
 
-// Of nine values of a uniform law on [0, 1]; the claimed law is null where there is none.
+// Nine values of a uniform law on [0, 1]; the claimed law is null if there is none.
 EmpiricalLaw empirical_law(const std::string& source, double shift, bool claimed) {
   EmpiricalLaw law{.source = source, .confidence = 0.99};
   for (int i = 1; i < 10; ++i) {

@@ -15,7 +15,7 @@ struct Law {
   double bend = 0;
 };
 
-/// What a test keeps of one estimator whose observations follow this law.
+/// A test's sample of one estimator whose observations follow this law.
 Sample sample(const std::string& estimator, const Law& law);
 
 /// The relative difference of two means, with its 99 % interval.
@@ -24,7 +24,7 @@ Effect mean_effect(double estimate, double half_width);
 /// A channel of a test that finds nothing.
 Channel channel(const std::string& name, const Effect& effect);
 
-/// What all the tests have in common; the claim, which is also the name, and its line in the suite.
+/// The common part of all tests: the claim, which is also the name, and its line in the suite.
 Test base(const std::string& name, int line);
 
 Test passing();

@@ -31,7 +31,7 @@ std::string contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Where two texts part, with some of what follows: a whole report helps nobody.
+// The place where two texts part, with some of the text that follows.
 std::string first_difference(const std::string& a, const std::string& b) {
   const auto at = static_cast<std::size_t>(
       std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());

@@ -273,8 +273,7 @@ TEST(Html, ASuiteWithoutAFileLeavesNoGap) {
   EXPECT_EQ(html(record).find("<span></span>"), std::string::npos);
 }
 
-// Of several channels the overview shows the one that the verdict rests on: what the message is
-// about.
+// The overview shows the channel that the verdict rests on; the message is about it.
 TEST(Html, TheOverviewShowsTheChannelThatDecides) {
   reports::Test test = example_record().suites[0].tests[0];
   test.channels.push_back(test.channels[0]);

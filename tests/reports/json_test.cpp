@@ -125,8 +125,8 @@ TEST(Json, DoublesReadBackBitForBit) {
   }
 }
 
-// The keys that stand anywhere in the tree, by the name of their object, with whether any of them
-// has a value other than the default.
+// The keys anywhere in the tree, by the name of their object. The value is true if any of them
+// differs from the default.
 void collect(const Json& node, const std::string& owner, std::map<std::string, bool>& keys) {
   for (const auto& item : node.items()) {
     const Json& value = item.value();

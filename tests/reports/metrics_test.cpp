@@ -17,9 +17,9 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Reads OpenMetrics 1.0 as far as gauges need it (its ABNF: metric families of HELP and TYPE, then
-/// samples `name{label="escaped",…} number`, once each, and a last line `# EOF`). What is wrong
-/// with a text, or "".
+/// Reads OpenMetrics 1.0 as far as gauges need it. Its grammar: families of HELP and TYPE, then
+/// samples `name{label="escaped",…} number`, each once, and a last line `# EOF`. Returns the
+/// mistake in a text, or "".
 class Reader {
  public:
   std::string wrong_with(const std::string& text) {

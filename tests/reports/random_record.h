@@ -59,7 +59,7 @@ class Randomise {
     values.resize(*rc::gen::inRange<std::size_t>(0, 3));
     for (T& value : values) fill(value);
   }
-  // As many numbers as elements.
+  // Gives a map as many numbers as elements.
   static void fill(Map& map) {
     Randomise inner;
     fields(inner, map);

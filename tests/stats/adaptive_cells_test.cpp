@@ -44,7 +44,7 @@ void expect_a_partition(const HalvedCells& cells) {
   EXPECT_NEAR(area, 1, 1e-12);
 }
 
-// Of 4 x y a cell has the product of the differences of squares.
+// The law 4 x y gives a cell the product of the differences of squares.
 TEST(AdaptiveCells, EveryCellHasItsMassAndNoMoreThanItsShare) {
   const auto found = adaptive_cells(
       unit_grid(4, 4), on_unit_square([](double x, double y) { return 4 * x * y; }), 1.0 / 64);
@@ -55,7 +55,7 @@ TEST(AdaptiveCells, EveryCellHasItsMassAndNoMoreThanItsShare) {
     EXPECT_LE(found.mass.probability[i], 1.0 / 64);
   }
   EXPECT_NEAR(found.mass.total, 1, 1e-12);
-  // (7/16)^2 of the mass is in one cell of the grid, which needs 16 parts; (1/16)^2 in another.
+  // One cell of the grid has (7/16)^2 of the mass and needs 16 parts; another has (1/16)^2.
   EXPECT_GT(found.cells.size(), 64U);
   EXPECT_LT(found.cells.size(), 160U);
   expect_a_partition(found.cells);
@@ -80,7 +80,7 @@ TEST(AdaptiveCells, OneLobeOfSeveralHasItsShareOfOne) {
   EXPECT_EQ(part(10), part(1)) << "a density that is none gets no more cells than one";
 }
 
-/// A normal law of this deviation about a point, cut off nowhere: all but 1e-9 is on the square.
+/// A normal law of this deviation about a point. All but 1e-9 of it is on the square.
 struct Peak {
   double x;
   double y;
@@ -135,8 +135,8 @@ CellCounts counts_of(Philox& random, const AdaptiveCells& found, double deviatio
   return counts;
 }
 
-// Four thousand points of a peak a fifth too wide. Of the grid's own cells one holds nearly all
-// of it, and there is nothing to test. False alarm 1e-5 (tests/stats/calibration.h).
+// Four thousand points of a peak a fifth too wide. One of the grid's own cells holds nearly all of
+// it, so the grid can test nothing. False alarm 1e-5 (tests/stats/calibration.h).
 TEST(AdaptiveCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
   const auto cells = [](double share) {
     return adaptive_cells(unit_grid(16, 32), density_of(narrow), share);
@@ -159,7 +159,7 @@ TEST(AdaptiveCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
   EXPECT_THROW(fit(coarse, 1)(random), std::domain_error) << "one pool";
 }
 
-// A ridge along y: cut across until it is as wide as its cell, and no cell along y in vain.
+// A ridge along y is cut across until it is as wide as its cell, and never along y.
 TEST(AdaptiveCells, ARidgeIsCutAcross) {
   const auto ridge = [](double x, double) {
     return std::exp(-(x - .3) * (x - .3) / 2e-4) / std::sqrt(2e-4 * std::numbers::pi);
@@ -176,7 +176,7 @@ TEST(AdaptiveCells, ARidgeIsCutAcross) {
   EXPECT_LE(*std::ranges::max_element(found.mass.probability), 1.0 / 16);
 }
 
-// Nearly all mass on one double: its cell is halved until no number lies between its ends, or 48
+// Nearly all mass is on one double. Its cell is halved until no number lies between its ends, or 48
 // times.
 TEST(AdaptiveCells, ACellIsNotHalvedIntoNothing) {
   const double spike = .3;

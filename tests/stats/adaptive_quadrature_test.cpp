@@ -27,7 +27,7 @@ std::vector<Line> lines() {
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
-/// That along() is over() line by line, and leaves the rule in the same state.
+/// Checks that along() is over() line by line and leaves the rule in the same state.
 void expect_the_same(QuadratureLimits limits) {
   AdaptiveQuadrature together(limits);
   AdaptiveQuadrature apart(limits);
@@ -88,11 +88,11 @@ TEST(AdaptiveQuadrature, NoMoreIsAskedForThanTheEvaluationsAndALevelOfThem) {
       },
       lines());
   EXPECT_LE(largest, most);
-  // Once side by side up to the limit, then line by line: what is under way there is ended.
+  // Places are used side by side up to the limit, then line by line. A line under way is ended.
   EXPECT_LE(places, 3 * most);
 }
 
-// Half of 2000 places come to lie beyond the outermost nodes of some part on the way down.
+// On the way down half of 2000 places lie beyond the outermost nodes of some part.
 TEST(AdaptiveQuadrature, AJumpAnywhereIsFoundWithinItsError) {
   for (int k = 1; k < 2000; ++k) {
     const double place = std::fmod(.6180339887498949 * k, 1);
@@ -116,7 +116,7 @@ TEST(AdaptiveQuadrature, APoleIsFoundWithinAnErrorThatIsNoMultipleOfItsHeight) {
   }
 }
 
-// Of values that are known to 1e-3 an integral is known no better, however often it is halved.
+// Values known to 1e-3 give an integral that is known no better, however often it is halved.
 TEST(AdaptiveQuadrature, ErrorsOfTheValuesThemselvesAreNotHalved) {
   AdaptiveQuadrature rule({.tolerance = 1e-8});
   int calls = 0;

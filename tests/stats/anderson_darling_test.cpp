@@ -88,7 +88,7 @@ TEST(AndersonDarling, OfALawKnownUpToAnErrorIsAtMostUniform) {
   });
 }
 
-// A value below the given law's range, within its error of it, excludes nothing; without the error
+// A value below the given law's range, within its error of it, excludes nothing. Without the error
 // it excludes the law.
 TEST(AndersonDarling, TakesTheLeastStatisticOfAllLawsWithinTheError) {
   Philox random(370);
@@ -101,7 +101,7 @@ TEST(AndersonDarling, TakesTheLeastStatisticOfAllLawsWithinTheError) {
     EXPECT_LT(now, before) << error;
     before = now;
   }
-  // With every u_i at its bottom: the entropy of the bottoms, n terms.
+  // Every u_i is at its bottom: the entropy of the bottoms, n terms.
   double least = -200;
   for (int i = 0; i < 200; ++i) {
     const double bottom = (i + .5) / 200;

@@ -48,8 +48,9 @@ TEST(AssumptionGates, SkewnessValueIsTheFactorOfTheFormula) {
   EXPECT_GT(skewness_gate(x, x, -1, 3).value, 1.05);
 }
 
-// Half of some costs are 1, the others 3: skewness 0, deviation half the mean, so that of the slope
-// the bend's quarter is left. One in a thousand dearer by 1000: a quarter of both.
+// Half of the costs are 1, the others 3. The skewness is 0 and the deviation half the mean, so only
+// the bend's quarter of the slope is left. Then one cost in a thousand is dearer by 1000, and a
+// quarter of both is left.
 TEST(AssumptionGates, OfALogMeanTheValueIsTheFactorOfItsSlope) {
   Moments even;
   for (int i = 0; i < 400; ++i) even.add(i % 2 == 0 ? 1 : 3);
@@ -63,7 +64,7 @@ TEST(AssumptionGates, OfALogMeanTheValueIsTheFactorOfItsSlope) {
   EXPECT_EQ(log_mean_gate(rare, 1.96, "cost").state, GateState::red);
 }
 
-// What each observation adds to a contrast's mean: (x - mean x) / n_x, or -scale (y - mean y) /
+// Each observation's influence on a contrast's mean: (x - mean x) / n_x, or -scale (y - mean y) /
 // n_y.
 std::vector<double> influences(const std::vector<double>& values, double scale) {
   const double mean = moments_of(values).mean;
@@ -83,7 +84,7 @@ std::vector<double> skewed_values(std::size_t n, double rate) {
 }
 
 // 2 |a| x^3 with a = sum psi^3 / (6 (sum psi^2)^1.5) over both samples' influences. The gate's
-// variances divide by n - 1: half a per cent of the exponent at these sizes.
+// variances divide by n - 1, which is half a per cent of the exponent at these sizes.
 TEST(AssumptionGates, TheSkewnessOfAContrastIsThatOfItsInfluences) {
   const std::vector<double> x = skewed_values(400, 4);
   const std::vector<double> y = skewed_values(150, 5);
@@ -109,8 +110,8 @@ Moments shaped(double n, double g1, double b2) {
   return x;
 }
 
-// tests/tables/gates.csv: what g1 and b2 of normal data may show, times the widening to a gamma law
-// from the influence of one observation, integrated over its density.
+// tests/tables/gates.csv has the quantiles of g1 and b2 for normal data. The widening to a gamma
+// law is from the influence of one observation, integrated over its density.
 TEST(AssumptionGates, ConfidenceLimitsTakeOffTheWidenedNormalQuantile) {
   for (const tests::Row& row : tests::read_table("gates")) {
     const double cube = row["x"] * row["x"] * row["x"];
@@ -126,7 +127,8 @@ TEST(AssumptionGates, ConfidenceLimitsTakeOffTheWidenedNormalQuantile) {
   }
 }
 
-// Both samples' allowances, each times its share of the variance to the power 1.5, at right angles.
+// Both samples' allowances are added at right angles, each times its share of the variance to the
+// power 1.5.
 TEST(AssumptionGates, TheConfidenceLimitOfAContrastHasBothAllowances) {
   const auto rows = tests::read_table("gates");
   const tests::Row& of_x = rows.at(4);
@@ -189,8 +191,8 @@ double red_rate(const Study& study, const std::function<double(Philox&)>& draw,
   return red / static_cast<double>(study.repetitions);
 }
 
-// At a true rate of 1e-4 and 20000 repetitions 2 reds are expected; 12 or more have
-// probability 1.4e-6.
+// At a true rate of 1e-4 and 20000 repetitions 2 reds are expected. 12 or more have probability
+// 1.4e-6.
 TEST(AssumptionGates, NormalDataAreRedLessThanOnceInTenThousand) {
   const auto normal = [](Philox& random) { return random.normal(); };
   std::uint32_t test_case = 301;
@@ -213,8 +215,8 @@ TEST(AssumptionGates, NormalDataAreRedLessThanOnceInTenThousand) {
   }
 }
 
-// The gamma laws at which the value equals the limit: reds must stay rare there too (about 1e-3;
-// the bound below is 5e-3, whose excess at a true 2e-3 has probability below 1e-5 in 20000).
+// At these gamma laws the value equals the limit. Reds must stay rare there too, about 1e-3. A true
+// rate of 2e-3 exceeds the bound 5e-3 with probability below 1e-5 in 20000.
 TEST(AssumptionGates, LawsAtTheLimitAreSeldomRed) {
   // Sums of k exponentials have skewness 2 / sqrt(k) and excess kurtosis 6 / k: k = 30 has .2.
   const auto sum_of = [](int k) {

@@ -94,7 +94,7 @@ TEST(BoundedMean, AConstantSampleStillHasAnInterval) {
   const Moments zeros = moments_of(std::vector<double>(1000, 0.0));
   const Interval interval = bounded_mean_interval(zeros, unit, .98);
   EXPECT_EQ(interval.low, 0);
-  // (1 - high)^1000 = .01 / 3, the Clopper-Pearson limit at a third of the error.
+  // (1 - high)^1000 = .01 / 3 is the Clopper-Pearson limit at a third of the error.
   EXPECT_NEAR(interval.high, 1 - std::pow(.01 / 3, 1e-3), 1e-12);
 }
 
@@ -140,8 +140,8 @@ TEST(BoundedMean, KeepsItsLevelOnEveryBoundedLaw) {
   }
 }
 
-// The same of values that fill a hundredth of the range, at its lower and at its upper end, on the
-// side where the bets decide.
+// Values fill a hundredth of the range, at its lower and at its upper end. The bets decide on that
+// side.
 TEST(BoundedMean, KeepsItsLevelInAWideRange) {
   std::uint32_t test_case = 261;
   for (const Law& law : bounded_laws) {
@@ -167,7 +167,7 @@ TEST(BoundedMean, TheVarianceBoundWithoutItsLinearTermIsNoticed) {
   }));
 }
 
-// Bets that win in proportion to their stake and lose nothing to variation.
+// These bets win in proportion to their stake and lose nothing to variation.
 TEST(BoundedMean, BetsThatDoNotPayForVariationAreNoticed) {
   EXPECT_FALSE(calibrated(282, "mutant", [](Philox& random) {
     const Moments x = draw_moments(laws::uniform, 200, random);
@@ -176,7 +176,7 @@ TEST(BoundedMean, BetsThatDoNotPayForVariationAreNoticed) {
   }));
 }
 
-// ln p of the four bets by themselves, where variation costs this part of what it must.
+// ln p of the four bets alone. Variation costs this part of what it must.
 double log_p_of_bets(const Moments& x, double mean, double part) {
   const double n = static_cast<double>(x.count);
   const double gap = x.mean - mean;

@@ -12,13 +12,13 @@
 
 namespace assay::tests {
 
-// Is a p-value what it says under its null hypothesis? Judged by elementary probability bounds that
-// share nothing with the code under test. All three together raise a false alarm with probability
-// <= 1e-5.
+// The calibration of a p-value under its null hypothesis. Elementary probability bounds judge it,
+// which share nothing with the code under test. All three together raise a false alarm with
+// probability <= 1e-5.
 struct Calibration {
-  double distance = 0;   // sup |F_R(p) - p|, or sup (F_R(p) - p) for a discrete p-value
-  double threshold = 0;  // Massart's bound on it at 5e-6
-  double rate_01 = 0;    // P(p <= .01) and P(p <= .001) as observed
+  double distance = 0;   // Sup |F_R(p) - p|, or sup (F_R(p) - p) for a discrete p-value.
+  double threshold = 0;  // Massart's bound on it at 5e-6.
+  double rate_01 = 0;    // Observed P(p <= .01), P(p <= .001).
   double rate_001 = 0;
   bool ok = false;
 

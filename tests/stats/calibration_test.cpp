@@ -1,5 +1,5 @@
 // Every p-value under its own null hypothesis. False-alarm rate of each test: 1e-5
-// (tests/stats/calibration.h); seed 1, the stream of each test numbered in order of writing.
+// (tests/stats/calibration.h). The seed is 1, and streams are numbered in order of writing.
 
 #include <gtest/gtest.h>
 
@@ -226,8 +226,7 @@ TEST(Calibration, TheSmallestHolmAdjustedValueOfAFamilyIsAtMostUniform) {
 }
 
 TEST(Calibration, IntervalsCoverAsOftenAsTheySay) {
-  // The confidence at which an interval just covers the truth is 1 - p: judged through coverage at
-  // .9.
+  // An interval just covers the truth at confidence 1 - p. It is judged through coverage at .9.
   Philox random(34);
   int missed = 0;
   int missed_ratio = 0;

@@ -15,8 +15,8 @@ namespace {
 using tests::multinomial;
 using tests::Philox;
 
-/// Cells of equal probability, or one of `rare` among equal ones, of which the first or the rare
-/// one comes `factor` times as often.
+/// Cells of equal probability, or one of `rare` among equal ones. The first or the rare one comes
+/// `factor` times as often.
 struct Tilted {
   std::vector<double> null;
   std::vector<double> law;
@@ -88,10 +88,9 @@ TEST(CellEffect, HasFallingAndRisingTails) {
   }
 }
 
-// Where one cell carries the effect X2 spreads more than any noncentral chi-square: its tails there
-// rejected .08 to .37 of true claims at .01. Both directions at .01 and .001: at most 1.5 times
-// that, measured over these and other cells (README.md), and 4.5 binomial standard errors for this
-// sample; false alarms 1e-4 over the sixteen.
+// X2 spreads more than any noncentral chi-square where one cell carries the effect
+// (measurements.md). Both directions are at most 1.5 times .01 and .001, plus 4.5 binomial standard
+// errors for this sample. False alarms 1e-4 over the sixteen.
 TEST(CellEffect, HoldsItsLevelWhereOneCellCarriesIt) {
   const struct {
     Tilted cells;

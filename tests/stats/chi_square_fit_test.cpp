@@ -43,8 +43,8 @@ TEST(ChiSquareFit, SmallCellsAreGatheredInIndexOrderAndTheLastPoolIsFlushed) {
   EXPECT_EQ(more.degrees_of_freedom, 3);
 }
 
-// No other pool is there to take the small cell: the lesser of the large cells, 45 expected, does.
-// Then 55 and 45 observed where 50 and 50 are expected: X2 = 2 * 25 / 50 = 1, p = .31731051.
+// The lesser of the large cells, 45 expected, takes the small cell, as there is no other pool. Then
+// 55 and 45 are observed where 50 and 50 are expected. X2 = 2 * 25 / 50 = 1, p = .31731051.
 TEST(ChiSquareFit, ALoneRestJoinsTheLeastExpectedOfTheLargeCells) {
   const ChiSquareFit fit = chi_square_fit({{55, 40, 5}, {.5, .45, .05}});
   ASSERT_EQ(fit.cells.size(), 2U);
@@ -74,8 +74,8 @@ TEST(ChiSquareFit, AnImpossibleObservationRejectsAtOnce) {
   EXPECT_NEAR(std::exp(tolerant.test.log_p_upper), 2e-7, 1e-12);
 }
 
-// One observation in a hundred where the law has none: w is (.01 - 1e-9) / sqrt(1e-9) at least, and
-// neither a small effect nor the absence of a large one can be shown.
+// The law excludes one observation in a hundred, so w is at least (.01 - 1e-9) / sqrt(1e-9).
+// Neither a small effect nor the absence of a large one can be shown.
 TEST(ChiSquareFit, ImpossibleObservationsAreAnEffectThatNoAllowanceCovers) {
   const CellCounts counts{{4950, 4950, 100}, {.5, .5, 0}};
   const ChiSquareFit fit = chi_square_fit(counts, {.probability_tolerance = 1e-9});
@@ -91,17 +91,16 @@ TEST(ChiSquareFit, ImpossibleObservationsAreAnEffectThatNoAllowanceCovers) {
   EXPECT_EQ(chi_square_fit_interval(strict, .98).high, std::numeric_limits<double>::infinity());
 }
 
-// Within the tolerance they are what quadrature missed.
+// Within the tolerance, quadrature may have missed them.
 TEST(ChiSquareFit, AFewImpossibleObservationsAreTheTolerances) {
   const ChiSquareFit fit =
       chi_square_fit({{50000, 49999, 1}, {.5, .5, 0}}, {.probability_tolerance = 1e-5});
   EXPECT_LT(chi_square_fit_effect(fit, .1).log_p_lower, std::log(1e-3));
 }
 
-// Probabilities that are off by as much as they say, up and down in turn: w = .02 of the law that
-// they are of, and n so large that X2 alone rejects every time. Neither the truth nor, that near to
-// it, the contrary is rejected more often than .01: of 400 samples 14 or more have a probability of
-// 1e-4.
+// Probabilities are off by as much as they say, up and down in turn, which makes w = .02. With this
+// n X2 alone rejects every time. Neither the truth nor its near contrary may be rejected more often
+// than .01. Of 400 samples 14 or more have a probability of 1e-4.
 TEST(ChiSquareFit, ErrorsOfTheProbabilitiesAreAllowedForBothWays) {
   constexpr std::size_t cells = 64;
   constexpr double error = .02 / cells;
@@ -127,7 +126,7 @@ TEST(ChiSquareFit, ErrorsOfTheProbabilitiesAreAllowedForBothWays) {
   EXPECT_LT(excluded, 14);
 }
 
-// Counts that are what is expected, to the last one: chance leaves more, even where w = 0.
+// Counts equal their expectations to the last one. Chance leaves more, even where w = 0.
 TEST(ChiSquareFit, DataTooCloseToTheLawHaveNoIntervalRatherThanOneOfNoWidth) {
   const CellCounts even{.observed = std::vector<std::uint64_t>(100, 100),
                         .probability = std::vector<double>(100, .01)};

@@ -44,7 +44,7 @@ TEST(ChiSquareTwoSample, PoolsByTheTotalsAloneAndSkipsCellsThatNobodyHit) {
   EXPECT_EQ(fit.cells[2].members, (std::vector<std::size_t>{4, 6})) << "the rest joins the last";
   EXPECT_EQ(fit.cells[2].x, 69U);
   EXPECT_EQ(fit.statistic.degrees_of_freedom, 2);
-  // Of unequal sizes the smaller decides: 20 of 100 beside 1000 are 220 of both.
+  // With unequal sizes the smaller decides: 20 of 100 beside 1000 are 220 of both.
   EXPECT_EQ(chi_square_two_sample({{50, 50}, {180, 820}}).cells.size(), 2U);
   EXPECT_THROW(chi_square_two_sample({{50, 50}, {160, 840}}), std::domain_error);
 }
@@ -109,7 +109,7 @@ TEST(ChiSquareTwoSample, InCellsOfAPilotIsCalibrated) {
   });
 }
 
-// From the values of both together: neither side is told from the other.
+// Cells from the values of both together. Neither side is told from the other.
 TEST(ChiSquareTwoSample, InCellsOfBothSamplesTogetherIsCalibrated) {
   expect_calibrated({384, 4000, Shape::at_most_uniform}, [&](Philox& random) {
     const auto x = square(random, 500);
@@ -120,7 +120,7 @@ TEST(ChiSquareTwoSample, InCellsOfBothSamplesTogetherIsCalibrated) {
   });
 }
 
-// As if one sample were known exactly: variance 1/m instead of 1/m + 1/n.
+// The mutant takes one sample for exact: variance 1/m instead of 1/m + 1/n.
 TEST(ChiSquareTwoSample, OneSampleTakenForTheTruthIsCaught) {
   Philox pilot(386);
   const SampledCells cells = sampled_cells(square(pilot, 2048), {.bands = 4, .cuts = 4});

@@ -57,7 +57,8 @@ TEST(Dependence, TheVarianceOfTheFirstAutocorrelationIsExactForFourValues) {
 }
 
 TEST(Dependence, TheEffectiveSizeOfAnAutoregressionIsItsClosedForm) {
-  // Relative spread of the estimate at n = 40000 is below .05 for these phi; six of them allowed.
+  // Relative spread of the estimate at n = 40000 is below .05 for these phi. Six of them are
+  // allowed.
   std::uint32_t test_case = 502;
   for (const double phi : {0.0, .5, .9}) {
     Philox random(test_case++);

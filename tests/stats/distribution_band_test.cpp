@@ -135,8 +135,8 @@ TEST(DistributionBand, OfTwoSamplesIsAtMostUniformWithAndWithoutTies) {
   });
 }
 
-/// How often intervals at this pointwise error, at 63 order statistics of n uniform values, do not
-/// all hold the law.
+/// The share of runs in which intervals at this pointwise error do not all hold the law. They stand
+/// at 63 order statistics of n uniform values.
 double exits(std::uint32_t test_case, std::uint64_t n, double gamma, std::size_t runs) {
   std::vector<std::pair<std::uint64_t, Interval>> bands;
   for (std::uint64_t i = 1; i < 64; ++i) {
@@ -154,7 +154,7 @@ double exits(std::uint32_t test_case, std::uint64_t n, double gamma, std::size_t
   return static_cast<double>(left) / static_cast<double>(runs);
 }
 
-// Intervals around an empirical distribution function: exact at n = 200, by the limit at n = 5000.
+// Intervals around an empirical distribution function. Exact at n = 200, by the limit at n = 5000.
 TEST(DistributionBand, IntervalsAtItsErrorHoldTheLawEverywhere) {
   const double exact = exits(371, 200, simultaneous_error(200, 64, .95), 4000);
   EXPECT_FALSE(tests::too_many(exact, .05, 4000)) << exact;
@@ -165,7 +165,7 @@ TEST(DistributionBand, IntervalsAtItsErrorHoldTheLawEverywhere) {
   EXPECT_TRUE(tests::too_many(exits(373, 200, .05, 1000), .05, 1000)) << "pointwise ones do not";
 }
 
-// Measured at .99: exact values 4.763694e-4 at n = 5000, 4.432e-4 at 1e5.
+// Exact values at .99: 4.763694e-4 at n = 5000, 4.432e-4 at 1e5.
 TEST(DistributionBand, ErrorOfManyValuesIsNoLargerThanTheExactOne) {
   const double limit = simultaneous_error(1'000'000, 64, .99);
   EXPECT_LT(limit, 4.432e-4);
@@ -180,7 +180,8 @@ TEST(DistributionBand, APointwiseErrorTakenForThatOfTheBandIsCaught) {
 }
 
 TEST(DistributionBand, ABinomialInPlaceOfTheHypergeometricIsCaught) {
-  // x of a pooled sample, held against the law of independent uniforms: too good to be true.
+  // The mutant holds x of a pooled sample against the law of independent uniforms. It is too good
+  // to be true.
   expect_caught({357, 4000, Shape::uniform}, [](Philox& random) {
     const auto x = sorted(sample_of(300, [&] { return random.uniform(); }));
     const auto y = sorted(sample_of(300, [&] { return random.uniform(); }));
@@ -193,9 +194,9 @@ TEST(DistributionBand, ABinomialInPlaceOfTheHypergeometricIsCaught) {
   });
 }
 
-// Three in a hundred values moved to the last hundredth of the law, which the band sees and
-// Kolmogorov and Smirnov's distance does not. Powers of .985 and .028 were measured; Hoeffding at
-// 1e-5, R = 400: .12.
+// Three in a hundred values are moved to the last hundredth of the law. The band sees that,
+// Kolmogorov and Smirnov's distance does not. Measured powers are .985 and .028; Hoeffding at 1e-5,
+// R = 400: .12.
 TEST(DistributionBand, FindsWhatHappensInTheTail) {
   Philox random(358);
   const ContinuousLaw uniform{[](double x) { return x; }};

@@ -173,9 +173,9 @@ TEST(EvidenceLedger, AnEffectFittedToTheDataIsCaught) {
   });
 }
 
-// A bias of one standard error a night within thirty nights, at a budget of 3e-3 for the test:
-// found with probability >= .9; |rate - truth| <= sqrt(ln(2e5) / (2 R)) = .0391 at R = 4000, false
-// alarm 1e-5.
+// A bias of one standard error a night is found within thirty nights with probability >= .9. The
+// test's budget is 3e-3. |rate - truth| <= sqrt(ln(2e5) / (2 R)) = .0391 at R = 4000, false alarm
+// 1e-5.
 TEST(EvidenceLedger, ABiasOfOneStandardErrorANightIsFoundWithinThirtyNights) {
   const auto found = [](std::uint32_t test_case, double reference, const LedgerPrior& prior) {
     Philox random(test_case);
@@ -190,8 +190,8 @@ TEST(EvidenceLedger, ABiasOfOneStandardErrorANightIsFoundWithinThirtyNights) {
   const double noisy = found(348, .2, with_reference);
   std::cout << "  found: " << exact << ", with a reference error of .2: " << noisy << "\n";
   EXPECT_GE(exact, .9 + .0391);
-  // A single test of all thirty nights at 3e-3 has power .77 there: shift 30 / sqrt(30 + 900 * .04)
-  // = 3.69 against 2.97. Looking every night cannot do better.
+  // A single test of all thirty nights at 3e-3 has power .77 there. Its shift is 30 / sqrt(30 + 900
+  // * .04) = 3.69 against 2.97. Looking every night cannot do better.
   EXPECT_LE(noisy, .77 + .0391);
   EXPECT_GE(noisy, .25);
 }
@@ -228,12 +228,13 @@ TEST(EvidenceLedger, TheDetectorRarelyAlarmsAndFindsAShift) {
   }
   std::cout << "  alarms within 100 quiet nights: " << false_alarms / repetitions
             << ", mean delay at 1.5: " << delay / repetitions << "\n";
-  // Average run length >= 1000: the sum of 100 nights exceeds 1000 with probability <= .1 (Markov).
+  // Average run length >= 1000. So the sum of 100 nights exceeds 1000 with probability <= .1
+  // (Markov).
   EXPECT_FALSE(tests::too_many(false_alarms / repetitions, .1, repetitions));
   EXPECT_LT(delay / repetitions, 12);
 }
 
-// Under the prior itself the credible nights hold the true one as often as they say: Hoeffding at
+// Under the prior itself the credible nights hold the true one as often as they say. Hoeffding at
 // 1e-5, R = 4000.
 TEST(EvidenceLedger, CredibleNightsHoldTheNightOfTheChange) {
   Philox random(351);

@@ -32,7 +32,7 @@ double sum_over(const WeightedImages<double>& images, std::size_t image, const R
   return sum;
 }
 
-/// Of each group the moments of all its windows in one channel, from those of rows after rows.
+/// The moments of all windows in one channel, group by group, from rows after rows.
 std::vector<std::vector<CellMoments>> moments_of_groups(const WeightedImages<double>& images,
                                                         const std::vector<WindowGroup>& groups,
                                                         std::size_t channel) {

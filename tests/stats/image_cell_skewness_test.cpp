@@ -51,8 +51,8 @@ double closed_form(const ImageExtent& extent, std::uint32_t size, double skewnes
   throw std::logic_error("no such size");
 }
 
-// Each estimate scatters by less than 3 %: beyond 15 % with probability below 1e-5.
-// Several rows of tiles.
+// Each estimate scatters by less than 3 %, and beyond 15 % with probability below 1e-5. Several
+// rows of tiles.
 TEST(CellTails, AreTheSameInAnyOrder) {
   Philox random(876);
   const ImageExtent extent{20, 150, 3};
@@ -102,8 +102,8 @@ TEST(CellTails, ScatterOfANormalPilotIsNotTakenForSkewness) {
   }
 }
 
-// Skewness 2 in 16 replicates cannot be told of one element, but of all: 1.25 is reached at a
-// hundredth of it. Normal elements have none in common.
+// Skewness 2 in 16 replicates does not show in one element, but in all together. There 1.25 is
+// reached at a hundredth of it. Normal elements have none in common.
 TEST(CellTails, WhatTheCellsHaveInCommonShowsInFewReplicates) {
   Philox random(868);
   constexpr ImageExtent large{32, 32, 1};
@@ -131,8 +131,8 @@ TEST(CellWeights, OfAnElementThatDidNotVaryAreZero) {
   for (std::size_t e = 0; e < weights.size(); ++e) EXPECT_EQ(weights[e] > 0, e != 19) << e;
 }
 
-// `scatter` is exceeded in one of 1e4 pilots: three or more of 600 by chance once in 3e4 times. A
-// twentieth of it is exceeded often (it is that of one half of a pilot, the mean is of two).
+// One of 1e4 pilots exceeds `scatter`, and three or more of 600 by chance once in 3e4 times. A
+// twentieth of it is exceeded often. (It is that of one half of a pilot, the mean is of two.)
 TEST(CellTails, NormalPilotsRarelyExceedTheirScatter) {
   Philox random(867);
   int beyond = 0;
@@ -162,8 +162,9 @@ TEST(CellTails, ARareLightInAQuietPlaceCondemnsSmallCells) {
   EXPECT_GT(tails[1].factor, 10);
 }
 
-// Lit in one of two images somewhere, in each pixel once in 2000: the images that see a light have
-// no weight for it, those that do not give it all of theirs, and all but one in 60 pixels see none.
+// In one of two images a light is lit somewhere, in each pixel once in 2000. Images that see a
+// light have no weight for it. Those that do not give it all of theirs. All but one in 60 pixels
+// see none.
 TEST(CellTails, FirefliesCondemnCellsAlthoughMostNeverSeeOne) {
   Philox random(868);
   constexpr ImageExtent large{32, 32, 1};
@@ -174,16 +175,16 @@ TEST(CellTails, FirefliesCondemnCellsAlthoughMostNeverSeeOne) {
   const CellPilot side = side_of(large, images, 64);
   for (const WeightsFrom from : {WeightsFrom::halves_of_the_test, WeightsFrom::pilot}) {
     const std::vector<CellTails> tails = cell_tails({&side, 1}, level, from);
-    // Of one pixel's mean of 64, p (1 - p)^-1.5 / sqrt(64 p) is 5.6; what the scatter of so few
-    // lights leaves of it is to be far above what sums of squares bear (harness/image_plan.cpp).
+    // One pixel's mean of 64 has skewness p (1 - p)^-1.5 / sqrt(64 p) = 5.6. Scatter takes much of
+    // it. The rest must still be far above the limit of sums of squares (harness/image_plan.cpp).
     EXPECT_GT(tails[0].common_skewness, 1);
-    // Of 64 pixels .7: at x = 4.6 a factor of 1e9.
+    // 64 pixels have .7: at x = 4.6 a factor of 1e9.
     EXPECT_GT(std::max(tails[3].common, tails[3].factor - tails[3].scatter), 1.25);
     EXPECT_EQ(tails[3].size, 8U);
   }
 }
 
-// As the half of a test sees it, not as the whole pilot does.
+// The half of a test is the judge, not the whole pilot.
 TEST(CellTails, WeightsOfHalvesAreWorseThanThoseOfAPilotThatSawTheLight) {
   Philox random(866);
   constexpr ImageExtent large{32, 32, 1};
@@ -221,7 +222,7 @@ TEST(CellTails, ConstantElementsDoNotCount) {
   const CellPilot never = side_of(eight, constant, 1e9);
   EXPECT_NEAR(cell_tails({&many, 1}, level)[0].factor, 1, 1e-3);
   for (const CellTails& cell : cell_tails({&never, 1}, level)) EXPECT_EQ(cell.factor, 1);
-  // The mean is over the half that varies: were the others counted as 1, it would fall.
+  // The mean is over the half that varies. If the others counted as 1 it would fall.
   const CellPilot few = side_of(eight, half, 400);
   const double expected = closed_form(eight, 1, 0.1);
   EXPECT_NEAR(cell_tails({&few, 1}, level)[0].factor / expected, 1, 0.25);

@@ -137,7 +137,7 @@ TEST(ImageEquivalence, BadArgumentsAreRefused) {
   EXPECT_THROW(squared_bias(a.view(), few.view()), std::domain_error);
 }
 
-// The two sums apart give the same test as the sum of their difference, at every margin.
+// The two sums apart and the sum of their difference give the same test at every margin.
 TEST(ImageEquivalence, TheSquaredMarginTestIsTheSameFromTheTwoSums) {
   Philox random(870);
   const OwnedStack a = image(random, 0.05, 3);
@@ -170,12 +170,12 @@ TEST(ImageEquivalence, TheDistanceIsTheSameInAnyOrderAndOfAllElements) {
   EXPECT_EQ(distance.covariance, other.covariance);
   EXPECT_NEAR(distance.squared_norm, 60000, 60);
   EXPECT_NEAR(distance.squared_bias, 60000 * 0.05 * 0.05, 4);
-  // 4 (bias^2 + v) v of each element, v = (va + vb) / R; of 30 degrees of freedom.
+  // 4 (bias^2 + v) v for each element, v = (va + vb) / R, with 30 degrees of freedom.
   const double v = 0.02 / 16;
   EXPECT_NEAR(distance.bias_variance / (60000 * 4 * (0.05 * 0.05 + v) * v), 1, 0.8);
 }
 
-// In units of a norm of 1 for each element the margin is a root mean square.
+// With a norm of 1 for each element the margin is a root mean square.
 TEST(ImageEquivalence, ANormWithoutErrorLeavesTheBiasAlone) {
   Philox random(871);
   const OwnedStack a = image(random, 0.05, 1);

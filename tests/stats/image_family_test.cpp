@@ -56,8 +56,8 @@ TEST(ImageFamily, SmallCellsAndTheEnergyLeaveEachByItself) {
   EXPECT_EQ(left({.energy = true}), (std::array{false, true}));
 }
 
-// Of an element that is 1 below its reference in every replicate, sums have all of it; alone it is
-// no certain difference where it is left to them.
+// An element is 1 below its reference in every replicate. Sums contain all of it. Left to sums, it
+// is no certain difference by itself.
 TEST(ImageFamily, ElementsThatAreLeftToSumsTakePartInThemAlone) {
   tests::Philox random(845);
   constexpr std::size_t dark = 17;

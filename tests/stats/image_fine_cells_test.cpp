@@ -1,5 +1,5 @@
-// The cells of image_pyramid, tile by tile and from blocks, against sums over each rectangle by
-// itself.
+// Compares the cells of image_pyramid, tile by tile and from blocks, with sums over each rectangle
+// by itself.
 #include "stats/pyramids/image_fine_cells.h"
 
 #include <gtest/gtest.h>

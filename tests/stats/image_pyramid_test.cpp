@@ -41,7 +41,7 @@ OwnedStack normal_stack(Philox& random, std::size_t replicates, double sd = 1) {
   return draw_stack(small, replicates, [&](std::size_t) { return sd * random.normal(); });
 }
 
-// The means of as many exponential values as `shape` says, three times as many at the last element.
+// Means of `shape` exponential values, three times as many at the last element.
 OwnedStack skewed_stack(Philox& random, std::size_t replicates, double shape) {
   return draw_stack(small, replicates, [&](std::size_t e) {
     const double own = shape * (1 + 2 * static_cast<double>(e) / 119);
@@ -110,8 +110,8 @@ OwnedStack rarely_lit(Philox& random) {
   return stack;
 }
 
-// Half of the replicates never saw the block vary. It has no weight there, whether a quadrature
-// left an error of 1e-17 in its reference or none: else that block alone would be the whole sum.
+// Half of the replicates never saw the block vary. It has no weight there, even if a quadrature
+// left an error of 1e-17 in its reference. With one that block alone would be the whole sum.
 TEST(ImagePyramid, AnErrorOfRoundingSizeGivesNoWeightToElementsThatDidNotVary) {
   Philox random(826);
   const OwnedStack stack = rarely_lit(random);
@@ -129,7 +129,7 @@ TEST(ImagePyramid, AnErrorOfRoundingSizeGivesNoWeightToElementsThatDidNotVary) {
   }
 }
 
-// The best of the windows of many elements in skewed data: its own law, away from the shares.
+// The best window of many elements in skewed data. It has its own law, away from the shares.
 double whole_image_log_p(const ImageFamily& family) {
   for (const ImageFinding& finding : family.groups) {
     if (finding.size == 12 && finding.statistic == ImageStatistic::window) return finding.log_p;
@@ -209,8 +209,8 @@ TEST(ImagePyramid, GroupsWithoutTheirSharesAreCaught) {
   });
 }
 
-// At 128 x 128, known variances, alpha 1e-3. README.md has the measured powers; each demanded one
-// lies so far below its own that 300 images miss it with probability below 1e-4.
+// At 128 x 128, known variances, alpha 1e-3 (powers: measurements.md). Each demanded power lies far
+// below its own: 300 images miss it with probability below 1e-4.
 TEST(ImagePyramid, DefectsOfEveryScaleAreFound) {
   const ImageExtent extent{128, 128, 1};
   const std::map<std::string, double> demanded{
@@ -282,7 +282,7 @@ TEST(ImagePyramid, BelowTheSmallestCellOnlyDifferentConstantsAreFound) {
   EXPECT_EQ(image_pyramid(a.view(), b.view(), {.smallest = 4}).winner.size, 1);
 }
 
-// One alarm in 1e5. The weights are far from the best ones, and of no matter for the level.
+// One alarm in 1e5. The weights are far from the best ones, which does not change the level.
 TEST(ImagePyramid, GivenWeightsKeepTheLevelAndMoveWhatIsSeen) {
   std::vector<double> weights;
   for (std::size_t e = 0; e < small.elements(); ++e) weights.push_back(e % 3 == 0 ? 5 : 0.1);

@@ -24,13 +24,16 @@ constexpr double margin = 0.1;
 constexpr std::size_t images = 32;
 
 struct Case {
-  double sd = 1;        // of an image's element; the reference's is that of a mean of 32 images
-  bool common = false;  // one error of all elements of the reference
-  bool lower = true;    // the side of the test
+  // For an image's element. The reference's error is that of a mean of 32 images.
+  double sd = 1;
+  // One error of all elements of the reference.
+  bool common = false;
+  // The side of the test.
+  bool lower = true;
 };
 
-// How the margin's p-values are distributed where the bias is at the margin and the reference as
-// uncertain as the images: `judge` makes the distance.
+// The margin's p-values with the bias at the margin and the reference as uncertain as the images.
+// `judge` makes the distance.
 template <class Judge>
 Calibration at_margin(std::uint32_t test_case, const Case& given, const Judge& judge) {
   return calibrate({test_case, 2000, Shape::at_most_uniform}, [&](Philox& random) {

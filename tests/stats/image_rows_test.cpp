@@ -1,4 +1,4 @@
-// What is taken of images rows after rows has the bits of what is taken of them as a whole.
+// Functions that take images rows after rows give the bits of those that take them whole.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,8 @@ OwnedStack skewed_stack(std::uint32_t key, double light) {
   });
 }
 
-/// The rows alone that are said to be there; next to them stands what would spoil every sum.
+/// Holds only the rows that are said to be there. Beside them stands a value that would spoil every
+/// sum.
 class Window {
  public:
   Window(const OwnedStack& whole, RowRange rows) : stack_{extent, {}, rows.elements(extent)} {
@@ -186,7 +187,7 @@ double product_of(const OwnedStack& a, const OwnedStack& b, std::size_t r, std::
   return sum;
 }
 
-// 33 replicates fill no whole piece: Q with one sign turned is less by four times its row.
+// 33 replicates fill no whole piece. With one sign turned Q is less by four times its row.
 TEST_F(ImageRows, FlipsAreThoseOfEveryPairOfReplicates) {
   const FlipMatrix matrix = flip_matrix(a_.view(), b_.view());
   const std::vector<double> all(count, 1);

@@ -26,7 +26,7 @@ struct OwnedStack {
 // More than one block of elements and no multiple of anything.
 inline constexpr stats::ImageExtent uneven{37, 31, 3};
 
-// Of one element, value by value.
+// Moments of one element, value by value.
 inline stats::Moments one_element(const OwnedStack& stack, std::size_t element) {
   stats::Moments moments;
   for (const auto& image : stack.images) moments.add(static_cast<double>(image[element]));
@@ -67,7 +67,7 @@ inline double gamma(Philox& random, double shape) {
   }
 }
 
-// A defect of an image in units of an element's standard error: a block of this side, or all
+// A defect of an image in units of an element's standard error. It is a block of this side, or all
 // elements with this share, or a checkerboard.
 struct Defect {
   const char* name;
@@ -105,7 +105,7 @@ inline void add_block(std::span<double> z, const stats::ImageExtent& extent, con
   }
 }
 
-// Of a one-channel image.
+// Adds the defect to a one-channel image.
 inline void add_defect(std::span<double> z, const stats::ImageExtent& extent, const Defect& defect,
                        Philox& random) {
   if (defect.block > 0) return add_block(z, extent, defect, random);
@@ -118,8 +118,8 @@ inline void add_defect(std::span<double> z, const stats::ImageExtent& extent, co
   }
 }
 
-// Of a squared margin's test. Where the noise of the means is as large as the bias, the jackknife's
-// variance is too large (up to twice, Efron & Stein): p-values crowd around one half, and only
+// For a squared margin's test. If the noise of the means is as large as the bias, the jackknife's
+// variance is up to twice too large (Efron & Stein). Then p-values crowd around one half, and only
 // levels below it are judged.
 inline double below_half(double log_p) { return log_p < std::log(0.5) ? log_p : 0; }
 

@@ -89,7 +89,7 @@ TEST(ImageSignFlip, EndingWhenEnoughHaveReachedKeepsTheLevel) {
   EXPECT_TRUE(calibration.ok) << calibration.text();
 }
 
-// The share of the vectors drawn, as if their number had been fixed: it may end where it suits.
+// The mutant takes the share of the vectors drawn, as if their number had been fixed.
 TEST(ImageSignFlip, CountingWhatReachedBeforeTheLastIsCaught) {
   const auto calibration = calibrated_early_stop([](const SignFlip& flip) {
     return flip.flips < 39 ? flip.log_p + std::log(2.0 / 3) : flip.log_p;

@@ -7,8 +7,8 @@
 namespace assay::stats {
 namespace {
 
-// Twelve images: eight in step, and four. Doubles, of which sums are rounded at every step; so many
-// floats add up without rounding.
+// Twelve images: eight in step, and four. Sums of doubles are rounded at every step. These floats
+// add up without rounding.
 TEST(ImageSums, HaveTheBitsOfAddingUpEachImageAlone) {
   tests::Philox random(875);
   std::vector<std::vector<double>> images;

@@ -19,7 +19,7 @@ using tests::autoregressive;
 using tests::Philox;
 using tests::sample_of;
 
-// Each red with probability 5e-5 on independent normal values: of 20000 more than 8 with
+// Each is red with probability 5e-5 on independent normal values. Of 20000 more than 8 have
 // probability 1.2e-6 (Poisson, mean 1).
 TEST(IndependenceGates, AreSilentOnIndependentValues) {
   Philox random(1);
@@ -37,7 +37,7 @@ TEST(IndependenceGates, AreSilentOnIndependentValues) {
   EXPECT_LE(lagged, 8);
 }
 
-// Whatever the law: of ranks two values far out are no correlation.
+// Any law will do: in ranks two values far out are no correlation.
 TEST(IndependenceGates, OfLagsAreSilentOnHeavyTailsAndTies) {
   Philox random(5);
   int red = 0;
@@ -72,7 +72,7 @@ TEST(IndependenceGates, SeeChainsThatTakeTurns) {
   }
 }
 
-// A single chain needs no longer batches for it: ten of its times, 190, as before.
+// A single chain needs no longer batches for it: ten of its times, 190.
 TEST(IndependenceGates, OfLagsLeaveTheBatchesOfOneChain) {
   Philox random(7);
   const auto x = autoregressive(.9, 20000, random);
@@ -140,8 +140,8 @@ Moments allowed(std::span<const double> x) {
   return moments;
 }
 
-/// Of pairs of samples of 100 that no gate turns away, how many Welch's test finds to differ at
-/// .01.
+/// Number of pairs of samples of 100 that no gate turns away and that Welch's test finds to differ
+/// at .01.
 struct Differing {
   int allowing = 0;
   int plainly = 0;
@@ -162,9 +162,9 @@ Differing differing(int pairs, const std::function<std::vector<double>()>& draw)
   return count;
 }
 
-// The gates see dependence in one pair of four; plainly, true equalities of the others fail under
-// 170 of 4000. More than 80 where 60 are expected (.015) has probability .006, of 60 more than 80
-// where 40 are (.01 of independent values), 1e-8, and fewer than 15 with 1e-4.
+// The gates see dependence in one pair of four. Without the allowance true equalities of the others
+// fail in 170 of 4000. With it 60 are expected (.015), and more than 80 have probability .006.
+// Independent values give 40 (.01): more than 80 have 1e-8, fewer than 15 have 1e-4.
 TEST(IndependenceGates, WhatTheyDoNotSeeIsAllowedFor) {
   Philox random(11);
   const Differing chains = differing(4000, [&] { return autoregressive(.3, 100, random); });
@@ -176,8 +176,8 @@ TEST(IndependenceGates, WhatTheyDoNotSeeIsAllowedFor) {
   EXPECT_LE(independent.plainly, 80);
 }
 
-// Beyond 5 % in neighbours or in batches of two lengths: of 2000 independent samples some 260 are
-// expected, and more than 330 with probability 1e-5.
+// The factor exceeds 1 beyond 5 % in neighbours or in batches of two lengths. Of 2000 independent
+// samples some 260 are expected, and more than 330 have probability 1e-5.
 TEST(IndependenceGates, LittleIsAllowedForInIndependentValues) {
   Philox random(12);
   int more = 0;

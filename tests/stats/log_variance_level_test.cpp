@@ -18,7 +18,7 @@ namespace {
 constexpr SixthOrderShape exponential{.skewness = 2, .kurtosis = 9, .fifth = 44, .sixth = 265};
 constexpr SixthOrderShape normal{};
 
-// Of the gamma law of this shape a, from its cumulants (r - 1)! / a^(r / 2 - 1).
+// The gamma law of this shape a, from its cumulants (r - 1)! / a^(r / 2 - 1).
 SixthOrderShape gamma_law(double a) {
   const double k3 = 2 / std::sqrt(a);
   const double k4 = 6 / a;
@@ -52,7 +52,7 @@ TEST(SixthOrderShape, OfMeansOfExponentialsIsAGammaLaws) {
   }
 }
 
-// Of the normal law psi = chi2_1 - 1 has skewness sqrt 8: B = (sqrt 8 / 3 - sqrt 2 / 2) / sqrt n.
+// For the normal law psi = chi2_1 - 1 has skewness sqrt 8: B = (sqrt 8 / 3 - sqrt 2 / 2) / sqrt n.
 TEST(LogVarianceLevel, IsTheFormula) {
   const PlannedLogVariance plan{.count = 1000, .critical_value = 2.3263};
   const double cube = 2.3263 * 2.3263 * 2.3263;
@@ -89,9 +89,9 @@ TEST(LogVarianceLevel, OfUnequalSizesIsThatOfTheSamplesExchanged) {
               1, 1e-4);
 }
 
-// Exponential values at the count it asks for: the lower tail's rate at .01 is at most 1.25 times
-// nominal, at a twentieth of that count it is beyond. 8000 repetitions, so that a rate of 1.25
-// shows as more than 1.8 with probability 1e-5 (binomial), and of 2.2 as less than 1.5 with 1e-5.
+// Exponential values at the count it asks for. The lower tail's rate at .01 is at most 1.25 times
+// nominal. At a twentieth of that count it is beyond. In 8000 repetitions a rate of 1.25 shows as
+// more than 1.8 with probability 1e-5 (binomial). One of 2.2 shows as less than 1.5 with 1e-5.
 TEST(LogVarianceLevel, KeepsTheLevelWhereItSays) {
   const double z = normal_quantile({Tail::upper, std::log(0.01)});
   const std::uint64_t enough = values_for_log_variance(exponential, z);
@@ -109,8 +109,9 @@ TEST(LogVarianceLevel, KeepsTheLevelWhereItSays) {
   EXPECT_GE(rate(enough / 20), 1.5);
 }
 
-// A cost of 1, with probability .1 exponential ones more, 10 on average: at the count found ln of
-// its mean keeps its lower tail within some 1.25 times .01, at a twentieth not within 1.5 times.
+// A cost of 1 and, with probability .1, exponential ones more, 10 on average. At the count found
+// the lower tail of ln of its mean is about 1.25 times .01 at most. At a twentieth it exceeds 1.5
+// times.
 TEST(LogVarianceLevel, OfAMeanKeepsTheLevelWhereItSays) {
   const double z = normal_quantile({Tail::upper, std::log(0.01)});
   const double deviation = std::sqrt(19);                // 10^2 (2 p - p^2)
@@ -134,8 +135,8 @@ TEST(LogVarianceLevel, OfAMeanKeepsTheLevelWhereItSays) {
   EXPECT_GE(rate(enough / 20), 1.5);
 }
 
-// A cost that is 1 but for one in a thousand, which is `more` dearer: how often, exactly, ln of the
-// mean of `count` of them is too far below or, with sign -1, above, in units of the nominal tail.
+// Exact tail of ln of the mean of `count` costs, in units of the nominal tail. A cost is 1 or, once
+// in a thousand, `more` dearer. The lower tail, or with sign -1 the upper.
 double tail_of_costs(double more, std::uint64_t count, double z, double sign = 1) {
   constexpr double p = 0.001;
   const double n = static_cast<double>(count);
@@ -151,9 +152,9 @@ double tail_of_costs(double more, std::uint64_t count, double z, double sign = 1
   return sum / std::exp(normal_upper(z));
 }
 
-// Where the rare costs make up twice what the others do, the skewness of the mean and the bend of
-// the logarithm cancel: without the next order 1000 observations would do, of which 37 % have not a
-// single dear one.
+// The rare costs make up twice what the others do. Then the skewness of the mean and the bend of
+// the logarithm cancel. To first order 1000 observations would do, but 37 % of such samples have no
+// dear one.
 TEST(LogVarianceLevel, OfRareCostsIsKeptWhereTheFirstOrderVanishes) {
   constexpr double p = 0.001;
   const double deviation = std::sqrt(p * (1 - p));
@@ -170,8 +171,8 @@ TEST(LogVarianceLevel, OfRareCostsIsKeptWhereTheFirstOrderVanishes) {
   }
 }
 
-// The same of a variance: normal values with one of 41 deviations in a thousand. At most 1.8 times
-// .025 at the count found: of 2000 runs more than 120 have probability .001 then.
+// The same for a variance: normal values with one of 41 deviations in a thousand. At the count
+// found the rate is at most 1.8 times .025. Of 2000 runs more than 120 then have probability .001.
 TEST(LogVarianceLevel, OfRareOutliersIsKeptWhereTheFirstOrderVanishes) {
   constexpr double p = 0.001;
   const double far = std::sqrt(1700);

@@ -16,11 +16,12 @@ struct Blocks {
 };
 
 struct Rounded {
-  double off;  // the mean's, of one sample
+  // Error of the mean of one sample.
+  double off;
   Moments moments;
 };
 
-/// Normal values of deviation 1 around the offset; their distances from it are exact, and summed
+/// Normal values of deviation 1 around the offset. Their distances from it are exact, and summed
 /// without the offset.
 Rounded sample(const Blocks& blocks, tests::Philox& random) {
   Moments all;
@@ -37,7 +38,7 @@ Rounded sample(const Blocks& blocks, tests::Philox& random) {
   return {(all.mean - blocks.offset) - distances.mean, all};
 }
 
-// Of a uniform law the root mean square of 200 has a standard deviation of 3.2 %: a fifth more or
+// For a uniform law the root mean square of 200 has a standard deviation of 3.2 %. A fifth more or
 // less is six away.
 TEST(MeanRounding, IsAsMeasured) {
   tests::Philox random(1717);

@@ -62,8 +62,8 @@ TEST(Moments, ALargeOffsetDoesNotCancel) {
   EXPECT_DOUBLE_EQ(x.variance(), 1);
 }
 
-// Steps of the mean are far below the spacing of doubles at 1e13: where they are dropped m2 is off
-// by 6e-4 and m4 by 1.4e-3.
+// Steps of the mean are far below the spacing of doubles at 1e13. If they are dropped m2 is off by
+// 6e-4 and m4 by 1.4e-3.
 TEST(Moments, ALargeOffsetOfManyValuesLosesNoStep) {
   tests::Philox random(1801);
   Moments offset;

@@ -1,6 +1,5 @@
-// Each method broken in one known way; the calibration of tests/stats/calibration.h must notice.
-// With the repetitions below every one of them misses by at least twice the threshold in
-// expectation.
+// Each method is broken in one known way, and the calibration of tests/stats/calibration.h must
+// notice. With these repetitions every one misses by at least twice the threshold in expectation.
 
 #include <gtest/gtest.h>
 

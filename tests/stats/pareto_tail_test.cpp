@@ -125,7 +125,8 @@ TEST(ParetoTail, TheGateIsRedForInfiniteVarianceAndNotForLightTails) {
   const auto gate = [&](std::size_t n, const std::function<double()>& draw, TailClaim claim) {
     return pareto_gate(largest_of(n, draw), n, claim);
   };
-  // k = 1.2 at n = 20000: 6.7 standard errors above .5; a gate not red has probability below 1e-4.
+  // k = 1.2 at n = 20000 is 6.7 standard errors above .5. A gate that is not red has probability
+  // below 1e-4.
   const auto heavy = [&] { return std::pow(random.uniform(), -1.2); };
   EXPECT_EQ(gate(20000, heavy, TailClaim::mean).state, GateState::red);
   EXPECT_EQ(gate(20000, heavy, TailClaim::any_mean).state, GateState::red);

@@ -39,7 +39,7 @@ TEST(PlaneCells, IndicesRunFastestInY) {
   EXPECT_THROW(grid.index(0, std::nan("")), std::domain_error);
 }
 
-// Of f = 4 x y a cell has the product of the differences of squares.
+// f = 4 x y gives a cell the product of the differences of squares.
 TEST(PlaneCells, ProbabilitiesOfASmoothDensityAreExact) {
   const PlaneGrid grid = unit_grid(4);
   const CellProbabilities cells = cell_probabilities(
@@ -64,8 +64,8 @@ TEST(PlaneCells, ASmoothDensityIsAskedForInFewQuestions) {
   EXPECT_EQ(questions, 16u * 3 * 2) << "a part and its halves: along nine lines, and their halves";
 }
 
-// A disc of radius r about the middle, density 1 / (pi r^2): it jumps along a curve. The four
-// middle cells of 4 x 4 hold a quarter each but for the caps beyond them.
+// A disc of radius r about the middle, density 1 / (pi r^2), jumps along a curve. The four middle
+// cells of 4 x 4 hold a quarter each but for the caps beyond them.
 TEST(PlaneCells, AJumpAlongACurveIsFoundWithinItsErrorAndTheLimit) {
   constexpr double r = .22;
   const PlaneGrid grid = unit_grid(4);
@@ -109,8 +109,8 @@ TEST(PlaneCells, ACellThatMayHideACornerSaysSo) {
   EXPECT_EQ(cells.error[grid.index(.6, .6)], 0) << "far from the support";
 }
 
-// A block, and to its right a spike thinner than the panels, across several cells: each is found
-// beside the last, none by the nodes.
+// A block, and to its right a spike thinner than the panels, across several cells. Each part is
+// found beside the last, none by the nodes.
 TEST(PlaneCells, ASupportIsFollowedFromCellToCell) {
   constexpr double y0 = .57412;
   constexpr double half_width = .00274;
@@ -129,8 +129,8 @@ TEST(PlaneCells, ASupportIsFollowedFromCellToCell) {
   EXPECT_LT(cells.total_error, 2e-4);
 }
 
-// 1500 exp(-1500 x) underflows halfway across: what the cells beyond may hide is no denser than
-// what ends before them, and not as dense as the peak.
+// 1500 exp(-1500 x) underflows halfway across. The cells beyond may hide density as great as what
+// ends before them. That is less than the peak.
 TEST(PlaneCells, WhatUnderflowsHidesNoPeak) {
   const PlaneGrid grid = unit_grid(8);
   const auto peak = [](double x, double) { return 1500 * std::exp(-1500 * x); };

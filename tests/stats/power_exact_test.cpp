@@ -43,8 +43,8 @@ TEST(PowerExact, SampleSizesHaveTheirPowerAndAreNearTheLeast) {
   EXPECT_FALSE(exact_detectable(ExactMethod::binomial, rare, 100, -1).has_value());
 }
 
-// 1000 runs at the planned size: fewer than .96 found where .99 are promised has probability below
-// 1e-12; the bound is conservative, so more are found.
+// 1000 runs at the planned size, which promises .99. Fewer than .96 have probability below 1e-12.
+// The bound is conservative, so more are found.
 TEST(PowerExact, ABoundedMeanIsFoundAtThePlannedSize) {
   const ExactMeanPlan plan{.range = {0, 1},
                            .null_mean = 0.45,

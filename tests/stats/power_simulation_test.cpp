@@ -1,5 +1,5 @@
-// Predicted power against simulated rejections. False-alarm rate 1e-5 each by Hoeffding's bound:
-// |rate - power| <= sqrt(ln(2e5) / (2 R)), .0247 at R = 10000, .0391 at R = 4000.
+// Predicted power against simulated rejections. Hoeffding's bound gives a false-alarm rate of 1e-5
+// each. |rate - power| <= sqrt(ln(2e5) / (2 R)), .0247 at R = 10000, .0391 at R = 4000.
 
 #include <gtest/gtest.h>
 
@@ -134,8 +134,8 @@ double log_binomial(std::uint64_t k, std::uint64_t n, double p) {
          (size - x) * std::log1p(-p);
 }
 
-// The probability that two samples of n differ by at least `steps` / n, of laws on {0, 1} that
-// differ by `distance` at 0: the hardest of that distance, and nothing here is simulated.
+// The exact probability that two samples of n differ by at least `steps` / n. Their laws on {0, 1}
+// differ by `distance` at 0, the hardest case of that distance.
 double probability_of_steps(std::uint64_t steps, std::uint64_t n, double distance) {
   std::vector<double> one;
   std::vector<double> other;
@@ -174,8 +174,8 @@ TEST(PowerSimulation, TwoSampleKolmogorovSmirnovKeepsWhatItPromises) {
   }
 }
 
-// What is detectable is the critical distance of the test itself and Hoeffding's sqrt(ln(1/beta) /
-// n). With a margin the critical distance is no lattice point: the test lies within a step of it.
+// The detectable distance is the test's own critical distance and Hoeffding's sqrt(ln(1/beta) / n).
+// With a margin the critical distance is no lattice point, and the test lies within a step of it.
 TEST(PowerSimulation, TwoSampleKolmogorovSmirnovIsPlannedForItsOwnCriticalDistance) {
   for (const double allow : {0.0, .1}) {
     const DistancePlan plan{.two_samples = true, .allow = allow, .rates = {.01, .05, true}};

@@ -154,7 +154,7 @@ TEST(Power, DetectableDistancesAreThoseOfTheirOwnPlan) {
   EXPECT_GT(ks_detectable({.two_samples = true, .allow = 1e-9, .rates = rates}, 1000), 1.01 * two);
 }
 
-// A guess saves questions and changes no bit, be it right or wrong.
+// A guess saves questions and changes no bit, right or wrong.
 TEST(Power, AGuessChangesNoBitOfTheSmallestEffect) {
   constexpr double smallest = 0.7364916731037085;
   int asked = 0;
@@ -210,8 +210,8 @@ TEST(Power, BadPlansThrow) {
   EXPECT_THROW(chi_square_fit_power({.degrees_of_freedom = 0}, 10, 1), std::domain_error);
 }
 
-// Rounding noise far from what is claimed: the integrals over the noncentral law have no digits
-// left, the power has all of them.
+// Far from the claim the integrals over the noncentral law are rounding noise. The power has all
+// digits.
 TEST(Power, OfAnEffectBeyondAllNoiseIsOne) {
   for (const double deviation : {1e-3, 1e-8, 1e-15, 1e-100}) {
     const MeanPlan plan{.standard_deviation = deviation, .rates = {.alpha = .01, .beta = .01}};

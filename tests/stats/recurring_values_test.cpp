@@ -59,8 +59,8 @@ TEST(RecurringValues, FindsCopiesOfAPartAndOnesWithRowsLeftOut) {
   ASSERT_TRUE(recurring_values(most));
 }
 
-// Of values that occur twice beside none once or thrice the ratio is q^k with q = f / (2 + f), f^2
-// = 3 (n - 1) / (2 (n - 2)): .385^12 = 1.06e-5 and .3846^13 = 4.0e-6.
+// With 12 or 13 values twice, and none once or thrice, the ratio is q^k with q = f / (2 + f). Here
+// f^2 = 3 (n - 1) / (2 (n - 2)), which gives .385^12 = 1.06e-5 and .3846^13 = 4.0e-6.
 TEST(RecurringValues, TakesThirteenPairs) {
   for (const std::size_t pairs : {12u, 13u}) {
     std::vector<double> once;
@@ -99,7 +99,7 @@ std::vector<Law> laws_of_atoms() {
   return laws;
 }
 
-// Such a ratio has a probability of some 1e-5 at most: .17 of one among the 16,800 would be found.
+// Such a ratio has a probability of at most about 1e-5. Among the 16,800 .17 would be found.
 TEST(RecurringValues, AreNotFoundInIndependentValues) {
   Philox random(3);
   for (const Law& law : laws_of_atoms()) {
@@ -112,8 +112,8 @@ TEST(RecurringValues, AreNotFoundInIndependentValues) {
   }
 }
 
-// As it is on the boundary of the bound where most laws meet it nearest: multiplicities about
-// Poisson's with one mean. Resampled with replacement is such a law.
+// Multiplicities about Poisson's with one mean are on the boundary of the bound. Resampling with
+// replacement gives such a law.
 TEST(RecurringValues, AreNotFoundInResampledValues) {
   Philox random(4);
   for (int i = 0; i < 200; ++i) {

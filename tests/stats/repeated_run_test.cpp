@@ -46,7 +46,7 @@ TEST(RepeatedRun, FindsTheSecondOfTwoFarApart) {
   EXPECT_EQ(run->length, 60u);
 }
 
-// 4 values over and over: nothing that 60 draws from four values would do.
+// 4 values over and over, which 60 draws from four values would not give.
 TEST(RepeatedRun, FindsAShortPatternThatGoesOn) {
   std::vector<double> values;
   for (int i = 0; i < 60; ++i) values.push_back(std::sqrt(1 + i % 4));
@@ -77,9 +77,9 @@ TEST(RepeatedRun, OfTwoSamplesSaysWhereInEach) {
   EXPECT_FALSE(common_run(uniform_values(1000, 12), uniform_values(1000, 13)));
 }
 
-// Laws of few values, where runs repeat soonest: the header's bound is 0.016 for all samples
-// together; of three equal values a change that matches has probability 1/4 for each before it, and
-// chance is below 1e-13, less for the others.
+// Laws of few values repeat runs soonest. The header's bound is 0.016 for all samples together.
+// With three equal values a change matches with probability 1/4 for each before it. Chance is below
+// 1e-13, less for the others.
 TEST(RepeatedRun, IsNotFoundInIndependentValues) {
   Philox random(14);
   const auto coin = [&] { return std::floor(2 * random.uniform()); };
@@ -94,8 +94,8 @@ TEST(RepeatedRun, IsNotFoundInIndependentValues) {
   }
 }
 
-// Values that stay count for their length: runs of the common value have many lengths, between two
-// rare values that have few.
+// Stays count by their length. Runs of the common value have many lengths, between two rare values
+// that have few.
 TEST(RepeatedRun, StaysOfDifferentLengthsDiffer) {
   Philox random(16);
   const auto rare = [&] {
@@ -105,7 +105,7 @@ TEST(RepeatedRun, StaysOfDifferentLengthsDiffer) {
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(repeated_run(sample_of(20000, rare)));
 }
 
-// Its stays are short and alike: nothing but that it has two values alone tells it.
+// Its stays are short and alike. Only its having two values tells it.
 TEST(RepeatedRun, IsNotFoundInTwoStatesThatHardlyStay) {
   Philox random(17);
   double state = 0;
@@ -113,7 +113,7 @@ TEST(RepeatedRun, IsNotFoundInTwoStatesThatHardlyStay) {
   EXPECT_FALSE(repeated_run(sample_of(4000, restless)));
 }
 
-// What depends is not repeated for all that.
+// Dependent values are not repeated.
 TEST(RepeatedRun, IsNotFoundInChains) {
   Philox random(15);
   double place = 0;

@@ -36,8 +36,8 @@ Moments skewed(int k, int n) {
 
 TEST(SkewnessCorrectedT, GoldenValueToThePrintedDigits) {
   const Moments x = moments_of(golden_x);
-  // At the null value where T from s equals the worked example's T from the standard deviation
-  // with denominator n.
+  // At this null value T from s equals the worked example's T from the deviation with denominator
+  // n.
   const double null_value = x.mean + .742126210128256 * x.standard_error();
   EXPECT_NEAR(skewness_corrected_t(x, {null_value}).statistic, -.638855547353991, 1e-14);
 }
@@ -115,7 +115,7 @@ TEST(SkewnessCorrectedT, BadArgumentsAreNamed) {
   EXPECT_NO_THROW(skewness_corrected_welch(x, constant, {}));
 }
 
-// ---- What is left
+// ---- The remaining error
 
 TEST(ResidualSkewness, TheFactorIsTheSameFromASampleAndFromItsShape) {
   const Moments x = skewed(4, 300);
@@ -141,9 +141,9 @@ TEST(ResidualSkewness, TheGateKnowsWhatIsTooSmallAndTooSkewed) {
   EXPECT_EQ(residual_skewness_gate(rare, {.001}, 3.1).state, GateState::red);
 }
 
-// ---- Level. Where the population's factor is at most 1.25 at the level's critical value, the
-// level of each tail is at most 1.25 times nominal; each comparison raises a false alarm with
-// probability 2.5e-6 (Chernoff). Seed 1, streams 201 and on.
+// ---- Level. Where the population's factor is at most 1.25 at the level's critical value, each
+// tail is at most 1.25 times nominal. Each comparison raises a false alarm with probability 2.5e-6
+// (Chernoff). Seed 1, streams 201 and on.
 
 struct Levels {
   double repetitions = 0;
@@ -218,7 +218,8 @@ TEST(SkewnessCorrectedT, KeepsItsLevelWhereTheFactorSaysSo) {
       checked += 1 + at_001;
     }
   }
-  EXPECT_GE(checked, 20);  // of 42: a factor that refuses everything would prove nothing
+  // There are 42. A factor that refuses everything would prove nothing.
+  EXPECT_GE(checked, 20);
 }
 
 TEST(SkewnessCorrectedT, TwoSamplesKeepTheirLevelToo) {

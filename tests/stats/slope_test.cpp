@@ -117,7 +117,7 @@ TEST(Slope, TheSetIsEmptyWhereEvenTheBestSlopeIsRejected) {
   }
 }
 
-// On a power law no more than .01 of the samples leave no slope at .01: of 4000 more than 75 have a
+// On a power law at most .01 of the samples leave no slope at .01. Of 4000 more than 75 have a
 // probability below 1e-6.
 TEST(Slope, OnAPowerLawTheSetIsSeldomEmpty) {
   Philox random(1719);
@@ -165,8 +165,8 @@ TEST(Slope, RefusesMalformedPoints) {
   EXPECT_THROW(slope_set(known(0), 1), std::domain_error);
 }
 
-// Biases 1 / M with one standard error at all sizes, twice of which is the bias at M = 64, and a
-// reference whose error is common to all.
+// Biases 1 / M with one standard error at all sizes. The bias at M = 64 is twice that. The
+// reference's error is common to all.
 SlopeData inverse_bias(Philox& random) {
   const double error = .5 / 64;
   const double reference = .5 * error;

@@ -52,8 +52,8 @@ inline std::vector<Row> read_table(const std::string& name) {
   return rows;
 }
 
-// How far a logarithm of a probability is off: relative error of p above 1e-300, of ln p below;
-// where p is near 1, relative error of 1 - p.
+// Error of a logarithm of a probability. Relative error of p above 1e-300, of ln p below. Near p =
+// 1, relative error of 1 - p.
 inline double log_p_error(double computed, double expected) {
   const double difference = std::abs(computed - expected);
   if (expected == 0) return difference;

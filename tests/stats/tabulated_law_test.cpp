@@ -62,7 +62,7 @@ TEST(TabulatedLaw, FollowsAJumpWithinItsError) {
   EXPECT_NEAR(table.total(), total, 1e-8) << "next to a jump two rules may agree by luck";
 }
 
-// Also where it lies beyond the outermost node of a part and of its half: 2.5 % of all places.
+// The jump may also lie beyond the outermost node of a part and of its half: 2.5 % of all places.
 TEST(TabulatedLaw, FollowsAJumpAnywhereWithinItsError) {
   for (int i = 0; i < 400; ++i) {
     const double jump = std::fmod((i + 1) * std::numbers::phi, 1.0);

@@ -78,8 +78,8 @@ TEST(Tails, LogarithmsStayFiniteFarBeyondTheRangeOfProbabilities) {
   }
 }
 
-// A mixture of 3e5 Poisson terms up to here, a saddlepoint beyond: they join in both tails, in the
-// middle and where one is 1e-300.
+// A mixture of 3e5 Poisson terms up to here, a saddlepoint beyond. They join in both tails, in the
+// middle and at 1e-300.
 TEST(Tails, NoncentralChiSquareOfALargeNoncentralityJoinsTheMixture) {
   constexpr double border = 1e8;
   for (const double degrees : {1.0, 4.0, 300.0}) {
@@ -98,8 +98,9 @@ TEST(Tails, NoncentralChiSquareOfALargeNoncentralityJoinsTheMixture) {
 }
 
 TEST(Tails, NoncentralTailsStayAccurateWhereTheirFactorsLeaveTheRangeOfDoubles) {
-  // nu = 2: the density is e^(-(x + ncp) / 2) I0(sqrt(ncp x)) / 2, so the log tail's slope is
-  // known: d ln P / dx -> -1/2 + sqrt(ncp / x) / 2 - 1 / (4 x) + …
+  // At nu = 2 the density is e^(-(x + ncp) / 2) I0(sqrt(ncp x)) / 2. That gives the log tail's
+  // slope.
+  //  d ln P / dx -> -1/2 + sqrt(ncp / x) / 2 - 1 / (4 x) + …
   const Noncentral law{2, 9};
   const double slope = (noncentral_chi_square_tails(1.001e6, law).upper -
                         noncentral_chi_square_tails(0.999e6, law).upper) /
@@ -118,8 +119,8 @@ TEST(Tails, FractionalDegreesOfFreedomJoinTheNormalLaw) {
 }
 
 TEST(Tails, NoncentralTOfManyDegreesJoinsTheNormalLawOnBothSidesOfTheNoncentrality) {
-  // T <= t where Z <= t S - delta, and S is within 1e-6 of 1: ln P moves by no more than t 1e-6
-  // times the hazard rate, which is below 4 here.
+  // T <= t where Z <= t S - delta, and S is within 1e-6 of 1. So ln P moves by at most t 1e-6 times
+  // the hazard rate, which is below 4 here.
   for (const double nu : {1e12, 1e13, 1e15}) {
     for (const double t : {4.5, 5.0 - 1e-9, 5.0, 5.0 + 1e-9, 7.0}) {
       const LogTails tails = noncentral_t_tails(t, {nu, 5});

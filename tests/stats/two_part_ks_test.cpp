@@ -94,9 +94,9 @@ TEST(TwoPartKs, TheLawOfAllValuesTakenForThatOfTheRestIsCaught) {
                 [&](Philox& random) { return two_part_ks(pixels(random, 60, .5), wrong).log_p; });
 }
 
-// Nine tenths black in both, the rest uniform in one and its square in the other, n = 1000 each,
-// alpha .01: the rest differs by .25 over 100 values, all values by .025 over 1000. Hoeffding at
-// 1e-5, R = 500: .11 each.
+// Nine tenths are black in both. The rest is uniform in one and its square in the other, n = 1000
+// each, alpha .01. The rest differs by .25 over 100 values, all values by .025 over 1000. Hoeffding
+// at 1e-5, R = 500: .11 each.
 TEST(TwoPartKs, FindsADifferenceInTheRestThatTheDistanceAloneMisses) {
   Philox random(375);
   int split = 0;

@@ -26,8 +26,8 @@ TEST(UncertainReference, AnExactReferenceChangesNothing) {
   EXPECT_EQ(log_p_over_references(log_p_of_mean, exact), log_p_of_mean({&truth, 1}));
 }
 
-// By its definition: at level p the sample, given the worst reference of the interval that a tenth
-// of p leaves, rejects at 0.9 p.
+// By its definition: a tenth of p leaves an interval of references, and the sample rejects at 0.9 p
+// given the worst of them.
 TEST(UncertainReference, PIsWhereTheWorstReferenceRejects) {
   for (const double error : {.01, .3, 2.0}) {
     const std::array reference{UncertainReference{.known = {7, error}}};
@@ -53,9 +53,9 @@ TEST(UncertainReference, RefusesErrorsThatAreNone) {
   EXPECT_THROW(log_p_over_references(log_p_of_mean, negative), std::domain_error);
 }
 
-// An estimator of variance 1 and of this bias against a reference of this error, n = 2000: the
-// true mean squared error, both sides. With errors far beyond the bias an expansion in the
-// reference is off: fails of the true claim in a tenth of the runs at .01, or no number at all.
+// An estimator of variance 1 and of this bias against a reference of this error, n = 2000. The
+// claim is the true mean squared error, both sides. With errors far beyond the bias an expansion in
+// the reference fails a tenth of the runs at .01, or gives no number.
 struct Case {
   double bias;
   double error;

@@ -32,13 +32,13 @@ TEST(UnpilotedGates, ValueIsTheSkewnessOfTheMean) {
   const Moments x = draw_moments(400, [k = 0]() mutable { return std::exp(.01 * ++k); });
   EXPECT_NEAR(unpiloted_skewness_gate(x, 3).value, x.skewness() / 20, 1e-12);
   EXPECT_NEAR(unpiloted_skewness_gate(x, 2).limit, normal_skewness_quantile(400, 5e-5) / 20, 0.15);
-  // Of a difference from itself it cancels, of a sum it is that of twice as many.
+  // In a difference from itself the skewness cancels. In a sum it is that of twice as many.
   EXPECT_NEAR(unpiloted_skewness_gate(x, x, 1, 3).value, 0, 1e-12);
   EXPECT_NEAR(unpiloted_skewness_gate(x, x, -1, 3).value, x.skewness() / std::sqrt(800), 1e-12);
   EXPECT_THROW(unpiloted_skewness_gate({.count = 3}, 3), ZeroVariance);
 }
 
-// A sound gate is called wrong with probability 4e-5 at most: Poisson(2) of 40000 samples at 5e-5
+// A sound gate is called wrong with probability at most 4e-5: Poisson(2) of 40000 samples at 5e-5
 // exceeds 10.
 TEST(UnpilotedGates, AreSilentOnNormalSamples) {
   Philox random(1);
@@ -50,8 +50,8 @@ TEST(UnpilotedGates, AreSilentOnNormalSamples) {
   EXPECT_LE(red, 10);
 }
 
-// Of 50 values of lognormal(1.5) the t test at .05 rejects a true mean 18 times as often from below
-// as it should; those samples are rare behind the gate. Power of the gate: measured .99.
+// On 50 values of lognormal(1.5) the t test at .05 rejects a true mean 18 times too often from
+// below. Those samples are rare behind the gate. Power of the gate: .99.
 TEST(UnpilotedGates, TurnAwaySkewedSamples) {
   Philox random(2);
   int red = 0;

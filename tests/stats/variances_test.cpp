@@ -74,7 +74,7 @@ Moments gamma_moments(int shape, std::size_t count, Philox& random) {
   });
 }
 
-// Degrees of (n - 1) / (1 + .5 / 2) in both, and of half as many where k is 2.
+// Degrees of (n - 1) / (1 + .5 / 2) in both, and half as many if k is 2.
 TEST(Variances, AKurtosisTakesDegreesOff) {
   const TestResult chi_square = chi_square_variance(x, .3, .5);
   EXPECT_DOUBLE_EQ(chi_square.statistic, 16.8793666666666667 / 1.25);
@@ -93,8 +93,8 @@ TEST(Variances, AKurtosisTakesDegreesOff) {
   EXPECT_THROW(f_ratio(x, y, 1, {.y = -.1}), std::domain_error);
 }
 
-// Gamma laws of excess .5, 300 values: told of it both tests keep .01 within a quarter; without it
-// chi-square doubles its upper tail. Wrong alarms: 2.5e-6 each.
+// Gamma laws of excess .5, 300 values. Both tests keep .01 within a quarter if told of it.
+// Otherwise chi-square doubles its upper tail. False alarms: 2.5e-6 each.
 TEST(Variances, AKurtosisThatIsAllowedForKeepsTheLevel) {
   constexpr double runs = 20000;
   Philox random(1810);
@@ -113,8 +113,8 @@ TEST(Variances, AKurtosisThatIsAllowedForKeepsTheLevel) {
   EXPECT_FALSE(tests::too_many(told_of_two / runs, .0125, runs)) << told_of_two;
 }
 
-// 95 % of normal samples have it above the law's, some 90 % of skewed ones, and few far above.
-// Wrong alarms: 2.5e-6.
+// In 95 % of normal samples the limit is above the law's kurtosis, in some 90 % of skewed ones, and
+// seldom far above. False alarms: 2.5e-6.
 TEST(Variances, TheUpperLimitOfAKurtosisHoldsIt) {
   constexpr double runs = 2000;
   Philox random(1811);

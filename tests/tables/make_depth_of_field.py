@@ -57,8 +57,8 @@ for name, scene, pixels in (("edge", edge, [(0, 0), (-.1, 0), (.14, .3)]),
         m, s = moments(scene, pixel)
         print(f"{name},{pixel[0]},{pixel[1]},{m:.15g},{s:.15g}")
 
-# The variance of a wave over the lens, averaged over its phase, by a sum over a grid of phases of
-# quadratures: what Parseval says is half the squared amplitude times 1 - j^2.
+# The variance of a wave over the lens, averaged over its phase: quadratures summed over a grid of
+# phases. Parseval says that it is half the squared amplitude times 1 - j^2.
 for depth, k in ((1, 12), (3, 20), (7, 9)):
     radius, focus = .2, 2
     reach = k * (1 - depth / focus) * radius

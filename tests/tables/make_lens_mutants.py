@@ -47,8 +47,8 @@ def stopped(p, pilot):
     return total
 
 
-# Radius xi and not its root: the part of a circle of radius r that is lit is 1 - acos(t / r) / pi
-# beyond r = t.
+# The mutant takes the radius xi and not its root. Beyond r = t the lit part of a circle of radius r
+# is 1 - acos(t / r) / pi.
 t = .5
 crowded = 1 - integrate.quad(lambda r: math.acos(t / r) / math.pi, t, 1, epsabs=1e-13)[0]
 # The wave 1/2 + 1/2 cos(15 x) of `sinusoid` at depth 4 over a disc of radius 0.1, not 0.2.

@@ -1,4 +1,4 @@
-"""Keys of random streams from their definition, as stated in estimators/README.md."""
+"""Keys of random streams from their definition, as stated in estimators/stream.h."""
 
 import pathlib
 

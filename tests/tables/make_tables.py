@@ -171,7 +171,7 @@ def binomial_rows():
         for k in sorted({0, 1, n // 7, int(n * p), int(n * p) + 1, int(n * 0.45), n - 1, n}):
             low = log_binomial_tail(k, n, p, -1)
             up = log_binomial_tail(k, n, p, +1)
-            # Where one is nearly certain its complement is the accurate one.
+            # A nearly certain tail is accurate by its complement.
             if low > -0.1 and k < n:
                 low = complement(log_binomial_tail(k + 1, n, p, +1))
             if up > -0.1 and k > 0:

@@ -63,8 +63,8 @@ TEST(LensCounts, GoWithThePowerOfTheVariance) {
   EXPECT_EQ(lens_counts(variances, {50, 0}), (Counts{50, 50}));
 }
 
-// V / N is equal for exponent 1; for 1/2 the sum of V / N is (sum of sqrt V)^2 / the budget, the
-// least there is (Neyman 1934), but for the rounding of counts near 1000.
+// Exponent 1 makes V / N equal. With 1/2 the sum of V / N is (sum of sqrt V)^2 / the budget, the
+// least there is (Neyman 1934). Counts near 1000 are rounded.
 TEST(LensCounts, EqualiseTheNoiseOrMinimiseItsSum) {
   const std::vector<double> variances{0.3, 1.7, 5, 0.9};
   const Counts equal = lens_counts(variances, {1000, 1});

@@ -108,7 +108,7 @@ TEST(LensImage, ItsDiagnosticChannelsRepeatPixels) {
   EXPECT_NE(samples[12].values, samples[13].values);
 }
 
-// Of 4 primaries a pixel has 4 N samples, and the pass is counted 4 times.
+// With 4 primaries a pixel has 4 N samples, and the pass is counted 4 times.
 TEST(LensImage, APrimaryIsAnImageAndItsPass) {
   const ImagePlan plan = image_plan("{" + row + "}");
   const Prepared image = prepare("depth_of_field/image", "{" + row + "}");

@@ -112,7 +112,7 @@ TEST(DepthOfField, TravelAndCurvatureKeepThePhaseOfEveryRay) {
               1e-14);
 }
 
-// A wave on a plane, followed along lens rays to the camera: its frequencies are the derivatives of
+// A wave on a plane, followed along lens rays to the camera. Its frequencies are the derivatives of
 // its phase by lens point and by pixel.
 TEST(DepthOfField, FrequenciesAtTheCameraAreDerivativesOfThePhase) {
   const Lens lens{.3, 2};

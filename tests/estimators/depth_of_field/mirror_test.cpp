@@ -43,8 +43,8 @@ TEST(LensMirror, AFlatOneShowsWhatStandsBehindIt) {
   }
 }
 
-// The board's picture in a mirror of curvature c stands beyond / (1 + 2 c beyond) behind it: at the
-// focus for c = 1/3.
+// The board's picture in a mirror of curvature c stands beyond / (1 + 2 c beyond) behind it. It is
+// at the focus for c = 1/3.
 TEST(LensMirror, OneThatBulgesBringsTheBoardIntoFocus) {
   const Channel sharp = stated("{curvature: .3333333333333333}");
   EXPECT_NEAR(*sharp.mean, 1, 1e-14);
@@ -53,7 +53,7 @@ TEST(LensMirror, OneThatBulgesBringsTheBoardIntoFocus) {
   EXPECT_NEAR(*rough.mean, 0.5 + 0.5 * std::exp(-0.5 * 0.9 * 0.9), 1e-14);  // k beyond s = 0.9
 }
 
-// What is neglected is of the third order in the ray's distance from the axis and its slope.
+// The neglected part is of the third order in the ray's distance from the axis and its slope.
 TEST(LensMirror, ExactRaysAreLinearInTheLimit) {
   const Lens lens{.radius = 1, .focus = 2};
   for (const double curvature : {-.2, 0., .3}) {
@@ -80,7 +80,7 @@ TEST(LensMirror, ExactRaysKeepTheLawOfReflection) {
     const double pixel = .2;
     // Without a way to the board's plane through the vertex, two points of the reflected ray.
     const double slope = far.exact(lens, u, pixel, 0) - near.exact(lens, u, pixel, 0);
-    // Where it was met, by bisection.
+    // The point of the hit, by bisection.
     double low = 0, high = 3;
     for (int i = 0; i < 200; ++i) {
       const double z = (low + high) / 2;

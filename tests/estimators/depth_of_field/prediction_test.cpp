@@ -1,4 +1,4 @@
-// What a pass through the middle of the lens predicts, against closed forms.
+// Predictions of a pass through the middle of the lens, against closed forms.
 
 #include "depth_of_field/prediction.h"
 
@@ -75,8 +75,8 @@ TEST(LensPrediction, EqualisesTheNoiseOfAnEdge) {
   EXPECT_LT(most / least, 1.03);
 }
 
-// V = (1 - c) V_back + c V_front + c (1 - c) step^2, V = a^2 / 2 (1 - j^2) of a wave.
-// Planes are small: edges are off by 1e-7 of the largest coordinate.
+// V = (1 - c) V_back + c V_front + c (1 - c) step^2. A wave has V = a^2 / 2 (1 - j^2). Planes are
+// small: edges are off by 1e-7 of the largest coordinate.
 TEST(LensPrediction, AddsWhatWavesAndEdgesVary) {
   const Grid grid{41, 1, 1};
   const std::string scene = behind_lens(
@@ -121,8 +121,8 @@ TEST(LensPrediction, LeavesOutEdgesThatRulesLeaveOut) {
   for (const double v : predicted("edge", grid, rules).variance) EXPECT_EQ(v, 0);
 }
 
-// In front of the sharp plane a step is let through up to 3.83 radians over the lens, 38.3 on the
-// occluder, half of that on the focal plane; its waves are 16 % apart.
+// In front of the sharp plane a step passes up to 3.83 radians over the lens. That is 38.3 on the
+// occluder, and half of that on the focal plane. Its waves are 16 % apart.
 TEST(LensPrediction, AnEdgesBandwidthIsWhatTheLensLetsThrough) {
   const Grid grid{60, 1, 2};
   const Prediction found = predicted("edge", grid);
@@ -132,8 +132,8 @@ TEST(LensPrediction, AnEdgesBandwidthIsWhatTheLensLetsThrough) {
   EXPECT_EQ(found.bandwidth[5], 0);
 }
 
-// Their sum is what decides: k across the lens is k_front / 2 - k_back (d / 2 - 1), which 19.2
-// bounds, and across the image k_front / 2 + k_back d / 2.
+// The sum decides. Across the lens k is k_front / 2 - k_back (d / 2 - 1), which 19.2 bounds. Across
+// the image it is k_front / 2 + k_back d / 2.
 TEST(LensPrediction, WavesBehindAnEdgeTravelToItAndAddTheirFrequency) {
   const Grid grid{200, 1, 2};
   for (const double depth : {1.5, 2., 4., 7.}) {

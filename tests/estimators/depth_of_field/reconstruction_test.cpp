@@ -45,7 +45,7 @@ TEST(Reconstruction, ItsBiasIsThatOfLinearInterpolation) {
   }
 }
 
-// Of the densities that the prediction chooses for the suites, and of every eighth pixel.
+// The densities are those that the prediction chooses for the suites, and every eighth pixel.
 TEST(Reconstruction, ItsBiasIsThatOfAnIndependentInterpolation) {
   for (const auto& row : tests::table("reconstruction.csv")) {
     const std::string parameters = "{scene: sinusoid, height: 1, width: " + row[0] +
@@ -72,8 +72,8 @@ TEST(Reconstruction, WithASampleAPixelHasNoBias) {
   EXPECT_EQ(largest(reconstruction_plan(wave("1")).bias()), 0);
 }
 
-// Half way between samples d apart linear interpolation is off by -f'' d^2 / 8; of a wave, with
-// z = 15 d, by a part of that between 1 - z^2 / 12 and 1.
+// Half way between samples d apart linear interpolation is off by -f'' d^2 / 8. For a wave the part
+// of that is between 1 - z^2 / 12 and 1, z = 15 d.
 TEST(Reconstruction, ItsBiasGrowsAsTheSquareOfTheSpacing) {
   for (const std::size_t spacing : {2u, 4u, 8u}) {
     const auto plan = reconstruction_plan(wave(std::to_string(spacing)));
@@ -85,8 +85,8 @@ TEST(Reconstruction, ItsBiasGrowsAsTheSquareOfTheSpacing) {
   }
 }
 
-// The highest frequency of the image is that of the wave, 30: two samples a period are pi / 30
-// apart, 8.6 of pixels of 0.4 / 33, 3.5 of 0.03.
+// The highest frequency of the image is that of the wave, 30. Two samples a period are pi / 30
+// apart: 8.6 pixels of 0.4 / 33, or 3.5 of 0.03.
 TEST(Reconstruction, SamplesAreAsDenseAsThePredictedDetailAsks) {
   EXPECT_EQ(reconstruction_plan(wave("0")).samples.size(), 5u);
   const auto coarse =

@@ -121,7 +121,7 @@ TEST_F(Commands, RunAgainWhenAFileThatTheyReadHasChanged) {
   EXPECT_EQ(starts(), 6U);
 }
 
-// What follows a `=`, and what a line of a shell names.
+// Files after a `=`, and files that a line of a shell names.
 TEST_F(Commands, RunAgainWhenAFileInsideAnArgumentHasChanged) {
   const auto value_of = [&](const std::vector<std::string>& words) {
     std::vector<Value> items;

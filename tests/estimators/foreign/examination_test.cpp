@@ -1,5 +1,5 @@
-// What libraries in the process of the tests are told whose numbers are no function of what was
-// asked; programs that answer so are in process_test.cpp and isolated_sampler_test.cpp.
+// Messages to libraries in the process of the tests whose numbers are no function of the question.
+// Programs that answer so are in process_test.cpp and isolated_sampler_test.cpp.
 
 #include "estimators/foreign/examination.h"
 

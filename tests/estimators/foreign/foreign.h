@@ -77,7 +77,7 @@ class Programs : public ::testing::Test {
     return "nothing was refused";
   }
 
-  /// What the program throws that is no mistake of its user's.
+  /// The message of an exception that is no InputError.
   std::string fault(const std::vector<std::string>& command, double timeout = 20) {
     try {
       run(command, timeout);

@@ -164,7 +164,7 @@ TEST_F(IsolatedSampler, NamesThePointAtWhichItsProgramEnds) {
                          HasSubstr("ended by signal 11 (Segmentation fault) instead of answering "
                                    "for 1 density; nothing of its reply came")));
   EXPECT_THAT(failure_at(*sampler, points(4)), HasSubstr("at (1.5)"));
-  // Those before it are had, and whatever does not ask for it goes on.
+  // The draws before it come, and a draw that does not ask for it goes on.
   std::vector<double> out(all.size());
   EXPECT_GT(sampler->densities(all, out), 0u);
   EXPECT_EQ(densities(*sampler, points(3)).size(), 3u);
@@ -210,7 +210,7 @@ TEST_F(IsolatedSampler, MustAnswerTheSameAgain) {
   EXPECT_THAT(why, ::testing::Contains(HasSubstr(words)));
 }
 
-// What goes on from where its random numbers are gives others to the last of many.
+// A program that draws on from the state of its random numbers gives others to the last of many.
 TEST_F(IsolatedSampler, MustAnswerTheSameAloneAsAmongOthers) {
   const auto sampler = ramp_that("place = iter(range(9999)); density = lambda point: next(place)");
   const auto why = [&] { return failure_at(*sampler, points(10)); };

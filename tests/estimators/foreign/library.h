@@ -1,7 +1,7 @@
 #pragma once
 
-// Libraries in C, compiled for a test and called in its process; those in a process of their own
-// are driven through the program, by tests/cli/foreign_test.sh.
+// Libraries in C, compiled for a test and called in its process. tests/cli/foreign_test.sh drives
+// those in a process of their own.
 
 #include "tests/estimators/foreign/foreign.h"
 

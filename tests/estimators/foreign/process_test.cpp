@@ -83,7 +83,7 @@ TEST_F(Process, KnowsWhatTheProgramSaysOfItself) {
   EXPECT_EQ(setup->nature()->bias, BiasClass::unbiased);
 }
 
-/// Whatever is announced, the same bits; and the mean of 200 observations of 100 darts is pi within
+/// Any announcement gives the same bits. The mean of 200 observations of 100 darts is pi within
 /// 4.892 standard errors, sqrt(pi (4 - pi) / 20000): one false alarm in 1e6.
 void expect_darts(const std::shared_ptr<const Setup>& setup) {
   const std::vector<double> values = draw(*setup, 200, 64, 100);
@@ -273,8 +273,8 @@ std::string of_index(const std::string& value) {
          "  echo \"$high $low $first $count $primaries\"; done\n";
 }
 
-// That all of 128 pairs are equal, k of them 1 and the others 0, has the probability C(128, k) /
-// C(256, 2 k): 2.6e-8 for 4 and 9.5e-10 for 5, where 5e-7 / 128 is the limit.
+// All of 128 pairs, k of them 1 and the others 0, are equal with probability C(128, k) / C(256, 2
+// k). It is 2.6e-8 for 4 and 9.5e-10 for 5. The limit is 5e-7 / 128.
 TEST_F(Process, TakesRareValuesForACoincidence) {
   const std::vector<double> values = draw(*run_shell(of_index("$((i % 32 == 7))")), 8, 8);
   EXPECT_EQ(values[7], 1);

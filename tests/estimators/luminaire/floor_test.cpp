@@ -114,7 +114,7 @@ Prepared ramp_of(const std::string& law) {
 }
 
 TEST(Ramp, ThePixelsHaveTheRangeThatTheLawLeavesThem) {
-  // Of the uniform law, sqrt 3 standard deviations on both sides.
+  // The uniform law has sqrt 3 standard deviations on both sides.
   const Prepared ramp = ramp_of("uniform(-1, 5)");
   const Channel last = ramp.setup->channels()[3];
   EXPECT_NEAR(last.low, 10 - 5 * std::numbers::sqrt3, 1e-13);

@@ -10,8 +10,8 @@
 namespace assay::luminaire {
 namespace {
 
-// Whether a direction passes through a polygon that is counter-clockwise (side 1) or clockwise (-1)
-// as seen from the origin's far side, in double precision.
+// True if a direction passes through a polygon, in double precision. Seen from the origin's far
+// side the polygon is counter-clockwise (side 1) or clockwise (-1).
 bool passes(const render::Polygon& polygon, double side, const render::Vector3& w) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const render::Vector3 inward = cross(polygon[i], polygon[(i + 1) % polygon.size()]);

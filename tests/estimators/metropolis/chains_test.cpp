@@ -112,7 +112,7 @@ TEST(MetropolisChains, AreUnbiasedInEveryPixelFromTheBootstrap) {
   }
 }
 
-// Where all points are of one importance nothing is left to chance but the pixel.
+// If all points are of one importance, only the pixel is left to chance.
 TEST(MetropolisChains, OfAConstantAcceptEverythingAndKnowTheMean) {
   for (const char* plugin : {"metropolis/mean_value", "metropolis/multiple_importance"}) {
     const auto samples = observe(prepare(plugin, "{target: constant}"), 50, 40);
@@ -165,9 +165,9 @@ TEST(MetropolisChains, AnObservationIsAFunctionOfItsStreamAlone) {
   EXPECT_EQ(first, again);
 }
 
-// From a black point all is accepted that is inside. Both chains have the same stream, so that
-// their first steps differ where one leaves the cube: in 20000 E|step| = 20000 (1/64 - 1/1024) / ln
-// 16 = 105.6 of them; 5 standard deviations, false alarm 1e-6.
+// From a black point every step inside is accepted. Both chains have the same stream, so that their
+// first steps differ where one leaves the cube. That happens in 20000 E|step| = 20000 (1/64 -
+// 1/1024) / ln 16 = 105.6 of them. The limit is 5 standard deviations, false alarm 1e-6.
 TEST(MetropolisChains, EvenFromABlackPointNothingOutsideIsAccepted) {
   const auto accepted = [](const std::string& boundary) {
     auto plugin = prepare("metropolis/uniform_start",
@@ -184,8 +184,8 @@ TEST(MetropolisChains, EvenFromABlackPointNothingOutsideIsAccepted) {
 }
 
 // Another seed has the brightest pixel short by 0.541, 0.217 and 0.051, with standard errors of
-// 0.013, 0.012 and 0.008: differences of 19 and 12 standard errors, to be seen as more than 4.9.
-// Sound code fails with probability 1e-11; where nothing differs a line passes with 1e-6.
+// 0.013, 0.012 and 0.008. The differences are 19 and 12 standard errors; the limit is 4.9. Sound
+// code fails with probability 1e-11. If nothing differs, a line passes with 1e-6.
 TEST(MetropolisChains, LargeStepsAndLengthForgetAUniformStart) {
   const auto bias = [](const char* parameters, std::uint64_t steps) {
     const auto plugin = prepare("metropolis/uniform_start", parameters);

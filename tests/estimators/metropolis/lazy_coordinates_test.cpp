@@ -95,8 +95,8 @@ TEST(LazyCoordinates, ALargeStepForgetsThoseThatNobodyLookedAt) {
   EXPECT_GT(near, 5);
 }
 
-// Steps that a coordinate missed are of the law of as many steps one by one: the variance of k + 1
-// steps is (k + 1) times that of one. False alarm 1e-6 for each k.
+// Missed steps have the law of as many steps one by one. The variance of k + 1 steps is (k + 1)
+// times that of one. False alarm 1e-6 for each k.
 TEST(LazyCoordinates, MakeUpForEachStepTheyMissed) {
   for (const int missed : {0, 1, 5}) {
     Sample moves;
@@ -126,8 +126,8 @@ TEST(LazyCoordinates, MakeUpForEachStepTheyMissed) {
   }
 }
 
-// A walk that accepts everything keeps coordinates uniform, at any time and however rarely they are
-// looked at: counts in 32 cells after 30 steps of 20,000 chains, false alarm 1e-6 each.
+// A walk that accepts everything keeps coordinates uniform, at any time and for rare looks. Counts
+// are in 32 cells after 30 steps of 20,000 chains, false alarm 1e-6 each.
 TEST(LazyCoordinates, StayUniformWhereEverythingIsAccepted) {
   for (const Boundary boundary : {Boundary::wrap, Boundary::reflect, Boundary::reject}) {
     std::array<std::array<double, 32>, 3> counts{};
@@ -159,9 +159,9 @@ TEST(LazyCoordinates, StayUniformWhereEverythingIsAccepted) {
   }
 }
 
-// Detailed balance: from the stationary density 20 e^(-20 u) / (1 - e^-20), as many go from cell a
-// to cell b in one step as from b to a. Each pair's difference over the root of its sum is standard
-// normal; Bowker's sum of squares is chi-square. False alarm 1e-6 each.
+// Detailed balance at the stationary density 20 e^(-20 u) / (1 - e^-20): as many go from cell a to
+// cell b in one step as back. Each pair's difference over the root of its sum is standard normal.
+// Bowker's sum of squares is chi-square. False alarm 1e-6 each.
 TEST(LazyCoordinates, OneStepFromTheStationaryLawIsInDetailedBalance) {
   for (const Boundary boundary : {Boundary::wrap, Boundary::reflect, Boundary::reject}) {
     std::array<std::array<double, 24>, 24> flow{};

@@ -1,5 +1,5 @@
-// What each mutant of depth of field does, against quadrature, sums over all ways that samples can
-// fall, or the same picture worked out from the plan.
+// Each mutant of depth of field against quadrature, against sums over all ways that samples can
+// fall, or against the same picture worked out from the plan.
 
 #include <gtest/gtest.h>
 
@@ -116,8 +116,8 @@ TEST(LensMutants, WithFrontsIgnoredEdgesBehindAreSeen) {
 }
 
 // Its image is that of samples eight pixels apart. A sound one takes them at every fourth pixel of
-// 1 / 57: two a period of the wave are pi / 30 = 5.97 pixels apart.
-// False alarm 1e-6 for each of the 57 pixels.
+// 1 / 57, since two a period of the wave are pi / 30 = 5.97 pixels apart. False alarm 1e-6 for each
+// of the 57 pixels.
 TEST(LensMutants, ASignedMaximumSamplesWavesEightPixelsApart) {
   const std::string common = "scene: sinusoid, width: 57, height: 1, size: 1";
   const auto plan = reconstruction_plan("{" + common + ", spacing: 8}");

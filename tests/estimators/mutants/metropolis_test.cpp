@@ -42,19 +42,19 @@ TEST(MetropolisMutants, TakingAllStepsForLargeIsRightWhereAllAre) {
             observe(prepare("metropolis/multiple_importance", all), 20, 100)[2].values);
 }
 
-// An observation takes every element from the state that was accepted, so that what is left out of
-// the sound one's is the part of the current states.
+// An observation takes every element from the accepted state. So the sound one's missing part is
+// that of the current states.
 TEST(MetropolisMutants, WhatIsDroppedIsThePartOfTheCurrentState) {
   const auto dropped = observe(prepare("mutants/metropolis_current_dropped"), 50, 100);
   const auto sound = observe(prepare("metropolis/mean_value"), 50, 100);
   for (std::size_t i = 0; i < 50; ++i) {
-    // Of the image's mean b the accepted part is left: the sum of a b / I(y) x I(y).
+    // The accepted part of the image's mean b is left: the sum of a b / I(y) x I(y).
     EXPECT_NEAR(dropped[8].values[i], sound[9].values[i] * sound[10].values[i], 1e-12);
     for (std::size_t p = 0; p < 8; ++p) EXPECT_LE(dropped[p].values[i], sound[p].values[i]);
   }
 }
 
-// No closed form is known of what the others tend to: they are held against a second program, which
+// The limits of the others have no closed form. They are held against a second program, which
 // simulates the same chains by other code and another generator. False alarm 1e-6 for each of some
 // 200 means, standard errors of both taken together.
 TEST(MetropolisMutants, HaveTheImagesOfASecondProgram) {
@@ -78,9 +78,9 @@ TEST(MetropolisMutants, HaveTheImagesOfASecondProgram) {
   }
 }
 
-// What the table is good for: each mutant that is not unbiased differs from the exact image by more
-// than chance in some element. Missed steps are too small a matter for its 16000 chains: these the
-// suite finds with more.
+// Each mutant that is not unbiased differs from the exact image by more than chance in some
+// element. Missed steps are too small a matter for the table's 16000 chains; the suite finds them
+// with more.
 TEST(MetropolisMutants, AreBiasedInTheSecondProgramToo) {
   std::map<std::vector<std::string>, bool> differs;
   for (const auto& row : tests::table("metropolis_mutants.csv")) {

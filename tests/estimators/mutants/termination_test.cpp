@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bias{"mutants/direct_light_twice", "{scene: sphere, direct: exact}", 0},
         // Nothing comes from the first and the third zone but emission.
         Bias{"mutants/dark_surfaces_end", zoned, zoned_radiance(.9, .45 * .9) / sound - 1},
-        // Where s = 1.08 one path in one goes on, and weighs a / 1.08.
+        // With s = 1.08 one path in one goes on, and weighs a / 1.08.
         Bias{"mutants/survival_above_one", zoned,
              zoned_radiance(.9 / 1.08, .4 * .2 + .45 * .9 / 1.08 + .15 * .05) / sound - 1},
         // n = 3.6 at the first vertex: 3 children of a quarter each. Then n = .9 becomes 1.
@@ -76,8 +76,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bias{"mutants/capped_number", "{scene: sphere}", 2 / 3.2 - 1},
         Bias{"mutants/small_numbers_dropped", zoned,
              zoned_radiance(.9, .4 * .2 + .45 * .9) / sound - 1},
-        // Red of the coloured sphere: a throughput that stays 1 makes the albedo the probability,
-        // .8, .75, .85 and .6: .8 x .1 / (1 - .78) for .8 x .1 / (1 - .375).
+        // Red of the coloured sphere. A throughput that stays 1 makes the albedo the probability:
+        // .8, .75, .85 and .6. The result is .8 x .1 / (1 - .78) for .8 x .1 / (1 - .375).
         Bias{"mutants/divided_by_itself", "{scene: coloured_sphere}", .625 / .22 - 1}));
 
 struct Caught {

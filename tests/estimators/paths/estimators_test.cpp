@@ -140,7 +140,8 @@ TEST(Mirrors, KeepTheRadianceOfAFurnace) {
 }
 
 // In a furnace with mirrors: diffuse .3, mirror .4, N = 4. Vertices of weight 1 have .3 N diffuse
-// children of weight 1/N and .4 mirrored ones of weight 1; of weight 1/N, .3 and .4 / N.
+// children of weight 1/N and .4 mirrored ones of weight 1. Vertices of weight 1/N have .3 and .4 /
+// N.
 TEST(Winners, MirrorsAreNotSplit) {
   const draws::Prepared plugin = draws::prepare("paths/winners", "{" + mirror_room() + "}");
   const auto samples = draws::observe(plugin, observations);

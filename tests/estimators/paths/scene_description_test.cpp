@@ -1,4 +1,4 @@
-// What a scene of paths may be, and what is said of one that may not.
+// Scenes of paths that may be, and the messages about those that may not.
 
 #include "paths/scene_description.h"
 

@@ -128,7 +128,7 @@ TEST_F(ExrFiles, ReadsSomeChannelsOfManyLines) {
   }
 }
 
-// What compression would make larger is stored as it is: the second chunk here, not the first.
+// A chunk that compression would make larger is stored as it is: the second here, not the first.
 TEST_F(ExrFiles, ReadsChunksThatDoNotCompress) {
   const Imath::Box2i box({0, 0}, {4, 31});
   std::vector<float> texels(5 * 32, 1.0F);

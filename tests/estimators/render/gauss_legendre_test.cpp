@@ -19,7 +19,7 @@ TEST(GaussLegendre, IsExactToTwiceItsNodes) {
 const Corners triangle{{{0, 0, 1}, {2, 0, 1}, {0, 1, 1}}};
 
 TEST(TriangleQuadrature, IntegratesAPolynomialAndANarrowLobe) {
-  // Of 1 and x y over the triangle x / 2 + y <= 1; 0.01 pi of a Gaussian about its inside.
+  // Integrands 1 and x y over the triangle x / 2 + y <= 1; 0.01 pi of a Gaussian about its inside.
   const auto f = [](const Vector3& p) {
     const double x = (p.x - .5) / .1, y = (p.y - .3) / .1;
     return std::array<double, 3>{1, p.x * p.y, std::exp(-x * x - y * y)};
@@ -31,7 +31,7 @@ TEST(TriangleQuadrature, IntegratesAPolynomialAndANarrowLobe) {
   const auto integrals = quadrature.refined();
   EXPECT_NEAR(integrals.value[0], 1, 1e-13);
   EXPECT_NEAR(integrals.value[1], 1.0 / 6, 1e-13);
-  // What of the lobe lies below y = 0, 3 sigma sqrt 2 away, and left of x = 0.
+  // Parts of the lobe lie below y = 0, 3 sigma sqrt 2 away, and left of x = 0.
   const double lobe = .01 * std::numbers::pi * (1 + std::erf(3)) / 2 * (1 + std::erf(5)) / 2;
   EXPECT_NEAR(integrals.value[2], lobe, 2e-7);
   EXPECT_LE(integrals.error[2], 1e-10 * lobe);

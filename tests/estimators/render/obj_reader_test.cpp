@@ -19,7 +19,7 @@ class ObjReader : public testing::Test {
     return read_obj(file_.string());
   }
 
-  // What is said about a text, without the path.
+  // The message about a text, without the path.
   std::string refusal(const std::string& text) {
     try {
       read(text);

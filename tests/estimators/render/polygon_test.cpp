@@ -30,9 +30,9 @@ TEST(Polygon, ClippingKeepsTheHalfInside) {
 TEST(Polygon, AHemisphereOfLightGivesPi) { EXPECT_NEAR(lambert(square(1e9), up), pi, 1e-8); }
 
 TEST(Polygon, AParallelSquareHasItsTextbookFormFactor) {
-  // A small patch parallel to a square with a corner on its axis: with X = side / distance,
-  // F = X / sqrt(1 + X^2) atan(X / sqrt(1 + X^2)) / pi (Siegel and Howell, configuration factors);
-  // four of them make the square of half-width w.
+  // A small patch parallel to a square with a corner on its axis. With X = side / distance, F = X /
+  // sqrt(1 + X^2) atan(X / sqrt(1 + X^2)) / pi (Siegel and Howell, configuration factors). Four of
+  // them make the square of half-width w.
   for (const double w : {0.1, 1.0, 5.0}) {
     const double ratio = w / std::sqrt(1 + w * w);
     EXPECT_NEAR(lambert(square(w), up), 4 * ratio * std::atan(ratio), 1e-14);

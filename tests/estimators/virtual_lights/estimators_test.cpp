@@ -151,8 +151,8 @@ TEST(VirtualLights, AFurnaceOfAnyShapeHasTheSquareOfItsAlbedo) {
   for (const double x : sample.values) EXPECT_NEAR(x, 0.72, 1e-12);
 }
 
-// A box of the given sides about a centre, turned by an angle about (1, 2, 3), whose walls all emit
-// 1 and reflect 0.5, with what its camera in the middle sees of it.
+// A box of the given sides about a centre, turned by an angle about (1, 2, 3). Its walls all emit 1
+// and reflect 0.5. The camera is in the middle.
 std::string turned_box(const Vector3& centre, const Vector3& sides, double angle) {
   const Vector3 axis = render::normalised({1, 2, 3});
   const auto written = [](const Vector3& v) {
@@ -271,8 +271,8 @@ TEST(VirtualLightsMutants, WhereNothingIsNearNoDistanceIsClamped) {
   for (std::size_t i = 0; i < 200; ++i) EXPECT_DOUBLE_EQ(a.values[i], b.values[i]);
 }
 
-// A form factor with no distance below `least_distance`. False-alarm rate 1e-6 each; the corner's
-// receiver is moved by 0.4 % of its distance to the walls, which changes what is near by as much.
+// A form factor with no distance below `least_distance`. The corner's receiver is moved by 0.4 % of
+// its distance to the walls, which changes the near light by as much. False-alarm rate 1e-6 each.
 TEST(VirtualLightsMutants, AClampedDistanceLosesTheLightOfTheCorner) {
   for (const char* least : {"0.1", "0.3"}) {
     const double kept = tabulated(std::string("clamped_") + least + "_in_corner");
@@ -294,9 +294,9 @@ TEST(VirtualLightsMutants, TheTargetOfOtherPathsLeavesTheMeanOfAQuotient) {
   }
 }
 
-// What is summed in place of g / p has this mean, so that the estimate tends to 0.25 x 5/6 of its
-// inverse. Its variance is infinite, by a logarithm; the mean of a million values is normal all the
-// same. False-alarm rate 1e-6 each.
+// The terms in place of g / p have this mean, so that the estimate tends to 0.25 x 5/6 of its
+// inverse. Its variance is infinite, by a logarithm, but the mean of a million values is normal.
+// False-alarm rate 1e-6 each.
 TEST(VirtualLightsMutants, ADensityOfDirectionsTendsToSomethingElse) {
   const auto samples = observe(prepare("mutants/density_of_direction", in(even)), 500, 2048);
   const double target = tabulated("density_of_direction_target");
@@ -305,8 +305,9 @@ TEST(VirtualLightsMutants, ADensityOfDirectionsTendsToSomethingElse) {
   EXPECT_NEAR(samples[0].mean(), limit, five * samples[0].mean_error() + 1e-2 * limit);
 }
 
-// f / g is the density of the virtual light in units of power, a^2 A F: the mean of it among lights
-// that are seen. Consistent to 1 / M of the chance that none is. False-alarm rate 1e-6.
+// The density of the virtual light in units of power, a^2 A F, is f / g. The limit is its mean
+// among lights that are seen. Consistent to 1 / M of the chance that none is. False-alarm rate
+// 1e-6.
 TEST(VirtualLightsMutants, TheMeanOfRatiosIsThatOfTheDensity) {
   const auto plugin = prepare("mutants/mean_of_weights", in(ceiling, ", weighting: marginal"));
   const Sample sample = observe(plugin, 4000, 64)[0];
@@ -314,8 +315,8 @@ TEST(VirtualLightsMutants, TheMeanOfRatiosIsThatOfTheDensity) {
   EXPECT_NEAR(sample.mean(), mean, five * sample.mean_error() + 1e-3 * mean);
 }
 
-// f / g is constant, so that the limit is the answer over the form factors of all faces that are
-// turned to the receiver, hidden or not. M = 1024 is off by 1 / M. False-alarm rate 1e-6.
+// Since f / g is constant, the limit is the answer over a sum of form factors. It is over all faces
+// that are turned to the receiver, hidden or not. M = 1024 is off by 1 / M. False-alarm rate 1e-6.
 TEST(VirtualLightsMutants, AnUnhiddenTargetDividesByWhatIsHiddenToo) {
   const auto plugin = prepare(
       "mutants/target_unhidden",
@@ -334,8 +335,8 @@ TEST(VirtualLightsMutants, TheUnhiddenTargetIsTheOriginalInAConvexRoom) {
   EXPECT_EQ(observe(broken, 200, 16)[0].values, observe(sound, 200, 16)[0].values);
 }
 
-// M times the bias tends to I Var g - Cov(f, g), without the jackknife's share to - Cov(f, g), of
-// other points to I Var g. False-alarm rate 1e-6 each.
+// M times the bias tends to I Var g - Cov(f, g). Without the jackknife's share it tends to - Cov(f,
+// g), with other points to I Var g. False-alarm rate 1e-6 each.
 TEST(Ratio, MutantsHaveTheBiasOfTheirDefect) {
   struct Case {
     const char* plugin;

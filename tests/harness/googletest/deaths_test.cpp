@@ -77,7 +77,7 @@ class Source {
   std::atomic<bool> has_died_{false};
 };
 
-/// What the message has of the source's own.
+/// The source's own words in the message.
 std::string words_of(Way way) {
   switch (way) {
     case Way::standard:
