@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 
 namespace assay {
 

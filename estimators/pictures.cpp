@@ -10,8 +10,8 @@
 #include <set>
 #include <tuple>
 
-#include "estimators/text_pattern.h"
-#include "estimators/value.h"
+#include "estimators/core/text_pattern.h"
+#include "estimators/core/value.h"
 
 namespace assay::recorded {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "estimators/first_words.h"
+#include "estimators/core/first_words.h"
 #include "estimators/stream.h"
 
 namespace assay::analytic {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "analytic/law.h"
-#include "estimators/announced_words.h"
+#include "estimators/core/announced_words.h"
 #include "estimators/estimator.h"
 
 namespace assay::analytic {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/flow.h"
-#include "estimators/value_checks.h"
+#include "estimators/core/flow.h"
+#include "estimators/core/value_checks.h"
 #include "luminaire/scene_description.h"
 
 namespace assay::depth_of_field {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "depth_of_field/thin_lens.h"
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 namespace assay::depth_of_field {
 

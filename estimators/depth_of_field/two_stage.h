@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "depth_of_field/family.h"
-#include "estimators/running_moments.h"
+#include "estimators/core/running_moments.h"
 
 namespace assay::depth_of_field {
 

@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <thread>
 
+#include "estimators/core/program_path.h"
 #include "estimators/estimator.h"
 #include "estimators/foreign/render_seed.h"
 #include "estimators/foreign/renderings.h"
 #include "estimators/foreign/setup.h"
-#include "estimators/program_path.h"
 #include "recorded/picture_setup.h"
 #include "recorded/table.h"
 

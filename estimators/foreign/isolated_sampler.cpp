@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "estimators/foreign/examination.h"
 #include "estimators/foreign/words.h"
 

@@ -16,7 +16,7 @@
 #include <system_error>
 #include <thread>
 
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/library_sampler.h"
 #include "estimators/foreign/library_setup.h"

@@ -6,12 +6,12 @@
 #include <map>
 #include <mutex>
 
+#include "estimators/core/thread_seconds.h"
 #include "estimators/foreign/examination.h"
 #include "estimators/foreign/library_sampler.h"
 #include "estimators/foreign/streams_ahead.h"
 #include "estimators/foreign/words.h"
 #include "estimators/parameters.h"
-#include "estimators/thread_seconds.h"
 
 namespace assay::foreign {
 

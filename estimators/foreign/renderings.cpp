@@ -16,10 +16,10 @@
 #include <thread>
 #include <utility>
 
+#include "estimators/core/program_path.h"
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/render_seed.h"
 #include "estimators/foreign/words.h"
-#include "estimators/program_path.h"
 
 namespace assay::foreign {
 

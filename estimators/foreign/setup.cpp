@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "estimators/core/thread_seconds.h"
 #include "estimators/foreign/isolated_sampler.h"
 #include "estimators/foreign/words.h"
-#include "estimators/thread_seconds.h"
 
 namespace assay::foreign {
 

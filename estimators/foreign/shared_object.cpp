@@ -5,7 +5,7 @@
 
 #include <cerrno>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 namespace assay::foreign {
 

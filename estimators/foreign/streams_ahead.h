@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "estimators/announced_words.h"
+#include "estimators/core/announced_words.h"
 #include "estimators/plugin_abi.h"
 
 namespace assay::foreign {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "estimators/value_checks.h"
+#include "estimators/core/value_checks.h"
 
 namespace assay::luminaire {
 

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "render/scene.h"
 
 namespace assay::luminaire {

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "estimators/flow.h"
-#include "estimators/value_checks.h"
+#include "estimators/core/flow.h"
+#include "estimators/core/value_checks.h"
 #include "luminaire/scene_description.h"
 #include "metropolis/product_target.h"
 #include "metropolis/sphere_target.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 #include "luminaire/scene_description.h"
 #include "paths/closed_mesh.h"
 

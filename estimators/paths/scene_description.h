@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "paths/surface.h"
 #include "render/triangle_mesh.h"
 

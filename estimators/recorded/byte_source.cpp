@@ -11,8 +11,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "estimators/core/value.h"
 #include "estimators/ready_made.h"
-#include "estimators/value.h"
 #include "foreign/child.h"
 
 namespace assay::recorded {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 namespace assay::recorded {
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <string_view>
 
-#include "estimators/line_error.h"
+#include "estimators/core/line_error.h"
 #include "recorded/byte_source.h"
 #include "recorded/fields.h"
 #include "recorded/foreign_formats.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "render/triangle_mesh.h"
 
 namespace assay::render {

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "estimators/thread_seconds.h"
+#include "estimators/core/thread_seconds.h"
 
 namespace assay::harness {
 

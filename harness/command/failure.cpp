@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "estimators/line_error.h"
+#include "estimators/core/line_error.h"
 #include "harness/base/text_file.h"
 #include "harness/suite/suite.h"
 #include "reports/words/columns.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 namespace assay::harness {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/command/commands.h"

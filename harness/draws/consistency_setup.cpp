@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "harness/draws/sound_draw.h"
 #include "harness/sampling/fetched_ahead.h"
 

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "harness/draws/sampler_setup.h"
 
 namespace assay::harness {

@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 namespace assay::harness {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "harness/draws/sampler_setup.h"
 
 namespace assay::harness {

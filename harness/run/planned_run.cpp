@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "estimators/program_path.h"
+#include "estimators/core/program_path.h"
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/families/methods.h"

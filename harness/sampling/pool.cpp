@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "estimators/ready_made.h"
 #include "harness/base/parallel.h"
 #include "harness/sampling/group_variance.h"

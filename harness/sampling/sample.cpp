@@ -4,13 +4,12 @@
 
 #include <new>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "harness/sampling/pool.h"
 
 namespace assay::harness {
 
-std::string sentence_of(const Fault& fault, const std::string& estimator,
-                        const std::string& when) {
+std::string sentence_of(const Fault& fault, const std::string& estimator, const std::string& when) {
   const std::string at =
       fault.observation ? fmt::format(" at observation {}", *fault.observation) : "";
   return fmt::format("`{}` stopped{}{}: {}", estimator, when, at, fault.words);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "estimators/text_pattern.h"
+#include "estimators/core/text_pattern.h"
 #include "harness/base/shell.h"
 #include "harness/suite/suite_keys.h"
 

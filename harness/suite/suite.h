@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "harness/language/claim.h"
 
 namespace assay::harness {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "estimators/text_pattern.h"
+#include "estimators/core/text_pattern.h"
 #include "harness/suite/suite_keys.h"
 
 namespace assay::harness {

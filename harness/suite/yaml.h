@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 namespace assay::harness {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "estimators/catalogue.h"
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "harness/sampling/pool.h"
 #include "harness/sampling/scheduler.h"
 #include "tests/bench/paired.h"

@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "estimators/catalogue.h"
+#include "estimators/core/thread_seconds.h"
 #include "estimators/library_host.h"
-#include "estimators/thread_seconds.h"
 
 namespace {
 

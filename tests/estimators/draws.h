@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "estimators/catalogue.h"
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 
 namespace assay::draws {
 

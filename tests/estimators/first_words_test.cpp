@@ -1,4 +1,4 @@
-#include "estimators/first_words.h"
+#include "estimators/core/first_words.h"
 
 #include <gtest/gtest.h>
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "estimators/catalogue.h"
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 #include "paths/mesh_world.h"
 #include "render/hemisphere.h"
 #include "render/scene.h"

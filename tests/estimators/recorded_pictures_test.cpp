@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "estimators/text_pattern.h"
+#include "estimators/core/text_pattern.h"
 #include "recorded/picture_setup.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr.h"

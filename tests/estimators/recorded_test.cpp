@@ -13,7 +13,7 @@
 #include <limits>
 #include <thread>
 
-#include "estimators/line_error.h"
+#include "estimators/core/line_error.h"
 #include "estimators/ready_made.h"
 #include "recorded/byte_source.h"
 #include "recorded/table.h"

@@ -1,6 +1,6 @@
 // Welford's moments against sums worked out by hand.
 
-#include "estimators/running_moments.h"
+#include "estimators/core/running_moments.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "estimators/catalogue.h"
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 
 namespace assay::tests {
 

@@ -1,11 +1,11 @@
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 
 namespace assay {
 namespace {

@@ -3,14 +3,14 @@
 
 // sources: harness/claim.cpp harness/claim_lexer.cpp harness/claim_rules.cpp harness/claim_text.cpp
 // sources: harness/laws.cpp harness/suite_keys.cpp harness/yaml.cpp harness/text_file.cpp
-// sources: estimators/value.cpp estimators/value_checks.cpp
+// sources: estimators/core/value.cpp estimators/core/value_checks.cpp
 // libraries: -lfmt -lyaml-cpp
 
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "harness/language/claim.h"
 #include "tests/fuzz/case.h"
 

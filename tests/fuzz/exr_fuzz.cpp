@@ -1,9 +1,9 @@
 // OpenEXR pictures of other programs (estimators/exr_file.h, estimators/pictures.h). Every file is
 // read, or refused with its name.
 
-// sources: estimators/render/exr_file.cpp estimators/render/exr_header.cpp
-// sources: estimators/render/exr_scan_lines.cpp estimators/render/zip_chunk.cpp estimators/pictures.cpp
-// sources: estimators/value.cpp estimators/estimator.cpp estimators/image.cpp estimators/text_pattern.cpp
+// sources: estimators/render/exr/exr_file.cpp estimators/render/exr/exr_header.cpp
+// sources: estimators/render/exr/exr_scan_lines.cpp estimators/render/exr/zip_chunk.cpp estimators/pictures.cpp
+// sources: estimators/core/value.cpp estimators/estimator.cpp estimators/image.cpp estimators/core/text_pattern.cpp
 // libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 // libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath -ldeflate
 
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "estimators/core/value.h"
 #include "estimators/pictures.h"
-#include "estimators/value.h"
 #include "tests/fuzz/case.h"
 
 namespace {

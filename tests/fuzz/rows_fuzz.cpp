@@ -4,14 +4,14 @@
 
 // sources: estimators/recorded/table.cpp estimators/recorded/byte_source.cpp
 // sources: estimators/recorded/npy.cpp estimators/recorded/foreign_formats.cpp
-// sources: estimators/recorded/fields.cpp estimators/foreign/child.cpp estimators/value.cpp
+// sources: estimators/recorded/fields.cpp estimators/foreign/child.cpp estimators/core/value.cpp
 // libraries: -lz
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "recorded/table.h"
 #include "tests/fuzz/case.h"
 

@@ -4,8 +4,8 @@
 // sources: harness/suite_options.cpp harness/suite_statements.cpp
 // sources: harness/claim.cpp harness/claim_lexer.cpp harness/claim_rules.cpp harness/claim_text.cpp
 // sources: harness/laws.cpp harness/yaml.cpp harness/text_file.cpp
-// sources: estimators/value.cpp estimators/value_checks.cpp estimators/flow.cpp
-// sources: estimators/text_pattern.cpp estimators/catalogue.cpp estimators/parameters.cpp
+// sources: estimators/core/value.cpp estimators/core/value_checks.cpp estimators/core/flow.cpp
+// sources: estimators/core/text_pattern.cpp estimators/catalogue.cpp estimators/parameters.cpp
 // sources: estimators/estimator.cpp
 // libraries: -lfmt -lyaml-cpp
 

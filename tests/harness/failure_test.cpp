@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "estimators/line_error.h"
+#include "estimators/core/line_error.h"
 #include "harness/suite/suite.h"
 
 namespace assay::harness {

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "harness/ledger/ledger_line.h"
 
 namespace assay::harness {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 namespace assay::harness {
 

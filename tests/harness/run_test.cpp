@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "estimators/text_pattern.h"
+#include "estimators/core/text_pattern.h"
 #include "harness/record/output.h"
 #include "refusal.h"
 #include "reports/formats/json.h"

@@ -6,7 +6,7 @@
 
 #include "depth_of_field/image.h"
 #include "depth_of_field/reconstruction.h"
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 
 namespace assay::tests {
 

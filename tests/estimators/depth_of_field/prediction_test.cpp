@@ -10,7 +10,7 @@
 
 #include "depth_of_field/allocation.h"
 #include "depth_of_field/exact.h"
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 
 namespace assay {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "estimators/thread_seconds.h"
+#include "estimators/core/thread_seconds.h"
 #include "tests/estimators/foreign/library.h"
 
 namespace assay::foreign {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <thread>
 
-#include "estimators/flush_denormals.h"
+#include "estimators/core/flush_denormals.h"
 #include "tests/estimators/foreign/foreign.h"
 
 namespace assay::foreign {

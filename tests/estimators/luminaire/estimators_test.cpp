@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 #include "tests/estimators/sampling.h"
 
 namespace assay {

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 #include "tests/estimators/sampling.h"
 #include "tests/estimators/table.h"
 

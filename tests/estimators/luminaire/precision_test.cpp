@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 #include "estimators/stream.h"
 #include "luminaire/setting.h"
 #include "render/hemisphere.h"

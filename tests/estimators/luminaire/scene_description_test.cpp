@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 #include "luminaire/setting.h"
 
 namespace assay::luminaire {

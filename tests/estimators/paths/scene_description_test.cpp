@@ -9,7 +9,7 @@
 #include <fstream>
 #include <ostream>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 
 namespace assay::paths {
 namespace {

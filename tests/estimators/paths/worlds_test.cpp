@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 #include "paths/closed_mesh.h"
 #include "paths/mesh_world.h"
 #include "paths/sphere_world.h"

@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <span>
 
-#include "estimators/render/exr_header.h"
-#include "estimators/render/exr_scan_lines.h"
-#include "estimators/value.h"
+#include "estimators/core/value.h"
+#include "estimators/render/exr/exr_header.h"
+#include "estimators/render/exr/exr_scan_lines.h"
 #include "tests/estimators/exr_kinds.h"
 
 namespace assay {

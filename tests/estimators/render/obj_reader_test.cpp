@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "render/triangle_mesh.h"
 
 namespace assay::render {

@@ -1,6 +1,6 @@
-#include "estimators/first_words.h"
+#include "estimators/core/first_words.h"
 
-#include "estimators/philox_lanes.h"
+#include "estimators/core/philox_lanes.h"
 
 namespace assay {
 namespace {

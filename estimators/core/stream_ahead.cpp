@@ -1,4 +1,4 @@
-#include "estimators/philox_lanes.h"
+#include "estimators/core/philox_lanes.h"
 #include "estimators/stream.h"
 
 namespace assay {

@@ -8,9 +8,9 @@
 #include <exception>
 #include <sstream>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 #include "render/environment_map.h"
-#include "render/exr_header.h"
+#include "render/exr/exr_header.h"
 
 namespace assay::render {
 

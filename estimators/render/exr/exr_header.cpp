@@ -1,7 +1,7 @@
-#include "render/exr_header.h"
+#include "render/exr/exr_header.h"
 
-#include "estimators/value.h"
-#include "render/core_file.h"
+#include "estimators/core/value.h"
+#include "render/exr/core_file.h"
 
 namespace assay::render {
 

@@ -1,4 +1,4 @@
-#include "estimators/text_pattern.h"
+#include "estimators/core/text_pattern.h"
 
 #include <cstddef>
 

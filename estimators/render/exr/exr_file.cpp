@@ -15,9 +15,9 @@
 #include <fstream>
 #include <map>
 
-#include "estimators/value.h"
-#include "render/exr_header.h"
-#include "render/exr_scan_lines.h"
+#include "estimators/core/value.h"
+#include "render/exr/exr_header.h"
+#include "render/exr/exr_scan_lines.h"
 
 namespace assay {
 

@@ -1,4 +1,4 @@
-#include "estimators/value_checks.h"
+#include "estimators/core/value_checks.h"
 
 #include <cmath>
 

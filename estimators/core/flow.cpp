@@ -1,4 +1,4 @@
-#include "estimators/flow.h"
+#include "estimators/core/flow.h"
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-#include "estimators/program_path.h"
+#include "estimators/core/program_path.h"
 
 #include <unistd.h>
 

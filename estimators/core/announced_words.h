@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "estimators/core/first_words.h"
 #include "estimators/estimator.h"
-#include "estimators/first_words.h"
 
 namespace assay {
 

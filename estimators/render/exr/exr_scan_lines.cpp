@@ -1,4 +1,4 @@
-#include "render/exr_scan_lines.h"
+#include "render/exr/exr_scan_lines.h"
 
 #include <openexr.h>
 
@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "render/core_file.h"
-#include "render/zip_chunk.h"
+#include "render/exr/core_file.h"
+#include "render/exr/zip_chunk.h"
 
 namespace assay::render {
 

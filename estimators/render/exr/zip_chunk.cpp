@@ -1,4 +1,4 @@
-#include "render/zip_chunk.h"
+#include "render/exr/zip_chunk.h"
 
 #include <array>
 #include <cstddef>

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 namespace assay {
 

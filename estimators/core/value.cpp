@@ -1,4 +1,4 @@
-#include "estimators/value.h"
+#include "estimators/core/value.h"
 
 #include <algorithm>
 #include <array>
