@@ -12,6 +12,7 @@
 #include "harness/calibration/calibration_runs.h"
 #include "harness/record/environment.h"
 #include "harness/record/record_of.h"
+#include "reports/report_formats.h"
 #include "stats/means/binomial.h"
 
 namespace assay::harness {
@@ -116,13 +117,6 @@ void refuse_twice(const char* option, const std::vector<T>& values) {
   }
 }
 
-std::string written(const reports::Calibration& calibration, const std::string& kind) {
-  if (kind == "json") return reports::json(calibration);
-  if (kind == "html") return reports::html(calibration);
-  if (kind == "markdown") return reports::markdown(calibration);
-  return reports::console(calibration);
-}
-
 }  // namespace
 
 reports::Calibration calibration(const CalibrateArguments& arguments, Progress& progress) {
@@ -173,8 +167,9 @@ int calibrate(const CalibrateArguments& arguments, const Output& output) {
   require_writable(output, {});
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Calibration measured = calibration(arguments, *progress);
-  write_reports(
-      output, [&](const ReportRequest& request, bool) { return written(measured, request.kind); });
+  write_reports(output, [&](const ReportRequest& request, bool) {
+    return reports::report_format(request.kind).of_calibration(measured);
+  });
   return reports::defects(measured) == 0 ? 0 : 1;
 }
 

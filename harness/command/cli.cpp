@@ -9,9 +9,11 @@
 #include "harness/base/version.h"
 #include "harness/command/cli_options.h"
 #include "harness/command/cli_values.h"
+#include "harness/command/tables.h"
 #include "harness/record/recorded_test.h"
 #include "harness/suite/suite_entries.h"
 #include "harness/suite/suite_keys.h"
+#include "reports/report_formats.h"
 
 namespace assay::harness {
 
@@ -199,7 +201,7 @@ Command calibrate_command(const Given& given) {
   CalibrateCommand command;
   command.output = output(given);
   for (const ReportRequest& report : command.output.reports) {
-    if (report.kind == "junit" || report.kind == "metrics") {
+    if (reports::report_format(report.kind).of_calibration == nullptr) {
       usage_error(fmt::format("a calibration has no {} report", report.kind));
     }
   }
@@ -226,14 +228,20 @@ Command sample_command(const Given& given, const std::string& name) {
 }
 
 Command list_command(const Given& given, const std::string& name) {
-  require(given.what, "`plugins` or `tests`", name);
-  const bool tests = choice(Value::scalar(given.what), "what is listed", {"plugins", "tests"}) == 1;
+  std::vector<std::string> lists{"plugins", "tests"};
+  for (const Table& table : tables()) lists.push_back(table.plural);
+  require(given.what, ("one of " + listed(lists)).c_str(), name);
+  const std::size_t what = choice(Value::scalar(given.what), "what is listed", lists);
+  const bool tests = lists[what] == "tests";
   if (tests) require(given.suites.empty() ? "" : given.suites[0], "a suite file", name);
-  if (!tests && !given.suites.empty()) usage_error("`assay list plugins` takes no suite");
-  if (!tests && !selection(given).empty()) {
-    usage_error("`assay list plugins` takes no --filter and no --tag; they select tests");
+  if (!tests && !given.suites.empty()) {
+    usage_error(fmt::format("`assay list {}` takes no suite", given.what));
   }
-  return ListCommand{tests, given.suites, selection(given)};
+  if (!tests && !selection(given).empty()) {
+    usage_error(fmt::format("`assay list {}` takes no --filter and no --tag; they select tests",
+                            given.what));
+  }
+  return ListCommand{lists[what], given.suites, selection(given)};
 }
 
 Command replay_command(const Given& given, const std::string& name) {
@@ -254,7 +262,7 @@ Command merge_command(const Given& given, const std::string& name) {
 }
 
 Command describe_command(const Given& given, const std::string& name) {
-  require(given.plugin, "a plugin", name);
+  require(given.plugin, "a plugin, a method, a quantity or a law", name);
   return DescribeCommand{given.plugin};
 }
 

@@ -47,13 +47,13 @@ struct CalibrateCommand {
 };
 
 struct ListCommand {
-  bool tests = false;  ///< else plugins
+  std::string what;  ///< "plugins", "tests" or a table of tables.h
   std::vector<std::string> suites;
   Selection selection;
 };
 
 struct DescribeCommand {
-  std::string plugin;
+  std::string name;  ///< of a plugin, or of a row of a table
 };
 
 struct ReportCommand {

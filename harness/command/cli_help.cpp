@@ -20,8 +20,8 @@ Commands (each has its own --help, with examples and defaults):
   images    hold rendered pictures against each other, without a suite
   calibrate how often the methods err, and how much they find, on known laws
   sample    print observations of an estimator
-  list      list plugins, or the tests of suites
-  describe  print the manual of a plugin
+  list      list plugins, tests of suites, methods, quantities, laws, reports
+  describe  print the manual of a plugin, a method, a quantity or a law
   replay    draw the numbers of a recorded test again
   merge     join the records of shards to that of one run
   report    make reports from a saved run
@@ -98,17 +98,21 @@ Examples:
   assay sample luminaire/area --secondaries 1000 > area.txt
   assay sample a --estimator 'a=luminaire/area,scene=rectangle' --primaries 64
 )"},
-      {"list", R"(Prints one id a line: the plugins there are, or the tests of suites.
+      {"list",
+       R"(Prints what there is: plugins and tests one id a line, the tables with a word on each row.
 
 Examples:
   assay list plugins
   assay list tests suites/*.yaml
+  assay list methods
 )"},
       {"describe",
-       R"(Prints the manual of a plugin: parameters, channels, references, samplers, mutants.
+       R"(Prints the manual of a plugin: parameters, channels, references, samplers, mutants. Of a method, a
+quantity, a law or a report it prints what the tables say.
 
 Examples:
   assay describe luminaire/area
+  assay describe t
 )"},
       {"replay", R"(Draws the numbers of a recorded test again, or one observation of it alone.
 

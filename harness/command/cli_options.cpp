@@ -200,13 +200,17 @@ void define_others(CLI::App& app, Given& given) {
        "console=/dev/null silences it");
 
   CLI::App* list = subcommand(app, "list");
-  list->add_option("WHAT", given.what, "plugins or tests")->type_name("");
+  list->add_option("WHAT", given.what, "plugins, tests, methods, quantities, laws or reports")
+      ->type_name("");
   list->add_option("SUITE", given.suites, "suite files, of which the tests are listed")
       ->type_name("");
   add_selection(list, given);
 
   CLI::App* describe = subcommand(app, "describe");
-  describe->add_option("PLUGIN", given.plugin, "a name from `assay list plugins`")->type_name("");
+  describe
+      ->add_option("NAME", given.plugin,
+                   "a plugin, a method, a quantity, a law or a report, as `assay list` prints them")
+      ->type_name("");
 
   CLI::App* replay = subcommand(app, "replay");
   replay->add_option("RUN.json", given.record, "a saved run")->type_name("");

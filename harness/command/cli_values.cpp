@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "harness/suite/suite_keys.h"
+#include "reports/report_formats.h"
 
 namespace assay::harness {
 
@@ -27,11 +28,9 @@ std::uint64_t random_seed() {
 std::string meant_report(std::string text) {
   while (text.ends_with('=')) text.pop_back();
   const std::string ending = text.substr(std::min(text.rfind('.') + 1, text.size()));
-  for (const auto& [kind, usual] :
-       {std::pair("html", "html"), std::pair("json", "json"), std::pair("junit", "xml"),
-        std::pair("markdown", "md"), std::pair("metrics", "txt"), std::pair("console", "log")}) {
-    if (text == kind) return fmt::format("{}=run.{}", kind, usual);
-    if (ending == usual) return fmt::format("{}={}", kind, text);
+  for (const reports::ReportFormat& format : reports::report_formats()) {
+    if (text == format.kind) return fmt::format("{}=run.{}", format.kind, format.ending);
+    if (ending == format.ending) return fmt::format("{}={}", format.kind, text);
   }
   return "html=run.html";
 }
@@ -90,8 +89,11 @@ ReportRequest parse_report(const std::string& text) {
                                      text, meant_report(text)));
   }
   const std::string kind = text.substr(0, equals);
-  choice(given(kind), "the kind of --report",
-         {"console", "json", "junit", "markdown", "html", "metrics"});
+  std::vector<std::string> kinds;
+  for (const reports::ReportFormat& format : reports::report_formats()) {
+    kinds.push_back(format.kind);
+  }
+  choice(given(kind), "the kind of --report", kinds);
   return {kind, text.substr(equals + 1)};
 }
 

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "estimators/catalogue.h"
 #include "harness/base/progress_terminal.h"
 #include "harness/base/record_file.h"
 #include "harness/command/plan_table.h"
 #include "harness/command/run.h"
+#include "harness/command/tables.h"
 #include "harness/run/unit_cost.h"
 #include "harness/suite/files_read.h"
 
@@ -49,6 +52,11 @@ int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, boo
 
 int list_plugins() {
   for (const Entry& entry : catalogue()) fmt::print("{}\n", entry.information.name);
+  return 0;
+}
+
+int list_table(const std::string& plural) {
+  fmt::print("{}", text_of(*std::ranges::find(tables(), plural, &Table::plural)));
   return 0;
 }
 

@@ -28,8 +28,11 @@ struct SampleArguments {
 int sample(const SampleArguments&);
 
 int list_plugins();
+/// Names and summaries of a table of tables.h.
+int list_table(const std::string& plural);
 /// One id a line. 4 when no test is selected.
 int list_tests(const std::vector<Suite>& suites, const Selection& selection);
-int describe(const std::string& plugin);
+/// The page of a plugin, or those of the tables' rows of that name.
+int describe(const std::string& name);
 
 }  // namespace assay::harness

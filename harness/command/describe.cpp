@@ -8,6 +8,7 @@
 
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
+#include "harness/command/tables.h"
 
 namespace assay::harness {
 
@@ -233,8 +234,9 @@ std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
          mutants_text(information, entries);
 }
 
-int describe(const std::string& plugin) {
-  fmt::print("{}", manual(find_plugin(plugin, {}), catalogue()));
+int describe(const std::string& name) {
+  const std::string pages = pages_of(name);
+  fmt::print("{}", pages.empty() ? manual(find_plugin(name, {}), catalogue()) : pages);
   return 0;
 }
 

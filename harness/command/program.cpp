@@ -72,10 +72,11 @@ int act(const ImagesCommand& command) {
 int act(const SampleArguments& arguments) { return sample(arguments); }
 
 int act(const ListCommand& command) {
-  return command.tests ? list_tests(load(command.suites), command.selection) : list_plugins();
+  if (command.what == "tests") return list_tests(load(command.suites), command.selection);
+  return command.what == "plugins" ? list_plugins() : list_table(command.what);
 }
 
-int act(const DescribeCommand& command) { return describe(command.plugin); }
+int act(const DescribeCommand& command) { return describe(command.name); }
 
 int act(const ReplayArguments& arguments) { return replay(arguments); }
 

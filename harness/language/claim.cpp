@@ -17,7 +17,7 @@ using Kind = Token::Kind;
 
 std::vector<std::string> quantity_words() {
   std::vector<std::string> words;
-  for (const QuantityName name : offered_quantities()) words.emplace_back(to_string(name));
+  for (const QuantityRow& row : quantities()) words.push_back(row.word);
   return words;
 }
 
@@ -31,13 +31,6 @@ std::vector<std::string> side_words() {
   words.insert(words.end(), {"analytic", "density"});
   for (const LawInformation& law : laws()) words.push_back(law.name);
   return words;
-}
-
-std::optional<QuantityName> quantity_named(std::string_view word) {
-  for (const QuantityName name : quantity_names()) {
-    if (word == to_string(name)) return name;
-  }
-  return {};
 }
 
 Source source_of(const Token& word) {
@@ -115,9 +108,9 @@ class Parser {
   Quantity quantity() {
     const Token name = expect_word("a quantity (mean, variance, distribution …)");
     if (name.text == "slope") return slope(name);
-    const std::optional<QuantityName> known = quantity_named(name.text);
-    if (!known) no_quantity(name);
-    Quantity quantity{.name = *known, .where = name.where};
+    const QuantityRow* const known = find_quantity(name.text);
+    if (known == nullptr) no_quantity(name);
+    Quantity quantity{.name = known->name, .where = name.where};
     expect("(", fmt::format("`(` after `{}`", name.text));
     quantity.source = source_of(expect_word("the name of an estimator"));
     while (lexer_.peek().is(",")) {
@@ -165,7 +158,8 @@ class Parser {
     const Token token = lexer_.peek();
     if (token.kind == Kind::number) return number_side();
     if (token.kind != Kind::word) unexpected(token, expected_side);
-    if (token.text == "slope" || quantity_named(token.text)) return ScaledQuantity{1, quantity()};
+    if (token.text == "slope" || find_quantity(token.text) != nullptr)
+      return ScaledQuantity{1, quantity()};
     lexer_.next();
     if (token.text == "analytic") return Analytic{};
     if (token.text == "density" || find_law(token.text)) return law(token);

@@ -17,27 +17,9 @@
 #include <vector>
 
 #include "estimators/core/value.h"
+#include "harness/language/quantities.h"
 
 namespace assay::harness {
-
-enum class QuantityName {
-  mean,
-  bias,
-  variance,
-  total_variance,
-  worst_variance,
-  quantile,
-  efficiency,
-  cost,
-  distribution,
-  integral,      ///< of a sampler's density
-  inconsistency  ///< probability of a sampler's draw that contradicts what it declares
-};
-const char* to_string(QuantityName);
-/// All of them, in the order above.
-const std::vector<QuantityName>& quantity_names();
-/// Those that this version has methods for (question.h refuses the others): what messages offer.
-const std::vector<QuantityName>& offered_quantities();
 
 /// An estimator of the suite (or, in `check`, a plugin's name), and a part of it: a channel, a
 /// sampler, a marginal of its only sampler, or "sampler.marginal"; "" is the whole.

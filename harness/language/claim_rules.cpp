@@ -16,12 +16,9 @@ using enum QuantityName;
   throw InputError(where, why);
 }
 
-bool of_a_sampler(QuantityName name) { return name == integral || name == inconsistency; }
+bool of_a_sampler(QuantityName name) { return row_of(name).of_a_sampler; }
 
-bool never_negative(QuantityName name) {
-  return name == variance || name == total_variance || name == worst_variance || name == cost ||
-         name == efficiency || of_a_sampler(name);
-}
+bool never_negative(QuantityName name) { return row_of(name).never_negative; }
 
 void check_arguments(const Quantity& q) {
   if (q.name != quantile) {
@@ -40,8 +37,7 @@ void check_arguments(const Quantity& q) {
 
 void check_quantity(const Quantity& q) {
   check_arguments(q);
-  const bool over_channels = q.name == total_variance || q.name == worst_variance;
-  if (over_channels && !q.source.part.empty()) {
+  if (row_of(q.name).over_all_channels && !q.source.part.empty()) {
     refuse(q.source.where,
            fmt::format("`{}` is over all channels; name the estimator alone, or use "
                        "`variance`",
@@ -100,7 +96,7 @@ void check_side(const Claim& claim, const Constant& side) {
 
 void check_side(const Claim& claim, const Analytic&) {
   const Quantity& left = claim.left;
-  if (left.slope || (left.name != mean && left.name != variance)) {
+  if (left.slope || !row_of(left.name).may_be_analytic) {
     refuse(left.where,
            fmt::format("`analytic` is a mean or a variance; there is none of `{}`{}",
                        left.slope ? "slope" : to_string(left.name),

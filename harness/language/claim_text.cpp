@@ -8,44 +8,6 @@
 
 namespace assay::harness {
 
-const std::vector<QuantityName>& quantity_names() {
-  using enum QuantityName;
-  static const std::vector<QuantityName> names{
-      mean,       bias, variance,     total_variance, worst_variance, quantile,
-      efficiency, cost, distribution, integral,       inconsistency};
-  return names;
-}
-
-const std::vector<QuantityName>& offered_quantities() { return quantity_names(); }
-
-const char* to_string(QuantityName name) {
-  switch (name) {
-    case QuantityName::mean:
-      return "mean";
-    case QuantityName::bias:
-      return "bias";
-    case QuantityName::variance:
-      return "variance";
-    case QuantityName::total_variance:
-      return "total_variance";
-    case QuantityName::worst_variance:
-      return "worst_variance";
-    case QuantityName::quantile:
-      return "quantile";
-    case QuantityName::efficiency:
-      return "efficiency";
-    case QuantityName::cost:
-      return "cost";
-    case QuantityName::distribution:
-      return "distribution";
-    case QuantityName::integral:
-      return "integral";
-    case QuantityName::inconsistency:
-      return "inconsistency";
-  }
-  return "";
-}
-
 const char* to_string(Relation relation) {
   switch (relation) {
     case Relation::equal:

@@ -13,13 +13,8 @@
 #include "harness/record/image_record.h"
 #include "harness/sampling/sample.h"
 #include "harness/suite/files_read.h"
-#include "reports/formats/console.h"
-#include "reports/formats/json.h"
-#include "reports/formats/junit.h"
-#include "reports/formats/markdown.h"
-#include "reports/formats/metrics.h"
 #include "reports/record/file.h"
-#include "reports/viewer/html.h"
+#include "reports/report_formats.h"
 
 namespace assay::harness {
 namespace {
@@ -37,20 +32,6 @@ bool use_colour(Colour colour, std::FILE* stream) {
   const char* terminal = std::getenv("TERM");
   const bool dumb = terminal == nullptr || std::string(terminal) == "dumb";
   return !dumb && isatty(fileno(stream)) != 0;
-}
-
-/// One test alone, as of `check`, is shown in full.
-bool is_single(const reports::Record& record) {
-  return record.suites.size() == 1 && record.suites[0].tests.size() == 1;
-}
-
-std::string written(const reports::Record& record, const std::string& kind, bool colour) {
-  if (kind == "json") return reports::json(record);
-  if (kind == "junit") return reports::junit(record);
-  if (kind == "metrics") return reports::metrics(record);
-  if (kind == "markdown") return reports::markdown(record);
-  if (kind == "html") return reports::html(record);
-  return reports::console(record, {.colour = colour, .verbose = is_single(record)});
 }
 
 }  // namespace
@@ -103,7 +84,7 @@ void write_reports(const Output& output, const ReportWriter& written) {
 void write_reports(reports::Record& record, const Output& output) {
   write_reports(output, [&](const ReportRequest& request, bool colour) {
     if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
-    return written(record, request.kind, colour);
+    return reports::report_format(request.kind).of_record(record, colour);
   });
 }
 

@@ -63,11 +63,11 @@ TEST(SuiteSchema, OffersTheMethodsThereAre) {
 
 TEST(SuiteSchema, OffersTheQuantitiesThatAreTested) {
   std::vector<std::string> tested;
-  for (const QuantityName name : quantity_names()) {
-    if (is_tested(name)) tested.emplace_back(to_string(name));
+  for (const QuantityRow& row : quantities()) {
+    if (is_tested(row.name)) tested.push_back(row.word);
   }
   std::vector<std::string> offered;
-  for (const QuantityName name : offered_quantities()) offered.emplace_back(to_string(name));
+  for (const QuantityRow& row : quantities()) offered.push_back(row.word);
   EXPECT_THAT(tested, ElementsAreArray(offered));
   const std::string pattern = schema_of("claim").find("pattern")->text();
   offered.insert(offered.begin(), "slope");
@@ -76,7 +76,7 @@ TEST(SuiteSchema, OffersTheQuantitiesThatAreTested) {
 
 TEST(SuitesReadme, OffersWhatTheSchemaOffers) {
   std::vector<std::string> offered;
-  for (const QuantityName name : offered_quantities()) offered.emplace_back(to_string(name));
+  for (const QuantityRow& row : quantities()) offered.push_back(row.word);
   EXPECT_THAT(matches_of(manual_line("name     = "), "([a-z_]{2,})(?: \\||$)"),
               ElementsAreArray(offered));
   std::vector<std::string> keys = matches_of(manual_line("| `test` |"), "`([A-Za-z-]+)`");
