@@ -40,7 +40,7 @@ const stats::PooledPair& farthest(const stats::ChiSquareTwoSample& fit) {
                            [](const auto& a, const auto& b) { return a.part < b.part; });
 }
 
-/// A cell that was tested, or how many were together, which expect too few draws each.
+/// Name of a tested cell, or of sparse cells that were pooled.
 std::string pool_text(const std::vector<std::size_t>& members,
                       const std::function<std::string(std::size_t)>& describe) {
   if (members.size() == 1) return describe(members.front());

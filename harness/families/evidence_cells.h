@@ -8,15 +8,15 @@
 
 namespace assay::harness {
 
-/// How many of one side's values lie in each cell; the last number is of draws without a point.
+/// Counts of one side's values in each cell. The last number counts draws without a point.
 std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
                                      const ChannelData& data);
 
-/// A sampler's draws against the density that it declares.
+/// A sampler's draws against its declared density.
 Evidence cells_against_density(const Question& question, const ChannelData& data);
 
-/// Two samples against each other in the cells that the method has from the pilots, one more for
-/// draws that yield no point. Throws std::domain_error where there are none.
+/// Two samples against each other in the method's cells. One more cell counts draws without a
+/// point. Throws std::domain_error if there are no cells.
 Evidence cells_against_cells(const Method& method, const Question& question,
                              std::span<const ChannelData> data);
 

@@ -18,7 +18,7 @@ using stats::TestResult;
 
 constexpr double impossible = std::numeric_limits<double>::lowest();
 
-/// theta = q + offset, where the offset is known up to an error.
+/// theta = q + offset; the offset has an error.
 struct Shifted {
   stats::Successes seen;
   double offset = 0;

@@ -19,10 +19,10 @@ using stats::LogEfficiency;
 using stats::TestResult;
 using stats::UncertainReference;
 
-// Of a standard error to either side.
+// Confidence of one standard error to either side.
 constexpr double narrow_confidence = 0.6827;
 
-/// A side of the claim; with a truth its mean squared error's.
+/// A side of the claim. With a truth, its mean squared error stands for the variance.
 struct MeasuredSide {
   stats::JointMoments sample;
   std::optional<Constant> truth = {};
@@ -49,7 +49,7 @@ bool have_one_truth(const MeasuredSide& x, const MeasuredSide& y) {
          x.truth->standard_error == y.truth->standard_error;
 }
 
-/// A question of efficiencies, whatever the truths are.
+/// Efficiencies to compare, as functions of the truths.
 struct Efficiencies {
   std::vector<UncertainReference> references;
   std::function<TestResult(std::span<const double> truths, double theta)> test;

@@ -1,8 +1,7 @@
 #pragma once
 
-// Evidence on efficiencies at counted costs. Of an estimator that is held against a truth the mean
-// squared error stands for the variance; what the truth is known to within goes into the p-values
-// (stats/uncertain_reference.h).
+// Evidence on efficiencies at counted costs. Against a truth, the mean squared error stands for the
+// variance, and the truth's error enters the p-values (stats/means/uncertain_reference.h).
 
 #include <span>
 
@@ -14,8 +13,8 @@ namespace assay::harness {
 Evidence evidence_of_efficiency(const Question& question, std::size_t channel,
                                 std::span<const ChannelData> data);
 
-/// count x the variance of ln efficiency of one subject at the count of its data; what the truth's
-/// error adds, which no more data take away, to first and second order.
+/// Count times the variance of ln efficiency of one subject, at the count of its data. It includes
+/// the truth's error to first and second order, which more data do not reduce.
 double efficiency_spread(const Question& question, std::size_t subject, std::size_t channel,
                          std::span<const ChannelData> data);
 

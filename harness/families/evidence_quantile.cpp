@@ -16,7 +16,7 @@ std::vector<double> sorted(std::span<const double> values, double factor) {
   return stats::sorted(std::move(copy));
 }
 
-/// The sample quantile: where the counts on both sides agree with the probability.
+/// The sample quantile.
 double middle(const std::vector<double>& sorted, double probability) {
   return sorted[stats::sample_quantile_rank(sorted.size(), probability)];
 }

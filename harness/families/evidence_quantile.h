@@ -6,8 +6,8 @@
 
 namespace assay::harness {
 
-/// Theta is quantile - v, or quantile x - factor * quantile y: exact for every law, from the
-/// values. Relative, where the claim's margins are, to the number v.
+/// Theta is quantile - v, or quantile x - factor * quantile y; relative margins divide it by |v|.
+/// Exact for every law.
 Evidence evidence_of_quantile(const Question& question, std::size_t channel,
                               std::span<const ChannelData> data);
 

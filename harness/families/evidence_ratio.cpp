@@ -23,7 +23,7 @@ Interval moved(const Interval& interval, double by) {
   return {interval.low - by, interval.high - by, interval.confidence};
 }
 
-/// Positive means x and y, y times `factor`, compared by the logarithm of their ratio.
+/// Evidence on ln(mean x / (factor * mean y)); both means are positive.
 Evidence of_means(const Moments& x, const Moments& y, double factor) {
   const double estimate = std::log(x.mean / (y.mean * factor));
   const bool exact = x.m2 == 0 && y.m2 == 0;
@@ -49,7 +49,7 @@ Evidence of_mean(const Moments& x, double null) {
       .exact = x.m2 == 0};
 }
 
-/// Means per primary: of one subject, or of two.
+/// Means per primary, of one subject or two.
 Evidence compare_means(const Question& question, std::span<const Moments> means,
                        std::span<const double> divisors) {
   if (!question.of_two()) {
@@ -87,7 +87,7 @@ Evidence total_variance_evidence(const Question& question, std::span<const Chann
   return evidence;
 }
 
-/// Of each replicate ln(seconds a primary), or -ln(that x variance of a primary).
+/// ln(seconds per primary) of each replicate; for efficiency -ln(seconds * variance of a primary).
 Moments logarithms(const Question& question, std::size_t subject, const ChannelData& data) {
   const double primaries = question.subjects[subject].averaged(data.primaries);
   Moments logs;
@@ -180,7 +180,7 @@ std::optional<double> log_spread(const Question& question, std::size_t subject, 
 
 std::optional<double> planned_log_spread(const Question& question, const PilotMoments& pilot,
                                          double averaged) {
-  // Of ln s2: 2 for a normal law, and the excess kurtosis of a mean falls like 1 / its size.
+  // The spread of ln s2 is 2 for a normal law. A mean's excess kurtosis falls like 1 / its size.
   const auto of_variance = [&](double spread) { return 2 + (spread - 2) / averaged; };
   if (question.kind == QuestionKind::total_variance || question.test->cost == CostKind::seconds) {
     if (!(pilot.values.m2 > 0)) return std::nullopt;
@@ -191,7 +191,7 @@ std::optional<double> planned_log_spread(const Question& question, const PilotMo
   if (!(sample.cost.mean > 0)) return std::nullopt;
   if (question.kind == QuestionKind::cost) return squared_variation(sample.cost) / averaged;
   if (!(sample.x.m2 > 0)) return std::nullopt;
-  // About the truth the error's spread is that about the mean or less, unless bias dominates.
+  // The error's spread about the truth is at most that about the mean, unless bias dominates.
   return of_variance(stats::log_efficiency_of(sample).spread);
 }
 

@@ -19,7 +19,7 @@ using stats::Moments;
 using stats::SlopeData;
 using stats::SlopePoint;
 
-// However small the level of the test: a wrong alarm of the gate is then one in a hundred thousand.
+// The gate is red below this p, however small the test's level.
 constexpr double least_p_of_fit = 1e-5;
 
 QuantityName name_of(const Question& question) { return question.test->claim.left.name; }
@@ -38,7 +38,7 @@ SlopePoint logarithm_of_variance(const Question& question, std::size_t i, const 
       .standard_error = stats::log_variance_standard_error(data.moments)};
 }
 
-/// One number for all points has one error: it shifts them together.
+/// True if one reference serves all points: its error shifts them together.
 bool reference_is_shared(const Question& question) {
   return question.has_reference_subject || question.test->reference_number ||
          question.test->over->parameter == "primaries";
@@ -83,7 +83,7 @@ bool is_exact(const SlopeData& data) {
                      [](const SlopePoint& point) { return point.standard_error == 0; });
 }
 
-/// Slopes between neighbours that have no error.
+/// Least and largest slope between neighbours, without error.
 struct Slopes {
   double least = std::numeric_limits<double>::infinity();
   double most = -std::numeric_limits<double>::infinity();
@@ -101,16 +101,16 @@ Slopes exact_slopes(const SlopeData& data) {
   return slopes;
 }
 
-// Quotients of logarithms of whole numbers are good to some units of the last digit.
+// Bound on the rounding of quotients of logarithms of whole numbers.
 constexpr double exact_tolerance = 1e-12;
 
-/// How far a slope is from the claimed one: not at all within what its logarithms are good to.
+/// Distance of a slope from the claimed one; 0 within rounding.
 double beyond(double slope, double null) {
   const double difference = slope - null;
   return std::abs(difference) <= exact_tolerance ? 0 : difference;
 }
 
-/// Costs that never vary say what they are: a slope is theirs or it is not.
+/// Costs that never vary have exact slopes.
 Evidence exact_evidence(const SlopeData& data, double null) {
   const Slopes slopes = exact_slopes(data);
   constexpr double impossible = std::numeric_limits<double>::lowest();
@@ -140,7 +140,7 @@ Evidence evidence_of_slope(const Question& question, std::size_t channel,
   if (is_exact(points)) return exact_evidence(points, null);
   const auto at = [=](double theta) { return stats::slope_test(points, null + theta).test; };
   const auto interval = [=](double confidence) {
-    // Each end of the set is at the whole level: see stats/slope.h.
+    // The set takes each end at the whole level (stats/variances/slope.h).
     stats::Interval hull = stats::slope_set(points, (1 + confidence) / 2).hull;
     return stats::Interval{hull.low - null, hull.high - null, confidence};
   };

@@ -25,13 +25,13 @@ constexpr const char* masses_without_a_point = "the masses without a point";
 constexpr const char* quantity_of_both =
     "largest distance of distribution functions, or of the masses without a point";
 
-/// A sup distance of which the law's table leaves a range.
+/// Evidence from a sup distance that the law's table leaves uncertain by `error`.
 Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
   stats::OneSampleDistance least = measured;
   stats::OneSampleDistance most = measured;
   least.distance = std::max(0.0, measured.distance - error);
   most.distance = std::min(1.0, measured.distance + error);
-  // Asked for again and again, at up to 10 ms each.
+  // Computed once: it is slow.
   const TestResult at_none = stats::kolmogorov_smirnov(least);
   const auto at = [least, most, at_none](double theta) {
     if (theta <= 0) return at_none;
@@ -50,7 +50,7 @@ Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
           .distance = true};
 }
 
-/// The same, but for theta = 0.
+/// The same distance, with Anderson and Darling's p at theta = 0.
 Evidence with_anderson_darling(Evidence distance, const TestResult& at_null) {
   distance.at = [at_null, margin = std::move(distance.at)](double theta) {
     return theta <= 0 ? at_null : margin(theta);
@@ -75,7 +75,7 @@ Evidence from_distance(const stats::TwoSampleDistance& distance) {
 
 double clamp_unit(double p) { return std::clamp(p, 0.0, 1.0); }
 
-/// theta = |P(no point) - declared|; exact binomial at the ends of what the error leaves.
+/// theta = |P(no point) - declared|; exact binomial at both ends of the declared error.
 Evidence from_proportion(stats::Successes missing, const DeclaredLaw& declared) {
   const double low = declared.missing - declared.missing_error;
   const double high = declared.missing + declared.missing_error;
@@ -133,11 +133,11 @@ Evidence from_proportions(const Points& x, const Points& y) {
   return {.estimate = std::abs(share(x) - share(y)), .at = at, .interval = interval};
 }
 
-// What rounding may be off in the logarithm of a p-value, and more.
+// Bound on the rounding of ln p.
 constexpr double rounding = 1e-6;
 
-/// Whether an interval at this confidence may begin above theta, or end beyond it: tests at theta,
-/// of which an exact interval of two proportions takes some hundred.
+/// True if an interval at this confidence may begin above theta, or end beyond it. This takes one
+/// test, where an exact interval of two proportions takes some hundred.
 bool may_begin_above(double theta, const Evidence& evidence, double confidence) {
   return evidence.at(theta).log_p_upper <= std::log(1 - confidence) + rounding;
 }
@@ -145,19 +145,18 @@ bool may_end_beyond(double theta, const Evidence& evidence, double confidence) {
   return evidence.at(theta).log_p_lower >= std::log((1 - confidence) / 2) - rounding;
 }
 
-/// A distance with its name.
 struct Part {
   Evidence evidence;
   std::string name;
 };
 
-/// The estimate is the larger of the two distances, and p that of the part with the smaller p.
+/// Says which part p belongs to: the estimate may be the other's.
 std::string p_is_of(const Part& part) {
   return fmt::format("; p is that of {}, {:.4g} apart", part.name, part.evidence.estimate);
 }
 
-/// theta = the larger of the two. "At most" is rejected where either part rejects it at half the
-/// level (Bonferroni), "at least" where both do (intersection of unions).
+/// theta = the larger distance. Bonferroni rejects "at most" if either part does at half the level.
+/// Intersection of unions rejects "at least" if both do.
 Evidence larger_of(const Evidence& points, const Part& masses) {
   const Evidence& missing = masses.evidence;
   const auto at = [points, missing](double theta) {
@@ -202,13 +201,12 @@ Evidence unknown_distance() {
           .distance = true};
 }
 
-/// Without the values at the atom.
+/// The points that are not at the atom.
 Points away_from(double atom, Points points) {
   std::erase(points.sorted, atom);
   return points;
 }
 
-/// A sample without a point says nothing of the points' law.
 void require_points(const Points& points) {
   if (points.sorted.empty()) {
     throw std::domain_error("no draw yielded a point: there is nothing to compare");

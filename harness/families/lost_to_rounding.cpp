@@ -11,10 +11,10 @@
 namespace assay::harness {
 namespace {
 
-// Moves a tail of one per cent by a third, if it were all to one side.
+// Part of the standard error that rounding may reach: a 1 % tail then moves by a third at most.
 constexpr double tolerated = 0.1;
 
-/// On the scale of the first mean.
+/// Errors of one side, on the scale of the first mean.
 struct Part {
   double rounding = 0;
   double standard_error = 0;
@@ -27,9 +27,9 @@ Part part_of(const Question& question, std::size_t subject, const ChannelData& d
           .standard_error = factor * data.moments.standard_error()};
 }
 
-/// Standard deviation of what rounding adds to the mean of so many, of which the sum is formed one
-/// by one: each step a variance of spacing^2 / 12, the spacing of doubles in proportion to what is
-/// summed so far, so that its square is a third of the last one's on average.
+/// Standard deviation that rounding adds to a mean of so many, summed one by one. Each step adds a
+/// variance of spacing^2 / 12. The spacing grows with the sum, so its square averages a third of
+/// the last one's.
 double rounding_of_sum(double mean, double primaries) {
   const double sum = std::abs(mean) * primaries;
   const double spacing = std::nextafter(sum, std::numeric_limits<double>::infinity()) - sum;
@@ -71,7 +71,7 @@ std::string variances_lost_to_rounding(const Subject& side, std::uint64_t primar
     const double count = static_cast<double>(x.count);
     added += std::pow(rounding_of_sum(x.mean, averaged), 2);
     total += x.variance();
-    // Of two values that come equally often the kurtosis is 1, and the error of second order.
+    // Two equally frequent values have kurtosis 1 and an error of second order.
     squared_error += std::pow(x.variance(), 2) * std::max(x.kurtosis() - 1, 1 / count) / count;
     if (std::abs(x.mean) > std::abs(mean)) mean = x.mean;
   }

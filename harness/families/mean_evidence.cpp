@@ -27,7 +27,7 @@ using OneMeanTest = std::function<TestResult(const stats::Reference&)>;
 /// Tests "E x - scale E y = offset".
 using ContrastTest = std::function<TestResult(const stats::Contrast&)>;
 
-/// A test of one mean and of two, and whether both have closed intervals; else `at` is inverted.
+/// A test of one mean and of two. Without closed intervals, `at` is inverted.
 struct MeanTest {
   OneMeanTest (*of_one)(const Moments& x, const stats::Range& range);
   ContrastTest (*of_two)(const Moments& x, const Moments& y, const stats::Range& of_x,
@@ -104,7 +104,7 @@ Evidence difference_of_means(bool closed_interval, const Question& question, con
       const double step = std::hypot(spread_of(x, 1), spread_of(y, factor));
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
-    // Only count, mean and m2 enter: of factor * y, and the difference as if y's mean were 0.
+    // Only count, mean and m2 enter. The difference stands for x, with y's mean at 0.
     Moments moved = x;
     moved.mean = estimate;
     Moments scaled = y;
@@ -130,7 +130,7 @@ Evidence ratio_of_means(bool closed_interval, const Question& question, const Mo
   const auto at = [=](double theta) {
     TestResult result = contrast(theta);
     if (theta == 0) return result;
-    // Which contrast a relative margin is depends on the sign of E y, which y must show as well.
+    // The sign of E y decides which contrast a relative margin is, so y must show it too.
     const double log_p_sign = log_p_of_no_sign(y, test_of_y);
     result.log_p_lower = std::max(result.log_p_lower, log_p_sign);
     result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
@@ -177,7 +177,7 @@ Evidence mean_against_number(const MeanTest& mean, const Question& question, std
                  .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
   };
   const auto interval = [=](double confidence) {
-    // Theta scales the reference's own error too: the interval is what `at` does not reject.
+    // Theta also scales the reference's error, so `at` is inverted.
     if ((relative && reference.standard_error > 0) || !mean.closed_interval) {
       const double step = std::hypot(spread_of(x, 1), reference.standard_error) / unit;
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Evidence about means: the same contrasts, tested by the method that was chosen.
+// Evidence about means: the same contrasts, tested by the chosen method.
 
 #include <span>
 
@@ -9,9 +9,9 @@
 
 namespace assay::harness {
 
-// theta = (E x - r) / |r| where margins are relative, else E x - r. Of two estimators it is
-// (E x - c E y) / |c E y|, tested as a contrast, or E x - c E y. Of a claimed bias b
-// (question.offset), E x - b takes the place of E x.
+// theta = E x - r, or (E x - r) / |r| if margins are relative. For two estimators c E y replaces r,
+// and the relative difference is tested as a contrast. A claimed bias b (question.offset) is
+// subtracted from E x.
 
 /// Student's and Welch's t.
 Evidence mean_by_t(const Method&, const Question&, std::size_t channel,
@@ -19,17 +19,17 @@ Evidence mean_by_t(const Method&, const Question&, std::size_t channel,
 /// Both with Hall's correction for skewness.
 Evidence mean_by_corrected_t(const Method&, const Question&, std::size_t channel,
                              std::span<const ChannelData>);
-/// Exact, of values that are the ends of a range alone.
+/// Exact, for values at the two ends of a range.
 Evidence mean_of_two_values(const Method&, const Question&, std::size_t channel,
                             std::span<const ChannelData>);
-/// Exact, of values in a declared range; one estimator.
+/// Exact, for one estimator with values in a declared range.
 Evidence mean_in_a_range(const Method&, const Question&, std::size_t channel,
                          std::span<const ChannelData>);
-/// "E x <= r" by bets on what lies above the declared lower bound; nothing refutes the contrary.
+/// Tests "E x <= r" by bets on values above the declared lower bound. Never refutes "E x > r".
 Evidence mean_by_bets(const Method&, const Question&, std::size_t channel,
                       std::span<const ChannelData>);
 
-/// The values a channel is declared to lie between; of recorded data the smallest and the largest.
+/// A channel's declared range; for recorded data the range of their values.
 stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
                       const stats::Moments& moments);
 

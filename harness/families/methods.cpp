@@ -92,7 +92,7 @@ Evidence law_against_law(const Method& method, const Question& question, std::si
   return points_against_points(x, y);
 }
 
-/// Evidence about a variance or two, by the exact test of normal values or by logarithms.
+/// Evidence about one or two variances, by the exact test of normal values or by logarithms.
 template <bool exact>
 Evidence of_variances(const Method& method, const Question& question, std::size_t channel,
                       std::span<const ChannelData> data) {
@@ -151,7 +151,7 @@ Evidence whole_images(const Method&, const Question&, std::size_t, std::span<con
   throw std::logic_error("a claim on images has evidence of its own (image_evidence.h)");
 }
 
-/// What the claim does not say itself: of what a bias or an error is taken, what is counted.
+/// Parts that the claim leaves unsaid: the reference of a bias or error, the kind of cost.
 std::string circumstances(const Question& question) {
   const TestEntry& test = *question.test;
   std::string text;
@@ -205,7 +205,7 @@ std::string relation_text(const TestEntry& test) {
   return fmt::format("within {} of", to_string(test.claim.margin));
 }
 
-/// Whether a side is a sampler's draws, whose mass without a point is a part of its own.
+/// True if a side is a sampler's draws.
 bool about_draws(const Question& question) {
   return std::any_of(question.subjects.begin(), question.subjects.end(),
                      [](const Subject& side) { return !side.purpose.empty(); });
@@ -214,12 +214,12 @@ bool about_draws(const Question& question) {
 [[noreturn]] void refuse(const Question& question, const std::string& method,
                          const std::string& why) {
   const Location& where = question.test->place_of("test");
-  // An option says all of it.
+  // The place of an option names the method itself.
   if (where.line == 0) throw InputError(where, why);
   throw InputError(where, fmt::format("`test: {}` {}", method, why));
 }
 
-/// Why these data are none for the method: InputError.
+/// Throws InputError if the data do not suit the method.
 void require_data(const Method& method, const Question& question) {
   for (const Constant& reference : question.references) {
     if (!method.is.exact || reference.standard_error == 0) continue;
@@ -240,7 +240,7 @@ void require_data(const Method& method, const Question& question) {
   }
 }
 
-/// A margin that the method cannot test.
+/// Throws InputError if the method cannot test the claim's `allow`.
 void require_margins(const Method& method, const Question& question) {
   const TestEntry& test = *question.test;
   if (method.is.allows_distance || !test.allow || test.allow->value == 0) return;
@@ -256,7 +256,7 @@ bool is_within(const Question& question) {
 
 bool in_seconds(const Question& question) { return question.test->cost == CostKind::seconds; }
 
-/// Whether the draws of a sampler are held against its density in cells of all coordinates.
+/// True if a sampler's draws are tested against its density in cells of all coordinates.
 bool of_whole_draws(const Question& question) {
   const Subject& draws = question.subjects[0];
   return question.kind == QuestionKind::fit_to_density &&

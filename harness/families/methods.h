@@ -1,6 +1,6 @@
 #pragma once
 
-// The method table: which methods answer a question, and the null hypothesis that they test.
+// The method table: the methods that answer a question, and their null hypotheses.
 
 #include <span>
 #include <string>
@@ -12,13 +12,14 @@
 
 namespace assay::harness {
 
-/// The table: a new method is a row of it and a function for its evidence.
+/// The table. A new method is a row and a function for its evidence.
 const std::vector<MethodRow>& method_table();
 
 /// The methods that answer a question, the default first; `test:` may force any of them.
 std::vector<Method> methods_for(const Question& question);
 
-/// The method of that name. InputError at the test's place when it does not answer the question.
+/// The method of that name. Throws InputError at the test's place if it does not answer the
+/// question.
 Method find_method(const Question& question, const std::string& name);
 
 /// The null hypothesis in words and symbols.

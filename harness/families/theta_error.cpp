@@ -11,7 +11,7 @@
 namespace assay::harness {
 namespace {
 
-/// Of one side's share in theta, before its unit.
+/// One side's part of theta's error, before the unit.
 double side_error(const Question& question, std::size_t subject, const ChannelData& data) {
   if (question.of_variances()) return stats::log_variance_standard_error(data.moments);
   return (subject == 0 ? 1 : std::abs(question.factor)) * data.moments.standard_error();

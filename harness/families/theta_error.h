@@ -7,16 +7,16 @@
 
 namespace assay::harness {
 
-/// Standard errors of the estimate of theta where theta = 0: what is drawn anew in every run, and
-/// what is the same in all of them (a reference's own error, recorded data).
+/// Standard errors of theta's estimate where theta = 0. The error `drawn` is new in every run. The
+/// error `fixed` is the same in all: a reference's own error, recorded data.
 struct ThetaError {
   double drawn = 0;
   double fixed = 0;
 };
 
-/// Of one channel of a claim on means or variances; nullopt for other claims. Of a relative
-/// difference of means s / sqrt(n) over the reference, of a logarithm of a variance the delta
-/// method's (stats/log_variance.h).
+/// Errors of one channel of a claim on means or variances; nullopt for other claims. Means have s /
+/// sqrt(n), over the reference if relative. Logarithms of variances have the delta method's
+/// (stats/variances/log_variance.h).
 std::optional<ThetaError> theta_error(const Question& question, std::size_t channel,
                                       std::span<const ChannelData> data);
 

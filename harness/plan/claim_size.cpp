@@ -16,7 +16,7 @@
 namespace assay::harness {
 namespace {
 
-// A pilot that does not see the power law cannot say how much it takes to measure its exponent.
+// Standard errors that the fitted constant must exceed: a fainter power law cannot be planned.
 constexpr double least_visibility = 3;
 
 stats::Moments moments_of(const Question& question, std::size_t subject, std::size_t channel,
@@ -30,7 +30,7 @@ double deviation(const Question& question, std::size_t subject, std::size_t chan
                    question.subjects[subject].averaged(plan.primaries[subject]));
 }
 
-/// What is to be told from the claimed region's edge; 0 where nothing is.
+/// The distance to find from the claimed region's edge; 0 if there is none.
 double distance_of(const Regions& regions) {
   if (regions.relation == Relation::within) return regions.within;
   return regions.detect ? *regions.detect - regions.allow : 0;
@@ -38,7 +38,7 @@ double distance_of(const Regions& regions) {
 
 double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi); }
 
-/// The variance of b at size i with this many observations each, or of ln b.
+/// The variance of b, or of ln b, at size i from one observation.
 double point_variance(const Question& question, std::size_t i, std::size_t channel,
                       const Pilots& pilots, const Plan& plan) {
   const stats::Moments& pilot = moments_of(question, i, channel, pilots);
@@ -50,7 +50,7 @@ double point_variance(const Question& question, std::size_t i, std::size_t chann
   return pilot.variance() / n;
 }
 
-/// C of C M^s by least squares at the claimed exponent, with its standard error.
+/// Least-squares C of C M^s at the claimed exponent s, with its standard error.
 struct Fit {
   double constant;
   double standard_error;
@@ -76,7 +76,7 @@ Fit fit_constant(const Question& question, std::size_t channel, const Pilots& pi
   return {.constant = sum / weight, .standard_error = 1 / std::sqrt(weight)};
 }
 
-/// The points as one observation each would show them if the claim held with this exponent.
+/// Points of one observation each, expected if the claim held with this exponent.
 std::optional<stats::SlopeData> expected_points(const Question& question, std::size_t channel,
                                                 const Pilots& pilots, const Plan& plan,
                                                 double exponent) {
@@ -86,7 +86,7 @@ std::optional<stats::SlopeData> expected_points(const Question& question, std::s
   Fit fit{.constant = 1, .standard_error = 0};
   if (!logarithms) {
     fit = fit_constant(question, channel, pilots, question.references[channel].value);
-    // No number where a point has no spread.
+    // NaN, from a point without spread, counts as unseen.
     const bool seen = std::abs(fit.constant) >= least_visibility * fit.standard_error;
     if (!seen) return std::nullopt;
   }
@@ -134,7 +134,7 @@ std::optional<std::uint64_t> most_of(const Question& question, const Channel& of
   return most;
 }
 
-/// The probability counted under the claim, and how far its size is in doubt.
+/// The probability that the claim counts, and its error.
 struct CountedProbability {
   double value = 0;
   double error = 0;
@@ -170,9 +170,9 @@ std::optional<std::uint64_t> draws_secondaries(const Question& question, const E
 
 namespace {
 
-/// Values on one side of a quantile, sorted away from it: the least slope of their distribution
-/// function, with two standard errors of a count, from the quantile to `distance`, or as far as 64
-/// of them reach. 0 where there are not so many.
+/// Least slope of the distribution function beside a quantile, from sorted distances, less two
+/// standard errors of a count. It reaches to `distance`, or as far as 64 values do. Returns 0 if
+/// there are fewer.
 double slope_beside(std::span<const double> distances, double distance, double total) {
   constexpr std::size_t fewest = 64;
   if (distances.size() < fewest) return 0;
@@ -183,8 +183,8 @@ double slope_beside(std::span<const double> distances, double distance, double t
   return (count - 2 * std::sqrt(count)) / total / reach;
 }
 
-/// quantile_standard_deviation of values as the pilot's, whose counts move over this distance as
-/// they do on the side of the quantile where they move less; nothing where the pilot does not tell.
+/// quantile_standard_deviation with the density that the pilot shows over this distance, on the
+/// quantile's sparser side. Returns nullopt if the pilot does not show it.
 std::optional<double> observed_deviation(std::span<const double> pilot, double probability,
                                          double distance) {
   std::vector<double> values(pilot.begin(), pilot.end());
@@ -204,7 +204,7 @@ std::optional<double> observed_deviation(std::span<const double> pilot, double p
   return stats::quantile_standard_deviation(probability, slope);
 }
 
-/// Of one secondary; of means of several as if they were normal.
+/// Deviation of one secondary; means of several primaries count as normal.
 double quantile_deviation(const Question& question, std::size_t subject, std::size_t channel,
                           double distance, const Pilots& pilots, const Plan& plan) {
   const double probability = question.test->claim.left.arguments[0];

@@ -10,10 +10,10 @@
 namespace assay::harness {
 namespace {
 
-// Barnard's maximum over the nuisance probability costs at most this (stats/two_valued.h).
+// Barnard's maximum over the nuisance probability costs at most this (stats/means/two_valued.h).
 constexpr double two_sample_cost = 1.4;
 
-/// On which sides of the reference an effect is to be found.
+/// Sides of the reference where an effect is to be found.
 std::vector<int> sides_of(Relation relation) {
   switch (relation) {
     case Relation::at_most:
@@ -98,7 +98,7 @@ std::optional<double> exact_detectable_effect(const Question& question, const Te
   for (const int side : sides_of(channel.regions.relation)) {
     const auto found = stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates),
                                                size.secondaries, side);
-    // A range that ends before it has no such effect; one side without any is not told.
+    // The range ends before any such effect on this side.
     if (!found) return std::nullopt;
     most = std::max(most, *found);
   }

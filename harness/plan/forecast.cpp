@@ -11,7 +11,7 @@
 namespace assay::harness {
 namespace {
 
-/// The edge of the forbidden region where theta = 0 is claimed and can be told from it.
+/// Edge of the forbidden region, if theta = 0 is claimed and lies outside it.
 std::optional<double> margin_of(const Regions& regions) {
   if (regions.relation == Relation::within) return regions.within;
   if (regions.proof()) return std::nullopt;
@@ -60,7 +60,7 @@ std::optional<double> share_of(const TestOutcome& test, const Pilots& pilots) {
   return drawn / static_cast<double>(sizes.back());
 }
 
-/// What the pilots let expect of a channel; nullopt where they say nothing of it.
+/// The expected channel; nullopt if the pilots say nothing of it.
 std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::size_t channel,
                                                const Pilots& pilots, std::uint64_t secondaries) {
   const Question& question = test.question;
@@ -76,8 +76,8 @@ std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::siz
   return observed_channel(question, regions, channel, *data);
 }
 
-/// The least margin that a claim of that size shows itself to lie within with probability 1 - beta
-/// where theta is 0, by bisection to a thousandth; nullopt where no formula tells, or none is.
+/// The least margin that a claim of that size proves with probability 1 - beta if theta is 0, by
+/// bisection to a thousandth. Returns nullopt if no formula tells, or none is.
 std::optional<double> margin_shown(const Question& question, const TestSize& size, const Plan& plan,
                                    PlannedChannel channel) {
   constexpr double farthest = 0x1p100;
@@ -124,7 +124,7 @@ std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilot
   return largest;
 }
 
-/// As if `count` means of `averaged` primaries each had been drawn.
+/// Moments as if `count` means of `averaged` primaries each had been drawn.
 stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_t count) {
   const double n = static_cast<double>(count);
   stats::Moments moments = pilot;
@@ -155,7 +155,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
                                                       const Pilots& pilots,
                                                       std::uint64_t secondaries) {
   const Question& question = test.question;
-  // A sampler's draws are not what its estimator's pilot is of.
+  // An estimator's pilot says nothing of a sampler's draws.
   if (!question.of_means() && !question.of_variances()) return std::nullopt;
   std::vector<ChannelData> data(question.subjects.size());
   std::optional<std::size_t> known;

@@ -20,7 +20,7 @@ constexpr double least_share = 0.01;
 constexpr stats::CellNumbers plane_cells{.bands = 16, .cuts = 16};
 constexpr stats::CellNumbers line_cells{.bands = 64, .cuts = 1};
 
-/// Whether this side's pilot may choose: rows only if no side has a pilot of its own.
+/// True if this side's pilot may choose. Rows may only if no side has a pilot of its own.
 bool may_choose(const Question& question, std::size_t subject) {
   return !is_recorded(question.subjects[subject]) ||
          std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded);
@@ -34,12 +34,11 @@ std::vector<double> pilot_values(const Question& question, std::size_t subject, 
                         plan.primaries[subject]);
 }
 
-/// Leaves out values that come less often than this: those of a bucket that few fall into, so that
-/// of continuous values hardly any are left to be sorted.
+/// Drops values from buckets with fewer than `least`: few continuous values are left to sort.
 void drop_rare(std::vector<double>& values, double least) {
   constexpr int bits = 14;
   const auto bucket = [](double value) {
-    const auto word = std::bit_cast<std::uint64_t>(value + 0.0);  // of -0 that of 0
+    const auto word = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 counts as 0
     return static_cast<std::size_t>((word * 0x9E3779B97F4A7C15) >> (64 - bits));
   };
   std::vector<std::uint32_t> counts(std::size_t{1} << bits);
@@ -68,7 +67,7 @@ bool is_of_draws(const Question& question) {
                      [](const Subject& side) { return !side.purpose.empty(); });
 }
 
-/// The pilots' points of both sides, but for those without one.
+/// Both sides' pilot points, without draws that yield none.
 std::vector<stats::PlanePoint> pilot_points(const Question& question, const Pilots& pilots,
                                             const Plan& plan) {
   std::vector<stats::PlanePoint> points;

@@ -1,7 +1,6 @@
 #pragma once
 
-// What tests take from the pilots: of two laws values that come again and again, and cells; of
-// images the weights of their elements.
+// Data that tests take from the pilots: atoms and cells of two laws, weights of images' elements.
 
 #include <vector>
 
@@ -10,25 +9,24 @@
 
 namespace assay::harness {
 
-/// Whether the method cannot do without the pilots.
+/// True if the method needs the pilots.
 bool takes_from_pilot(const Method& method);
 
-/// The samplers of a question of whose draws a pilot is wanted.
+/// The samplers of a question whose draws need a pilot.
 std::vector<const Subject*> piloted_draws(const Question& question);
 
-/// The most frequent value of each channel, both sides' pilots together, where it is at least one
-/// in a hundred of them: fewer ties cost Kolmogorov and Smirnov's test next to nothing. Nothing for
-/// samplers, whose draws without a point are apart already.
+/// The most frequent value of each channel in both sides' pilots, if it makes up 1 % or more. Fewer
+/// ties hardly cost Kolmogorov and Smirnov's test. Empty for samplers, whose draws without a point
+/// are kept apart already.
 std::vector<std::optional<Atom>> atoms_of(const Question& question, const Pilots& pilots,
                                           const Plan& plan);
 
-/// Gives the plan's method what it takes from the pilots; `invalid` where they do not have it. Rows
-/// of a file are their own pilot: those of both sides together, which tell nothing of who is who,
-/// or, beside drawn values, none of them.
+/// Gives the plan's method what it takes from the pilots; sets `invalid` if they lack it. Rows of a
+/// file are their own pilot, both sides together; beside drawn values they are not used.
 void freeze(const Question& question, const Pilots& pilots, Plan& plan);
 
-/// Of a claim about laws: `two-part-ks` for two samples of which the pilots show an atom, unless
-/// the test forces a method; then freezes.
+/// Chooses `two-part-ks` for two samples whose pilots show an atom, unless the test forces a
+/// method; then freezes.
 void choose_for_laws(const Question& question, const Pilots& pilots, Plan& plan);
 
 }  // namespace assay::harness

@@ -13,7 +13,7 @@
 namespace assay::harness {
 namespace {
 
-/// What a red gate says; {0} is its value, {1} its limit.
+/// Sentence for a red gate; {0} is its value, {1} its limit.
 struct Meaning {
   const char* gate;
   const char* text;
@@ -62,7 +62,7 @@ std::string sentence(const reports::Gate& gate) {
   for (const Meaning& meaning : meanings) {
     const std::string_view name = meaning.gate;
     if (!gate.name.starts_with(name)) continue;
-    // Of which channel or estimator.
+    // The rest of the name is a channel or an estimator.
     return fmt::format(fmt::runtime(meaning.text), value, limit) +
            (gate.name.size() > name.size() ? " (" + gate.name + ")" : "");
   }
@@ -78,10 +78,10 @@ std::string median_of(const Question& question) {
   return fmt::format("quantile({}, 0.5) == …", to_string(question.test->claim.left.source));
 }
 
-/// By how much more observations the gate would be green.
+/// Factor on the observations that would turn the gate green.
 double wanted(const reports::Gate& gate) {
   if (!gate.value || !gate.limit) return 1;
-  // The factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
+  // The level factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
   if (is_red(gate, "level factor by skewness") || is_red(gate, "level factor of the mean ")) {
     return std::pow(std::log(*gate.value) / std::log(1.25), 2);
   }
@@ -148,7 +148,7 @@ std::string what_would_help(const TestOutcome& outcome) {
   }
   if (says_it_all) return "";
   const bool rows = has_rows(outcome.question);
-  // Where the tail's moment does not exist, more observations make the gate only redder.
+  // If the tail's moment does not exist, more observations only make the gate redder.
   if (heavy) {
     return fmt::format(
         "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim "

@@ -25,10 +25,10 @@ namespace assay::harness {
 namespace {
 
 constexpr double level_factor = 1.25;
-// Of one replicate's pixels. More is answered by a pilot's weights; where there are none, by
-// nothing (README.md has the false alarms).
+// Limit for one replicate's pixels. A pilot's weights answer more skewness; else the test is
+// invalid.
 constexpr double most_skewed = 2;
-// Of images at the first look: more are taken only by looks that follow.
+// Largest first look; only the looks that follow take more.
 constexpr std::uint64_t most_first_look = 1024;
 
 double averaged(const Question& question, const Plan& plan, std::size_t subject) {
@@ -53,8 +53,8 @@ bool all_piloted(const Question& question, const Pilots& pilots) {
 
 // ---- Skewness
 
-/// Mean over the elements that vary of |skewness of one replicate's difference|, of a side with
-/// more replicates than the other that of the mean of so many more.
+/// Mean over the varying elements of |skewness of one replicate's difference|. A side with more
+/// replicates enters as the mean of several.
 double mean_skewness(const Question& question, const Plan& plan, const Pilots& pilots,
                      std::uint64_t look) {
   if (plan.look) return plan.look->skewness;
@@ -80,7 +80,7 @@ double mean_skewness(const Question& question, const Plan& plan, const Pilots& p
   return varying > 0 ? sum / varying : 0;
 }
 
-/// Weights of a pilot keep the mean of every sum at zero, and which cells take part answers their
+/// A pilot's weights keep the mean of every sum at zero, and leaving out cells answers their
 /// skewness. Halves that weigh each other see too little of skewed pixels for either.
 void judge_skewness(const Question& question, const Pilots& pilots, std::uint64_t look,
                     Plan& plan) {
@@ -109,12 +109,12 @@ std::string cells_text(std::uint32_t size, const ImageShape& shape) {
   return fmt::format("cells of {0} x {0} pixels", size);
 }
 
-/// Of the cells of a size, as far as the pilot tells: its own scatter is not held against them.
+/// True if cells of a size keep their level. The pilot's own scatter does not count against them.
 bool keeps_level(const stats::CellTails& tails, double limit = level_factor) {
   return tails.common <= limit && tails.factor <= limit + tails.scatter;
 }
 
-/// Of what says more against them.
+/// The factor that speaks more against cells of a size.
 struct ShownFactor {
   double value;
   double limit;
@@ -125,16 +125,15 @@ ShownFactor shown_factor(const stats::CellTails& tails, double limit = level_fac
   return {tails.factor, limit + tails.scatter};
 }
 
-/// Skewness g of a mean adds some g^2 to the mean of its studentised square: to a sum of so many of
-/// them sqrt(2 elements) g^2 of its standard deviation. What is known of g is a lower limit, and
-/// low by half in a dozen replicates: a tenth is tolerated.
+/// A mean of skewness g adds about g^2 to the mean of its studentised square: sqrt(2 elements) g^2
+/// standard deviations of their sum. Few replicates underestimate g, so only a tenth is tolerated.
 bool keeps_squares(const stats::CellTails& elements, std::size_t count) {
   const double skewness = elements.common_skewness;
   return std::sqrt(2 * static_cast<double>(count)) * skewness * skewness <= 0.1;
 }
 
-/// The smallest cells that keep their level, and all larger ones do. Notes each size's gate up to
-/// theirs; smaller ones are answered by leaving them out.
+/// The smallest cells that keep their level, as all larger ones do. Notes their gate and those of
+/// smaller cells, which are left out.
 std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const ImageShape& shape,
                             Plan& plan) {
   std::size_t kept = tails.size() - 1;
@@ -150,19 +149,19 @@ std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const Im
   return tails[kept].size;
 }
 
-/// What shows that images are no farther apart than a margin is the unbiased squared bias, a sum of
-/// products of two replicates' differences over N elements of variance V of a mean. Its variance is
-/// 2 N V^2, its third cumulant N V^3 (8 + 4 g^2), g the skewness of a mean: rare lights leave it
-/// near zero until two fall on one element. What g adds to its skewness, 4 g^2 / sqrt(8 N), may
-/// raise the tail at the critical value by the level factor, exp(skewness x^3 / 3).
+/// A margin is shown by the unbiased squared bias: products of two replicates' differences, summed
+/// over N elements. Let V be the variance of a mean, g its skewness. The sum has variance 2 N V^2
+/// and third cumulant N V^3 (8 + 4 g^2). Rare lights leave it near zero until two fall on one
+/// element. To its skewness g adds 4 g^2 / sqrt(8 N). At the critical value x that may raise the
+/// tail by the level factor, exp(skewness x^3 / 3).
 bool keeps_margin(const stats::CellTails& elements, std::size_t count, double critical) {
   const double skewness = elements.common_skewness;
   const double added = 4 * skewness * skewness / std::sqrt(8 * static_cast<double>(count));
   return added * critical * critical * critical / 3 <= std::log(level_factor);
 }
 
-/// The sum over all of the image is left where no smaller one keeps its level. It has a share of
-/// the level, and so much more of it that the family's false alarms are a quarter more is allowed.
+/// Makes the claim invalid if not even the whole image's sum keeps its level. The sum has a share
+/// of the level: its limit lets the family's false alarms grow by a quarter.
 void require_whole_image(const stats::CellTails& whole, const stats::ImageExtent& extent,
                          Plan& plan) {
   const double limit = 1 + (level_factor - 1) / stats::whole_image_share(extent);
@@ -190,7 +189,7 @@ stats::AnyImageStack stack_of(const ImageViews& views, const stats::ImageExtent&
   return stats::ImageStack<double>{extent, views.images<double>()};
 }
 
-/// The pilots as sides of a comparison of one replicate, or of as many as are set.
+/// The pilots as sides of a comparison of one replicate, or as many as are set.
 class PilotSides {
  public:
   PilotSides(const Question& question, const Plan& plan, const Pilots& pilots) {
@@ -216,7 +215,7 @@ class PilotSides {
 
  private:
   std::vector<ImageViews> images_;
-  std::vector<double> averaged_;  // primaries of an image's pixel
+  std::vector<double> averaged_;  // Primaries of an image's pixel.
   std::vector<stats::CellPilot> sides_;
 };
 
@@ -225,8 +224,8 @@ struct Replicates {
   std::uint64_t most = 0;
 };
 
-/// The cells that take part, and the replicates of the first look: so many, or in looks as many
-/// more as the sum over the whole image needs. It always takes part.
+/// Chooses the cells that take part; the whole image always does. Returns the replicates of the
+/// first look: `first`, or in looks as many more as the whole image's sum needs.
 std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                            const Replicates& replicates, Plan& plan) {
   const auto note = [&](const std::vector<stats::CellTails>& tails) {
@@ -261,12 +260,12 @@ std::uint64_t choose_cells(const Question& question, const FamilyPlace& place, c
 
 /// Noise and brightness of an image at one primary an element.
 struct PilotImage {
-  double noise = 0;         ///< sqrt(2 tr C^2), C the elements' covariance: R U has it as deviation
-  double squared_norm = 0;  ///< of its mean
+  double noise = 0;         ///< sqrt(2 tr C^2), the deviation of R U; C is the elements' covariance
+  double squared_norm = 0;  ///< Squared norm of the mean.
 };
 
-/// The two halves of a pilot have one law: their squared bias is noise alone, of the covariance
-/// C (2 / R + 2 / R) in all.
+/// Both halves of a pilot have one law: their squared bias is noise alone, with covariance C (2 / R
+/// + 2 / R).
 template <class Real>
 PilotImage pilot_image(const stats::ImageStack<Real>& pilot) {
   stats::ImageStack<Real> half[2] = {{pilot.extent, {}}, {pilot.extent, {}}};
@@ -283,7 +282,7 @@ PilotImage pilot_image(const Subject& subject, const Pilot& pilot) {
                     stack_of(views, extent_of(*subject.image)));
 }
 
-/// What margins are in units of, squared.
+/// The square of the margins' unit.
 double squared_unit(const Question& question, const PilotImage& last) {
   if (!is_relative(question, 0)) {
     return static_cast<double>(question.subjects[0].channels.size());
@@ -302,7 +301,7 @@ double squared_unit(const Question& question, const PilotImage& last) {
 std::vector<double> image_weights(const Question& question, const Pilots& pilots,
                                   const Plan& plan) {
   if (has_rows(question) || !all_piloted(question, pilots)) return {};
-  // Replicates are as many on both sides: their number is a common factor.
+  // Both sides have as many replicates: the number is a common factor.
   return stats::cell_weights(PilotSides(question, plan, pilots).sides());
 }
 

@@ -25,14 +25,14 @@ stats::DistancePlan distance_plan(const Question& question, const ErrorShare& sh
           .rates = rates_of(share)};
 }
 
-/// Whether counts in cells are tested; a plan that froze none is invalid.
+/// True if counts in cells are tested. A plan without frozen cells is invalid.
 bool in_cells(const Plan& plan) {
   return plan.method.keeps == Keeps::cells || plan.method.frozen.cells != nullptr;
 }
 
-/// Of `observations`, or more: cells that expect fewer than the test asks for are pooled.
+/// Degrees of freedom at so many observations. Cells that expect too few are pooled.
 double degrees_of_freedom(const Question& question, const Plan& plan, double observations) {
-  // The cells and the draws without a point.
+  // Draws without a point are one more cell, so none is subtracted.
   if (plan.method.frozen.cells) return static_cast<double>(plan.method.frozen.cells->size());
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
   const double least = stats::FitOptions{}.minimum_expected;
@@ -51,8 +51,8 @@ stats::FitPlan fit_plan(const Question& question, const Plan& plan, const ErrorS
           .rates = rates_of(share)};
 }
 
-/// Fewer observations are counted in fewer pools, and fewer pools need fewer observations. Each
-/// round's are enough; after four there is little left to save.
+/// Fewer observations fill fewer pools, which need fewer observations. Each round's number is
+/// enough; four rounds save nearly all.
 std::optional<std::uint64_t> fit_secondaries(const Question& question, const ErrorShare& share,
                                              const Plan& plan) {
   double observations = std::numeric_limits<double>::max();
@@ -67,7 +67,7 @@ std::optional<std::uint64_t> fit_secondaries(const Question& question, const Err
   return enough;
 }
 
-/// Observations of each side that are worth one of a single sample: m n / (m + n) of n each.
+/// Observations of each side worth one of a single sample, by m n / (m + n).
 std::uint64_t sides(const Question& question) { return question.of_two() ? 2 : 1; }
 
 double worth(const Question& question, const TestSize& size) {
@@ -99,7 +99,7 @@ std::optional<std::uint64_t> laws_secondaries(const Question& question, const Er
   const ErrorShare each{.alpha = atom ? share.alpha / 2 : share.alpha, .beta = share.beta};
   const auto count =
       stats::ks_sample_size(distance_plan(question, each, regions.allow), *regions.detect);
-  // The rest of an atom that was all the pilot saw is not planned for.
+  // If the pilot saw the atom alone, the rest is not planned for.
   if (!count || !atom || *atom >= 1) return count;
   const double all = std::ceil(static_cast<double>(*count) / (1 - *atom));
   return all < 0x1p53 ? static_cast<std::uint64_t>(all) : impossible_secondaries;

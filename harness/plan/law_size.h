@@ -1,6 +1,6 @@
 #pragma once
 
-// How many secondaries claims about laws take, and what they find: a helper of sample_size.
+// Sizes of claims about laws, and the effects that they find, for sample_size.
 
 #include <cstdint>
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace assay::harness {
 
-/// For `detect`: counts in cells by the noncentral chi-square, distances by Hoeffding's bound, a
-/// sampler's bookkeeping by the normal law. Where two parts share the level (two-part-ks), each at
-/// half of it, and as many more as the atom takes from the rest.
+/// Size for `detect`: counts in cells by the noncentral chi-square, distances by Hoeffding's bound,
+/// a sampler's bookkeeping by the normal law. The parts of two-part-ks have half the level each,
+/// and as many more observations as the atom takes from the rest.
 std::optional<std::uint64_t> laws_secondaries(const Question& question, const ErrorShare& share,
                                               const Plan& plan);
 
-/// The least theta found with probability 1 - beta, infinite where there is none.
+/// The least theta found with probability 1 - beta; infinite if there is none.
 double detectable_between_laws(const Question& question, const TestSize& size, const Plan& plan);
 
 /// The probability, or a lower bound of it, of failing the claim when theta is `effect`.

@@ -1,6 +1,6 @@
 #pragma once
 
-// How many secondaries each subject has in a look.
+// Secondaries of each subject in a look.
 
 #include "harness/plan/outcome.h"
 #include "harness/plan/planned_channel.h"
@@ -8,22 +8,21 @@
 
 namespace assay::harness {
 
-/// The largest look that a test may come to: what it asks for, or `most`.
+/// The largest look of a test: the size that it asks for, or `most`.
 std::uint64_t largest_look(const Question& question, std::uint64_t most);
 
-/// In a look of this size those of the subject that has fewest, and how many times as many another
-/// has.
+/// Secondaries of the subject with fewest in a look of this size, and how many times as many
+/// another has.
 std::uint64_t fewest_secondaries(const Question& question, std::uint64_t look);
 double times_the_fewest(const Question& question, std::size_t subject, std::uint64_t look);
 
-/// The sizes of the first and of the second subject; where there is one, it is both.
+/// Sizes of the two subjects; a single one is both.
 stats::SampleSizes sizes_of(const Question& question, std::uint64_t look);
 
-/// A computed count as a number of secondaries, rounded up; `impossible_secondaries` where it is
-/// larger than any or no number.
+/// A computed count, rounded up; `impossible_secondaries` if it is too large or NaN.
 std::uint64_t whole_secondaries(double count);
 
-/// The reason why a test is invalid, among its gates.
+/// Notes a red gate: fewer observations than needed.
 void note_too_few(Plan& plan, std::uint64_t size, std::uint64_t needed);
 
 }  // namespace assay::harness

@@ -25,12 +25,11 @@ namespace {
 
 using stats::GateState;
 
-// The most that a method may ask for to be valid; as primaries beyond this cost more than they
-// give.
+// The most secondaries that a method of means may ask for; more cost more than they give.
 constexpr std::uint64_t most_for_a_mean = 64 * usual_secondaries;
 constexpr double level_factor = 1.25;
 
-/// Secondaries of the subject with fewest at which the worse tail of Student's t is right within a
+/// Secondaries, of the subject with fewest, that keep the worse tail of Student's t right within a
 /// quarter.
 std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) {
   double needed = 2;
@@ -38,12 +37,12 @@ std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) 
     const double skewness = stats::primary_shape(known.pilot.moments).skewness;
     const double root = std::abs(skewness) * std::pow(critical, 3) / (3 * std::log(level_factor));
     const double wanted = root * root / known.averaged / known.times;
-    needed = wanted <= needed ? needed : wanted;  // also where it is no number
+    needed = wanted <= needed ? needed : wanted;  // also if it is NaN
   }
   return whole_secondaries(needed);
 }
 
-/// The same of the skewness-corrected t.
+/// The same for the skewness-corrected t.
 std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double critical) {
   std::uint64_t needed = least_secondaries;
   for (const Known& known : channels) {
@@ -59,9 +58,9 @@ std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double cr
   return needed;
 }
 
-/// Secondaries from which on what the pilot has not seen of a declared range moves the mean by a
-/// tenth of its standard error at most: an event missed by N primaries has a probability of
-/// ln(1 / alpha) / N or less.
+/// Secondaries from which unseen values of a declared range move the mean by a tenth of its
+/// standard error at most. An event that N primaries missed has probability ln(1 / alpha) / N at
+/// most.
 std::uint64_t enough_to_see(const Question& question, const std::vector<Known>& channels,
                             double alpha) {
   constexpr double share_of_error = 0.1;
@@ -77,7 +76,7 @@ std::uint64_t enough_to_see(const Question& question, const std::vector<Known>& 
   return whole_secondaries(needed);
 }
 
-/// Whether every value known of every subject is one of the two ends of its range.
+/// True if every known value is one of the two ends of its range.
 bool are_two_valued(const Question& question, const std::vector<Known>& channels,
                     const Plan& plan) {
   if (question.of_two() && question.factor <= 0) return false;
@@ -95,7 +94,7 @@ bool are_two_valued(const Question& question, const std::vector<Known>& channels
          });
 }
 
-/// Whether a range, declared or of the law, ends at both sides and the reference has no error.
+/// True if the range is finite on both sides and the reference exact.
 bool in_known_bounds(const Question& question, std::size_t channel, const stats::Moments& seen) {
   const stats::Range range = range_of(question, 0, channel, seen);
   return std::isfinite(range.low) && std::isfinite(range.high) &&
@@ -109,7 +108,7 @@ bool are_bounded(const Question& question, const std::vector<Known>& channels) {
   });
 }
 
-/// Whether "too much" can be tested exactly, whatever the law above a declared lower bound.
+/// True if "too much" has an exact test, which takes a declared lower bound and no other.
 bool can_be_bet_on(const Question& question, const std::vector<Known>& channels) {
   if (question.of_two() || question.test->claim.relation != Relation::at_most) return false;
   return !channels.empty() &&
@@ -120,8 +119,8 @@ bool can_be_bet_on(const Question& question, const std::vector<Known>& channels)
          });
 }
 
-/// Whether the pilot has seen one value alone of means in declared ranges: what it has not seen of
-/// them is all there is to test.
+/// True if the pilot saw a single value of means in declared ranges: only unseen values are left to
+/// test.
 bool are_unseen_in_ranges(const Question& question, const Pilots& pilots) {
   if (question.kind != QuestionKind::mean_of_one || question.subjects.empty()) return false;
   const Pilot* const pilot = pilot_of(question, 0, pilots);
@@ -154,7 +153,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   const std::uint64_t for_corrected = std::max(to_see, enough_for_corrected(channels, x));
   const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
   const bool fixed = question.test->secondaries || size == most;
-  // Where the size is open, validity may ask for more; the t test only if looks stay early.
+  // If the size is open, validity may ask for more; the t test only if looks stay early.
   const std::uint64_t affordable = fixed ? size : std::min(most, std::max(size, most_for_a_mean));
   const std::uint64_t early = fixed || size <= usual_secondaries ? size : size / 4;
   std::uint64_t least = std::max(least_secondaries, for_t);
@@ -164,7 +163,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
     plan.method = find_method(question, "binomial");
     return least_secondaries;
   } else if (has_rows(question)) {
-    // What more their own shape must be is the data's gates to say (rows.h).
+    // The data's own gates judge their shape further (rows.h).
     if (for_t > fewest_secondaries(question, size))
       plan.method = find_method(question, "skewness-corrected-t");
     least = size;
@@ -186,7 +185,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
         stats::primary_shape(known.pilot.moments), whole_secondaries(known.averaged),
         {.secondaries = std::clamp(std::max(least, size), std::uint64_t{2}, affordable),
          .critical_value = x});
-    // Answered by the method chosen.
+    // The chosen method answers it.
     const bool answered = plan.method.is.corrects_skewness;
     if (answered && gate.state == GateState::red) gate.state = GateState::amber;
     note(plan, known, gate);
@@ -208,7 +207,7 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   return std::min(least, affordable);
 }
 
-/// Of means and costs at the points of a slope.
+/// Chooses for means and costs at the points of a slope.
 std::uint64_t choose_for_points(const Question& question, const FamilyPlace& place,
                                 const Pilots& pilots, std::uint64_t most, Plan& plan) {
   const double x = critical_value(smallest_level(question, place), two_sided(question));

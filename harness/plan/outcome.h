@@ -1,6 +1,6 @@
 #pragma once
 
-// What came of a test: numbers of each channel, then a verdict in words.
+// The outcome of a test: numbers of each channel, then a verdict in words.
 
 #include <memory>
 #include <optional>
@@ -18,27 +18,26 @@
 
 namespace assay::harness {
 
-/// How a test will be made: frozen before its own data are drawn.
+/// The design of a test, frozen before its own data are drawn.
 struct Plan {
   Method method;
-  std::vector<std::uint64_t> primaries = {};  ///< of each subject
-  stats::LookSchedule looks = {};             ///< sizes are the most that any subject takes
-  std::vector<Regions> regions = {};          ///< of each channel
-  std::vector<reports::Gate> gates = {};      ///< of the pilot
-  std::uint32_t smallest_cell = 1;            ///< of an image: smaller ones do not keep their level
-  /// Of an image: too little skewness that its elements' differences have in common for their
-  /// squares to add up to a finding. The sum of squares takes part then.
+  std::vector<std::uint64_t> primaries = {};  ///< One a subject.
+  stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
+  std::vector<Regions> regions = {};          ///< One a channel.
+  std::vector<reports::Gate> gates = {};      ///< Gates of the pilot.
+  std::uint32_t smallest_cell = 1;            ///< Smallest cells of an image that keep their level.
+  /// True if the shared skewness of an image's elements is too small to add up to a finding. The
+  /// sum of squares takes part then.
   bool symmetric = true;
-  std::string hint = "";     ///< what the pilot saw of images that explains a fail, if anything
-  std::string caution = "";  ///< what the user may not have meant, of a claim that is not refuted
-  /// Whether red gates on the test's own data make a look count for nothing. A forced method runs
-  /// as asked: its gates are shown only.
+  std::string hint = "";     ///< Reason that the pilot's images give for a fail, or "".
+  std::string caution = "";  ///< Possible slip of the user, shown unless the claim is refuted.
+  /// True if red gates on the test's own data void a look. A forced method only shows them.
   bool gates_invalidate = true;
-  std::string invalid = "";  ///< why no method is valid, if none is
-  std::string error = "";    ///< why nothing can be planned, if nothing can
-  /// Why the pilot makes an error of a test whose own numbers are sound, if it does.
+  std::string invalid = "";  ///< Reason why no method is valid, or "".
+  std::string error = "";    ///< Reason why nothing can be planned, or "".
+  /// Reason why the pilot makes an error of a test with sound numbers, or "".
   std::string pilot_error = "";
-  /// Of pictures that were looked at when they were read.
+  /// Set for pictures that were examined while they were read.
   std::shared_ptr<const PictureLook> look = {};
 
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }
@@ -46,48 +45,48 @@ struct Plan {
 
 /// One channel's numbers.
 struct ChannelOutcome {
-  std::size_t index = 0;  ///< in the question
+  std::size_t index = 0;  ///< Index in the question.
   std::string name;
   Regions regions = {};
-  stats::TestResult at_null;  ///< statistic and distribution at the null value
+  stats::TestResult at_null;  ///< Statistic and distribution at the null value.
   Evidence evidence;
-  ChannelDecision decision = {};  ///< over the looks taken
+  ChannelDecision decision = {};  ///< Decision over the looks taken.
   double log_p_adjusted = 0;
   reports::Effect effect = {};
-  std::optional<double> detectable = {};  ///< least theta found with probability 1 - beta
-  bool finds_nothing = false;             ///< no theta that the range allows is found so
-  std::optional<double> reference = {};   ///< a number to mark among the observations
+  std::optional<double> detectable = {};  ///< Least theta found with probability 1 - beta.
+  bool finds_nothing = false;             ///< No theta in the range is found so.
+  std::optional<double> reference = {};   ///< A number to mark among the observations.
   std::optional<ImageOutcome> image = {};
 };
 
-/// Natural logarithms of the p-values of one channel at the looks taken, each as of a single look;
-/// 0 where a gate was red and the look counts for nothing.
+/// Natural logarithms of one channel's p-values at the looks taken, each as of a single look. It is
+/// 0 if a red gate voided the look.
 struct ChannelHistory {
   std::vector<double> log_p_claimed = {};
   std::vector<double> log_p_forbidden = {};
 };
 
-/// A test from claim to verdict. Everything but `history` is as of the last look.
+/// A test from claim to verdict. All but `history` is as of the last look.
 struct TestOutcome {
   Question question;
   FamilyPlace place;
   Plan plan;
-  std::size_t look = 0;  ///< which of the plan's looks is taken next, or was taken last
-  bool decided = false;  ///< no further look will be taken
+  std::size_t look = 0;  ///< Index of the look taken next, or taken last.
+  bool decided = false;  ///< No further look will be taken.
   std::vector<ChannelHistory> history = {};
-  std::vector<ChannelOutcome> channels = {};  ///< the worst first
-  std::vector<reports::Gate> gates = {};      ///< of the test's own data
-  std::optional<double> power = {};           ///< at `detect`, with the spread that was found
+  std::vector<ChannelOutcome> channels = {};  ///< The worst first.
+  std::vector<reports::Gate> gates = {};      ///< Gates of the test's own data.
+  std::optional<double> power = {};           ///< Power at `detect`, with the observed spread.
   reports::Verdict verdict = reports::Verdict::skipped;
   std::string message = "";
 
-  /// The size of this look, the most that any subject takes.
+  /// Size of this look: the most that any subject takes.
   std::uint64_t secondaries() const { return plan.looks.sizes[look]; }
   std::uint64_t secondaries(std::size_t subject) const {
     return question.subjects[subject].secondaries(secondaries());
   }
   double weight() const { return plan.looks.weights[look]; }
-  /// What one channel may spend at this look.
+  /// Errors that one channel may spend at this look.
   ErrorShare share() const {
     return {.alpha = place.share.alpha * weight(), .beta = place.share.beta * weight()};
   }

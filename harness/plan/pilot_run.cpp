@@ -9,7 +9,7 @@
 namespace assay::harness {
 namespace {
 
-/// Names of the estimators whose costs some claim is about.
+/// Estimators whose costs some claim is about.
 std::set<std::string> costly(const std::vector<Question>& questions) {
   std::set<std::string> names;
   for (const Question& question : questions) {
@@ -19,11 +19,11 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
-// Enough to tell a kurtosis of .5 from that of a normal law, whatever few a claim asks for.
+// Enough to tell an excess kurtosis of .5 from a normal law's, even if a claim asks for fewer.
 constexpr std::uint64_t least_of_larger = 2048;
 
-/// Of estimators whose variance or cost some claim is about the most observations that such a claim
-/// asks for; of a reference only the mean is used.
+/// The most observations that a claim on variance or cost asks for, by estimator. References are
+/// left out: only their mean is used.
 std::map<std::string, std::uint64_t> on_tails(const std::vector<Question>& questions) {
   std::map<std::string, std::uint64_t> most;
   for (const Question& question : questions) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a suite's claims want of the pilots of its estimators.
+// Demands of a suite's claims on the pilots of its estimators.
 
 #include <vector>
 
@@ -8,12 +8,11 @@
 
 namespace assay::harness {
 
-/// The pilots of a suite's questions. What they keep and how large they may be is wished by all
-/// questions, so that an estimator's pilot is the same whichever tests are chosen; whether it is
-/// drawn at all, by those that are.
+/// The pilots of a suite's questions. All questions decide what a pilot keeps and how large it may
+/// be, so a selection does not change it. The chosen ones decide whether it is drawn.
 PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
                       std::uint64_t seed, unsigned threads);
-/// The same where all are chosen.
+/// The same with all chosen.
 PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed, unsigned threads);
 
 }  // namespace assay::harness

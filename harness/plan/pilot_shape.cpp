@@ -19,8 +19,8 @@ namespace {
 
 using stats::GateState;
 
-/// Gates of the last tails asked for: a fit takes some 12,000 logarithms, and the tests of one
-/// estimator, at every level of a calibration, ask for the same tails again.
+/// Gates of the last tails asked for. A fit is slow, and an estimator's tests ask for the same
+/// tails again.
 class KnownTails {
  public:
   stats::Gate gate(std::span<const double> largest, std::size_t count, stats::TailClaim claim) {
@@ -47,7 +47,7 @@ class KnownTails {
   std::size_t next_ = 0;
 };
 
-/// One tail's gate, from the values signed so that it is the right one; puts them in another order.
+/// One tail's gate, from values signed so that it is the right one. Reorders them.
 stats::Gate right_tail_gate(std::vector<double>& values, stats::TailClaim claim) {
   thread_local KnownTails known;
   const std::size_t tail = stats::pareto_tail_size(values.size()) + 1;
@@ -57,26 +57,24 @@ stats::Gate right_tail_gate(std::vector<double>& values, stats::TailClaim claim)
   return known.gate(std::span<const double>(values).last(tail), values.size(), claim);
 }
 
-/// Whether a tail is seen to its declared end, so that nothing heavier can hide in it.
+/// True if a tail is seen to its declared end, so that nothing heavier can hide in it.
 bool ends_in_sight(double farthest, double mean, double declared) {
   return std::isfinite(declared) && std::abs(farthest - mean) >= std::abs(declared - mean) / 2;
 }
 
-// A pilot of 512 values, as of rendered files, tells a tail's index to some .16: only with a large
-// kurtosis it says that a variance is out of reach. At .05 the variance of a lognormal(0, 1) law is
-// claimed too large or too small in .11 of the runs then, .15 without, that of one that is 0 with
-// probability .95, else lognormal, in .05 and .24; of exponential values a hundredth is invalid.
+// Fewest values for a tail's fit. A small pilot shows the index only roughly, so it is red only
+// with a large kurtosis.
 constexpr std::size_t least_of_a_tail = 500;
 bool is_small(std::uint64_t count) { return count < usual_secondaries; }
 
-/// At the estimate. A lattice or a rare second part can look like a heavy tail; it is none while
-/// the variance of the variance, (kurtosis - 1) / n, is small. Large, it tells by itself that the
-/// pilot does not know the variance yet.
+/// State at the estimate. A lattice or a rare second part can look like a heavy tail. It is none
+/// while the variance of the variance, (kurtosis - 1) / n, is small. If that is large, the pilot
+/// does not know the variance yet.
 GateState tail_state(const stats::Gate& gate, const stats::Moments& moments,
                      stats::TailClaim claim) {
   const bool mean = claim == stats::TailClaim::mean;
   const double variance_of_variance = (moments.kurtosis() - 1) / static_cast<double>(moments.count);
-  // Below the limit, but only a surely light tail explains such a kurtosis.
+  // Only a surely light tail explains such a kurtosis.
   if (!mean && variance_of_variance > (is_small(moments.count) ? 0.05 : 0.01) && gate.value > 0.1) {
     return GateState::red;
   }

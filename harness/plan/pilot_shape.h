@@ -1,6 +1,6 @@
 #pragma once
 
-// What the pilot, or the rows of a file, tell of the shapes that a method has to bear.
+// Shapes that a method has to bear, from the pilot or the rows of a file.
 
 #include <cstdint>
 #include <span>
@@ -14,37 +14,36 @@
 
 namespace assay::harness {
 
-/// What is known beforehand of one channel of one subject.
+/// Prior knowledge of one channel of one subject.
 struct Known {
   std::size_t subject;
   std::size_t channel;
   PilotChannel pilot;
-  double averaged;  ///< how many of the pilot's values make a secondary
-  double times;     ///< as many secondaries as the subject with fewest has
-  bool rows;        ///< the test's own data, not a pilot's
+  double averaged;  ///< The pilot's values in a secondary.
+  double times;     ///< Secondaries over those of the subject with fewest.
+  bool rows;        ///< The test's own data, not a pilot's.
   std::string label;
 };
 
-/// The pilot's values of one channel as secondaries of so many primaries; as they are where the
-/// subject does not average, or has rows of a file.
+/// The pilot's values of one channel as secondaries of so many primaries. They stay as they are if
+/// the subject does not average, or has rows of a file.
 std::vector<double> as_secondaries(const Subject& side, std::span<const double> values,
                                    std::uint64_t primaries);
 
-/// Why nothing can be chosen by the pilot: values whose powers are no numbers. "" where all is
-/// well.
+/// Why the pilot cannot choose: powers of its values are beyond doubles. Empty if none are.
 std::string unusable_pilot(const Question& question, const Pilots& pilots);
 
-/// `look` is the largest there may be.
+/// The channels that pilots or rows show; `look` is the largest possible look.
 std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
                                   std::uint64_t look, const Plan& plan);
 
-/// The method chosen asks nothing of the shape that the pilot's gates complain of.
+/// Turns red gates amber: the chosen method asks nothing of that shape.
 void answer_red_gates(Plan& plan);
 
-/// Notes a gate of the pilot; rows of a file are judged with the test's own data.
+/// Notes a gate of the pilot, but none of rows: they are judged with the test's own data.
 void note(Plan& plan, const Known& known, const stats::Gate& gate);
 
-/// Notes the tails' gates; says why the claim cannot be tested where one is too heavy.
+/// Notes the tails' gates. Returns why the claim cannot be tested if a tail is too heavy, else "".
 std::string too_heavy(const Question& question, const std::vector<Known>& channels,
                       stats::TailClaim claim, Plan& plan);
 

@@ -23,17 +23,17 @@ namespace {
 
 // Half a day at 40 ns a primary.
 constexpr double most_planned_primaries = 1e12;
-// Ten looks cost twice the observations of one at most, where no reference's error takes part.
+// Ten looks cost at most twice one look's observations, unless a reference has an error.
 constexpr std::uint64_t dearest_looks = 4;
-// Secondaries that have a spread.
+// Fewest secondaries that have a spread.
 constexpr std::uint64_t fewest_tested = 2;
 
-/// The look that a budget in primaries pays for: two secondaries of each subject at least, or it is
-/// refused.
+/// The look that a budget in primaries pays for. Throws InputError if it buys fewer than two
+/// secondaries of each subject.
 std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t budget) {
   const std::uint64_t each = primaries_of_each(question, plan);
   std::uint64_t paid = budget / each;
-  // What subjects without more secondaries leave goes to the others.
+  // Subjects without more secondaries leave their part to the others.
   while (paid >= fewest_tested) {
     const std::uint64_t next = primaries_of_look(question, plan, paid + 1);
     const std::uint64_t spent = primaries_of_look(question, plan, paid);
@@ -47,8 +47,8 @@ std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t
                                budget, fewest_tested * each));
 }
 
-/// The largest look: all that there are of the subject with most, or what a budget in primaries
-/// pays for. One that is drawn beside rows of files takes as many as the longest file has.
+/// The largest look: the rows of the longest file, also for a side drawn beside it, or what a
+/// budget in primaries pays for.
 std::uint64_t most_available(const Question& question, const Plan& plan) {
   const std::uint64_t most =
       question.most_rows().value_or(std::numeric_limits<std::uint64_t>::max());
@@ -57,7 +57,7 @@ std::uint64_t most_available(const Question& question, const Plan& plan) {
   return std::min(most, paid_for(question, plan, *budget->primaries));
 }
 
-/// Stops before hours are spent on what was hardly meant.
+/// Throws InputError before hours are spent on what was hardly meant.
 void require_possible(const Question& question, const Plan& plan, std::uint64_t secondaries) {
   const TestEntry& test = *question.test;
   const Location& where = test.place_of(test.detect ? "detect" : "claim");
@@ -89,8 +89,8 @@ void require_possible(const Question& question, const Plan& plan, std::uint64_t 
 
 stats::LookSchedule one_look(std::uint64_t secondaries) { return {{secondaries}, {1}}; }
 
-/// Of a method in seconds: replicates of whole blocks, as many observations in those of each
-/// subject; one look.
+/// One look of a method in seconds: replicates of whole blocks, with as many observations for each
+/// subject.
 stats::LookSchedule timed_look(const Plan& plan, std::uint64_t secondaries) {
   std::uint64_t block = 1;
   for (const std::uint64_t primaries : plan.primaries) {
@@ -100,9 +100,9 @@ stats::LookSchedule timed_look(const Plan& plan, std::uint64_t secondaries) {
   return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit);
 }
 
-/// Looks that double from the fewest that mean anything up to what `detect` needs at the last
-/// look's share of the errors. One look where nothing asks for a number or the number is given: all
-/// rows of a file, `secondaries`, the classical 1000.
+/// Looks that double from the fewest meaningful up to what `detect` needs at the last look's share
+/// of the errors. One look if nothing asks for a number or it is given: rows of a file,
+/// `secondaries`, the classical 1000.
 stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, const Plan& plan, std::uint64_t first) {
   const std::uint64_t most = most_available(question, plan);
@@ -136,7 +136,7 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
     const ErrorShare share{.alpha = place.share.alpha * weight, .beta = place.share.beta * weight};
     const std::uint64_t last = std::min(
         most, planned_secondaries(question, share, pilots, plan).value_or(impossible_secondaries));
-    // Near what the reference's error allows, smaller shares may be beyond any number: fewer looks.
+    // A reference's error may put smaller shares beyond any number: try fewer looks.
     if (last > dearest_looks * *alone) continue;
     if (last <= first) return one_look(last);
     return stats::geometric_looks(
@@ -145,8 +145,8 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   return one_look(std::min(*alone, most));
 }
 
-/// Of a test that is invalid before it begins: what is drawn decides nothing, and only shows what
-/// its estimators yield.
+/// The look of a test that is invalid beforehand. It decides nothing; it shows the estimators'
+/// data.
 stats::LookSchedule look_for_its_picture(const Question& question, const Plan& plan) {
   const bool given = question.test->secondaries || has_rows(question);
   if (given || plan.method.keeps == Keeps::blocks) return plan.looks;
@@ -168,7 +168,7 @@ std::vector<Regions> regions_of(const Question& question) {
   return all;
 }
 
-/// A density that a claim is about must be there: better known now than after the draws.
+/// Throws before any draw if the density that a claim is about cannot be had.
 void require_density(const Question& question) {
   if (question.kind != QuestionKind::fit_to_density && question.kind != QuestionKind::integral) {
     return;
@@ -176,8 +176,8 @@ void require_density(const Question& question) {
   dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
 }
 
-/// Which estimator's pilot gave what is not finite; empty where none did. Rows of files are the
-/// test's own.
+/// Names the estimator whose pilot gave a value that is not finite; "" if none did. Rows of files
+/// are the test's own.
 std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) {
   for (const Subject& subject : question.subjects) {
     const Pilot* const pilot = pilot_of(subject, pilots);
@@ -193,8 +193,8 @@ std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) 
   return "";
 }
 
-/// Which estimator's pilot gave what its channel declares that it never gives: single primaries
-/// show what means may not. Empty where none did.
+/// Names the estimator whose pilot broke its channel's declaration; "" if none did. Single
+/// primaries show what means may hide.
 std::string misdeclared(const Question& question, const Pilots& pilots) {
   for (const Subject& subject : question.subjects) {
     const Pilot* const pilot = pilot_of(subject, pilots);
@@ -204,8 +204,8 @@ std::string misdeclared(const Question& question, const Pilots& pilots) {
   return "";
 }
 
-/// What the user may not have meant: a `detect` by default, or a margin larger than the second of
-/// two means, which the pilot alone knows.
+/// Possible slip of the user: a `detect` by default, or a margin larger than the second of two
+/// means, which only the pilot knows.
 std::string caution_of(const Question& question, const Pilots& pilots) {
   if (question.test->detect_by_default) {
     return fmt::format("`detect` is {}, the default of claims about laws",

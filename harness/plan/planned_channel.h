@@ -1,7 +1,5 @@
 #pragma once
 
-// What planning takes a channel to be.
-
 #include <cstdint>
 
 #include "harness/theta/decision.h"
@@ -10,28 +8,28 @@
 
 namespace assay::harness {
 
-/// What planning takes a channel's law to be: a secondary's standard deviation and kurtosis at the
-/// upper limit of what the pilot allows, and the value margins are relative to.
+/// A channel's law as planning takes it: a secondary's standard deviation, at the pilot's upper
+/// limit, its kurtosis, and the unit of margins.
 struct PlannedChannel {
   Regions regions = {};
   double standard_deviation = 0;
-  double other_deviation = 0;  ///< of the second subject, times the factor
+  double other_deviation = 0;  ///< The second subject's, times the factor.
   double kurtosis = 3;
-  double other_kurtosis = 1;  ///< 1: there is no second subject
-  double unit = 1;            ///< theta times this is in the estimator's unit
+  double other_kurtosis = 1;  ///< 1 if there is no second subject.
+  double unit = 1;            ///< Theta times this is in the estimator's unit.
   double reference_error = 0;
-  bool unseen = false;      ///< the deviation is what a pilot without spread may not have seen
-  stats::Range range = {};  ///< of one mean: what its values are declared to lie in
-  double null_value = 0;    ///< of one mean: where theta is 0
+  bool unseen = false;      ///< The deviation is what a constant pilot may have missed.
+  stats::Range range = {};  ///< Declared range of one mean's values.
+  double null_value = 0;    ///< The value of one mean where theta is 0.
 };
 
-/// A look of a test, at its levels: secondaries of each subject, or all that it has.
+/// A look's levels, and its secondaries of each subject, or all that it has.
 struct TestSize {
   ErrorShare share;
   std::uint64_t secondaries;
 };
 
-/// More secondaries than any test is given: what is planned beyond is impossible.
+/// More secondaries than any test is given: a larger plan is impossible.
 inline constexpr std::uint64_t impossible_secondaries = std::uint64_t{1} << 53;
 
 }  // namespace assay::harness

@@ -11,16 +11,16 @@
 namespace assay::harness {
 namespace {
 
-// Below this the cost of an observation (stream, moments) shows against 20 ns a primary.
+// Below this the cost of an observation shows: its stream and moments.
 constexpr std::uint64_t least_primaries = 64;
-// Beyond this a larger mean no longer tames the tail in reasonable time: another method, or none.
+// Beyond this a larger mean no longer tames the tail in reasonable time.
 constexpr std::uint64_t most_primaries = 4096;
 
 bool chooses_primaries(const Subject& subject) {
   return subject.averages && subject.purpose.empty() && !subject.estimator->primaries;
 }
 
-/// Primaries that one question asks of one of its estimators.
+/// Primaries that one question wants of one estimator.
 std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& place,
                                std::size_t subject, const Pilots& pilots) {
   const double x = critical_value(smallest_level(question, place), two_sided(question));
@@ -52,7 +52,7 @@ Primaries choose_primaries(const std::vector<Question>& questions,
       if (!chooses_primaries(side) || pilot_of(side, pilots) == nullptr) continue;
       const std::uint64_t wanted = wanted_primaries(question, places[i], subject, pilots);
       std::uint64_t& primaries = chosen[side.estimator->name];
-      // A power of two: another seed's pilot then mostly chooses the same.
+      // A power of two: pilots of other seeds mostly choose the same.
       primaries = std::max(primaries, std::bit_ceil(std::min(wanted, most_primaries)));
     }
   }

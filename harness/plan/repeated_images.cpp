@@ -12,7 +12,7 @@
 namespace assay::harness {
 namespace {
 
-/// Images of one size by their bits.
+/// Order of images of one size by their bits.
 struct ByBits {
   template <class Real>
   bool operator()(std::span<const Real> a, std::span<const Real> b) const {

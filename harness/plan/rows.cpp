@@ -27,10 +27,9 @@ namespace {
 using stats::Gate;
 using stats::GateState;
 
-// In fewer the gates of independence see little: laws of 12 to 50 states of a chain failed under up
-// to half of the seeds with all of them green, and of 100 one in a thousand.
+// In fewer rows the gates of independence miss strong dependence.
 constexpr std::size_t fewest_in_order_to_tell = 100;
-// Glynn and Iglehart 1990: Student's t on fewer batch means is off.
+// Student's t on fewer batch means is off (Glynn and Iglehart 1990).
 constexpr std::size_t fewest_batches = 20;
 
 /// One channel of a recorded subject, as far as the test reads it.
@@ -70,7 +69,7 @@ bool enough_batches(std::span<const double> values) {
   return values.size() / stats::sufficient_batch(values) >= fewest_batches;
 }
 
-/// What of a chain with this autocorrelation time the question could be asked of.
+/// Advice on the rows that suffice of a chain with this autocorrelation time.
 std::string enough_of_a_chain(const Question& question, double time) {
   const auto apart = static_cast<std::size_t>(std::ceil(10 * time));
   if (!question.of_means()) {
@@ -84,7 +83,7 @@ std::string enough_of_a_chain(const Question& question, double time) {
                      fewest_batches * std::max(apart, fewest_batches));
 }
 
-/// `at_a_lag`: it is values some steps apart that show it, not neighbours.
+/// `at_a_lag`: values some steps apart show the dependence, not neighbours.
 std::string dependent(const Question& question, const Rows& rows, bool at_a_lag) {
   const double time = std::max(1.0, stats::autocorrelation_time(rows.values));
   const stats::LaggedCorrelation worst = stats::worst_of(stats::lagged_correlations(rows.values));
@@ -101,7 +100,7 @@ std::string dependent(const Question& question, const Rows& rows, bool at_a_lag)
       rows.label, rows.values.size(), worth, enough_of_a_chain(question, time));
 }
 
-/// Of what chance does not make.
+/// A red gate on something that chance does not make.
 Gate red_gate(const char* name, std::size_t value, std::size_t limit) {
   const auto shown = static_cast<double>(value);
   return {.name = name,
@@ -170,7 +169,7 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
   }
 }
 
-/// Why rows are too few to show that they are independent. "" where there are enough.
+/// Why rows are too few to show their independence; "" if they are enough.
 std::string too_few_to_tell(const Question& question, const Pilots& pilots, std::uint64_t count,
                             Plan& plan) {
   std::string reason;
@@ -178,7 +177,7 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
     const Pilot* pilot = pilot_of(side, pilots);
     if (!is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
     const PilotChannel first = pilot_channel(side, *pilot, 0);
-    // Constants have gates of their own, but a single row is none.
+    // Constants have gates of their own. A single row is no constant.
     const bool constant = first.values.size() > 1 && !(first.moments.m2 > 0);
     if (first.values.empty() || constant) continue;
     const std::uint64_t rows = std::min<std::uint64_t>(first.values.size(), count);
@@ -187,7 +186,7 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
                           .limit = static_cast<double>(fewest_in_order_to_tell),
                           .state = rows < fewest_in_order_to_tell ? "red" : "green"});
     if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
-    // A forced method runs unchecked. No method takes the variance of a single row.
+    // A forced method runs unchecked, but no method takes the variance of a single row.
     const std::string forced =
         rows < 2 ? ""
                  : fmt::format("; if they are independent, add {}",
@@ -200,7 +199,7 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
   return reason;
 }
 
-/// Of rows that may depend on each other too weakly for a gate.
+/// Allows for a dependence of rows that is too weak for a gate.
 void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
   for (const Rows& rows : all) {
     const double factor = stats::allowance_for_dependence(rows.values);
@@ -277,7 +276,7 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     plan.invalid = reason;
   } else if (answered) {
     plan.method = find_method(question, "batch-means");
-    // What stood against the rows one by one; of a side that is drawn it still does.
+    // Batches answer what spoke against single rows; it still speaks against a drawn side.
     if (std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded)) {
       plan.invalid.clear();
     }

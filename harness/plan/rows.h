@@ -1,7 +1,6 @@
 #pragma once
 
-// Rows of a file: a sample that is its own pilot, and of which only its order tells whether it is
-// independent.
+// Rows of a file: a sample that is its own pilot. Only its order shows whether it is independent.
 
 #include <cstdint>
 #include <optional>
@@ -16,46 +15,45 @@
 
 namespace assay::harness {
 
-/// Below it batches of sqrt n are too few and too short to say anything.
+/// In fewer rows batches of sqrt n are too few and too short.
 inline constexpr std::size_t fewest_in_order = 9;
 
-/// Whether a subject's observations are ready-made.
+/// True if a subject's observations are ready-made.
 bool is_recorded(const Subject& subject);
-/// Whether any of the question's are.
+/// True if any subject's are.
 bool has_rows(const Question& question);
 
-/// InputError at the claim where two sides that are held against each other as independent have the
-/// same picture (recorded::shared_picture), the same run of rows (stats/repeated_run.h) or the same
-/// rows in another order (stats/recurring_values.h), as chance does not make them, among the first
-/// `count`. Two sources of one file are another mistake.
+/// Throws InputError at the claim if the first `count` data of two sides coincide beyond chance.
+/// They may share a picture (recorded::shared_picture), a run of rows (stats/gates/repeated_run.h),
+/// or rows in another order (stats/gates/recurring_values.h). Two sources of one file are another
+/// mistake.
 void require_independent_sides(const Question& question, const Pilots& pilots, std::uint64_t count);
 
-/// Notes in the plan what the first `count` rows of every recorded subject say of independence
-/// (stats/independence_gates.h). Dependent rows make a test of means one of batch means, if all the
-/// rows are enough for them, and everything else invalid; so do a run of rows that occurs again
-/// (stats/repeated_run.h) and values that occur equally often (stats/recurring_values.h). A forced
-/// method is kept. Where the rows may depend on each other too weakly for a gate, a test of means
-/// allows for it (stats::allowance_for_dependence).
+/// Notes what the first `count` rows of every recorded subject say of independence
+/// (stats/gates/independence_gates.h). Dependent rows make a test of means one of batch means, if
+/// they are enough, and other tests invalid. A run of rows that recurs (stats/gates/repeated_run.h)
+/// or values that occur equally often (stats/gates/recurring_values.h) make any test invalid. A
+/// forced method is kept. For dependence too weak for a gate, a test of means allows
+/// (stats::allowance_for_dependence).
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
                         Plan& plan);
 
-/// The moments that a test of means takes: of batch means where that is its method; of rows that
-/// may depend on each other those of independent values whose mean is as uncertain, with deviations
-/// so much larger; else `moments`.
+/// The moments that a test of means takes, of batch means if that is its method. Rows with an
+/// allowance get larger deviations: those of independent values with as uncertain a mean.
 stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
                          std::span<const double> values, stats::Moments moments);
 
-/// Gates on the shape of rows, of which no pilot spoke: on how many there are, how skewed their
-/// mean is at critical value x, and for Kolmogorov and Smirnov how coarsely they were rounded.
+/// Gates on the shape of rows, which no pilot judged: number, skewness of the mean at the critical
+/// value, coarse rounding for Kolmogorov and Smirnov.
 std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
                                    double critical_value);
 
-/// What explains a fail of two variances of which one is that of rows and the other that of a
-/// primary, as a part of a sentence; "" of all others.
+/// Part of a sentence that explains a fail of a row's variance against a primary's; "" for other
+/// claims.
 std::string rows_beside_primaries(const Question& question);
 
-/// InputError at the record where rows of the suite came from standard input, a pipe or a device:
-/// they are gone, and cannot be replayed.
+/// Throws InputError at the record if rows of the suite came from standard input, a pipe or a
+/// device: they cannot be replayed.
 void require_lasting_rows(const Suite& suite, const std::string& record);
 
 }  // namespace assay::harness

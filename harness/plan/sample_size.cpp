@@ -24,7 +24,7 @@
 namespace assay::harness {
 namespace {
 
-// Upper limit of a pilot's variance: exceeded once in a thousand pilots.
+// Normal quantile: one pilot in a thousand exceeds the upper limit of its variance.
 constexpr double pilot_quantile = 3.09;
 
 double upper_variance(const stats::Moments& pilot) {
@@ -37,8 +37,8 @@ double secondary_kurtosis(const stats::Moments& pilot, double primaries) {
   return 3 + (pilot.kurtosis() - 3) / primaries;
 }
 
-/// Costs, efficiencies and total variances: 1 + the spread of their logarithm takes the place of
-/// the kurtosis in planning a logarithm of a variance.
+/// True for costs, efficiencies and total variances. For them 1 + the spread of their logarithm
+/// stands for a kurtosis in planning.
 bool has_log_spread(const Question& question) {
   return question.on_log_scale() && !question.of_variances();
 }
@@ -67,12 +67,12 @@ void note_range(const Question& question, std::size_t channel, const stats::Mome
   planned.null_value = question.references[channel].value + question.offset;
 }
 
-// Beyond this what a constant may hide is left undecided: it may be no more than the constant.
+// Beyond this a constant's unseen values stay undecided: they may not exist.
 constexpr std::uint64_t most_for_the_unseen = 1024 * usual_secondaries;
 
-/// The most that a pilot without spread leaves open of a mean in a declared range: the variance of
-/// the two ends at the claimed mean, or of what so many observations have not seen (with
-/// probability .99).
+/// The largest deviation that a constant pilot leaves open for a mean in a declared range. It is
+/// the smaller of two: all values at the ends, with the claimed mean; or values that the pilot
+/// missed with probability .01.
 double unseen_deviation(const PlannedChannel& planned, const stats::Moments& pilot) {
   const auto [low, high] = planned.range;
   const double of_the_ends = (planned.null_value - low) * (high - planned.null_value);
@@ -81,7 +81,8 @@ double unseen_deviation(const PlannedChannel& planned, const stats::Moments& pil
   return std::sqrt(std::max(0.0, std::min(of_the_ends, unseen)));
 }
 
-/// From the pilot; nullopt where it has no spread, and no range says what it may not have seen.
+/// The channel as the pilot shows it. Returns nullopt if it has no spread and no range bounds what
+/// it missed.
 std::optional<PlannedChannel> planned_channel(const Question& question, std::size_t channel,
                                               const Pilots& pilots, const Plan& plan) {
   if (has_log_spread(question)) {
@@ -131,15 +132,14 @@ std::optional<PlannedChannel> planned_channel(const Question& question, std::siz
   return planned;
 }
 
-/// Whether both samples of a comparison of means have a spread: else it is planned as one mean
-/// against a number.
+/// True if both samples of a comparison spread; else it is planned as one mean against a number.
 bool both_spread(const Question& question, const PlannedChannel& channel) {
   return question.of_two() && channel.standard_deviation > 0 && channel.other_deviation > 0;
 }
 
 double allocation(const stats::SampleSizes& sizes) { return sizes.y / sizes.x; }
 
-/// The size of the sample that has a spread; of the first if both have.
+/// Size of the sample that has a spread; of the first if both have.
 double size_of_the_spread(const stats::SampleSizes& sizes, const PlannedChannel& channel) {
   return channel.standard_deviation > 0 ? sizes.x : sizes.y;
 }
@@ -182,8 +182,8 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
   return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
 }
 
-/// Chi-square and F take data that are flatter than normal for normal ones: they find as little as
-/// of those, or of what they allow for. 1 is no second subject, or two values, within rounding.
+/// Chi-square and F take flatter data for normal ones and find as little as in those, or in what
+/// they allow for. A value of 1 stands for no second subject or for two values.
 double kurtosis_for(const Method& method, double kurtosis, double allowed) {
   return method.is.of_normal_values && kurtosis > 1 ? std::max(3 + allowed, kurtosis)
                                                     : std::max(1.0, kurtosis);
@@ -246,8 +246,8 @@ double equivalence_power(const Question& question, const TestSize& size, const P
         sizes.x, std::exp(channel.regions.within));
     return std::max(0.0, 2 * one_margin - 1);
   }
-  // Two samples are taken for one of the smaller size whose mean is as uncertain. The reference's
-  // error does not shrink with n: as a deviation of the observations it grows.
+  // Two samples count as one of the smaller size with as uncertain a mean. The reference's error
+  // does not shrink with n: as a deviation of the observations it grows.
   const double n = std::min(sizes.x, sizes.y);
   const double spread = std::hypot(channel.standard_deviation * std::sqrt(n / sizes.x),
                                    channel.other_deviation * std::sqrt(n / sizes.y),
@@ -259,9 +259,8 @@ double equivalence_power(const Question& question, const TestSize& size, const P
                                   n, 0);
 }
 
-/// Quantiles, slopes, images and counts of draws have none here; nor has a comparison of numbers
-/// without a spread, or of variances known from two observations, whose kurtosis is 1. Nor have
-/// methods of which no formula says what they find.
+/// False for quantiles, slopes, images, counts of draws and methods without a formula. Numbers
+/// without spread, and variances of two observations (kurtosis 1), have none either.
 bool has_power(const Question& question, const Method& method, const PlannedChannel& channel) {
   using enum QuestionKind;
   if (question.kind == quantile || question.kind == slope || question.kind == image ||

@@ -22,14 +22,14 @@
 namespace assay::harness {
 namespace {
 
-// log-variance is asymptotic: on normal data its level at .001 is 1.3 times nominal here.
+// Fewest secondaries of log-variance, which is asymptotic.
 constexpr std::uint64_t log_variance_secondaries = 1000;
 constexpr double level_factor = 1.25;
 // The most that a method may ask for to be valid.
 constexpr std::uint64_t most_for_a_variance = 1024 * usual_secondaries;
 
-/// The shape of a secondary by the pilot's finite values: of the others the test's own observations
-/// tell, whose verdict is `error`. Nothing of too few rows to have a shape.
+/// Shape of a secondary by the pilot's finite values. The test's own observations report others as
+/// `error`. Returns nullopt for too few rows.
 std::optional<stats::SixthOrderShape> secondary_shape(const Known& known) {
   std::vector<double> finite;
   std::copy_if(known.pilot.values.begin(), known.pilot.values.end(), std::back_inserter(finite),
@@ -38,8 +38,7 @@ std::optional<stats::SixthOrderShape> secondary_shape(const Known& known) {
   return stats::averaged(stats::sixth_order_shape(finite), whole_secondaries(known.averaged));
 }
 
-/// Observations of the subject with fewest, where one with so many times as many needs
-/// `secondaries`.
+/// Observations of the subject with fewest, if one with `times` as many needs `secondaries`.
 std::uint64_t of_the_fewest(std::uint64_t secondaries, double times) {
   return whole_secondaries(static_cast<double>(secondaries) / times);
 }
@@ -70,7 +69,7 @@ std::uint64_t enough_for_log_variance(const Question& question, const std::vecto
 /// `given`: how many there are.
 std::string too_few(const Question& question, std::uint64_t given, std::uint64_t needed) {
   const std::string need = reports::human(static_cast<double>(needed), 2);
-  // However near to normal, the logarithm of a variance takes as many.
+  // Every shape needs log_variance_secondaries.
   const bool by_shape = needed > log_variance_secondaries;
   if (has_rows(question)) {
     const bool two = question.kind == QuestionKind::variance_of_two;
@@ -95,8 +94,8 @@ std::string too_few(const Question& question, std::uint64_t given, std::uint64_t
       need);
 }
 
-/// From how many secondaries on the logarithm of every mean cost is near normal: costs may be as
-/// skewed as values, and what a pilot has seen of them says so.
+/// Secondaries from which the logarithm of every mean cost is near normal. Costs may be as skewed
+/// as values.
 std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, std::uint64_t look,
                                const Plan& plan, double critical) {
   std::uint64_t needed = 2;
@@ -118,9 +117,9 @@ std::uint64_t enough_for_costs(const Question& question, const Pilots& pilots, s
   return needed;
 }
 
-/// Of the variances of groups of secondaries, added over the channels, that the pilot's values
-/// make; nothing where these are not kept, as of many channels, or too few, as for secondaries of
-/// many primaries, which are near normal.
+/// Shape of the variances of groups of secondaries, summed over the channels, from the pilot's
+/// values. Returns nullopt if none are kept, as of many channels, or too few. Secondaries of many
+/// primaries have few, and are near normal.
 std::optional<stats::PositiveShape> group_shape(const Question& question, std::size_t subject,
                                                 const Pilots& pilots, const Plan& plan) {
   constexpr std::uint64_t fewest_groups = 64;
@@ -147,7 +146,7 @@ std::optional<stats::PositiveShape> group_shape(const Question& question, std::s
                               .skewness = variances.skewness()};
 }
 
-/// From how many secondaries on the logarithm of the mean of groups' variances is near normal.
+/// Secondaries from which the logarithm of the groups' mean variance is near normal.
 std::uint64_t enough_for_groups(const Question& question, const Pilots& pilots, std::uint64_t look,
                                 const Plan& plan, double critical) {
   std::uint64_t needed = 2;
@@ -168,8 +167,8 @@ std::string too_skewed_costs(std::uint64_t needed) {
       reports::human(static_cast<double>(needed), 2));
 }
 
-/// The most secondaries of each subject that a claim may come to: those that it asks for or all
-/// that there are, else what it is worth or such a method may ask for.
+/// The most secondaries of each subject: a fixed number or all, else what the claim is worth or a
+/// method may ask for.
 std::uint64_t affordable_secondaries(const Question& question, const FamilyPlace& place,
                                      const Pilots& pilots, std::uint64_t most, const Plan& plan) {
   const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
@@ -177,8 +176,7 @@ std::uint64_t affordable_secondaries(const Question& question, const FamilyPlace
   return fixed ? fewest_secondaries(question, size) : std::max(size, most_for_a_variance);
 }
 
-/// A forced method runs as asked, from the fewest secondaries on: where its level is off a red gate
-/// says so.
+/// A forced method runs from the fewest secondaries on; a red gate says if its level is off.
 std::uint64_t as_forced(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                         std::uint64_t most, std::uint64_t needed, std::uint64_t fewest,
                         Plan& plan) {
@@ -189,8 +187,8 @@ std::uint64_t as_forced(const Question& question, const FamilyPlace& place, cons
   return fewest;
 }
 
-/// Whether F and chi-square keep their level, with the gates that say so. Where they need not be
-/// taken a red one is answered by the method that is.
+/// True if F and chi-square keep their level. Notes the gates; an unforced test answers a red one
+/// by another method.
 bool are_near_normal(const Question& question, const std::vector<Known>& channels, double critical,
                      Plan& plan) {
   const stats::ShapeLimits limits = shape_limits(critical);
@@ -206,7 +204,8 @@ bool are_near_normal(const Question& question, const std::vector<Known>& channel
   return normal;
 }
 
-/// Whether the pilot leaves room for that: no kurtosis whose lower limit is beyond the bound.
+/// True if the pilot leaves room for near-normal data: no kurtosis has a lower limit beyond the
+/// bound.
 bool may_be_near_normal(const Question& question, const std::vector<Known>& channels,
                         double critical) {
   const double limit = shape_limits(critical).excess_kurtosis;
@@ -217,8 +216,8 @@ bool may_be_near_normal(const Question& question, const std::vector<Known>& chan
          });
 }
 
-/// Chi-square and F allow for a kurtosis beyond the bound that the pilot cannot exclude: a few
-/// hundred values tell that of a normal law from .5 not always. A forced one is what it is.
+/// Chi-square and F allow for a kurtosis beyond the bound that the pilot cannot exclude. A forced
+/// one gets no allowance.
 void allow_for_kurtosis(const Question& question, const std::vector<Known>& channels,
                         double critical, Plan& plan) {
   const double limit = shape_limits(critical).excess_kurtosis;
@@ -255,8 +254,8 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   }
   const std::uint64_t needed = enough_for_log_variance(question, channels, x);
   const std::uint64_t affordable = affordable_secondaries(question, place, pilots, most, plan);
-  // Of fewer than the other test takes a few hundred values of a pilot would turn away each fourth
-  // normal law: the exact test stands where they do not contradict it, its gates amber.
+  // Too few for another test. The exact one stands if the pilot does not contradict it, with amber
+  // gates: small pilots would turn away many normal laws.
   const bool too_few_for_others = plan.invalid.empty() && needed > affordable;
   if (too_few_for_others && may_be_near_normal(question, channels, x)) {
     allow_for_kurtosis(question, channels, x, plan);

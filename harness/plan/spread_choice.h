@@ -1,26 +1,24 @@
 #pragma once
 
-// Which method is valid for a claim on variances or costs, and from how many secondaries on: what
-// `choose_method` says of them.
+// Choice of a method for claims on variances or costs, as parts of `choose_method`.
 
 #include "harness/plan/outcome.h"
 #include "harness/question/pilot.h"
 
 namespace assay::harness {
 
-/// Of variances: F and chi-square where the pilot predicts near-normal secondaries; else the
-/// logarithm of the variance with its own kurtosis, from as many secondaries on as that needs; else
-/// nothing.
+/// For variances: F and chi-square if the pilot predicts near-normal secondaries, else log-variance
+/// with as many secondaries as it needs, else none.
 std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& place,
                                   const Pilots& pilots, std::uint64_t most, Plan& plan);
 
-/// Of efficiencies, total variances and slopes of variances, which have one method each: from how
-/// many secondaries on the logarithm of every variance, and of every mean cost, that is part of the
-/// claim is near normal.
+/// For efficiencies, total variances and slopes of variances, which have one method each. Returns
+/// from how many secondaries the logarithm of every variance and mean cost in the claim is near
+/// normal.
 std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& place,
                                 const Pilots& pilots, std::uint64_t most, Plan& plan);
 
-/// Of costs: from how many secondaries on the logarithm of every mean cost is near normal.
+/// For costs: returns from how many secondaries the logarithm of every mean cost is near normal.
 std::uint64_t choose_for_costs(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, std::uint64_t most, Plan& plan);
 

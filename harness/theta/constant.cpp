@@ -32,10 +32,10 @@ struct Difference {
   double value = 0;
   double below = 0;
   double above = 0;
-  double scale = 1;  ///< of theta: 1, or the reference
+  double scale = 1;  ///< Theta's unit: 1 or |reference|.
 };
 
-/// Of one mean, from what the channel's declared range allows.
+/// A mean, and how far unseen values in the channel's declared range may take it.
 Difference mean_of(const Channel& channel, const ChannelData& data, double level) {
   const double q = unseen(level, data.moments.count);
   const double mean = data.moments.mean;
@@ -46,7 +46,7 @@ Difference mean_of(const Channel& channel, const ChannelData& data, double level
 
 Channel channel_of(const Question& question, std::size_t subject, std::size_t channel) {
   const Subject& side = question.subjects[subject];
-  // Of pictures nothing is declared, and their millions of names are not made for one of them.
+  // Pictures declare nothing. Their millions of channel names are not made for one of them.
   if (recorded::unknown_channels(*side.setup)) return {};
   return side.setup->channels()[side.channels[channel]];
 }
@@ -141,7 +141,7 @@ bool meets_forbidden(const Span& theta, const Regions& regions) {
   return theta.high >= regions.within || theta.low <= -regions.within;
 }
 
-/// The commonest cause of numbers that should vary and do not.
+/// Hint at the commonest cause of constant observations.
 std::string seeds(const Question& question) {
   for (const Subject& subject : question.subjects) {
     if (subject.setup->observations()) return "; if they should vary, has each a seed of its own?";
@@ -152,7 +152,7 @@ std::string seeds(const Question& question) {
   return "";
 }
 
-/// Whether values never seen could move the mean by so much and no more.
+/// True if unseen values can move the mean by a finite amount only.
 bool has_range(const Difference& difference) {
   return std::isfinite(std::max(difference.below, difference.above));
 }
@@ -223,7 +223,7 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
 
 namespace {
 
-/// The spread that values of this size, or as declared, may have lost to rounding.
+/// The spread that rounding may hide, by the size of the values or as declared.
 double hidden_deviation(const Question& question, std::size_t channel, const ChannelData& data) {
   const double size = std::abs(data.moments.mean) * question.subjects[0].averaged(data.primaries);
   const double spacing = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;

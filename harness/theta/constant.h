@@ -1,7 +1,6 @@
 #pragma once
 
-// Samples without spread: there is no standard error to test with, and what was never seen may
-// still be there.
+// Samples without spread. They have no standard error, and unseen values may still exist.
 
 #include <optional>
 #include <span>
@@ -14,11 +13,11 @@
 
 namespace assay::harness {
 
-/// Whether the values differ by no more than the channel's declared rounding.
+/// True if the values differ by no more than twice the channel's declared rounding.
 bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
                  const stats::Moments& moments);
 
-/// Whether every subject's observations of a channel are the same but for rounding.
+/// True if each subject's observations of a channel are constant up to rounding.
 bool all_constant(const Question& question, std::size_t channel, std::span<const ChannelData> data);
 
 struct ConstantVerdict {
@@ -26,25 +25,24 @@ struct ConstantVerdict {
   std::string message;
 };
 
-/// The verdict of a mean claim whose samples are all constant. An unseen value has probability at
-/// most q with (1 - q)^n = level, so that the mean is within q * (declared range) of the constant:
-/// exact binomial. Where the constant is as claimed (equal to the reference, or in the claimed
-/// region): pass if there is no forbidden region, or if the bound at beta excludes it; else
-/// inconclusive. Where it is not: fail only if the bound at alpha excludes the claimed region; else
-/// invalid.
+/// Verdict on a mean claim whose samples are all constant. With (1 - q)^n = level, an unseen value
+/// has probability q at most (exact binomial). So the mean lies within q * (declared range) of the
+/// constant. A constant as claimed passes if there is no forbidden region, or if the bound at beta
+/// excludes it; else it is inconclusive. Any other constant fails if the bound at alpha excludes
+/// the claimed region; else it is invalid.
 ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                                std::span<const ChannelData> data, const Regions& regions,
                                const ErrorShare& share);
 
-/// The verdict of a variance that is bounded from above and has no forbidden region, as each
-/// channel of `worst_variance`, of a constant sample: pass. Nothing of other claims, where the
-/// sample varies, or where rounding may have hidden a variance beyond the bound.
+/// Passes a constant sample if the claim bounds its variance from above and forbids no region, as
+/// each channel of `worst_variance`. Returns nullopt for other claims, for samples that vary, or if
+/// rounding may hide a variance beyond the bound.
 std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
                                                        std::size_t channel, const ChannelData& data,
                                                        const Regions& regions);
 
-/// The most that values never seen could move the mean of a constant sample, at this level: q times
-/// the declared range, to the worse side.
+/// Bound at this level on a constant sample's shift by unseen values: q times the declared range to
+/// the worse side, plus rounding.
 double unseen_shift(const Question& question, std::size_t subject, std::size_t channel,
                     const ChannelData& data, double level);
 

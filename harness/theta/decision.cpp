@@ -31,7 +31,7 @@ double log_p_outside(const Evidence& evidence, double margin) {
   return stats::equivalence(evidence.at(-margin), evidence.at(margin)).log_p;
 }
 
-/// p of "theta < 0" and "theta > 0": as of the closed regions, but of a theta that is 0 exactly.
+/// p of "theta < 0" and "theta > 0": that of the closed region, unless theta is exactly 0.
 double log_p_beside(const Evidence& evidence, double log_p_closed) {
   constexpr double impossible = std::numeric_limits<double>::lowest();
   const bool at_the_end =

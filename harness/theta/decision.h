@@ -1,6 +1,6 @@
 #pragma once
 
-// From evidence about theta to p-values of the claimed and of the forbidden region, and a verdict.
+// From evidence about theta to p-values of the claimed and the forbidden region, and a verdict.
 //
 //   relation  claimed region C        forbidden region F
 //   ==        abs(theta) <= allow     abs(theta) >= detect     alarm
@@ -17,7 +17,7 @@
 
 namespace assay::harness {
 
-/// Margins on theta itself. Of `<` and `>`, `detect` is only the advantage planned for.
+/// Margins on theta's scale. In `<` and `>`, `detect` is only the advantage to plan for.
 struct Regions {
   Relation relation = Relation::equal;
   double allow = 0;
@@ -26,9 +26,8 @@ struct Regions {
 
   bool proof() const;
   bool two_sided() const;
-  /// Whether there is a forbidden region that a pass must exclude.
+  /// True if a pass must exclude a forbidden region.
   bool has_forbidden() const { return proof() || detect.has_value(); }
-  /// Whether the claim names a margin of its own.
   bool has_margin() const {
     return allow != 0 || detect.has_value() || relation == Relation::within;
   }
@@ -40,24 +39,23 @@ double log_p_claimed(const Evidence& evidence, const Regions& regions);
 /// Natural logarithm of the p-value of "theta in F"; 0 where there is no F.
 double log_p_forbidden(const Evidence& evidence, const Regions& regions);
 
-/// Where C ends above 0: at theta = 0, `allow` or the margin of `within`. A theta that cannot be
-/// negative, as a distance, has no other end.
+/// The upper end of C: 0, `allow` or the margin of `within`. For a distance it is the only end.
 double edge_of_claimed(const Regions& regions);
 
-/// Which tail of the statistic speaks against C.
+/// The tail of the statistic that speaks against C.
 std::string tail(const Regions& regions);
 
-/// Share of the errors one channel may spend.
+/// Errors that one channel may spend.
 struct ErrorShare {
   double alpha = 0;
   double beta = 0;
 };
 
-/// Fail, pass or inconclusive of a claim whose channels have these p-values.
+/// One channel's p-values. `decide` turns those of all channels into fail, pass or inconclusive.
 struct ChannelDecision {
   double log_p_claimed = 0;
   double log_p_forbidden = 0;
-  bool rejected = false;  ///< "theta in C", at the fixed share or by Holm
+  bool rejected = false;  ///< Rejects "theta in C", at the fixed share or by Holm.
 };
 reports::Verdict decide(const std::vector<ChannelDecision>& channels, const Regions& regions,
                         double beta);

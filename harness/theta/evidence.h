@@ -1,7 +1,7 @@
 #pragma once
 
-// What the data say about theta, the number a claim is about, whatever the method: a test of any
-// value of theta, in both directions, and an interval. Verdicts are made of nothing else.
+// The data's evidence about theta, the number that a claim is about: tests of every value in both
+// directions, and an interval. Verdicts are made of nothing else.
 
 #include <functional>
 #include <string>
@@ -12,20 +12,20 @@
 namespace assay::harness {
 
 struct Evidence {
-  double estimate = 0;  ///< of theta
-  /// Tests "theta is this value": log_p_upper is the p-value of "theta <= value", log_p_lower that
+  double estimate = 0;
+  /// Tests "theta is this value". log_p_upper is the p-value of "theta <= value", log_p_lower that
   /// of "theta >= value".
   std::function<stats::TestResult(double)> at;
   /// Two-sided interval of theta.
   std::function<stats::Interval(double)> interval;
-  /// Which part of the data speaks most against "theta <= this value", in words; unset where the
-  /// data have no parts.
+  /// The part of the data that speaks most against "theta <= value", in words. Unset if the data
+  /// have no parts.
   std::function<std::string(double)> most_against = {};
-  std::string quantity;   ///< what theta is, in words
-  bool relative = false;  ///< shown in per cent
-  bool ratio = false;     ///< theta is the logarithm of a ratio
-  bool distance = false;  ///< theta cannot be negative: `==` has one direction
-  bool exact = false;     ///< theta is the estimate, without an error: costs that never vary
+  std::string quantity;   ///< Name of theta.
+  bool relative = false;  ///< Shown in per cent.
+  bool ratio = false;     ///< Theta is the logarithm of a ratio.
+  bool distance = false;  ///< Theta cannot be negative: `==` has one direction.
+  bool exact = false;     ///< The estimate has no error, as with costs that never vary.
 };
 
 /// A part that is the same for every value.

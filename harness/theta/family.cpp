@@ -27,7 +27,7 @@ std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>&
     if (inside) inside_weight += question.test->weight;
     if (!inside) ++outside;
   }
-  // A test whose source died keeps its part, so that the others' numbers do not change.
+  // A test whose source died keeps its part: the others' numbers do not change.
   double least_untested = std::numeric_limits<double>::infinity();
   for (const TestEntry& test : suite.tests) {
     const auto asks = [&](const Question& question) { return question.test == &test; };

@@ -1,6 +1,6 @@
 #pragma once
 
-// How a suite's alpha and beta are shared out, and Holm's decision over the whole suite.
+// Shares of a suite's alpha and beta.
 
 #include <vector>
 
@@ -11,15 +11,15 @@ namespace assay::harness {
 
 /// A test's place in its suite's family.
 struct FamilyPlace {
-  bool inside = true;     ///< false: mutants and expected failures
-  double weight = 0;      ///< of one channel, the family's weights sum to 1
-  ErrorShare share = {};  ///< of one channel: alpha * weight inside, the smallest such outside
+  bool inside = true;     ///< False for mutants and expected failures.
+  double weight = 0;      ///< Weight of one channel; a family's weights sum to 1.
+  ErrorShare share = {};  ///< Share of one channel.
 };
 
-/// Places of the questions of a suite, in order, from the numbers of channels they claim. Inside
-/// the family alpha is split by weight, then evenly over a claim's channels; a test outside has the
-/// smallest share in the suite and beta over the number of tests outside. A suite of mutants only
-/// shares out alpha among them. A test that no question could be made of keeps its part.
+/// Places of a suite's questions, in order. Inside the family alpha is split by weight, then evenly
+/// over a claim's channels. A test outside has the smallest share in the suite, and beta over the
+/// number of tests outside. A suite of mutants only shares out alpha among them. A test without a
+/// question keeps its part.
 std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>& questions);
 
 }  // namespace assay::harness

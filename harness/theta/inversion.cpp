@@ -9,7 +9,7 @@ namespace {
 constexpr int most_doublings = 60;
 constexpr double precision = 1e-12;
 
-/// The end between a value that is kept and the first beyond it that is not.
+/// The end of the kept values in one direction.
 double end_of(const std::function<bool(double)>& kept, const Whereabouts& around,
               double direction) {
   double inside = around.estimate;

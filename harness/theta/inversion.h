@@ -6,15 +6,15 @@
 
 namespace assay::harness {
 
-/// Where an interval lies, roughly.
+/// A rough location of an interval.
 struct Whereabouts {
   double estimate = 0;
-  double step = 1;  ///< about a standard error
+  double step = 1;  ///< About a standard error.
 };
 
-/// The values of theta that `at` rejects in neither tail at (1 - confidence) / 2 each, to a
-/// relative error of 1e-12 of the step; an end that 60 doublings of the step do not reach is
-/// infinite. `at` must be monotone: larger values less rejected by its upper tail.
+/// The values of theta that `at` rejects in neither tail at (1 - confidence) / 2. The ends are
+/// exact to 1e-12 of the step. An end beyond 60 doublings of the step is infinite. `at` must be
+/// monotone: its upper tail rejects larger values less.
 stats::Interval interval_by_inversion(const std::function<stats::TestResult(double)>& at,
                                       const Whereabouts& around, double confidence);
 

@@ -8,14 +8,14 @@
 
 namespace assay::harness {
 
-/// Whether theta of a channel is in units of the reference.
+/// True if theta of a channel is in units of the reference.
 bool is_relative(const Question& question, std::size_t channel);
 
-/// What theta of a channel is divided by: the reference's or the other's |mean| where theta is
-/// relative, else 1. `other_mean` is used where the claim compares two.
+/// Divisor of a channel's theta: |reference| or |factor * other_mean| if theta is relative, else
+/// 1. `other_mean` counts only if the claim compares two.
 double unit_of_theta(const Question& question, std::size_t channel, double other_mean);
 
-/// A margin of the claim on theta's own scale: ln(1 + x) for a ratio of variances.
+/// A margin of the claim on theta's scale: ln(1 + x) for a ratio of variances.
 double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin);
 
 }  // namespace assay::harness
