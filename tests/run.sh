@@ -1,10 +1,16 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs every test.
-#   bash tests/run.sh [CTEST_OPTION...]      such as -R luminaire
+# Installs what is missing, builds everything and runs the tests.
+#   bash tests/run.sh [--all] [CTEST_OPTION...]      such as -R luminaire
+# --all runs the long calibrations too (tests/CMakeLists.txt names them).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source suites/install.sh
 
+which=(--label-exclude '^long$')
+if [ "${1-}" = --all ]; then
+  which=()
+  shift
+fi
 install_packages suites/packages.txt tests/packages.txt
 build_project build all -- -DASSAY_TESTS=ON ${CI:+-DASSAY_WERROR=ON}
-ctest --test-dir build --output-on-failure --no-tests=error -j "$(nproc)" "$@"
+ctest --test-dir build --output-on-failure --no-tests=error -j "$(nproc)" "${which[@]}" "$@"

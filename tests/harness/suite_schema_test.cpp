@@ -6,7 +6,6 @@
 #include <regex>
 
 #include "harness/base/text_file.h"
-#include "harness/language/method_names.h"
 #include "harness/question/question.h"
 #include "harness/sampling/prepare.h"
 #include "harness/suite/suite_entries.h"
@@ -54,13 +53,6 @@ bool is_tested(QuantityName name) {
   return refusal([&] { ask(suite.tests[0], estimators, 1); }) == "(nothing was refused)";
 }
 
-TEST(SuiteSchema, OffersTheMethodsThereAre) {
-  std::vector<std::string> names;
-  const Value schema = schema_of("test");
-  for (const Value& name : schema.find("enum")->items()) names.push_back(name.text());
-  EXPECT_THAT(names, ElementsAreArray(method_names()));
-}
-
 TEST(SuiteSchema, OffersTheQuantitiesThatAreTested) {
   std::vector<std::string> tested;
   for (const QuantityRow& row : quantities()) {
@@ -79,9 +71,6 @@ TEST(SuitesReadme, OffersWhatTheSchemaOffers) {
   for (const QuantityRow& row : quantities()) offered.push_back(row.word);
   EXPECT_THAT(matches_of(manual_line("name     = "), "([a-z_]{2,})(?: \\||$)"),
               ElementsAreArray(offered));
-  std::vector<std::string> keys = matches_of(manual_line("| `test` |"), "`([A-Za-z-]+)`");
-  keys.erase(keys.begin());
-  EXPECT_THAT(keys, ElementsAreArray(method_names()));
 }
 
 }  // namespace

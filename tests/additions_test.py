@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+"""Adds a method, a report and an estimator to a copy of the sources: additions_test.py SOURCE BUILD
+
+Each addition is files of its own and lines in one existing file. The changed files are compiled and
+linked with the objects of the build, and the program must offer and use what was added. So an
+addition that takes any other change fails here.
+"""
+import json
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+
+NEW_FILES = {
+    "harness/families/added_method.h": """#pragma once
+
+#include "harness/theta/method.h"
+
+namespace assay::harness {
+
+Evidence added_evidence(const Method&, const Question&, std::size_t channel,
+                        std::span<const ChannelData>);
+
+}  // namespace assay::harness
+""",
+    "harness/families/added_method.cpp": """#include "harness/families/added_method.h"
+
+#include "harness/families/mean_evidence.h"
+
+namespace assay::harness {
+
+Evidence added_evidence(const Method& method, const Question& question, std::size_t channel,
+                        std::span<const ChannelData> data) {
+  return mean_by_t(method, question, channel, data);
+}
+
+}  // namespace assay::harness
+""",
+    "reports/formats/added_report.h": """#pragma once
+
+#include <string>
+
+#include "reports/record/record.h"
+
+namespace assay::reports {
+
+std::string added_report(const Record&);
+
+}  // namespace assay::reports
+""",
+    "reports/formats/added_report.cpp": """#include "reports/formats/added_report.h"
+
+namespace assay::reports {
+
+std::string added_report(const Record& record) {
+  return "methods: " + record.suites[0].tests[0].method + "\\n";
+}
+
+}  // namespace assay::reports
+""",
+    "estimators/analytic/added.cpp": """#include "estimators/estimator.h"
+
+namespace assay::plugins {
+
+std::vector<Entry> analytic_added() {
+  return {{{.name = "analytic/added", .summary = "A uniform number.", .description = ""},
+           [](Parameters&) -> std::shared_ptr<const Setup> {
+             return averaging(Channel{.mean = 0.5, .variance = 1.0 / 12, .low = 0, .high = 1},
+                              [](Stream& random, Cost&) { return random.uniform(); });
+           }}};
+}
+
+}  // namespace assay::plugins
+""",
+}
+
+# The one file that each addition changes: a line to add an #include after, a line to add a row
+# before.
+METHOD_ROW = """    {"added-method",
+     "an added test of a mean",
+     [](const Question& q) { return q.kind == QuestionKind::mean_of_one; },
+     Keeps::moments,
+     added_evidence},
+"""
+REPORT_ROW = """      {"added", "added", "an added report",
+       [](const Record& record, bool) { return added_report(record); }},
+"""
+EDITS = {
+    "harness/families/methods.cpp": (
+        '#include "harness/families/mean_evidence.h"\n',
+        '#include "harness/families/added_method.h"\n', '    {"F",\n', METHOD_ROW),
+    "reports/report_formats.cpp": (
+        '#include "reports/formats/console.h"\n', '#include "reports/formats/added_report.h"\n',
+        '      {"junit",', REPORT_ROW),
+    "estimators/CMakeLists.txt": (
+        "", "", "  analytic/antithetic.cpp\n", "  analytic/added.cpp\n"),
+}
+
+
+def run(*words, **options):
+    ended = subprocess.run(words, capture_output=True, text=True, check=False, **options)
+    if ended.returncode != 0:
+        sys.exit(f"{shlex.join(map(str, words))}\n{ended.stdout}{ended.stderr}")
+    return ended.stdout
+
+
+def add(text, edit, path):
+    after, include, before, row = edit
+    for place in filter(None, (after, before)):
+        assert text.count(place) == 1, f"{path}: {place!r} occurs {text.count(place)} times"
+    if after:
+        text = text.replace(after, after + include)
+    return text.replace(before, row + before)
+
+
+def command_of(commands, source):
+    """The words that compile a file of the build, without its output."""
+    words = shlex.split(commands[source])
+    out = words.index("-o")
+    del words[out:out + 2]
+    if words[0].endswith("ccache"):
+        words = words[1:]
+    return [word for word in words if word not in ("-c", source)]
+
+
+def main():
+    source, build = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+    commands = {entry["file"]: entry["command"]
+                for entry in json.loads((build / "compile_commands.json").read_text())}
+    with tempfile.TemporaryDirectory() as name:
+        copy = pathlib.Path(name) / "source"
+        shutil.copytree(source, copy, ignore=lambda folder, names: [
+            n for n in names if pathlib.Path(folder) == source and n in ("build", ".git")])
+        for path, text in NEW_FILES.items():
+            assert not (copy / path).exists(), path
+            (copy / path).write_text(text)
+        for path, edit in EDITS.items():
+            (copy / path).write_text(add((copy / path).read_text(), edit, path))
+        # The list of estimators is written when the project is configured.
+        run("cmake", "-S", copy, "-B", copy / "build")
+        listed = (copy / "build/estimators/catalogue_list.cpp").read_text()
+        assert "analytic_added" in listed, listed
+        objects = []
+        for path in [p for p in (*NEW_FILES, *EDITS) if p.endswith(".cpp")] + [
+                "build/estimators/catalogue_list.cpp"]:
+            like = {"harness": "harness/families/methods.cpp",
+                    "reports": "reports/report_formats.cpp",
+                    "estimators": "estimators/analytic/antithetic.cpp",
+                    "build": "estimators/analytic/antithetic.cpp"}[path.split("/")[0]]
+            words = command_of(commands, str(source / like))
+            words = [f"-I{copy}" if word == f"-I{source}" else word for word in words]
+            words = [f"-I{copy}/estimators" if word == f"-I{source}/estimators" else word
+                     for word in words]
+            # Without precompiled headers: they are of the other folder.
+            while "-include" in words:
+                at = words.index("-include")
+                del words[at:at + 2]
+            words = [w for w in words if w not in ("-Winvalid-pch", "-fpch-preprocess", "-Werror")]
+            made = copy / (path.replace("/", "_") + ".o")
+            run(*words, "-O0", "-o", made, "-c", copy / path, cwd=build)
+            objects.append(made)
+        link = run("ninja", "-C", build, "-t", "commands", "assay").strip().splitlines()[-1]
+        assay = copy / "assay"
+        link = re.sub(r" -o harness/assay ", f" {' '.join(map(str, objects))} -o {assay} ", link)
+        link = link.replace(": && ", "").replace(" && :", "")
+        assert str(assay) in link, link
+        run("bash", "-c", link, cwd=build)
+        assert "added-method" in run(assay, "list", "methods")
+        assert "an added test of a mean" in run(assay, "describe", "added-method")
+        assert "added-method" in run(assay, "check", "--help")
+        assert "an added report" in run(assay, "list", "reports")
+        assert "analytic/added" in run(assay, "list", "plugins")
+        said = run(assay, "check", "mean(analytic/added) == analytic", "--test", "added-method",
+                   "--report", "added=-", "--report", "console=/dev/null", "--quiet")
+        assert said == "methods: added-method\n", said
+    print("a method, a report and an estimator took a line or two in one file each")
+
+
+if __name__ == "__main__":
+    main()
