@@ -23,7 +23,7 @@ void watch(int signal) {
   struct sigaction action {};
   action.sa_handler = note_interrupt;
   sigemptyset(&action.sa_mask);
-  // The handler is removed as it runs, so that a second Ctrl-C always works.
+  // The handler removes itself as it runs, so that a second Ctrl-C always works.
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   sigaction(signal, &action, nullptr);
 }
@@ -33,11 +33,10 @@ void watch(int signal) {
 void watch_interrupts() {
   asked.store(false);
   watch(SIGINT);
-  // Whoever runs this for others, a CI job or a batch system, ends it so: programs that it started
-  // must not outlive it.
+  // CI jobs and batch systems send SIGTERM: programs that this one started must not outlive it.
   watch(SIGTERM);
   if (!is_ignored(SIGHUP)) watch(SIGHUP);
-  // A file beyond its limit is an error of the write, as a full disk is.
+  // A write beyond the file size limit then fails as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

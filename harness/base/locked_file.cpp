@@ -56,7 +56,6 @@ int locked(const std::string& path) {
   return descriptor;
 }
 
-/// Whether the path still names the open file.
 bool is_current(int descriptor, const std::string& path) {
   struct stat open {};
   struct stat named {};

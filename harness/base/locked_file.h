@@ -5,10 +5,9 @@
 namespace assay::harness {
 
 /// A file that this process alone may replace while the object lives: two runs that add to one
-/// ledger take turns. The file is made, empty, where there is none. The lock (flock) is on the file
-/// itself; since a replacement is another file, it is taken again until it is on the one that the
-/// path names. Readers see the old text or the new one, never a part. Throws std::runtime_error
-/// with path and reason.
+/// ledger take turns. The constructor makes the file, empty, if it is missing. It locks the file
+/// itself (flock), and again after another process replaced it. Readers see the old text or the new
+/// one, never a part. Throws std::runtime_error with path and reason.
 class LockedFile {
  public:
   explicit LockedFile(std::string path);

@@ -1,7 +1,5 @@
 #pragma once
 
-// Numbers as a record has them.
-
 #include "reports/record/record.h"
 
 namespace assay::harness {
@@ -9,10 +7,10 @@ namespace assay::harness {
 /// The value, or nothing if it is not finite.
 reports::Number number(double value);
 
-/// The probability of a natural logarithm; the least double stands for what underflows.
+/// exp(log_p), or the least double if that underflows.
 reports::Number probability(double log_p);
 
-/// The decimal logarithm of a natural one.
+/// log10 of a probability whose natural logarithm is `log_p`.
 reports::Number log10_of(double log_p);
 
 }  // namespace assay::harness

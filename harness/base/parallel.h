@@ -1,7 +1,5 @@
 #pragma once
 
-// Work on several threads.
-
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -13,14 +11,13 @@
 
 namespace assay::harness {
 
-/// How many threads a number given stands for: of 0 one for each core.
+/// `given`, or the number of cores if it is 0.
 unsigned threads_of(unsigned given);
 
 /// stats::ForEach on all threads of the caller's arena.
 void on_all_threads(std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// Calls `work` in an arena of its own of so many threads: the limit holds also where the calling
-/// thread is in another.
+/// Calls `work` in its own arena of so many threads, also if the calling thread is in another one.
 template <class Work>
 auto with_threads(unsigned given, const Work& work) {
   const unsigned count = threads_of(given);

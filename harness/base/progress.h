@@ -5,18 +5,16 @@
 
 namespace assay::harness {
 
-/// Where a run says how far it is. Called from one thread.
+/// Listens to how far a run is. Called from one thread.
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A phase begins ("pilot", "sampling") with so many primaries to draw, or
-  /// ("calibration") runs to make.
+  /// A phase begins: "pilot" or "sampling" with `total` primaries, "calibration" with `total` runs.
   virtual void begin(const std::string& phase, std::uint64_t total) = 0;
   virtual void advance(std::uint64_t done) = 0;  ///< units done so far in this phase
   virtual void end() = 0;
 };
 
-/// Says nothing.
 class Silence final : public Progress {
  public:
   void begin(const std::string&, std::uint64_t) override {}

@@ -18,9 +18,9 @@ constexpr std::size_t bar_width = 30;
 constexpr auto bar_period = 100ms;
 constexpr auto line_period = 30s;
 
-// All progress and all sentences beside it are written one by one.
+// Guards every line that is written to the terminal.
 std::mutex terminal;
-const std::ostream* bar_on = nullptr;  // the stream that a bar stands on
+const std::ostream* bar_on = nullptr;
 
 double fraction(std::uint64_t done, std::uint64_t total) {
   return total == 0 ? 0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
@@ -31,7 +31,7 @@ std::string bar(double fraction) {
   return "[" + std::string(filled, '#') + std::string(bar_width - filled, '.') + "]";
 }
 
-/// Seconds that remain at the pace so far, once there is a pace to speak of.
+/// The remaining seconds at the pace so far; "" before a pace is known.
 std::string remaining(double fraction, std::chrono::duration<double> elapsed) {
   if (fraction < 0.02 || elapsed < 1s) return "";
   const double seconds = elapsed.count() * (1 - fraction) / fraction;
@@ -49,7 +49,7 @@ bool environment_has(const char* name) {
 std::string progress_text(const std::string& phase, std::uint64_t done, std::uint64_t total) {
   const char* unit = phase == "calibration" ? "runs" : "primaries";
   if (total == 0) return fmt::format("{}  {} {}", phase, done, unit);
-  // Rounded down: 100 % is said when all is done.
+  // Rounded down, so that 100 % means all.
   const int percent = static_cast<int>(100 * fraction(done, total));
   constexpr std::uint64_t million = 1'000'000;
   const auto millions = [](std::uint64_t count) {

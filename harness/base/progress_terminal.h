@@ -50,15 +50,14 @@ class ProgressLines final : public Progress {
   std::chrono::steady_clock::time_point said_;
 };
 
-/// A line "assay: …" of its own beside a bar that stands on the same stream, which is drawn again.
-/// Thread-safe.
+/// Writes a line "assay: …". A bar on the same stream is wiped first and drawn again. Thread-safe.
 void say_beside_progress(const std::string& sentence, std::ostream& out = std::cerr);
 
 /// A bar when standard error is a terminal and CI is not set, lines otherwise, nothing when quiet.
 std::unique_ptr<Progress> make_progress(bool quiet);
 
-/// "sampling  43 %  1290 of 3000 primaries", from a million on in millions; no percentage when
-/// total is 0.
+/// "sampling  43 %  1290 of 3000 primaries"; in millions from a million on; no percentage if total
+/// is 0.
 std::string progress_text(const std::string& phase, std::uint64_t done, std::uint64_t total);
 
 }  // namespace assay::harness

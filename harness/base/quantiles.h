@@ -7,7 +7,7 @@
 
 namespace assay::harness {
 
-/// Points of a normal quantile plot of some values: at most 99, at the probabilities (i - 1/2) / k.
+/// At most 99 points of a normal quantile plot of the values, at the probabilities (i - 1/2) / k.
 std::vector<reports::QuantilePoint> quantile_points(std::span<const double> values);
 
 }  // namespace assay::harness

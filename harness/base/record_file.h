@@ -6,7 +6,7 @@
 
 namespace assay::harness {
 
-/// A saved run. InputError when the file cannot be read, reports::ReadError when it is no record.
+/// Reads a saved run. InputError if the file cannot be read, reports::ReadError if it is no record.
 reports::Record read_record(const std::string& file);
 
 }  // namespace assay::harness

@@ -4,7 +4,7 @@
 
 namespace assay::harness {
 
-/// An argument as a shell reads it back: quoted where that is needed.
+/// The argument, quoted for a shell if that is needed.
 std::string shell_quoted(const std::string& argument);
 
 }  // namespace assay::harness

@@ -20,8 +20,8 @@ constexpr std::size_t shown_bytes = 72;
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80; }
 
-/// The length of the UTF-8 sequence at the start of `text`, 0 if it is not one (RFC 3629: no
-/// overlong forms, no surrogates, nothing above U+10FFFF).
+/// The length in bytes of the UTF-8 sequence at the start of `text`; 0 if it is invalid by RFC
+/// 3629.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
@@ -117,7 +117,7 @@ std::string caret_below(std::string_view line, int column) {
   std::size_t end = std::min(begin + shown_bytes, line.size());
   while (end > at && end < line.size() && continues(line[end])) --end;
   const std::string head = begin > 0 ? "..." : "";
-  // What a terminal must not meet is one character each, as everywhere.
+  // Control characters become one character each, so that the caret stays below its column.
   const std::string before = reports::clean(line.substr(begin, at - begin));
   std::string out = "  " + head + before + reports::clean(line.substr(at, end - at));
   if (end < line.size()) out += "...";

@@ -5,8 +5,8 @@
 
 namespace assay::harness {
 
-/// Fowler, Noll and Vo's 64-bit hash FNV-1a: tells texts apart that differ by accident, not those
-/// that someone made to agree. `start` continues the hash of what came before.
+/// The 64-bit hash FNV-1a (Fowler, Noll, Vo). It is no protection against deliberate collisions.
+/// `start` is the hash of the text before.
 constexpr std::uint64_t text_hash(std::string_view text,
                                   std::uint64_t start = 0xcbf29ce484222325U) {
   for (const char c : text) {

@@ -21,7 +21,7 @@ namespace {
 using reports::CalibrationCell;
 using reports::Rate;
 
-/// Counts of one law, waiting for the number of cells that the limits are to hold for.
+/// Counts of one law. Their limits need the total number of cells.
 struct Measured {
   double alpha;
   std::string law;
@@ -87,8 +87,7 @@ void measure(const CalibrationBench& bench, const CalibrationRuns& options,
   }
 }
 
-/// Cells of one alpha, then of one method and question, stand together; the order in which alphas,
-/// questions and laws were met stays.
+/// Groups cells by alpha, then method and question. Alphas, questions and laws keep their order.
 void group(std::vector<Measured>& all, const std::vector<double>& alphas) {
   std::vector<std::string> questions;
   for (const Measured& each : all) {
@@ -107,7 +106,7 @@ void group(std::vector<Measured>& all, const std::vector<double>& alphas) {
                    [&](const Measured& a, const Measured& b) { return rank(a) < rank(b); });
 }
 
-/// A level or a law given twice would be measured twice.
+/// Drops repeated levels and laws, which would be measured twice.
 template <class T>
 void refuse_twice(const char* option, const std::vector<T>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -14,19 +14,19 @@
 namespace assay::harness {
 
 struct CalibrateArguments {
-  std::vector<std::string> methods = {};  ///< none: all
-  std::vector<std::string> laws = {};     ///< none: the usual ones
-  std::vector<double> alphas = {};        ///< none: .05, .01, .001
+  std::vector<std::string> methods = {};  ///< None: all.
+  std::vector<std::string> laws = {};     ///< None: the usual ones.
+  std::vector<double> alphas = {};        ///< None: .05, .01, .001.
   std::uint64_t runs = 1000;
-  std::optional<std::uint64_t> samples = {};  ///< of every test, in one look
+  std::optional<std::uint64_t> samples = {};  ///< Size of every test, in one look.
   std::uint64_t seed = 1;
   unsigned threads = 0;
 };
 
-/// InputError for a method or a law there is none of. Cells by alpha, method, question, law.
+/// Cells by alpha, method, question, law. InputError for an unknown method or law.
 reports::Calibration calibration(const CalibrateArguments& arguments, Progress& progress);
 
-/// Calibrates and writes the reports. 1 where a cell errs too often.
+/// Calibrates and writes the reports. Returns 1 if a cell errs too often.
 int calibrate(const CalibrateArguments& arguments, const Output& output);
 
 }  // namespace assay::harness

@@ -14,9 +14,9 @@
 namespace assay::harness {
 namespace {
 
-// What `detect` is: of means in standard deviations, of variances and costs a ratio, of laws the
-// largest distance of their distribution functions, of the cells' probabilities Cohen's w, of a
-// slope; of images, whose pixels' means are about 6, the bias of each and its share of them.
+// The `detect` of each kind of question. Means: standard deviations. Variances and costs: a ratio.
+// Laws: the largest distance of distribution functions. Cells: Cohen's w. A slope: its own units.
+// Images, whose pixels' means are about 6: each pixel's bias and its share of them.
 constexpr double mean_effect = 0.15;
 constexpr double variance_effect = 0.3;
 constexpr double law_effect = 0.1;
@@ -33,7 +33,7 @@ struct Facts {
   double low = 0;
   double high = 0;
   bool has_density = false;
-  double shift_at_law_effect = 0;  ///< 0 where there is no density
+  double shift_at_law_effect = 0;  ///< 0 if there is no density
 
   double variance() const { return deviation * deviation; }
   bool two_valued() const { return law.starts_with("bernoulli("); }
@@ -58,7 +58,7 @@ EstimatorEntry costly(const std::string& name, const std::string& law) {
           .primaries = 1};
 }
 
-/// 64 pixels of means from 1 to 10, each with this law's noise.
+/// 64 pixels with means from 1 to 10, each with this law's noise.
 EstimatorEntry picture_of(const std::string& name, const std::string& law) {
   return {.name = name,
           .plugin = "analytic/ramp",
@@ -79,7 +79,6 @@ double distance_at(const std::function<double(double)>& cdf, const Facts& facts,
   return largest;
 }
 
-/// The shift that moves a distribution function by law_effect.
 double shift_at_law_effect(const Facts& facts) {
   const Source place{};
   const Claim claim = parse_claim("distribution(x) == " + facts.law, place.where);
@@ -108,7 +107,7 @@ Facts facts_of(const std::string& law) {
   return facts;
 }
 
-/// A case before its tests are made: claims as text.
+/// A case as text, before its tests are made.
 struct Draft {
   std::string method;
   std::string question;

@@ -19,10 +19,10 @@ using reports::Verdict;
 
 constexpr double usual_beta = 0.01;
 
-/// One test of one case at one alpha: a suite of its own.
+/// One test of one case at one alpha, as a suite of its own.
 struct Item {
-  std::size_t alpha;  ///< index
-  std::size_t of;     ///< index of the case
+  std::size_t alpha;
+  std::size_t of;
   Trial trial;
   bool proof;
   Suite suite;
@@ -44,7 +44,7 @@ std::vector<Item> items_of(const CalibrationBench& bench, const std::vector<doub
       for (std::size_t t = 0; t < trials_of_a_case; ++t) {
         if (!*tests[t]) continue;
         Suite suite{.name = "calibration", .stem = "calibration", .alpha = alphas[a]};
-        // The mistake of a proof is a pass: beta is its level.
+        // A proof errs by passing, so its level is beta.
         suite.beta = each.proof ? alphas[a] : usual_beta;
         suite.tests = {**tests[t]};
         items.push_back({a, c, static_cast<Trial>(t), each.proof, std::move(suite)});
@@ -54,7 +54,6 @@ std::vector<Item> items_of(const CalibrationBench& bench, const std::vector<doub
   return items;
 }
 
-/// The pilots of all estimators that the questions name, each drawn once.
 Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed) {
   std::map<std::string, const PreparedEstimator*> used;
   for (const Question& question : questions) {
@@ -70,7 +69,7 @@ Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed) {
 
 bool is_red(const reports::Gate& gate) { return gate.state == "red"; }
 
-/// Nobody looks at the pictures of a calibration's observations.
+/// Turns off histograms, which a calibration does not show.
 void leave_out_pictures(const Pools& pools) {
   for (const auto& pool : pools.all()) {
     for (ChannelPlan& channel : pool->plans()) channel.histogram_high = channel.histogram_low;
@@ -95,7 +94,6 @@ void tally(VerdictCounts& counts, const TestOutcome& outcome, bool proof) {
   ++counts.methods[outcome.plan.method.name];
 }
 
-/// All items under one seed.
 void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std::uint64_t seed,
               Counts& counts) {
   std::vector<Question> questions;
@@ -117,7 +115,7 @@ void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std
           .outcome = {.question = questions[i], .place = place[0], .plan = std::move(plan)},
           .verdict_only = true});
     } catch (const InputError&) {
-      // Out of reach: a run would stop before it sampled.
+      // A run would stop before sampling.
       ++mine.invalid;
       continue;
     }

@@ -70,8 +70,8 @@ RunOptions options(const Given& given) {
   return options;
 }
 
-/// The command with the options that change what is sampled and how it is judged. The
-/// seed that was used and a filter are for the record to add.
+/// The command with the options that change sampling and verdicts. The record adds the seed and a
+/// filter.
 class Replayable {
  public:
   explicit Replayable(const std::string& command) : text_("assay " + command) {}
@@ -155,7 +155,7 @@ Command check_command(const Given& given, const std::string& name) {
   if (given.claim.ends_with(".yaml"))
     usage_error("`assay check` tests one claim; a suite is run by `assay run " + given.claim + "`");
   // Assigned, not initialised in one expression: GCC 12 destroys the members of a nested aggregate
-  // twice when a later one throws, and options() throws at a wrong value.
+  // twice when a later one throws. options() throws at a wrong value.
   CheckCommand command;
   command.options = options(given);
   command.output = output(given);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The command line as data. Parsing has no effects; program.h acts on what it returns.
+// The command line as data. Parsing has no effects; program.h acts on its result.
 
 #include <string>
 #include <variant>
@@ -66,7 +66,7 @@ struct MergeCommand {
   Output output;
 };
 
-/// --help, --version: text for standard output.
+/// The text for --help and --version.
 struct TextCommand {
   std::string text;
 };
@@ -75,8 +75,8 @@ using Command = std::variant<RunCommand, PlanCommand, CheckCommand, ImagesComman
                              ListCommand, DescribeCommand, ReplayArguments, ReportCommand,
                              MergeCommand, CalibrateCommand, TextCommand>;
 
-/// Parses the arguments after the program's name. InputError, with what was meant where that can be
-/// guessed, for anything that is not exactly as `--help` says.
+/// Parses the arguments after the program's name. InputError, if possible with a suggestion, for
+/// anything that is not as `--help` says.
 Command parse_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace assay::harness

@@ -140,7 +140,7 @@ Examples:
 
 std::string wrapped_options(const std::string& help) {
   constexpr std::size_t width = 100;
-  constexpr std::size_t indent = 30;  // where CLI11 begins what an option is about
+  constexpr std::size_t indent = 30;  // column of CLI11's descriptions of options
   const std::size_t options = help.find("\nOptions:\n");
   if (options == std::string::npos) return help;
   std::string out = help.substr(0, options);

@@ -4,13 +4,13 @@
 
 namespace assay::harness {
 
-/// What `assay --help` prints.
+/// The text of `assay --help`.
 std::string general_help();
 
-/// What stands before the options in `assay SUBCOMMAND --help`: a sentence and examples.
+/// The text before the options in `assay SUBCOMMAND --help`: a sentence and examples.
 std::string help_of(const std::string& subcommand);
 
-/// CLI11's help with its list of options at most 100 columns wide.
+/// CLI11's help with its options at most 100 columns wide.
 std::string wrapped_options(const std::string& help);
 
 }  // namespace assay::harness

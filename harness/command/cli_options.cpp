@@ -39,7 +39,7 @@ void add_output(CLI::App* sub, Given& given) {
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
 }
 
-/// What differs between the commands that sample and judge.
+/// Texts that differ between the commands that sample and judge.
 struct Running {
   const char* seed;
   const char* alpha;
@@ -66,7 +66,7 @@ void add_running(CLI::App* sub, Given& given, const Running& about) {
   add_output(sub, given);
 }
 
-/// What differs between the commands that take estimators.
+/// Texts that differ between the commands that take estimators.
 struct Sizes {
   const char* primaries;
   const char* secondaries;
@@ -253,7 +253,7 @@ Texts subcommand_names(const CLI::App& app) {
   return names;
 }
 
-/// The key of a suite that says what an option of `check` does.
+/// The suite's key that does the same as an option of `check`.
 std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
   if (sub.get_name() != "run" && sub.get_name() != "plan") return "";
   for (const char* key : {"detect", "allow", "test", "over", "reference", "cost", "budget",
@@ -282,7 +282,7 @@ void refuse_extras(const CLI::App& sub) {
   }
 }
 
-/// A suite, a saved run or a claim says which command it is for.
+/// The command that fits a suite, a saved run or a claim.
 std::string command_meant(const std::string& word, const CLI::App& app) {
   const auto meant = [&](const char* command) {
     return fmt::format("; did you mean `assay {} {}`?", command, shell_quoted(word));
@@ -308,8 +308,8 @@ const CLI::App& chosen(const CLI::App& app) {
   return *parsed.front();
 }
 
-/// Arguments are asked for by our own messages; that most must be there is for the usage line
-/// alone.
+/// Our own code demands arguments; CLI11 marks them as required only to show them in the usage
+/// line.
 std::string help_text(CLI::App& app) {
   const auto parsed = app.get_subcommands();
   if (parsed.empty()) return general_help();
@@ -330,14 +330,14 @@ Texts without_help_command(const Texts& arguments, const CLI::App& app) {
   if (arguments.size() == 1) return {"--help"};
   Texts asked(arguments.begin() + 1, arguments.end());
   const Texts names = subcommand_names(app);
-  // Of a command that there is not: the words alone, so that they are refused.
+  // An unknown command is passed on, so that it is refused.
   if (std::find(names.begin(), names.end(), asked.front()) != names.end()) {
     asked.emplace_back("--help");
   }
   return asked;
 }
 
-/// Whether the word is KIND=PATH, as nothing else is that may follow a report.
+/// True for KIND=PATH, which nothing else that follows a report resembles.
 bool is_report(const std::string& word) {
   const std::size_t kind = word.find_first_not_of("abcdefghijklmnopqrstuvwxyz");
   return kind != std::string::npos && kind > 0 && word[kind] == '=';
@@ -361,8 +361,8 @@ Texts with_an_option_each(const Texts& words) {
   return all;
 }
 
-/// What CLI11 refuses, with the methods where one was to be named. Of a value that is missing it
-/// says "--detect: 1 required X missing".
+/// CLI11's refusal, reworded: it names the methods if one was expected. CLI11 says "--detect: 1
+/// required X missing" if a value is missing.
 std::string in_words(const CLI::ParseError& error) {
   std::string text = error.what();
   const std::size_t colon = text.find(": 1 required ");

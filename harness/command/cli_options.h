@@ -1,7 +1,6 @@
 #pragma once
 
-// Which commands and options there are, what --help says of each, and the words of a command line
-// sorted by them.
+// Defines commands, options and their help, and sorts the words of a command line by them.
 
 #include <string>
 #include <vector>
@@ -10,9 +9,9 @@ namespace assay::harness {
 
 using Texts = std::vector<std::string>;
 
-/// Every option's text as it was typed; empty where it was not. CLI11 sorts the words (and is seen
-/// by cli_options.cpp alone, as it takes ten seconds to compile), our own functions read the
-/// values, so that messages are alike everywhere.
+/// Every option's text as it was typed; empty if it was not. CLI11 only sorts words, and only
+/// cli_options.cpp includes it, since it compiles slowly. Our own functions read the values, so
+/// that messages are alike everywhere.
 struct Given {
   std::string claim, source, what, plugin, record, test, observation, runs, samples;
   Texts suites, estimators, sets, reports, methods, laws, alphas, records, filters, tags;
@@ -23,16 +22,15 @@ struct Given {
 };
 
 struct SortedWords {
-  std::string command;  ///< as "run"; empty where the version or help was asked for
+  std::string command;  ///< as "run"; empty for version and help
   Given given;
   bool version = false;
-  std::string help;  ///< the text that was asked for
+  std::string help;  ///< requested text
 };
 
-/// An InputError about the command line.
 [[noreturn]] void usage_error(const std::string& why);
 
-/// InputError on a command or option that there is not, or an argument too many.
+/// InputError for an unknown command or option, and for an extra argument.
 SortedWords sorted_words(const Texts& arguments);
 
 }  // namespace assay::harness

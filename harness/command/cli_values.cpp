@@ -13,7 +13,7 @@ namespace assay::harness {
 
 namespace {
 
-/// Readings of suites say "it is `x`" at a place; an option has none.
+/// Functions for suites read options too: they say "it is `x`" at a place, and an option has none.
 Value given(const std::string& text) { return Value::scalar(text); }
 
 std::uint64_t random_seed() {
@@ -24,7 +24,7 @@ std::uint64_t random_seed() {
   return seed;
 }
 
-/// A kind by itself, or a path by its ending, completed.
+/// A report's kind alone, or a path by its ending, completed.
 std::string meant_report(std::string text) {
   while (text.ends_with('=')) text.pop_back();
   const std::string ending = text.substr(std::min(text.rfind('.') + 1, text.size()));
@@ -82,7 +82,7 @@ std::pair<unsigned, unsigned> parse_shard(const std::string& text) {
 
 ReportRequest parse_report(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (text == "console") return {text, "-"};  // the kind that is for reading at once
+  if (text == "console") return {text, "-"};  // the kind for reading at once
   if (equals == std::string::npos || equals + 1 == text.size()) {
     throw InputError({}, fmt::format("--report must be KIND=PATH, but it is `{}`; write "
                                      "`--report {}`, where the path - is standard output",

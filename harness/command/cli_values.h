@@ -1,6 +1,6 @@
 #pragma once
 
-// Values of command-line options. All throw InputError that names the option.
+// Reads values of command-line options. All functions throw InputError that names the option.
 
 #include <optional>
 #include <string>

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int nothing_ran = 4;
 
-/// Says so where a part of the selection selects no test.
+/// True, with a message, if a part of the selection selects no test.
 bool selects_nothing(const std::vector<Suite>& suites, const Selection& selection) {
   const std::string why = unmatched(suites, selection);
   if (!why.empty()) fmt::print(stderr, "assay: {}", why);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the subcommands do, apart from parsing their arguments. Each returns an exit code.
+// The subcommands, without the parsing of arguments. Each returns an exit code.
 
 #include <string>
 #include <vector>
@@ -11,17 +11,17 @@
 
 namespace assay::harness {
 
-/// Runs, writes the reports. 4 without a report when no test is selected.
+/// Runs the suites and writes the reports. Returns 4 without a report if no test is selected.
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
-/// Prints what a run of the suites would do; only pilots are drawn. 4 when no test is
-/// selected, 1 when a test cannot come out as expected by its plan.
+/// Prints what a run would do; only pilots are drawn. Returns 4 if no test is selected, 1 if a test
+/// cannot come out as expected.
 int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
 int report_saved_run(const std::string& file, const Output& output);
 
 struct SampleArguments {
   std::string source;  ///< as in a claim: estimator or plugin, with part
   std::vector<std::string> estimators = {};
-  std::optional<std::uint64_t> secondaries = {};  ///< default 10, or the rows there are
+  std::optional<std::uint64_t> secondaries = {};  ///< Default: 10, or all rows.
   std::uint64_t primaries = 1;
   std::uint64_t seed = 1;
 };

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t page_width = 100;
 
-/// Columns that text takes on a terminal: its code points.
+/// Columns of the text on a terminal: its code points.
 std::size_t columns(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(
       text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; }));
@@ -63,7 +63,7 @@ const char* type_name(ParameterType type) {
 }
 
 const char* bias_text(const Information& information) {
-  // A mutant's bias is its defect's; the class is that of the estimator it was made from.
+  // A mutant's bias is its defect's; the class is its original's.
   if (!information.original.empty()) return "that of its defect";
   if (information.name == "recorded") return "unknown: the observations were made elsewhere";
   if (information.says_nature) return "what the program says of it; unknown where it says nothing";
@@ -104,7 +104,7 @@ const char* domain_name(Domain domain) {
   return "";
 }
 
-/// "(0, 1]", "[1, inf)", "a, b or c"; "" when anything goes.
+/// "(0, 1]", "[1, inf)", "a, b or c"; "" if anything is allowed.
 std::string range_text(const ParameterInformation& p) {
   if (!p.choices.empty()) {
     std::string all;
@@ -118,7 +118,7 @@ std::string range_text(const ParameterInformation& p) {
 
 std::string field(const char* name, const std::string& text) {
   if (text.empty()) return "";
-  // The first line stands beside the field's name.
+  // The first line is beside the field's name.
   return fmt::format("{:<12}", name) + wrapped(text, page_width, 12).substr(12);
 }
 
@@ -186,7 +186,7 @@ std::string setup_text(const Setup& setup) {
   return out;
 }
 
-/// What only a prepared set-up knows, if it can be prepared without the user's parameters.
+/// Facts that need a prepared set-up, if default parameters suffice for one.
 std::string prepared_text(const Entry& plugin) {
   const Information& information = plugin.information;
   try {

@@ -17,13 +17,13 @@ constexpr int page_width = 80;
 std::size_t end_of_piece(const std::string& text, std::size_t begin) {
   std::size_t end = begin;
   for (bool quoted = false; end < text.size() && (quoted || text[end] != ' '); ++end) {
-    // One that is never closed quotes nothing.
+    // A backtick that is never closed does not quote.
     if (text[end] == '`') quoted = !quoted && text.find('`', end + 1) != std::string::npos;
   }
   return end;
 }
 
-/// The text after `lead`, its further lines as deep.
+/// The text after `lead`; further lines are indented as deep.
 std::string wrapped(const std::string& text, const std::string& lead) {
   std::string out;
   std::string line = lead;
@@ -48,7 +48,7 @@ std::string wrapped(const std::string& text, const std::string& lead) {
 std::string in_lines(const std::string& sentence) {
   const std::size_t end = std::min(sentence.find('\n'), sentence.size());
   std::string out = wrapped(sentence.substr(0, end), "assay: ");
-  // What is already in lines, as the words of another program, stays so.
+  // Text that already has lines, such as another program's, keeps them.
   if (end < sentence.size()) out += sentence.substr(end + 1) + "\n";
   return out;
 }

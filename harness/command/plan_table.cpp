@@ -47,12 +47,12 @@ std::string count_of(double count) {
   return plain(reports::count_text(static_cast<std::uint64_t>(std::llround(count))));
 }
 
-/// Cost of a test's last look, or of a pool.
+/// The cost of a test's last look, or of a pool.
 struct Total {
   double primaries = 0;
   double rays = 0;
   double seconds = 0;
-  bool known = true;  ///< rays and seconds are of everything
+  bool known = true;  ///< rays and seconds are complete
 
   void add(const Pool& pool, double secondaries, const UnitCosts& costs) {
     primaries += secondaries *
@@ -82,7 +82,7 @@ Total total_of(const TestWork& work, const UnitCosts& costs) {
   return total;
 }
 
-/// Of the one subject, of both where they differ, and of a sweep from the least to the most.
+/// One number, both if the subjects differ, or a sweep's least and most.
 std::string primaries_text(const Plan& plan) {
   const auto [least, most] = std::minmax_element(plan.primaries.begin(), plan.primaries.end());
   const auto text = [](std::uint64_t primaries) {
@@ -97,7 +97,7 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
   const Regions& regions = test.plan.regions[0];
   std::optional<double> effect = regions.detect;
   if (regions.relation == Relation::within) effect = regions.within;
-  // Data that are given may find less than what was asked for.
+  // Given data may find less than `detect` asks for.
   if (!effect || test.question.test->secondaries || test.question.test->budget) {
     effect = forecast.detectable;
   }
@@ -112,7 +112,7 @@ std::string gate_text(const reports::Gate& gate) {
                      reports::human(gate.limit));
 }
 
-/// Gates that are not green in words, and how many are.
+/// The gates that are not green in words, and the number of green ones.
 std::vector<std::string> gate_notes(const std::vector<reports::Gate>& gates) {
   std::vector<std::string> notes;
   std::size_t green = 0;
@@ -142,8 +142,8 @@ std::vector<std::string> gate_notes(const std::vector<reports::Gate>& gates) {
   return notes;
 }
 
-/// Why the test will be an error: it has no plan, or an estimator stopped when its cost was
-/// measured; "" where nothing is known.
+/// Why the test will be an error: it has no plan, or an estimator stopped while its cost was
+/// measured; "" if unknown.
 std::string trouble_of(const TestWork& work, const UnitCosts& costs) {
   const TestOutcome& test = work.outcome;
   if (!test.plan.error.empty()) return test.plan.error;
@@ -222,7 +222,7 @@ std::string line_of(const Cells& cells, const std::array<int, column_count>& wid
   return line;
 }
 
-/// Whether a program is missing that the suite needs.
+/// True if a program that the suite needs is missing.
 bool is_skipped(const SuiteRun& run) {
   return !run.untested.empty() && run.untested.front().verdict == reports::Verdict::skipped;
 }
@@ -257,7 +257,7 @@ void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
   page.blank();
 }
 
-/// All that is drawn at the most: each pool to the last look of the test that asks most of it.
+/// The most that can be drawn: each pool to its largest last look.
 Total total_of(const PlannedRun& planned, const UnitCosts& costs) {
   Total total;
   for (const auto& pool : planned.pools.all()) {
@@ -266,7 +266,7 @@ Total total_of(const PlannedRun& planned, const UnitCosts& costs) {
   return total;
 }
 
-/// What a run takes if theta = 0 in every claim: each pool to the largest of its tests' means.
+/// Expected cost if theta = 0 in every claim: each pool to the largest of its tests' means.
 Total expected_total(const PlannedRun& planned, const UnitCosts& costs) {
   std::map<const Pool*, std::uint64_t> most;
   for (const auto& run : planned.suites) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What `assay plan` prints: what a run would do, test by test.
+// The output of `assay plan`: what a run would do, test by test.
 
 #include <string>
 
@@ -8,14 +8,14 @@
 
 namespace assay::harness {
 
-/// Tables of at most 100 columns: a suite's tests with method, primaries a secondary, looks, first
-/// and last look's secondaries, cost at the last look, the effect that is found or shown there,
-/// the share of it that is drawn on average if theta = 0, and what the pilot's gates say; then
-/// totals. Plain text without colours.
+/// Tables of at most 100 columns without colours. A test's row has its method, primaries per
+/// secondary, looks, secondaries of the first and last look, and the last look's cost. It then has
+/// the effect that this look finds, the expected share of it if theta = 0, and the pilot's gates.
+/// Totals follow.
 std::string plan_text(const PlannedRun& planned, const UnitCosts& costs);
 
-/// 1 where a selected test cannot come out as it expects because no method is valid or a source
-/// stopped, else 0; 77 where all that is selected will be skipped; 4 where nothing is selected.
+/// Returns 1 if a selected test cannot come out as expected: no method is valid, or a source
+/// stopped. Returns 77 if all selected tests will be skipped, 4 if none is selected, else 0.
 int plan_exit_code(const PlannedRun& planned, const UnitCosts& costs);
 
 }  // namespace assay::harness

@@ -56,9 +56,8 @@ int act(const CheckCommand& command) {
   return run_suites({suite_of_claim(command.arguments)}, command.options, command.output);
 }
 
-/// What is freed stays with the process. Moments, weights and maps of pictures come and go by tens
-/// of megabytes, and pages that the system has to give anew take longer than what is done with
-/// them.
+/// Keeps freed memory in the process. Pictures allocate and free tens of megabytes, and new pages
+/// from the system would cost more than the work on them.
 void keep_freed_memory() {
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, -1);
@@ -97,7 +96,7 @@ std::string claim_of(const Command& command) {
   return "";
 }
 
-/// Output that could not be written (a full disk, a closed pipe) must not look like success.
+/// Failed output (a full disk, a closed pipe) must not look like success.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
   fmt::print(stderr, "assay: standard output could not be written\n");
@@ -117,7 +116,7 @@ int guarded(const std::vector<std::string>& arguments, Command& command) {
 }  // namespace
 
 int program(const std::vector<std::string>& arguments) {
-  // Not for users: this very program started by itself, to keep a library's crash out of the run.
+  // The program starts itself with this word, to keep a library's crash out of the run.
   if (!arguments.empty() && arguments.front() == library_host_word) {
     return host_library({arguments.begin() + 1, arguments.end()});
   }
@@ -127,7 +126,7 @@ int program(const std::vector<std::string>& arguments) {
   } catch (const InputError& e) {
     fmt::print(stderr, "{}", failure_text(e, claim_of(command)));
   } catch (const std::runtime_error& e) {
-    // The world's fault: a full disk, a file that went away.
+    // An outside cause: a full disk, a vanished file.
     fmt::print(stderr, "{}", in_lines(e.what()));
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}", in_lines(fmt::format("internal error: {}", e.what())));

@@ -29,7 +29,7 @@ void add_note(reports::Record& record, const std::string& note) {
   record.note += (record.note.empty() ? "" : "; ") + note;
 }
 
-/// What a reader of the ledger would not guess.
+/// Adds remarks on the ledger.
 void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<SuiteRun>>& runs,
                  const RunOptions& options) {
   std::size_t outside = 0;

@@ -1,7 +1,5 @@
 #pragma once
 
-// From suites to a record: pilot, plan, sampling, the family decision, verdicts.
-
 #include <string>
 #include <vector>
 
@@ -12,8 +10,8 @@
 
 namespace assay::harness {
 
-/// Runs the selected tests of the suites. InputError for anything found wrong before sampling. A
-/// ledger that cannot be written is a std::runtime_error, or is told in `ledger_fault`.
+/// Runs the selected tests of the suites. InputError for any mistake found before sampling. A
+/// ledger that cannot be written is a std::runtime_error, or goes to `ledger_fault`.
 reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
                     std::string* ledger_fault = nullptr);
 

@@ -25,7 +25,7 @@ std::string in_header(const std::string& name) {
   return quoted + "\"";
 }
 
-/// What a source names: an estimator's channels, or the marginals of one of its samplers.
+/// A source's channels: an estimator's, or the marginals of one of its samplers.
 struct Sampled {
   std::shared_ptr<const Setup> setup;
   std::string purpose = "";
@@ -46,7 +46,7 @@ bool has_marginal(const NamedSampler& named, const std::string& name) {
   return std::ranges::find(all, name, &Marginal::name) != all.end();
 }
 
-/// Where numbers of cells are to be printed.
+/// Computes the cells if their numbers are to be printed.
 void ask_for_cells(const Sampled& sampled, const Source& source) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(sampled.setup.get());
   if (draws == nullptr) return;
@@ -68,7 +68,7 @@ Sampled sampled_by(const PreparedEstimator& estimator, const Source& source) {
   const std::vector<NamedSampler> samplers = estimator.setup->samplers();
   for (const NamedSampler& named : samplers) {
     const bool by_name = named.name == source.part.substr(0, dot);
-    // As in a claim: a marginal of the only sampler needs no sampler's name.
+    // A marginal of the only sampler needs no sampler's name.
     const bool by_marginal = samplers.size() == 1 && has_marginal(named, source.part);
     if (!by_name && !by_marginal) continue;
     sampled = Sampled{.setup = sampler_setup(named, source.where), .purpose = named.name};

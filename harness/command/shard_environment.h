@@ -1,17 +1,16 @@
 #pragma once
 
-// The shard that a test runner asks for by its environment, as GoogleTest and Bazel have it.
+// Takes the shard from a test runner's environment, as GoogleTest and Bazel do.
 
 #include "harness/base/environment_variables.h"
 #include "harness/suite/run_options.h"
 
 namespace assay::harness {
 
-/// Unless the options name a shard: that of GTEST_TOTAL_SHARDS and GTEST_SHARD_INDEX (from 0), else
-/// of TEST_TOTAL_SHARDS and TEST_SHARD_INDEX; one shard in all is a whole run. The files that
-/// GTEST_SHARD_STATUS_FILE and TEST_SHARD_STATUS_FILE name are made, by which the runner learns
-/// that its shards are known. InputError for one variable without the other, or values that are no
-/// shard.
+/// Does nothing if the options name a shard. It reads GTEST_TOTAL_SHARDS and GTEST_SHARD_INDEX
+/// (from 0), else TEST_TOTAL_SHARDS and TEST_SHARD_INDEX; a total of 1 is a whole run. It makes the
+/// files that GTEST_SHARD_STATUS_FILE and TEST_SHARD_STATUS_FILE name, which tell the runner that
+/// shards work. InputError for one variable without the other, or an invalid shard.
 void take_shard_from(const Environment& environment, RunOptions& options);
 
 }  // namespace assay::harness

@@ -27,7 +27,7 @@ std::vector<stats::PlaneCell> heavy_cells(const DensityCells& density) {
   return cells;
 }
 
-/// The shortest arc that holds all of them, of a circle; it may end beyond the circle's.
+/// The shortest arc of a circle that holds all spans; it may end beyond 2 pi.
 stats::Span arc_around(std::vector<stats::Span> spans, const stats::Span& circle) {
   std::ranges::sort(spans, {}, &stats::Span::low);
   double end = spans.back().high - circle.width();
@@ -36,7 +36,7 @@ stats::Span arc_around(std::vector<stats::Span> spans, const stats::Span& circle
   for (const stats::Span& span : spans) {
     if (span.low - end >= widest) {
       widest = span.low - end;
-      // From the end of the gap on, around to where it began.
+      // The arc is the circle without its largest gap.
       arc = {span.low, end + circle.width()};
     }
     end = std::max(end, span.high);

@@ -1,7 +1,6 @@
 #pragma once
 
-// Where a density's mass lies close together: its cells as large as they are, not as large as the
-// grid's.
+// An enlarged part of the domain, for densities whose mass lies close together.
 
 #include <optional>
 #include <span>
@@ -12,18 +11,17 @@
 
 namespace assay::harness {
 
-/// Points of a rectangle, side times side of them, row by row, each with the residual of the cell
-/// that it lies in.
+/// The residuals at side x side points of a rectangle, row by row. A point has its cell's residual.
 struct CloseUp {
-  std::string axes;  ///< what rows and columns are
+  std::string axes;
   std::size_t side = 0;
   std::vector<double> z = {};
 };
 
-/// The rectangle around the cells that have at least half of the heaviest one's mass; an azimuth
-/// may go on beyond 2 pi. Of several lobes the cell that is farthest off, 0 in a cell without a
-/// residual. `z`: of each cell in the domain. Nothing where no cell in the rectangle has one, and
-/// where the rectangle is an eighth of all coordinates or more: the grid shows it.
+/// The rectangle around the cells that have at least half of the heaviest one's mass. An azimuth
+/// may go on beyond 2 pi. `z` has the residual of each cell in the domain. With several lobes a
+/// point shows the cell that is farthest off. A cell without a residual shows 0. nullopt if the
+/// rectangle has no residual, or covers an eighth of the domain, which the grid shows.
 std::optional<CloseUp> close_up(const DensityCells& density, const Sampler& sampler,
                                 std::span<const std::optional<double>> z);
 

@@ -19,10 +19,9 @@ double relative_difference(double a, double b) {
   return std::abs(a - b) / std::max(std::abs(a), std::abs(b));
 }
 
-/// The larger, and NaN where one is.
 double farther(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
-/// Whether a draw's own numbers say how far it is from what its sampler declares.
+/// True if the draw alone tells how far it is from what its sampler declares.
 bool needs_no_density(const Sampler& sampler, const SamplerDraw& draw) {
   return !draw.valid || sampler.point_mass(draw.lobe) > 0;
 }
@@ -39,7 +38,7 @@ double with_density(const SamplerDraw& draw, double density, double evaluation) 
 struct JudgedDraw {
   SamplerDraw draw;
   double difference = 0;
-  double density = 0;  ///< as declared at its point, where that was asked for
+  double density = 0;  ///< declared at its point, if asked for
 };
 
 JudgedDraw judged_alone(const Sampler& sampler, const SamplerDraw& draw) {
@@ -48,7 +47,7 @@ JudgedDraw judged_alone(const Sampler& sampler, const SamplerDraw& draw) {
   return {draw, with_density(draw, density, sampler.evaluate(draw.point)), density};
 }
 
-/// Draws that must be held against density() and evaluate(), by their places among others.
+/// Draws to compare with density() and evaluate(), and their indices.
 struct Compared {
   std::vector<std::size_t> places = {};
   std::vector<Point> points = {};
@@ -68,8 +67,8 @@ Compared compared(const Sampler& sampler, std::span<const SamplerDraw> draws) {
   return some;
 }
 
-/// Numbers at the points up to the first of which there is none; how many. Throws where there is
-/// not even one.
+/// Writes numbers at the first points, as many as can be had, and returns how many. Throws if the
+/// first has none.
 std::size_t write_some(std::span<const Point> points, std::span<double> out, auto numbers) {
   std::size_t done = 0;
   try {
@@ -80,7 +79,7 @@ std::size_t write_some(std::span<const Point> points, std::span<double> out, aut
   return done;
 }
 
-/// Of how many of the draws the numbers can be had. Throws where of none.
+/// The number of leading draws whose declared numbers can be had. Throws if it is 0.
 std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
   if (some.points.empty()) return draws;
   try {
@@ -96,8 +95,7 @@ std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
   }
 }
 
-/// Up to the first of which no claim can be: what its sampler declares there is not asked for.
-/// Throws where that is the first of all.
+/// The draws before the first unsound one. Throws if the first is unsound.
 std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream> streams) {
   std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
   for (std::size_t i = 0; i < draws.size(); ++i) {
@@ -137,7 +135,6 @@ class ConsistencyEstimator final : public Estimator {
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
     const auto [draw, difference, density] = next(random);
     if (density < 0) sound_density(setup_.named(), draw.point, density);
-    // NaN is not consistent either.
     const bool consistent = difference <= rounding_;
     out[0] =
         consistent ? 0 : 1 + static_cast<double>(setup_.cells().index(sound(setup_.named(), draw)));

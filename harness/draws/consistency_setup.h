@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether a sampler's draws agree with what it declares, draw by draw, located by cell.
+// Tests draw by draw that a sampler agrees with what it declares, and where it does not.
 
 #include <optional>
 
@@ -9,21 +9,20 @@
 
 namespace assay::harness {
 
-/// How far a draw is from what its sampler declares, as the larger of two relative differences,
-///   the draw's density from density(point), and weight x density(point) from evaluate(point);
-/// that of a and b is |a - b| / max(|a|, |b|), 0 where they are equal. A draw that yields no point
-/// must have weight 0, else it is infinitely far. 0 for the points of a lobe that is a point mass,
-/// which have no density. NaN where one of the numbers is.
+/// The larger of two relative differences |a - b| / max(|a|, |b|), 0 if a = b. One compares the
+/// draw's density with density(point), the other weight x density(point) with evaluate(point).
+/// Infinite for a draw without a point whose weight is not 0. Point masses have no density and give
+/// 0. NaN if one of the numbers is NaN.
 double inconsistency(const Sampler& sampler, const SamplerDraw& draw);
 
-/// A sampler's draws as observations of a channel `inconsistent`: 0 for a draw no farther than the
-/// sampler's rounding() from what it declares, else 1 + the number of its cell; and of a channel
-/// `difference`, how far it is.
+/// A sampler's draws as observations of two channels. Channel `difference` has inconsistency().
+/// Channel `inconsistent` is 0 if that is at most the sampler's rounding(), else 1 + the number of
+/// the draw's cell.
 class ConsistencySetup final : public SamplerSetup {
  public:
   explicit ConsistencySetup(NamedSampler named);
 
-  /// Of equal measure: where a draw is, whatever its density.
+  /// Cells of equal measure; they do not depend on the density.
   const DrawCells& cells() const { return cells_; }
 
   std::vector<Channel> channels() const override;
@@ -35,11 +34,11 @@ class ConsistencySetup final : public SamplerSetup {
 
 inline const std::string inconsistent_channel = "inconsistent";
 
-/// The number of the first inconsistent observation among the pool's first `count`, drawn again one
-/// by one; nothing where there is none.
+/// The index of the first inconsistent observation among the pool's first `count`, found by drawing
+/// them again; nullopt if there is none.
 std::optional<std::uint64_t> first_inconsistent(const Pool& pool, std::uint64_t count);
 
-/// What tells the streams of a sampler's consistency from those of its draws.
+/// Keeps a sampler's consistency and its draws on different streams.
 std::string consistency_purpose(const std::string& sampler);
 
 std::shared_ptr<const SamplerSetup> consistency_setup(const NamedSampler& named,

@@ -9,7 +9,7 @@
 namespace assay::harness {
 namespace {
 
-// So many panels of both coordinates together cost about as much as the limits allow.
+// More panels of both coordinates together would exceed the limits of the quadrature.
 constexpr std::size_t most_panels = std::size_t{1} << 15;
 
 Panels affordable(Panels panels) {
@@ -34,7 +34,6 @@ void write_all(const Densities& densities, std::span<const Point> points, std::s
   }
 }
 
-/// A density on a plane as stats integrates it.
 class OnChart {
  public:
   OnChart(const DomainChart& chart, Densities densities)

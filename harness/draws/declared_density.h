@@ -11,20 +11,19 @@
 
 namespace assay::harness {
 
-/// A density at many points, of a sampler that may write those of the first few only. Throws as
-/// sound_density().
+/// A density at many points. A sampler may write only the first few, and returns how many. Throws
+/// as sound_density().
 using Densities = std::function<std::size_t(std::span<const Point>, std::span<double>)>;
 
-/// That of all lobes together, and of one. They keep a reference to the sampler's name.
+/// The density of all lobes together, and of one lobe. Both keep a reference to the sampler's name.
 Densities densities_of(const NamedSampler& named);
 Densities densities_of_lobe(const NamedSampler& named, int lobe);
 
-/// Of an interval.
 stats::LineDensity line_density(const Sampler& sampler, Densities densities);
 
-/// Of a domain of two coordinates, in its chart by the marginal of this number, 0 or 1; with so
-/// many panels as the sampler asks for, or half as many as often as they cost too much: jumps then
-/// lie inside panels, and bisection finds them.
+/// The density on a domain of two coordinates, in its chart by this marginal, 0 or 1. It asks for
+/// the sampler's panels, halved as often as they cost too much. Bisection then finds jumps inside
+/// panels.
 stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
                                   Densities densities);
 

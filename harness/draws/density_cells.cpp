@@ -9,21 +9,20 @@
 namespace assay::harness {
 namespace {
 
-// Where a density jumps the cells that it jumps in come out right to some 1e-6 together, a tenth of
-// what corners of its support between the nodes may hide; more digits take two and a half times as
-// long, and a million draws tell 1e-4 of a cell.
+// Cells at a jump of the density are right to 1e-6 together. A million draws tell 1e-4 of a cell,
+// so more digits would cost time for nothing.
 constexpr stats::QuadratureLimits limits{.tolerance = 1e-8, .deepest_bisection = 24};
 
-// More cells of a peak find finer defects, and need more points for those that are everywhere
-// (cells_power, stats/README.md). Not 1/32: that is one column of azimuths, of a lobe about the
-// pole.
+// More cells of a peak find finer defects, but need more points for those that are everywhere
+// (tests/cells_study.sh). A share of 1/32 would be one column of azimuths of a lobe about
+// the pole.
 constexpr double largest_share = 1.0 / 40;
 
 stats::AdaptiveCells cells_of_lobe(const NamedSampler& named, const stats::PlaneGrid& grid,
                                    int lobe) {
   const Sampler& sampler = *named.sampler;
   const Densities densities = densities_of_lobe(named, lobe);
-  // The grid's own cells must not all be halved for a little more than the mean.
+  // A grid's own cells must not all be halved if they are slightly above the mean.
   const double share = std::max(largest_share, 2 / static_cast<double>(grid.size()));
   if (sampler.domain() == Domain::interval) {
     return stats::adaptive_cells(grid.x_borders, line_density(sampler, densities), share, limits);

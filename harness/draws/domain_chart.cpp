@@ -50,7 +50,7 @@ DomainChart of_square() {
               }};
 }
 
-// v as a share of what u leaves. Where rounding led to u + v > 1 that is all.
+// v / (1 - u); 1 if rounding led to u + v > 1.
 double share_of_rest(double v, double u) {
   const double rest = 1 - u;
   if (v > rest) return 1;
@@ -79,7 +79,7 @@ DomainChart turned(DomainChart chart, Domain domain) {
       return Point{share.value * (1 - v.value), v.value, 0};
     };
     chart.coordinates = [](const Point& p) { return std::array{p[1], share_of_rest(p[0], p[1])}; };
-    return chart;  // the same element of area: 1 - v
+    return chart;  // area element as for the first: 1 - v
   }
   if (domain == Domain::square) {
     chart.point = [](const Coordinate& v, const Coordinate& u) {
@@ -99,7 +99,7 @@ DomainChart turned(DomainChart chart, Domain domain) {
   return chart;
 }
 
-// The first coordinate below which a share of the domain's measure lies.
+// The first coordinate below which this share of the domain's measure lies.
 double quantile(Domain domain, double share) {
   switch (domain) {
     case Domain::hemisphere:

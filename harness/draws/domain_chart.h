@@ -1,7 +1,7 @@
 #pragma once
 
-// Coordinates of a sampler's domain in which a rectangle is all of it, so that cells and marginals
-// of every domain are those of a rectangle.
+// Maps a sampler's domain to a rectangle, so that cells and marginals of all domains are those of a
+// rectangle.
 
 #include <array>
 #include <bit>
@@ -15,7 +15,7 @@
 
 namespace assay::harness {
 
-/// A coordinate's value, and of an angle what points are made of.
+/// A coordinate's value; for an angle also sine and cosine.
 struct Coordinate {
   double value;
   double cosine = 0;
@@ -33,9 +33,8 @@ struct DomainChart {
   std::array<double, 2> (*coordinates)(const Point&);
 };
 
-/// The coordinates of values that come again and again: a quadrature looks along every row of cells
-/// at the same places, and sine and cosine take longer than most densities. Of values that share a
-/// place in the table the latest is remembered.
+/// A cache of coordinates: quadrature meets the same values in every row of cells, and sine and
+/// cosine cost more than most densities. Each slot remembers the latest value.
 class RememberedCoordinates {
  public:
   explicit RememberedCoordinates(Coordinate (*coordinate)(double)) : coordinate_(coordinate) {}
@@ -50,7 +49,7 @@ class RememberedCoordinates {
   static constexpr int bits = 12;
 
   static std::size_t place_of(double value) {
-    // Knuth's multiplicative hashing, by the golden ratio.
+    // Knuth's multiplicative hashing by the golden ratio.
     return (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15) >> (64 - bits);
   }
 
@@ -59,7 +58,7 @@ class RememberedCoordinates {
       std::size_t{1} << bits, {.value = std::numeric_limits<double>::quiet_NaN()});
 };
 
-/// The chart whose first coordinate is the marginal of this number, 0 or 1. Not for intervals.
+/// The chart whose first coordinate is this marginal, 0 or 1. Not for intervals.
 DomainChart chart_by(Domain domain, std::size_t marginal);
 
 /// Cells of equal measure (solid angle, area) in the chart by the first marginal.

@@ -12,8 +12,8 @@
 namespace assay::harness {
 namespace {
 
-// Fine enough to see a defect of one quadrant or a wrong exponent; cells that expect fewer than 20
-// points are pooled by the test.
+// Fine enough to see a defect of one quadrant or a wrong exponent. The test pools cells that expect
+// fewer than 20 points.
 constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
 constexpr std::size_t interval_cells = 64;
 
@@ -21,7 +21,7 @@ constexpr std::size_t interval_cells = 64;
 
 std::string range_text(const std::string& name, stats::Span span) {
   const double largest = std::max(std::abs(span.low), std::abs(span.high));
-  // No two doubles share 17.
+  // 17 digits tell any two doubles apart.
   const int digits = std::clamp(2 + static_cast<int>(std::log10(largest / span.width())), 3, 17);
   return fmt::format("{} {:.{}g} to {:.{}g}", name, span.low, digits, span.high, digits);
 }

@@ -1,7 +1,5 @@
 #pragma once
 
-// Cells that a sampler's draws are counted in.
-
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -11,35 +9,34 @@
 
 namespace assay::harness {
 
-/// Cells of equal measure: 16 x 32 of two coordinates (domain_chart.h), 64 of an interval, or as
-/// many as there are numbers between its ends.
+/// Cells of equal measure: 16 x 32 for two coordinates (domain_chart.h), 64 for an interval. An
+/// interval with fewer doubles has a cell for each.
 stats::PlaneGrid measure_grid(const Sampler& sampler);
 
-/// The cells of every lobe, one lobe's behind another's, then one for every lobe that is a point
-/// mass; the last is the draws that yield no point.
+/// The cells of all lobes in turn, then one for each point mass, then one for draws without a
+/// point.
 class DrawCells {
  public:
-  /// The same grid for every lobe. Keeps a reference to the sampler.
+  /// Uses the same grid for every lobe. Keeps a reference to the sampler.
   explicit DrawCells(const Sampler& sampler);
-  /// Each lobe's own.
+  /// Gives each lobe its own cells.
   DrawCells(const Sampler& sampler, std::vector<stats::HalvedCells> of_lobes);
 
   std::size_t size() const { return lobes_end_ + point_masses_.size() + 1; }
-  /// Number of the cell of a draw that is sound().
+  /// The cell of a draw that is sound().
   std::size_t index(const SamplerDraw& draw) const;
-  /// "theta 0.1 to 0.2, phi 0 to 0.196" of lobe 1, where there are several.
+  /// "theta 0.1 to 0.2, phi 0 to 0.196"; with several lobes also the lobe.
   std::string describe(std::size_t cell) const;
-  /// How many are parts of a domain, from number 0 on.
+  /// The number of cells that are parts of a domain; they come first.
   std::size_t in_domain() const { return lobes_end_; }
-  /// The cell of measure_grid() that one of them is part of.
+  /// The cell of measure_grid() that contains it.
   std::size_t grid_cell(std::size_t cell) const;
-  /// Where one of them lies, in cell_coordinates().
+  /// The cell's bounds in cell_coordinates().
   stats::PlaneCell sides(std::size_t cell) const;
-  /// Each lobe's at this place. Throws std::domain_error outside the grid.
+  /// The cell of each lobe at this place. Throws std::domain_error outside the grid.
   std::vector<std::size_t> at(double x, double y) const;
 
  private:
-  /// One of a lobe's cells.
   struct Found {
     std::size_t lobe;
     std::size_t cell;
@@ -50,17 +47,17 @@ class DrawCells {
   std::vector<stats::HalvedCells> of_lobes_;
   std::vector<std::size_t> begin_;  ///< number of each lobe's first cell
   std::size_t lobes_end_ = 0;
-  std::vector<int> point_masses_;  ///< lobes
+  std::vector<int> point_masses_;  ///< their lobes
 };
 
-/// The marginals of a sampler's domain; of an interval within its bounds.
+/// The marginals of a sampler's domain; for an interval with its bounds.
 std::vector<Marginal> marginals_of(const Sampler& sampler);
 
-/// "theta 0.1 to 0.2", with as many digits as tell the ends apart.
+/// "theta 0.1 to 0.2", with enough digits to tell the ends apart.
 std::string range_text(const std::string& name, stats::Span span);
 
-/// The coordinates of cells: the marginals, but of a triangle the second is a share of what the
-/// first leaves.
+/// The coordinates of cells. They are the marginals, except that a triangle's second is v / (1 -
+/// u).
 std::vector<Marginal> cell_coordinates(const Sampler& sampler);
 
 }  // namespace assay::harness

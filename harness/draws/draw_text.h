@@ -1,7 +1,5 @@
 #pragma once
 
-// A sampler's draw in words, for whoever has to find out what is wrong with it.
-
 #include <cstdint>
 #include <string>
 
@@ -10,8 +8,7 @@
 
 namespace assay::harness {
 
-/// The draw of observation `index` and what the sampler declares at its point: every number by
-/// which distribution and inconsistency judge it, with all digits.
+/// The draw of observation `index` and what the sampler declares at its point, with all digits.
 std::string draw_text(const Sampler& sampler, StreamKey key, std::uint64_t index);
 
 }  // namespace assay::harness

@@ -15,7 +15,6 @@ namespace assay::harness {
 namespace {
 
 constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7, .deepest_bisection = 24};
-// A table begins with no fewer parts.
 constexpr std::size_t least_parts = 32;
 
 bool on_interval(const Sampler& sampler) { return sampler.domain() == Domain::interval; }
@@ -33,7 +32,7 @@ stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal) {
   if (on_interval(*named.sampler)) return law_on_interval(named);
   const stats::PlaneDensity density = plane_density(*named.sampler, marginal, densities_of(named));
   stats::AdaptiveQuadrature rule(table_limits);
-  // A multiple of the panels, so that their borders stay borders.
+  // A multiple of the panels keeps their borders.
   const std::size_t each = (least_parts + density.x_panels - 1) / density.x_panels;
   const auto parts = stats::cut(density.x, density.x, each * density.x_panels);
   return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
@@ -43,7 +42,7 @@ bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
   return draw.valid && sampler.point_mass(draw.lobe) == 0;
 }
 
-/// Draws of a sampler as an estimator yields observations.
+/// A sampler whose draws are the observations of an estimator.
 class SamplerEstimator final : public Estimator {
  public:
   explicit SamplerEstimator(const SamplerSetup& setup)
@@ -116,13 +115,13 @@ std::unique_ptr<Estimator> SamplerSetup::make() const {
   return std::make_unique<SamplerEstimator>(*this);
 }
 
-/// A density that could not be had is not asked for again: that may have taken a time-out.
+/// A density that failed is not asked for again: each time may take a time-out.
 auto SamplerSetup::integrated(auto table) const {
   if (!no_density_.empty()) throw NoDensity(no_density_);
   try {
     return table();
   } catch (const std::domain_error&) {
-    throw;  // the density is there, and no cells can be made of it
+    throw;  // the density exists but allows no cells
   } catch (...) {
     no_density_ = words_of(std::current_exception());
     throw NoDensity(no_density_);

@@ -1,8 +1,7 @@
 #pragma once
 
-// A sampler's draws as observations: one channel per marginal and one with the number of the cell
-// that the point fell into, once somebody has asked for the density's cells. So samplers are drawn,
-// counted and replayed like everything else.
+// A sampler's draws as observations: a channel for each marginal, and one for the number of the
+// cell. Samplers are thus drawn, counted and replayed as estimators are.
 
 #include <map>
 #include <memory>
@@ -20,20 +19,20 @@ namespace assay::harness {
 
 inline const std::string cell_channel = "cell";
 
-/// The value of a marginal's channel where a draw yields no point, or one of a point mass: below
+/// The value of a marginal's channel for a draw without a point and for a point mass. It lies below
 /// the marginal's range.
 double no_point(const Marginal& marginal);
 
-/// The value of the channel `cell` before density_cells() was asked for: no number of a cell.
+/// The value of the channel `cell` before density_cells() is called.
 inline constexpr double no_cell = -1;
 
-/// That a sampler's density could not be asked for: the program that it is inside of has ended.
+/// The density is out of reach: the program that computes it has ended.
 class NoDensity : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Draws of the first few of the streams.
+/// Draws of the first few streams.
 std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<Stream> streams);
 
 class SamplerSetup : public Setup {
@@ -43,14 +42,14 @@ class SamplerSetup : public Setup {
   std::vector<Channel> channels() const override;
   std::unique_ptr<Estimator> make() const override;
 
-  /// Made on first use, then kept. Throws NoDensity.
+  /// Computed on first use, then kept. Throws NoDensity.
   const DensityCells& density_cells() const;
-  /// The same, or nothing where nobody has asked for them yet. They take a quadrature of a density
-  /// that most claims are not about, so draws are counted in them only from then on: the plan of
-  /// what is counted asks (Pools), and workers are made later.
+  /// The same, or null before density_cells() is called. The cells cost a quadrature that most
+  /// claims do not need, so Pools calls density_cells() if a plan counts in cells. Workers are made
+  /// later.
   std::shared_ptr<const DensityCells> cells_asked_for() const;
-  /// The law of a marginal under the declared density, given a point; 1 - total() is the mass
-  /// without one. On first use; then kept. Throws NoDensity.
+  /// The marginal's law by the declared density, on first use, then kept. 1 - total() is the mass
+  /// without a point. Throws NoDensity.
   const stats::TabulatedLaw& marginal_law(const std::string& marginal) const;
   const Sampler& sampler() const { return *named_.sampler; }
   const NamedSampler& named() const { return named_; }
@@ -64,14 +63,14 @@ class SamplerSetup : public Setup {
   mutable std::mutex once_;
   mutable std::shared_ptr<const DensityCells> cells_;
   mutable std::map<std::string, stats::TabulatedLaw> laws_;
-  mutable std::string no_density_;  ///< why
+  mutable std::string no_density_;
 };
 
-/// InputError at `where` for a sampler without lobes and for an interval whose bounds are not
-/// finite and ascending.
+/// InputError at `where` for a sampler without lobes, or an interval whose bounds are not finite
+/// and ascending.
 void require_sound(const NamedSampler& named, const Location& where);
 
-/// The same set-up for the same sampler, so that its tables are made once. Throws as
+/// The set-up of a sampler, shared by all callers so that tables are made once. Throws as
 /// require_sound.
 std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where);
 

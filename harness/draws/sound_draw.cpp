@@ -11,12 +11,11 @@
 namespace assay::harness {
 namespace {
 
-// Normalised in single precision a length is off by some 1e-7, by a fast reciprocal root 3e-5; one
-// that was not normalised is off by more.
+// Ample for single precision and fast reciprocal roots; a direction that was never normalised is
+// off by more.
 constexpr double least_length_slack = 1e-4;
-// Some ten roundings of single precision.
+// About ten roundings of single precision.
 constexpr double least_slack = 1e-6;
-// A number's rounding in single precision, relative.
 constexpr double single_rounding = std::numeric_limits<float>::epsilon();
 
 bool on_directions(const Sampler& sampler) {
@@ -53,21 +52,21 @@ struct Range {
   double high;
 };
 
-/// Whether the coordinate is in the range, where it is at most `slack` outside by being taken
-/// there.
+/// Moves a coordinate that is at most `slack` outside the range to its border. False if it is
+/// farther out.
 bool settle(double& x, Range range, double slack) {
   if (!(x >= range.low - slack && x <= range.high + slack)) return false;
   x = std::clamp(x, range.low, range.high);
   return true;
 }
 
-/// An interval far from 0 has bounds that single precision itself has not.
+/// Adds single precision's rounding of the bounds themselves.
 double slack_of_interval(double slack, Range range) {
   return slack * (range.high - range.low) +
          single_rounding * std::max(std::abs(range.low), std::abs(range.high));
 }
 
-/// The same of a point. What u + v exceeds 1 by is left: the coordinates of cells know of it.
+/// Settles all coordinates of a point. u + v may exceed 1 by rounding: cells allow for it.
 bool settle(Point& p, const Sampler& sampler) {
   const double slack = std::max(least_slack, sampler.rounding());
   switch (sampler.domain()) {
@@ -113,9 +112,8 @@ void require_density(const NamedSampler& named, const SamplerDraw& draw) {
                   named.name, in_words(*named.sampler, draw.point), draw.density));
 }
 
-/// Whether a draw is sound without a closer look, as nearly all are: asking the sampler for all
-/// that the rules below need takes longer than some samplers take to draw. Where |length^2 - 1| is
-/// at most the slack, so is |length - 1|.
+/// True for nearly all draws. The closer look asks the sampler questions that may cost more than
+/// the draw. |length - 1| <= |length^2 - 1|.
 bool is_plainly_sound(Domain domain, const SamplerDraw& draw) {
   if (draw.lobe != 0 || !(draw.density >= 0)) return false;
   const auto& [x, y, z] = draw.point;

@@ -25,7 +25,7 @@ namespace {
 using harness::Suite;
 using harness::TestWork;
 
-/// The budget, and how many of its claims were made.
+/// The budget, and the number of claims made.
 struct Spent {
   std::optional<ClaimBudget> budget = {};
   std::uint64_t claims = 0;
@@ -35,7 +35,7 @@ Spent& spent() {
   return state;
 }
 
-/// Every repetition of the tests makes all claims again.
+/// Each repetition of the tests makes all claims again.
 class Repetitions : public testing::EmptyTestEventListener {
   void OnTestIterationStart(const testing::UnitTest&, int) override { spent().claims = 0; }
 };
@@ -46,7 +46,7 @@ std::string current_test() {
   return std::string(test->test_suite_name()) + "." + test->name();
 }
 
-/// Which claim of its test this is, from 1.
+/// The number of this claim in its test, from 1.
 std::uint64_t ordinal() {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
   std::uint64_t before = 0;
@@ -62,7 +62,7 @@ std::uint64_t seed_of(const ClaimBudget& budget) {
   return given == nullptr || *given == '\0' ? budget.seed : harness::parse_seed(given);
 }
 
-/// One claim, its sources and its margins.
+/// One claim with its sources and margins.
 struct Asked {
   std::map<std::string, harness::PreparedEstimator> estimators = {};
   std::optional<std::string> detect = {};
@@ -85,7 +85,7 @@ Asked asked(const std::vector<Part>& parts, const std::string& stream) {
   return result;
 }
 
-/// The test alone at its share of the budget.
+/// Tests the claim alone at its share of the budget.
 reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBudget& budget) {
   const std::uint64_t seed = seed_of(budget);
   Suite suite{.name = "googletest",

@@ -1,7 +1,7 @@
 #pragma once
 
-// Claims about Monte Carlo estimators in GoogleTest: any callable that draws from a Stream is a
-// source, its claim is planned, sampled and tested as `assay check` would.
+// Claims about Monte Carlo estimators in GoogleTest. A source is any callable that draws from a
+// Stream. Its claim is planned, sampled and tested as by `assay check`.
 //
 //   const assay::googletest::DeclaredClaims budget{{.claims = 2}};
 //
@@ -25,20 +25,21 @@
 
 namespace assay::googletest {
 
-/// What a claim is about, under the name that it has in the claim. The callable is called from
-/// several threads at a time and is a function of its stream alone.
+/// A source under its name in the claim. Several threads call the callable at a time; it must be a
+/// function of its stream alone.
 struct Source {
   std::string name;
-  /// Writes one observation, of one number per channel.
+  /// Writes one observation, a number for each channel.
   std::function<void(Stream&, std::span<double>)> draw;
   std::size_t channels = 1;  ///< named value, or value1, value2, …
-  bool averages = false;     ///< an observation may be the mean of several draws
+  bool averages = false;     ///< True if an observation may be the mean of several draws.
 };
 
-/// One primary estimate a call: observations are means of as many as the pilot asks for.
+/// A source of primaries: each call draws one. Observations are means of as many as the pilot asks
+/// for.
 Source primary(const std::string& name, std::function<double(Stream&)> estimate);
 
-/// One secondary estimate a call, of so many channels.
+/// A source of secondaries: each call draws one, with this number of channels.
 Source secondary(const std::string& name, std::size_t channels,
                  std::function<void(Stream&, std::span<double>)> estimate);
 
@@ -52,15 +53,15 @@ Margin allow(const std::string& text);
 
 using Part = std::variant<Source, Margin>;
 
-/// Whether the claim passes. Else the message says what was found, as a report does. Numbers go to
-/// the test's properties: of the k-th claim of a test `claim_k`, `verdict_k`, `method_k`,
-/// `estimate_k`, `low_k`, `high_k`, `log10_p_k`, `secondaries_k`. A claim that cannot be read, more
-/// claims than were declared, and a name without a source are failures.
+/// True if the claim passes; else the message says what was found, as a report does. The k-th claim
+/// of a test writes the test properties `claim_k`, `verdict_k`, `method_k`, `estimate_k`, `low_k`,
+/// `high_k`, `log10_p_k` and `secondaries_k`. A claim that cannot be read, more claims than
+/// declared, and a name without a source are failures.
 testing::AssertionResult claim_holds(const std::string& claim, const std::vector<Part>& parts);
 
-/// The error rates of the binary and how many claims its tests make: each gets alpha / claims, so
-/// that a binary whose claims all hold fails with probability alpha at most, whichever tests run.
-/// The seed is of all streams; the environment's ASSAY_SEED comes before it.
+/// The error rates of the binary and the number of claims that its tests make. Each claim gets
+/// alpha / claims. If all claims hold, the binary fails with probability at most alpha, whichever
+/// tests run. The seed applies to all streams; the environment's ASSAY_SEED overrides it.
 struct ClaimBudget {
   std::uint64_t claims = 0;
   double alpha = 0.01;
@@ -68,8 +69,8 @@ struct ClaimBudget {
   std::uint64_t seed = 1;
 };
 
-/// Declares them: one object of this class in the binary, before its tests run. std::logic_error
-/// for a second one and for rates or numbers that are none.
+/// Declares the budget: make one object of this class before the tests run. std::logic_error for a
+/// second object, and for invalid rates or numbers.
 class DeclaredClaims {
  public:
   explicit DeclaredClaims(const ClaimBudget& budget);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Callables as the harness's estimators.
+// Wraps callables as the harness's estimators.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace assay::googletest {
 
-/// `stream` tells its random numbers from those of every other source of the binary.
+/// `stream` separates its random numbers from those of the binary's other sources.
 harness::PreparedEstimator prepared(const Source& source, const std::string& stream);
 
 }  // namespace assay::googletest

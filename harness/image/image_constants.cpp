@@ -13,20 +13,19 @@
 namespace assay::harness {
 namespace {
 
-/// Least and greatest value of an element.
 struct Span {
   double low;
   double high;
   bool constant(double rounding) const { return high - low <= 2 * rounding; }
 };
 
-/// Where one number, itself of one of the images, is to stand in every image of a stack.
+/// A number of one image that replaces an element in every image of a stack.
 struct Replacement {
   std::size_t element;
   double value;
 };
 
-/// The stack with these elements replaced; images that change are kept in `copies`.
+/// The stack with these elements replaced; changed images are kept in `copies`.
 template <class Real>
 stats::ImageStack<Real> replaced(const stats::ImageStack<Real>& stack,
                                  const std::vector<Replacement>& replacements,
@@ -41,14 +40,14 @@ stats::ImageStack<Real> replaced(const stats::ImageStack<Real>& stack,
   return out;
 }
 
-/// What a channel declares of its values.
+/// A channel's declaration of its values.
 struct Declared {
   double low;
   double high;
   double rounding;
 };
 
-/// Of every element; of pictures of files one for all.
+/// Declarations of every element; pictures of files share one.
 class DeclaredElements {
  public:
   explicit DeclaredElements(const Subject& subject) {
@@ -76,9 +75,8 @@ class DeclaredElements {
 constexpr std::size_t at_a_time = 256;
 using Spans = std::array<Span, at_a_time>;
 
-/// Of the elements from `first` on, as many as there are; of one that is no constant it ends where
-/// that shows: nearly always the second image tells that none of them is a constant. Whether any
-/// may be.
+/// Ranges of the elements from `first` on. An element's scan ends as soon as it is seen to vary,
+/// nearly always at the second image. Returns whether any may be constant.
 template <class Real>
 bool find_spans(const stats::ImageStack<Real>& stack, const DeclaredElements& channels,
                 std::size_t first, Spans& spans) {
@@ -101,14 +99,14 @@ bool find_spans(const stats::ImageStack<Real>& stack, const DeclaredElements& ch
   return constants;
 }
 
-/// What a constant can have missed: its value, and the range of the law it is of.
+/// The value of a constant, and the range of the law whose other values it can have missed.
 struct Missing {
   double constant;
   double low;
   double high;
   std::size_t count;
 
-  /// Held against a mean that is known, or estimated.
+  /// Tests it against a mean that is known or estimated.
   double log_p(const Constant& mean) const {
     const stats::ConstantSample sample{.value = constant,
                                        .low = std::min(low, constant),
@@ -129,7 +127,7 @@ Constant mean_of(const stats::ImageStack<Real>& stack, std::size_t element) {
   return {moments.mean, moments.standard_error()};
 }
 
-/// Of factor x + offset.
+/// The declaration of factor x + offset.
 Declared mapped(const Declared& channel, const Question& question) {
   const double low = question.factor * channel.low + question.offset;
   const double high = question.factor * channel.high + question.offset;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Elements of images that never varied. There is no standard error to test them with, and what was
-// never seen may still be there.
+// Treats image elements that never varied. They have no standard error, and rare values may be
+// unseen.
 
 #include <cstddef>
 #include <span>
@@ -12,56 +12,55 @@
 
 namespace assay::harness {
 
-/// An element that was the same in every replicate and differs from its reference, or from another
-/// image's mean, by more than rounding: what was never seen may make up the difference
+/// An element that was the same in every replicate and differs from its reference, or the other
+/// image's mean, by more than rounding. Unseen values may make up the difference
 /// (stats/constant_sample.h). Without a declared range its p-value is 1.
 struct UnseenElement {
   std::size_t element = 0;
-  double sign = 0;  ///< of constant - reference
+  double sign = 0;  ///< sign of constant - reference
   double log_p = 0;
 };
 
-/// The normal z of that p, with the difference's sign.
+/// The normal z of its p-value, with the difference's sign.
 double z_of(const UnseenElement& unseen);
 
-/// An image pair as far as its elements varied, by more than their channels' declared rounding.
-/// Against a reference an element that did not is equal to it and exact; its difference, if there
-/// is one, is among `unseen`. Of two images, constants that differ by no more than rounding are
-/// equal; an element that varied in one image alone is as one against a reference with that image's
-/// standard error, where the other declares a range (without one Welch's test takes what was seen).
+/// The elements of an image pair that varied by more than their channels' declared rounding.
 ///
-/// Sums over several elements must not lose those that happened not to vary: the rarely lit pixels
-/// that were seen lit would be left, whose means are too high on average. An element with a weight,
-/// one that varied in the pilot, stays in the sums as it is (`in_sums`), whatever it did here; one
-/// without is in no sum. Where no weights are known the halves of the images decide over each
-/// other.
+/// An element that did not vary counts as exact and equal to its reference; a difference goes to
+/// `unseen`. Constants of two images that differ by rounding only are equal. If one image alone
+/// varied, its standard error tests the other's constant, provided that the other declares a range.
+/// Without a range Welch's test takes the values seen.
+///
+/// Sums over elements must include rarely lit pixels that happened not to vary: only the lit ones
+/// would remain, and their means are too high. An element with a weight, which varied in the pilot,
+/// stays in the sums (`in_sums`); others are in no sum. Without weights each half of the images
+/// decides for the other.
 template <class Real>
 class VaryingPart {
  public:
-  /// `weights` of the elements in sums, as ImageTest has them.
+  /// `weights` of the elements in sums, as in ImageTest.
   VaryingPart(const Question& question, const ImagePair<Real>& pair,
               std::span<const double> weights);
   VaryingPart(const VaryingPart&) = delete;  // spans point inside
   VaryingPart& operator=(const VaryingPart&) = delete;
 
   const std::vector<UnseenElement>& unseen() const { return unseen_; }
-  /// Whether any element varied.
   bool any() const { return constants_ < first_.extent.elements(); }
   const stats::ImageStack<Real>& first() const { return first_; }
 
-  /// What `use` makes of the first stack and what it is held against.
+  /// Calls `use` with the first stack and its comparison, and returns the result.
   template <class Use>
   auto with(const Use& use) const {
     if (of_two_) return use(first_, second_);
     return use(first_, stats::ImageReference{first_.extent, value_, error_});
   }
-  /// The same for sums over elements, of which those in left_to_sums() take no part alone.
+  /// The same for sums over elements; those in left_to_sums() count in sums only.
   template <class Use>
   auto in_sums(const Use& use) const {
     if (of_two_) return use(first_, second_);
     return use(first_, stats::ImageReference{first_.extent, value_in_sums_, error_in_sums_});
   }
-  /// In rising order.
+  /// Ascending.
   const std::vector<std::size_t>& left_to_sums() const { return left_to_sums_; }
 
  private:
@@ -74,7 +73,7 @@ class VaryingPart {
   bool of_two_ = false;
   stats::ImageStack<Real> first_;
   stats::ImageStack<Real> second_;
-  std::vector<std::vector<Real>> settled_;  // images of which an element was rounded
+  std::vector<std::vector<Real>> settled_;  // images with a rounded element
   std::vector<double> value_;
   std::vector<double> error_;
   std::vector<double> value_in_sums_;

@@ -23,7 +23,6 @@
 namespace assay::harness {
 namespace {
 
-// This share of the level goes to elements that never varied.
 constexpr double unseen_share = 0.02;
 
 // ---- theta = 0
@@ -44,16 +43,15 @@ bool has_error(const stats::ImageStack<Real>&) {
 }
 bool has_error(const stats::ImageReference& b) { return !b.standard_error.empty(); }
 
-/// The signs' own stream, of so many images.
+/// The stream of the sign vectors for so many images.
 Stream signs_of(const ImageTest& test, std::size_t images) {
   return {stream_key(test.flips.bits, "sign flips", "", 0), images};
 }
 
-/// The sum of squares of correlated elements.
 template <class Real>
 void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test, std::size_t images,
                         ImageOutcome& outcome) {
-  // A reference's error does not flip with the replicates: cells alone are left.
+  // A reference's error does not flip with the replicates, so cells alone are tested.
   if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return;
   const std::optional<FlipSize> size = flip_size(test.share, images);
   if (!size) return;
@@ -87,7 +85,7 @@ stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageEx
   return finding;
 }
 
-/// The elements that never varied join the family, at the share that was set aside for them.
+/// Adds the elements that never varied to the family, at their share.
 void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
   stats::ImageFamily& family = outcome.family;
   for (stats::ImageFinding& group : family.groups) {
@@ -102,7 +100,7 @@ void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
 
 // ---- theta beyond 0
 
-/// The norm in it is that of the margin.
+/// The distance with the margin's norm.
 stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
                                         const stats::ImageExtent& extent, bool relative) {
   if (!relative) return stats::with_norm(distance, static_cast<double>(extent.elements()));
@@ -133,8 +131,8 @@ double uniform_error(const ImagePair<Real>& pair, bool relative) {
       pair.of_two() ? channel_means(pair.second()) : channel_means(pair.reference()), relative);
 }
 
-/// Replicates at which theta would be excluded from `margin` on: the squared bias's standard error
-/// falls like 1 / R while it is noise, like 1 / sqrt R where there is a bias.
+/// Replicates at which theta would be excluded from `margin` on. The squared bias's standard error
+/// falls like 1 / R in noise, like 1 / sqrt R if there is a bias.
 double wanted_replicates(const stats::ImageDistance& distance, double margin, const ImageTest& test,
                          double replicates) {
   const double estimate = std::max(0.0, distance.squared_bias / distance.squared_norm);
@@ -146,8 +144,7 @@ double wanted_replicates(const stats::ImageDistance& distance, double margin, co
   return replicates * std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
 }
 
-/// Tests of a squared margin. An estimate below zero excludes no more than one of zero would: a
-/// bias smaller than none is excluded by no one.
+/// Tests of a squared margin. An estimate below 0 counts as 0, since no bias is smaller.
 stats::TestResult at_squared_margin(const stats::ImageDistance& distance, double margin) {
   stats::ImageDistance at_least_zero = distance;
   at_least_zero.squared_bias = std::max(0.0, distance.squared_bias);
@@ -182,7 +179,6 @@ void require_spread(const Question& question, bool any, const stats::ImageDistan
       all_alike(question)));
 }
 
-/// What ImageOutcome::level_factor says.
 template <class Real>
 double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
   const auto side = [](const stats::ImageStack<Real>& stack, double factor) -> stats::CellPilot {
@@ -196,7 +192,7 @@ double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
   double largest = 1;
   for (const stats::CellTails& cells : tails) {
     if (cells.size < test.smallest_cell) continue;
-    // Cells that depend on each other scatter as one.
+    // Dependent cells scatter as one.
     const auto count = static_cast<double>(stats::aligned_cells(pair.extent(), cells.size));
     const double of_dependent = cells.factor - cells.scatter * std::sqrt(count);
     largest = std::max(largest, test.independent ? cells.common : of_dependent);
@@ -204,7 +200,7 @@ double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
   return largest;
 }
 
-/// What the pair shows, and how far it is apart.
+/// Tests the pair and measures its distance.
 template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                              const ImagePair<Real>& pair, ImageOutcome& outcome) {
@@ -227,8 +223,8 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   return distance;
 }
 
-/// The same of pictures that were looked at when they were read. They declare neither rounding nor
-/// range: an element that never varied is as it is.
+/// The same for pictures that were looked at while reading. They declare neither rounding nor
+/// range, so an element that never varied stays as it is.
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                              const PictureLook& look, ImageOutcome& outcome) {
   const stats::ImageExtent extent = extent_of(*question.subjects[0].image);

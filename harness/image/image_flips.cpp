@@ -10,9 +10,9 @@
 namespace assay::harness {
 namespace {
 
-// Sign vectors are enumerated for so few replicates, some milliseconds' work; for more of them a
-// random choice is looked at, and never of more vectors or longer ones: an eighth of a second's
-// work. So many that reach the sum of squares tell its p-value to a tenth.
+// Up to so many replicates all sign vectors are enumerated; beyond that a random choice is made.
+// The other limits bound the number and length of vectors, so that the test takes a fraction of a
+// second.
 constexpr std::size_t most_enumerated = 18;
 constexpr double most_flips = 0x1p19;
 constexpr std::size_t most_flipped = 64;
@@ -20,8 +20,7 @@ constexpr std::uint64_t enough_flips = 100;
 
 using Images = std::vector<std::vector<double>>;
 
-/// Means of the images r, r + groups, r + 2 groups, …: as good as the images themselves for
-/// flipping signs.
+/// Means of the images r, r + groups, r + 2 groups, …: their signs flip as well as the images'.
 template <class Real>
 Images grouped(const stats::ImageStack<Real>& stack, stats::ElementRange range,
                std::size_t groups) {
@@ -32,7 +31,7 @@ Images grouped(const stats::ImageStack<Real>& stack, stats::ElementRange range,
     for (std::size_t r = g; r < stack.images.size(); r += groups) {
       const Real* const image = stack.at(r, range.first);
       for (std::size_t i = 0; i < means[g].size(); ++i) {
-        // From the first image on: the mean of a constant is that constant, without rounding.
+        // Taken from the first image on, so that a constant's mean has no rounding.
         const double difference = double{image[i]} - double{first[i]};
         means[g][i] += difference / static_cast<double>(members);
       }
@@ -49,7 +48,6 @@ stats::ImageStack<double> stack_of(const stats::ImageExtent& extent, const Image
   return stack;
 }
 
-/// The smallest p-value that flips of signs can have.
 double least_log_p(const FlipSize& size) {
   return size.enumerated() ? -std::log(2.0) * static_cast<double>(size.images - 1)
                            : -std::log1p(static_cast<double>(size.flips));
@@ -73,7 +71,7 @@ template <class Real>
 void GroupedFlips<Real>::take(const stats::ImagePair<Real>& pair, stats::RowRange rows) {
   const std::size_t first_count = pair.a.images.size();
   const std::size_t second_count = pair.b != nullptr ? pair.b->images.size() : first_count;
-  // Each of one side goes with one of the other.
+  // Pairs a group of one side with one of the other.
   const std::size_t groups = std::min({most_flipped, first_count, second_count});
   is_grouped_ = std::max(first_count, second_count) > groups;
   if (!is_grouped_) {

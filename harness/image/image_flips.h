@@ -1,7 +1,7 @@
 #pragma once
 
-// The sum of squares of the difference of two images whose elements are correlated, judged by flips
-// of signs (stats/image_sign_flip.h).
+// Tests the sum of squares of the difference of two images with correlated elements, by sign flips
+// (stats/image_sign_flip.h).
 
 #include <cstdint>
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace assay::harness {
 
-/// How many sign vectors are looked at.
+/// The number of sign vectors to try.
 struct FlipSize {
   double share = 0;        ///< of the level
   std::size_t images = 0;  ///< of a side
@@ -24,15 +24,14 @@ struct FlipSize {
   bool enumerated() const;
 };
 
-/// nullopt where so few images of a side, or so small a level, leave nothing to reject.
+/// nullopt if too few images or too small a level leave nothing to reject.
 std::optional<FlipSize> flip_size(const ErrorShare& share, std::size_t images);
 
-/// The matrix of flips of images of which some rows are there at a time; of many images that of
-/// means over groups of them.
+/// The matrix of flips, from images that come some rows at a time. Many images are first averaged
+/// in groups.
 template <class Real>
 class GroupedFlips {
  public:
-  /// As stats::RowFlips.
   static constexpr std::size_t row_unit = stats::RowFlips<Real>::row_unit;
   void take(const stats::ImagePair<Real>& pair, stats::RowRange rows);
   stats::FlipMatrix matrix() const;
@@ -43,8 +42,8 @@ class GroupedFlips {
   bool is_grouped_ = false;
 };
 
-/// The sum of squares joins the family, and whether it does: not where other sums say more than any
-/// flips could. The matrix is asked for where it is needed.
+/// Adds the sum of squares to the family and returns true, unless other sums say more than any
+/// flips could. Asks for the matrix only if it is needed.
 bool add_flipped_energy(stats::ImageFamily& family, const stats::ImageExtent& extent,
                         const FlipSize& size, Stream signs,
                         const std::function<stats::FlipMatrix()>& matrix);

@@ -5,7 +5,7 @@
 namespace assay::harness {
 namespace {
 
-/// c y + b: what E x is compared with.
+/// c y + b, to which E x is compared.
 struct Mapping {
   double factor;
   double offset;

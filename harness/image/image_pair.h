@@ -1,7 +1,5 @@
 #pragma once
 
-// The two sides of a claim on images as stats takes them.
-
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -15,12 +13,12 @@ namespace assay::harness {
 
 stats::ImageExtent extent_of(const ImageShape& shape);
 
-/// Replicates of an image, and what they are held against: replicates of another, scaled, or a
-/// number for each element.
+/// Replicates of an image, and their comparison: scaled replicates of another image, or a number
+/// for each element.
 template <class Real>
 class ImagePair {
  public:
-  /// Of single precision only where in_single_precision says so.
+  /// Single precision requires in_single_precision().
   ImagePair(const Question& question, std::span<const ChannelData> data);
   ImagePair(const ImagePair&) = delete;  // spans point inside
   ImagePair& operator=(const ImagePair&) = delete;
@@ -38,7 +36,7 @@ class ImagePair {
   const stats::ImageStack<Real>& second() const { return *second_; }
   stats::ImageReference reference() const { return {extent_, value_, error_}; }
 
-  /// What `use` makes of the first stack and what it is held against.
+  /// Calls `use` with the first stack and its comparison, and returns the result.
   template <class Use>
   auto with(const Use& use) const {
     return second_ ? use(first_, *second_) : use(first_, reference());
@@ -46,17 +44,17 @@ class ImagePair {
 
  private:
   stats::ImageExtent extent_;
-  ImageViews made_[2];  // where a side is scaled, or widened to the other's precision
+  ImageViews made_[2];  // for a side that is scaled or widened
   stats::ImageStack<Real> first_;
   std::optional<stats::ImageStack<Real>> second_;
   std::vector<double> value_;
   std::vector<double> error_;
 };
 
-/// Whether both sides are pictures of files and are compared as they are.
+/// True if both sides are pictures of files and are compared unchanged.
 bool in_single_precision(const Question& question, std::span<const ChannelData> data);
 
-/// What `use` makes of the pair, in the precision that it is kept in.
+/// Calls `use` with the pair in its precision, and returns the result.
 template <class Use>
 auto with_pair(const Question& question, std::span<const ChannelData> data, const Use& use) {
   if (in_single_precision(question, data)) return use(ImagePair<float>(question, data));

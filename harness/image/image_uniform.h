@@ -1,7 +1,7 @@
 #pragma once
 
-// What a difference that is the same, or in proportion, in every pixel is found by: the sum over
-// one channel of the whole image.
+// Sums over one channel of the whole image. They find a difference that is the same, or
+// proportional, in every pixel.
 
 #include <vector>
 
@@ -10,18 +10,18 @@
 
 namespace assay::harness {
 
-/// Of replicates: the spread of their means says how far pixels depend on each other.
+/// Means of replicates. The spread of these means shows how far pixels depend on each other.
 template <class Real>
 ChannelMeans channel_means(const stats::ImageStack<Real>& stack);
 
-/// Of sums that stats::image_channel_sums made.
+/// Means from the sums of stats::image_channel_sums.
 ChannelMeans channel_means(const std::vector<double>& sums, const stats::ImageExtent& extent);
 
-/// Of numbers whose errors are independent between pixels.
+/// Means of numbers whose errors are independent between pixels.
 ChannelMeans channel_means(const stats::ImageReference& reference);
 
-/// Standard error of theta, were it the same everywhere, in the channel that tells it best:
-/// absolute, or a part of the second's.
+/// Standard error of a theta that is the same everywhere, in the best channel: absolute, or a part
+/// of the second's mean.
 double uniform_error(const ChannelMeans& first, const ChannelMeans& second, bool relative);
 
 }  // namespace assay::harness

@@ -25,7 +25,7 @@ bool stands_on_the_right(std::string_view word) {
   return word == "analytic" || word == "density" || find_law(word);
 }
 
-/// What may begin the right side, apart from numbers.
+/// Words that may begin the right side.
 std::vector<std::string> side_words() {
   std::vector<std::string> words = quantity_words();
   words.insert(words.end(), {"analytic", "density"});
@@ -205,7 +205,7 @@ class Parser {
     return law;
   }
 
-  /// The commonest slips: an estimator without its quantity, and the two sides exchanged.
+  /// The commonest mistakes: an estimator without a quantity, and exchanged sides.
   [[noreturn]] void no_quantity(const Token& name) {
     for (const char* of_spread :
          {"stddev", "stdev", "std", "deviation", "standard_deviation", "sd"}) {
@@ -235,7 +235,7 @@ class Parser {
     if (token.text == "gaussian") return "; did you mean `normal(0, 1)`?";
     const std::string near = did_you_mean(token.text, side_words());
     if (!near.empty()) return near;
-    // `mean(a) == b`: the name of an estimator where its quantity should be.
+    // `mean(a) == b`: an estimator without a quantity.
     if (!lexer_.peek().is("(")) {
       return fmt::format("; of an estimator, write its quantity, as in `mean({})`", token.text);
     }

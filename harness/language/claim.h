@@ -21,8 +21,10 @@
 
 namespace assay::harness {
 
-/// An estimator of the suite (or, in `check`, a plugin's name), and a part of it: a channel, a
-/// sampler, a marginal of its only sampler, or "sampler.marginal"; "" is the whole.
+/// All names, in the order of the enumeration.
+/// The quantities that this version can test. Messages offer them; question.h refuses the others.
+/// An estimator of the suite (in `check` also a plugin's name), and a part of it. A part is a
+/// channel, a sampler, a marginal of the only sampler, or "sampler.marginal"; "" is the whole.
 struct Source {
   std::string estimator;
   std::string part = "";
@@ -75,12 +77,11 @@ struct Claim {
   Side right;
 };
 
-/// Parses a claim. InputError with the column of the first thing that cannot be understood, what
-/// was expected there and, where a word is near a known one, that word. `where` is the place of the
-/// claim's first character.
+/// Parses a claim; `where` is the place of its first character. InputError with the column of the
+/// first word that cannot be understood, what was expected, and a known word that is near.
 Claim parse_claim(std::string_view text, const Location& where);
 
-/// "0.5%" or "0.002". InputError otherwise, and where it is negative or not finite.
+/// Parses "0.5%" or "0.002". InputError otherwise, and for a negative or infinite number.
 Margin parse_margin(std::string_view text, const Location& where, std::string_view what);
 
 /// "0.5%" or "0.002".
@@ -95,14 +96,14 @@ std::string to_string(const Source&);
 /// "quantile(area.red, 0.5)", "slope(bias(wis))".
 std::string to_string(const Quantity&);
 
-/// The claim as parse_claim reads it, in one spelling: numbers in shortest round-trip form, one
-/// blank around a relation. `text` has no part in it.
+/// The claim in one spelling: shortest round-trip numbers, one blank around a relation.
+/// parse_claim(to_string(claim)) is the claim again; `text` is ignored.
 std::string to_string(const Claim&);
 
 /// Parses "estimator" or "estimator.part".
 Source parse_source(std::string_view text, const Location& where);
 
-/// Whether a claim can name an estimator so: a letter or `_`, then letters, digits, `_`, `-`, `/`.
+/// True if a claim can use the name: a letter or `_`, then letters, digits, `_`, `-`, `/`.
 bool is_estimator_name(std::string_view name);
 
 }  // namespace assay::harness

@@ -10,7 +10,7 @@ namespace assay::harness {
 
 namespace {
 
-/// Ample for a double's exponent, sign included; `0e99999999999` would otherwise be a number.
+/// Longest exponent with its sign; without a limit `0e99999999999` would be read as a number.
 constexpr std::size_t longest_exponent = 6;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -22,16 +22,16 @@ struct Token {
 /// "`==`", "the number `3`", "the end of the claim": for messages.
 std::string shown(const Token&);
 
-/// Cuts a claim into tokens: words, numbers (with their sign), and ( ) , * % == <= >= < > +-.
+/// Cuts a claim into words, numbers (with their sign), and ( ) , * % == <= >= < > +-.
 class Lexer {
  public:
   Lexer(std::string_view text, Location where) : text_(text), where_(std::move(where)) {}
 
-  /// The next token. InputError for a character that begins none, and for a number that overflows.
+  /// The next token. InputError for an unknown character and for a number that overflows.
   Token next();
-  /// The next token, left in place.
+  /// The next token, without taking it.
   Token peek() const { return Lexer(*this).next(); }
-  /// The text from the first character on that has not been taken.
+  /// The text that is not yet taken.
   std::string_view rest() const { return text_.substr(at_); }
 
  private:
@@ -52,7 +52,7 @@ class Lexer {
   std::size_t at_ = 0;
 };
 
-/// A finite number at the start of `text`, and how many characters it takes (0: none is there).
+/// A finite number at the start of `text`, and the number of its characters (0: none).
 struct ScannedNumber {
   double value = 0;
   std::size_t length = 0;

@@ -87,7 +87,7 @@ void check_side(const Claim& claim, const Constant& side) {
   if (left.name == variance && !left.slope && side.value == 0) {
     refuse(left.where, "`variance` is tested as a ratio: give a number above 0");
   }
-  // A bias has its reference to be measured by.
+  // The margin of a bias is relative to its reference.
   const bool has_unit = left.name == bias && !left.slope;
   if (claim.relation == Relation::within && claim.margin.relative && side.value == 0 && !has_unit) {
     refuse(left.where, "a margin in per cent of 0 is no margin; give a number");

@@ -1,4 +1,3 @@
-// Claims back to text.
 
 #include <fmt/format.h>
 
@@ -34,7 +33,7 @@ std::string percent_text(double value) {
     const std::string text = fmt::format("{:.{}g}", 100 * value, digits);
     if (parse_margin(text + "%", {}, "").value == value) return fmt::format("{}", std::stod(text));
   }
-  // 100 * value rounded away from every decimal that leads back: move the point in the text.
+  // 100 * value would be rounded: move the point in the text instead.
   const std::string text = fmt::format("{:.16e}", value);
   const std::size_t e = text.find('e');
   return fmt::format("{}e{}", text.substr(0, e), std::stoi(text.substr(e + 1)) + 2);

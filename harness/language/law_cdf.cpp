@@ -10,7 +10,7 @@ namespace {
 using Arguments = std::vector<double>;
 using Cdf = std::function<double(double)>;
 
-/// Boost throws outside the support; there the function is 0 or 1.
+/// Boost throws outside the support, where the function is 0 or 1.
 template <class Distribution>
 Cdf cdf_of(const Distribution& distribution) {
   const auto support = boost::math::support(distribution);
@@ -21,8 +21,7 @@ Cdf cdf_of(const Distribution& distribution) {
   };
 }
 
-// Within doubles: Student's distribution function takes a third of the time that it takes by way of
-// long doubles, and a distance needs no more than its first ten digits.
+// Doubles, not long doubles: a distance needs no more than ten digits, and this is faster.
 using Unpromoted = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 template <template <class, class> class Distribution>

@@ -5,8 +5,7 @@
 
 namespace assay::harness {
 
-/// The names of the method table, each once, in its order. The table defines it
-/// (families/methods.cpp): a suite is read before any row is needed.
+/// The names of the method table (families/methods.cpp), each once, in its order.
 const std::vector<std::string>& method_names();
 
 }  // namespace assay::harness

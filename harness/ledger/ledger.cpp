@@ -20,12 +20,11 @@ LedgerBook read_ledger(const std::string& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return LedgerBook();
   const std::string text = read_text_file(file);
-  // An empty file is what a run leaves that was ended before its first night was written.
+  // A run that ended before its first night was written leaves an empty file.
   if (text.empty()) return LedgerBook();
   return LedgerBook::parse(text, file);
 }
 
-/// One channel of one test in this run.
 struct Entry {
   const SuiteRun& run;
   const TestWork& work;
@@ -77,7 +76,8 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
   const TestOutcome& test = entry.work.outcome;
   const std::vector<double> path =
       log_e_path(series, nights, claimed_range(test.plan.regions[entry.channel]));
-  // A limit that moved with the suite would raise and lower alarms of nights long past.
+  // The weight stays as it was at the beginning: else a change of the suite would raise and lower
+  // alarms of past nights.
   const double weight = series.weight > 0 ? series.weight : test.place.weight;
   const double alpha = book.budget() * weight * generation_share(book.generation(index));
   result.nights = nights.size();
@@ -110,7 +110,7 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
                       .weight = test.place.weight,
                       .test = test.question.test->id,
                       .channel = test.question.channel_name(entry.channel)};
-  // The pilot chose the method, not the night's data: leaving the night out favours nobody.
+  // The pilot chose the method, so leaving the night out does not bias the series.
   LedgerSeries other = series;
   other.kind = of_moments ? EvidenceKind::log_e : EvidenceKind::score;
   if (book.open_series(series) == nullptr && book.open_series(other) != nullptr) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// `--ledger FILE`: the evidence of nights with fresh seeds, kept in a file, with an error budget of
-// its own. One night misses a bias of its own standard error almost always; thirty do not.
+// `--ledger FILE`: keeps the evidence of nights with fresh seeds, with its own error budget. Many
+// nights together find a bias that each one misses.
 
 #include <memory>
 #include <string>
@@ -12,19 +12,19 @@
 
 namespace assay::harness {
 
-/// InputError where a ledger could not be kept, before anything is sampled: it is there and cannot
-/// be read, its folder is missing, or two suites could not be told apart in it.
+/// InputError, before anything is sampled, if a ledger could not be kept. Reasons are an unreadable
+/// file, a missing folder, and two suites that the ledger could not tell apart.
 void require_ledger(const std::string& file, const std::vector<Suite>& suites);
 
 struct LedgerRun {
   std::string file;
-  std::string date;  ///< when the run started, UTC, ISO 8601
+  std::string date;  ///< start of the run, UTC, ISO 8601
   std::string commit;
 };
 
 /// Adds the evidence of every selected test inside its suite's family to the file, unless its seed
-/// is there already, and says what all nights of these tests mean together: an alarm where E
-/// reached 1 / (budget * the channel's weight in its suite * generation_share). The file is locked
+/// is there already. Returns what all nights of these tests mean together. An alarm is raised if E
+/// reaches 1 / (budget * the channel's weight in its suite * generation_share). The file is locked
 /// while it is read and replaced.
 reports::Ledger add_to_ledger(const LedgerRun& ledger,
                               const std::vector<std::unique_ptr<SuiteRun>>& runs);

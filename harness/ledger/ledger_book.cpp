@@ -129,7 +129,6 @@ std::string LedgerBook::text() const {
   return out + fmt::format("end {}\n", nights_.size());
 }
 
-/// Takes a file line by line into a book.
 class LedgerReader {
  public:
   LedgerReader(const std::string& text, std::string file)

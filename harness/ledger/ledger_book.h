@@ -1,6 +1,6 @@
 #pragma once
 
-// The ledger as data and as text: what nights with fresh seeds said of each claim.
+// The ledger as data and as text: the evidence of nights with fresh seeds on each claim.
 //
 //   assay-ledger 1 budget 0.003
 //   series 5f2a… score effect 0.0012 reference 0 weight 0.25 "suite/test" "channel" | 1a2b3c4d
@@ -11,9 +11,9 @@
 //   # a comment, by hand, anywhere
 //   end 2                                                   nights in the file
 //
-// The number behind the bar is a checksum of the line and of all series and night lines before it,
-// the first of the header: a line that was changed, taken out or moved is found, and `end` finds
-// lines missing at the end. Not a seal against intent.
+// The number behind the bar is a checksum of the line and of all series and night lines before it.
+// The first one includes the header. Checksums reveal lines that were changed, removed or moved.
+// `end` reveals missing lines at the end. Neither protects against intent.
 
 #include <cstdint>
 #include <map>
@@ -24,39 +24,39 @@
 
 namespace assay::harness {
 
-/// The share of the error budget that is the default of a new ledger: over all its nights.
+/// The default error budget of a new ledger, over all its nights.
 inline constexpr double default_ledger_budget = 3e-3;
 
 enum class EvidenceKind {
-  score,  ///< score and information on theta: means and variances
-  log_e   ///< ln of an e-value: distances between laws
+  score,  ///< Score and information on theta: means and variances.
+  log_e   ///< The ln of an e-value: distances between laws.
 };
 
-/// One channel of one claim of a test, as long as neither changes. What is fixed before the first
-/// night: the prior of its e-value.
+/// The nights of one channel of one claim, as long as neither changes. The e-value's prior is fixed
+/// before the first night.
 struct LedgerSeries {
-  std::string hash;  ///< of claim, margins and parameters
+  std::string hash;  ///< hash of claim, margins and parameters
   EvidenceKind kind = EvidenceKind::score;
-  stats::LedgerPrior prior = {};  ///< of a score
-  /// The test's share of the budget when the series began; of files written before it was kept: 0.
+  stats::LedgerPrior prior = {};  ///< if it is a score
+  /// The test's share of the budget when the series began; 0 in files that do not keep it.
   double weight = 0;
-  std::string test;  ///< id
+  std::string test;  ///< the test's id
   std::string channel;
   bool operator==(const LedgerSeries& other) const;
 };
 
-/// What one run with a fresh seed added to a series.
+/// The evidence that one run with a fresh seed added to a series.
 struct LedgerNight {
   std::string date;  ///< UTC, ISO 8601
   std::uint64_t seed = 0;
   std::string commit;
   std::size_t series = 0;         ///< index in the book
-  stats::Evidence evidence = {};  ///< of a score
-  double log_e = 0;               ///< of a log_e
+  stats::Evidence evidence = {};  ///< if a score
+  double log_e = 0;               ///< if a log_e
   bool operator==(const LedgerNight&) const = default;
 };
 
-/// Everything in a ledger, in the order of its lines.
+/// A whole ledger, in the order of its lines.
 class LedgerBook {
  public:
   explicit LedgerBook(double budget = default_ledger_budget);
@@ -66,24 +66,23 @@ class LedgerBook {
   const std::vector<LedgerNight>& nights() const { return nights_; }
   std::vector<LedgerNight> nights_of(std::size_t series) const;
 
-  /// The series of a test's channel that is not closed and has this hash, if any.
+  /// The open series of a test's channel with this hash; null if there is none.
   const LedgerSeries* open_series(const LedgerSeries& wanted) const;
-  /// How many series the test's channel had up to this one: 1 for its first.
+  /// The number of the series among those of its test's channel, from 1.
   int generation(std::size_t series) const;
-  /// Whether this seed has added to any series of the test's channel.
+  /// True if this seed has added to any series of the test's channel.
   bool has_seed(const LedgerSeries& of, std::uint64_t seed) const;
 
-  /// The index of the open series like `wanted`, which is opened with its prior if there is none.
+  /// The index of the open series like `wanted`. It opens one with that prior if there is none.
   std::size_t open(const LedgerSeries& wanted);
   void add(const LedgerNight& night);
   /// Closes every series of a test: its next night begins a new one.
   void begin(const std::string& test);
 
-  /// The whole file.
   std::string text() const;
 
-  /// Reads a ledger. InputError with file, line and what to do for anything that is not as `text`
-  /// writes it, comments and `begin` lines apart.
+  /// Reads a ledger. InputError with file, line and remedy for anything that `text` would not
+  /// write, except comments and `begin` lines.
   static LedgerBook parse(const std::string& text, const std::string& file);
 
  private:
@@ -95,8 +94,8 @@ class LedgerBook {
   std::vector<LedgerSeries> series_;
   std::vector<bool> closed_;
   std::vector<LedgerNight> nights_;
-  std::vector<std::string> lines_;  ///< all but `end`, as they are in the file
-  std::uint64_t check_;             ///< of the header and all checked lines
+  std::vector<std::string> lines_;  ///< all but `end`, as in the file
+  std::uint64_t check_;             ///< checksum of the header and all checked lines
 };
 
 }  // namespace assay::harness

@@ -1,7 +1,5 @@
 #pragma once
 
-// The words of one line of a ledger.
-
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,20 +8,20 @@
 
 namespace assay::harness {
 
-/// In double quotes, with \" \\ and \n \t \r for what a line cannot hold.
+/// The text in double quotes, with the escapes \" \\ \n \t \r.
 std::string in_quotes(std::string_view text);
 
 /// "line | 1a2b3c4d": the low 32 bits of a hash.
 std::string with_check(const std::string& line, std::uint64_t hash);
-/// A line and what stands behind its last bar; all of it and "" where there is no bar.
+/// The text before and after the last bar; the whole and "" if there is none.
 std::pair<std::string_view, std::string_view> split_check(std::string_view line);
 
-/// Reads the fields of a line from left to right; nullopt where the next field is another.
+/// Reads the fields of a line from left to right; nullopt if the next field is another.
 class LineFields {
  public:
   explicit LineFields(std::string_view line) : rest_(line) {}
 
-  bool word(std::string_view wanted);  ///< steps over it if it is next
+  bool word(std::string_view wanted);  ///< skips the word if it is next
   std::optional<std::string> any_word();
   std::optional<std::uint64_t> count();
   std::optional<double> number();  ///< finite

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the nights of a series say together.
+// Combines the nights of a series.
 
 #include <optional>
 #include <vector>
@@ -17,15 +17,15 @@ struct ClaimedRange {
 };
 ClaimedRange claimed_range(const Regions& regions);
 
-/// ln E after each night, of the null hypothesis "theta is in the range": the least over the range,
-/// which is E at the value nearest to the estimate of all nights so far. Each of these is below E
-/// at the true theta, a martingale, so P(any >= 1 / alpha) <= alpha.
+/// ln E after each night, for the null hypothesis "theta is in the range". It is the least over the
+/// range, which lies at the value nearest to the estimate of all nights so far. It is at most E at
+/// the true theta, a martingale, so P(any >= 1 / alpha) <= alpha.
 std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
                                const ClaimedRange& claimed);
 
-/// When theta moved: the most likely first night of it, and the first and last of the most likely
-/// nights that share 90 % of the posterior (stats::change_point); of e-values the night from which
-/// they multiply to the most, alone.
+/// The most likely first night of a changed theta, and the range of likely nights. The range holds
+/// 90 % of the posterior (stats::change_point). For e-values all three are the night from which
+/// they multiply to the most.
 struct Moved {
   std::size_t night = 0;
   std::size_t from = 0;
@@ -33,9 +33,8 @@ struct Moved {
 };
 Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights);
 
-/// The share of a test's error budget that its k-th series may spend: 1 / (zeta(3) k^3). They sum
-/// to 1, so that a claim that is changed or begun anew any number of times keeps the budget; the
-/// first has 0.83.
+/// The share of a test's error budget for its k-th series: 1 / (zeta(3) k^3). The shares sum to 1,
+/// so a claim keeps its budget however often it is changed or begun anew. The first has 0.83.
 double generation_share(int generation);
 
 }  // namespace assay::harness

@@ -14,8 +14,8 @@
 namespace assay::harness {
 namespace {
 
-// (effect / a night's standard error)^2: near the best for one standard error a night found within
-// some twenty nights, and little is lost at a third or three times of it (README.md).
+// (effect / a night's standard error)^2. It suits a bias of one standard error a night, and loses
+// little at a third or three times of that.
 constexpr double prior_variance = 0.2;
 
 const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
@@ -25,7 +25,7 @@ const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
   return nullptr;
 }
 
-/// Why a test says nothing that the next run could add to; "" where it does.
+/// Why a test gives nothing that nights could add up; "" if it does.
 std::string obstacle(const TestWork& work, std::size_t channel) {
   const TestOutcome& test = work.outcome;
   if (test.verdict == reports::Verdict::error || test.verdict == reports::Verdict::invalid) {
@@ -44,8 +44,8 @@ std::string obstacle(const TestWork& work, std::size_t channel) {
   return "";
 }
 
-/// The normal quantile of the p-value of theta = 0, positive where theta seems to be; 0 where a
-/// conservative method finds neither side likelier.
+/// The normal quantile of the p-value of theta = 0, with theta's sign; 0 if a conservative method
+/// finds neither side likelier.
 double z_of(const stats::TestResult& at_null) {
   const double log_p = std::min(at_null.log_p_upper, at_null.log_p_lower);
   if (log_p >= std::log(0.5)) return 0;
@@ -53,7 +53,7 @@ double z_of(const stats::TestResult& at_null) {
   return at_null.log_p_upper < at_null.log_p_lower ? z : -z;
 }
 
-/// The effect a series looks for, from the pilot; nullopt where it has no spread.
+/// The effect that a series looks for, from the pilot; nullopt without spread.
 std::optional<double> prior_effect(const TestOutcome& test, std::size_t channel,
                                    const Pilots& pilots) {
   const auto data = expected_data(test, channel, pilots, expected_secondaries(test, pilots));
@@ -110,7 +110,7 @@ NightEvidence night_evidence(const TestWork& work, std::size_t channel, const Pi
   const std::optional<DrawnTest> numbers = drawn(work);
   if (!numbers) return {.missing = "it was not drawn"};
   if (evidence_kind(test) == EvidenceKind::score) return of_score(*numbers, channel, pilots);
-  // Without spread there is no test: p = 1, which weighs against an alarm.
+  // Without spread there is no test: p = 1, which counts against an alarm.
   const ChannelOutcome* outcome = outcome_of(test, channel);
   const double log_p = outcome != nullptr ? outcome->decision.log_p_claimed : 0;
   return {.kind = EvidenceKind::log_e, .log_e = stats::log_e_from_log_p(log_p)};

@@ -1,5 +1,5 @@
-# A CTest test for each claim of a suite, found when ctest runs: a claim that was added needs no
-# build, and one that is misspelt is a test that fails with the program's message.
+# Makes a CTest test of each claim of a suite when ctest runs. A new claim needs no build. A
+# misspelt one is a failed test with the program's message.
 #
 #   assay_discover_tests(SUITE
 #     [PREFIX text]               before each test's id, where two suites have one name
@@ -7,8 +7,8 @@
 #     [WORKING_DIRECTORY folder]  default the current source folder
 #     [PROPERTIES name value…])   of all the tests
 #
-# Each test is tested alone, on its fixed share of the suite's alpha; 77, all skipped, is a skip.
-# ARGUMENTS --set mine.file=$<TARGET_FILE:mine> names a library that this build makes.
+# Each test runs alone, on its fixed share of the suite's alpha. Exit code 77, all skipped, is a
+# skip. ARGUMENTS --set mine.file=$<TARGET_FILE:mine> names a library that this build makes.
 set(_assay_tests_template ${CMAKE_CURRENT_LIST_DIR}/assayTestsAtTestTime.cmake.in)
 
 function(assay_discover_tests suite)
@@ -36,7 +36,7 @@ function(assay_discover_tests suite)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${file}.cmake)
 endfunction()
 
-# A shared library of estimators in C or C++ for the plugin `library`, from these sources:
+# Builds a shared library of estimators in C or C++ for the plugin `library`:
 #
 #   assay_add_plugin(NAME source…)
 #

@@ -1,5 +1,4 @@
-# What `cmake --install` puts where: the program, the headers of plugins, and a CMake package that
-# finds them again wherever the prefix was moved to.
+# Installs the program, the headers of plugins, and a relocatable CMake package.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -12,7 +11,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/estimators/plugin_abi.h
 if(TARGET assay_googletest)
   install(TARGETS assay_googletest EXPORT assayTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT assayTargets NAMESPACE assay:: DESTINATION ${ASSAY_PACKAGE_DIR})
-  # With the folders that their includes name.
+  # Their includes name these folders.
   foreach(header IN ITEMS harness/googletest/claims.h harness/googletest/matchers.h
           estimators/stream.h estimators/philox.h)
     get_filename_component(folder ${header} DIRECTORY)
@@ -25,7 +24,7 @@ configure_package_config_file(
   ${CMAKE_CURRENT_LIST_DIR}/assayConfig.cmake.in ${PROJECT_BINARY_DIR}/package/assayConfig.cmake
   INSTALL_DESTINATION ${ASSAY_PACKAGE_DIR}
   PATH_VARS CMAKE_INSTALL_BINDIR CMAKE_INSTALL_INCLUDEDIR)
-# Before 1.0 a minor version may change what suites and records mean.
+# Before 1.0 a minor version may change the meaning of suites and records.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/assayConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES

@@ -8,7 +8,7 @@
 namespace assay::harness {
 
 std::string outside_of_range(const Subject& subject, const Summary& drawn) {
-  // A mutant declares what its original does.
+  // A mutant has its original's declaration.
   const bool mutant = !subject.estimator->entry->information.original.empty();
   if (mutant || drawn.elements || subject.setup->observations()) return "";
   const std::vector<Channel> channels = subject.setup->channels();

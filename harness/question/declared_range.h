@@ -7,10 +7,9 @@
 
 namespace assay::harness {
 
-/// Which value of the subject's channels lies outside of what the channel declares (`low`, `high`),
-/// but for what a sum may be rounded; empty where none does. A declared range chooses methods, and
-/// `bounded` rests on it. Of a mutant, which declares what its original does, of images and of
-/// ready-made data nothing is said.
+/// Names a value outside the range that its channel declares (`low`, `high`), beyond a sum's
+/// rounding; "" if there is none. The range decides on methods, above all `bounded`. Mutants (which
+/// have their original's declaration), images and ready-made data are not checked.
 std::string outside_of_range(const Subject& subject, const Summary& drawn);
 
 }  // namespace assay::harness

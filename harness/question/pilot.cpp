@@ -11,20 +11,21 @@
 namespace assay::harness {
 namespace {
 
-// many_observations are enough to know a skewness and a kurtosis of light-tailed primaries to some
-// per cent, and cheap against any test. One that does not average may be a chain or an image:
-// fewer, unless they are so far from normal that the test of a variance takes thousands anyway.
+// The pilot of an estimator that does not average, which may be a chain or an image. It grows if
+// the observations are far from normal. The larger number, many_observations, tells a light-tailed
+// skewness and kurtosis to a few per cent.
 constexpr std::uint64_t few_observations = 512;
-// The most primaries that a larger pilot takes: chains may have millions.
+// Most primaries of a larger pilot: a chain's observation may have millions.
 constexpr std::uint64_t most_primaries_of_larger = std::uint64_t{1} << 27;
-// 3 + 3 sqrt(24 / 512): three standard errors above that of as few normal values.
+// 3 + 3 sqrt(24 / 512): three standard errors above the kurtosis of 512 normal values.
 constexpr double near_normal_kurtosis = 3.65;
-// Of images as many as this many elements pay for, at least the fewest that tell their variance.
+// An image's pilot has as many images as this pays for, at least the fewest that tell their
+// variance.
 constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
 constexpr std::uint64_t least_images = 2 * stats::least_replicates;
 
-/// How many observations a larger pilot has; those of any where there is none: of images, and of
-/// files, of which each may be a rendering.
+/// Observations of the larger pilot. Images and files have no larger one, since each observation
+/// may be a rendering: it returns the usual number.
 std::uint64_t larger_size(const PreparedEstimator& estimator, const PilotRun& run) {
   const auto worth = run.on_tails.find(estimator.name);
   const Setup& setup = *estimator.setup;
@@ -41,8 +42,7 @@ bool is_far_from_normal(const stats::Moments& moments) {
   return !(moments.m2 > 0) || moments.kurtosis() > near_normal_kurtosis;
 }
 
-/// A value that does not vary may be a rare one that was not seen. A cost that does not vary is the
-/// rule.
+/// A constant value may hide a rare one. A constant cost is usual.
 bool is_far_from_normal(const Pool& pool, const Summary& sums) {
   const std::vector<Channel> channels = pool.setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -62,7 +62,7 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, const Pilot
   std::uint64_t usual = averages ? many_observations : few_observations;
   if (const auto images = usual_images(*estimator.setup, primaries)) {
     usual = *images;
-    pool->keep_observations(usual);  // those of files are kept anyway
+    pool->keep_observations(usual);  // files keep theirs anyway
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
   if (pool->channels() <= most_kept_channels) {
@@ -81,9 +81,8 @@ std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
   return pool;
 }
 
-/// Moments that means of so many primaries would have these of. A kurtosis that is below 3 by
-/// chance would become one that no law has (Pearson 1916: at least 1 and the square of the
-/// skewness).
+/// Moments of single primaries from moments of means of `primaries`. The kurtosis is at least 1 and
+/// the square of the skewness, as for every law (Pearson 1916).
 stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
   if (!(means.m2 > 0)) return means;
   const double n = static_cast<double>(primaries);
@@ -96,7 +95,7 @@ stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
   return means;
 }
 
-/// The sums of a pilot pool, as of single primaries where a recorded run has means of several.
+/// A pilot's sums, converted to single primaries if a recorded run has means of several.
 std::shared_ptr<const Summary> sums_of(const Drawn& drawn) {
   const RecordedRun* run = as_recorded_run(*drawn.pool().setup());
   if (run == nullptr || !run->entry().information.averages) return drawn.shared_summary();
@@ -215,7 +214,7 @@ PilotChannel pilot_channel(const Question& question, std::size_t subject, std::s
 
 namespace {
 
-/// Draws on where a claim needs more than the first observations tell.
+/// Draws on for claims that need more than the first observations.
 void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estimators,
              const std::vector<std::shared_ptr<Pool>>& pools, const PilotRun& run,
              Progress& progress) {
@@ -233,7 +232,7 @@ void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estima
   if (enlarged.empty()) return;
   draw_all(enlarged, {.threads = run.threads, .phase = "pilot"}, progress);
   if (interrupted()) return;
-  // Claims on means do without: an estimator that fails only here has not failed them.
+  // A fault here does not stop claims on means, which do not need these observations.
   for (std::size_t i = 0; i < enlarged.size(); ++i) pilots.add_larger(names[i], read(*enlarged[i]));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The pilot: a few primaries of each estimator, from streams of their own, by which the sizes and
-// methods of the tests are chosen. No test ever sees these numbers.
+// The pilot: a few primaries of each estimator, from their own streams. It decides sizes and
+// methods of the tests. No test sees these numbers.
 
 #include <map>
 #include <memory>
@@ -18,19 +18,18 @@
 
 namespace assay::harness {
 
-/// What a pilot tells of an estimator, by channel.
 struct Pilot {
-  /// The sums of secondaries of `primaries` primaries.
+  /// Sums of secondaries with `primaries` primaries each.
   std::shared_ptr<const Summary> sums = {};
   std::vector<std::vector<double>> values = {};  ///< of the first channels, as drawn
   std::uint64_t primaries = 1;
-  /// Of an image: whole observations, and whose they are.
+  /// Whole observations of an image, and their owner.
   Observations images = {};
   std::shared_ptr<const KeptObservations> kept = {};
-  /// At pictures, in place of `images`: they were looked at when they were read.
+  /// The look at pictures while reading them, in place of `images`.
   std::shared_ptr<const PictureLook> look = {};
-  /// More observations, these among them, where claims on variances and costs need them; or why
-  /// they could not be drawn.
+  /// More observations, including these, for claims on variances and costs; or why they could not
+  /// be drawn.
   std::shared_ptr<const Pilot> larger = {};
   std::optional<Fault> larger_fault = {};
 
@@ -41,27 +40,27 @@ struct Pilot {
   stats::Moments moments(std::size_t channel) const { return sums->moments(channel); }
 };
 
-/// Observations of a pilot of an estimator that averages, primaries then, and the most of others.
+/// Observations of an averaging estimator's pilot, each one primary. Other pilots have at most as
+/// many.
 inline constexpr std::uint64_t many_observations = 8192;
 
-/// Images that a pilot takes of an estimator of them.
+/// Number of images in a pilot; nullopt for an estimator of something else.
 std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries);
-/// Of estimators of no more channels a pilot keeps their values.
+/// A pilot keeps the values of estimators with at most so many channels.
 inline constexpr std::size_t most_kept_channels = 64;
 
-/// By pilot_name, the pilots that were drawn and why others could not be. Averaging estimators are
-/// piloted at one primary, others at the suite's `primaries`. Of ready-made data a pilot is all
-/// rows, which are the test's own: only the method is chosen by them.
+/// The pilots by pilot_name, and the faults of those that could not be drawn. Averaging estimators
+/// have pilots of one primary, others of the suite's `primaries`. The pilot of ready-made data is
+/// all rows, also the test's: it chooses only the method.
 class Pilots {
  public:
-  /// Null where there is none, or a fault.
+  /// Null if there is none, or a fault.
   const Pilot* find(const std::string& name) const;
-  /// Throws std::out_of_range where find() gives null.
+  /// Throws std::out_of_range if find() returns null.
   const Pilot& at(const std::string& name) const { return drawn_.at(name); }
-  /// Null where there is none, or a pilot.
+  /// Null if there is none, or a pilot.
   const Fault* fault(const std::string& name) const;
-  /// Why an estimator could not be piloted, or its sampler's draws for `purpose`; null where they
-  /// could.
+  /// The fault of an estimator's pilot, or of its sampler's draws for `purpose`; null if none.
   const Fault* fault(const std::string& estimator, const std::string& purpose) const;
   bool empty() const { return drawn_.empty() && faults_.empty(); }
 
@@ -77,33 +76,31 @@ class Pilots {
 struct PilotRun {
   std::uint64_t seed;
   unsigned threads;
-  std::set<std::string> with_cost = {};  ///< names of those whose costs are wanted
-  /// Names of those whose variances or costs are tested, with the most observations that a pilot of
-  /// them is worth.
+  std::set<std::string> with_cost = {};  ///< estimators whose costs are needed
+  /// Estimators whose variances or costs are tested, with the largest useful pilot of each.
   std::map<std::string, std::uint64_t> on_tails = {};
-  std::vector<const Subject*> draws = {};  ///< samplers whose draws are wanted besides
+  std::vector<const Subject*> draws = {};  ///< samplers whose draws are needed too
 };
 
-/// The estimator's name. Of a sampler's draws their purpose follows after a dot.
+/// The estimator's name. For a sampler's draws a dot and their purpose follow.
 std::string pilot_name(const Subject& subject);
 
-/// Which subject's pilot stopped, where, and why; empty where all went well that the question rests
-/// on.
+/// Says which of the needed pilots stopped, where and why; "" if none did.
 std::string where_pilots_stopped(const Question& question, const Pilots& pilots);
 
-/// The pilot of a subject, if it has one that went well.
+/// The pilot of a subject; null if there is none or it has a fault.
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);
-/// The same for one of a question's subjects: the larger one where there is one that it needs.
+/// The pilot of a question's subject, the larger one if the question needs it.
 const Pilot* pilot_of(const Question& question, std::size_t subject, const Pilots& pilots);
 
 struct PilotChannel {
   stats::Moments moments;
-  std::span<const double> values;  ///< empty beyond the channels that are kept
+  std::span<const double> values;  ///< empty for channels that are not kept
 };
 /// One channel of a subject in its pilot.
 PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel);
-/// The same of one of a question's subjects, which must have a pilot. It is looked up by name: not
-/// for each of an image's channels.
+/// The same for a question's subject, which must have a pilot. It looks the pilot up by name, which
+/// is too slow for every channel of an image.
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots);
 

@@ -45,9 +45,9 @@ void require_pairs(const Question& question, const Claim& claim) {
   }
 }
 
-/// Rows of one file belong together: two columns of it are no independent samples.
+/// Columns of one file are dependent samples.
 void require_different_data(const Question& question, const Claim& claim) {
-  // Two estimators of one run have streams of their own (`separate_pair`).
+  // Two estimators of one run have their own streams (`separate_pair`).
   if (as_recorded_run(*question.subjects[0].setup) != nullptr) return;
   const std::string first = question.subjects[0].setup->data_file();
   const auto same = [&](const Subject& other) { return other.setup->data_file() == first; };
@@ -68,7 +68,7 @@ void require_different_data(const Question& question, const Claim& claim) {
                                first));
 }
 
-/// Of two sources of one key, the second, if it is drawn at all, gets a copy of its own.
+/// Gives the second of two sources with one key a stream of its own, if it is drawn.
 bool separate_pair(Subject& first, Subject& second, const Claim& claim, std::uint64_t seed) {
   if (!(stream_of(first, seed) == stream_of(second, seed))) return false;
   if (first.setup->data_stream() && second.setup->data_stream()) {
@@ -80,7 +80,7 @@ bool separate_pair(Subject& first, Subject& second, const Claim& claim, std::uin
   return true;
 }
 
-/// Sources of one key would draw the same numbers: all but one get copies of their own.
+/// Sources with one key would draw the same numbers: all but one get streams of their own.
 void separate_streams(Question& question, const Claim& claim, std::uint64_t seed) {
   std::vector<Subject>& subjects = question.subjects;
   for (bool moved = true; moved;) {
@@ -101,8 +101,7 @@ std::string size_of(const Subject& subject) {
   return fmt::format("{} channels", subject.channels.size());
 }
 
-/// Means with their errors instead of observations: numbers to hold the first against, channel by
-/// channel.
+/// References from recorded means and their errors, channel by channel.
 std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
   const Subject& subject = question.subjects[0];
   const bool one_size = subject.channels.size() == reference.channels.size() &&
@@ -129,7 +128,7 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
 Question about_moments(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   const bool mean = claim.left.name == QuantityName::mean;
-  // A worst variance that is bounded is every channel's variance bounded.
+  // The worst variance is bounded if every channel's is.
   if (claim.left.name == QuantityName::worst_variance) check_worst_variance(claim, estimators);
   Question question{.test = &test,
                     .kind = mean ? QuestionKind::mean_of_one : QuestionKind::variance_of_one,
@@ -150,7 +149,7 @@ Question about_moments(const TestEntry& test, const Estimators& estimators) {
   return question;
 }
 
-/// Cells are those of one or two coordinates, the same of both sides.
+/// Cells need one or two coordinates, the same on both sides.
 void require_plane(const Question& question) {
   const std::size_t first = question.subjects[0].channels.size();
   const std::size_t second = question.subjects[1].channels.size();
@@ -161,7 +160,7 @@ void require_plane(const Question& question) {
                                two_sample_cells, first, second));
 }
 
-/// The marginals that are compared, as "u, v".
+/// The compared marginals, as "u, v".
 std::string channel_names(const Subject& side) {
   const std::vector<Channel> channels = side.setup->channels();
   std::vector<std::string> names;
@@ -169,7 +168,7 @@ std::string channel_names(const Subject& side) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Two whole samplers are compared marginal by marginal: they must be the same ones.
+/// Two samplers are compared marginal by marginal, so both need the same ones.
 void require_same_marginals(const Question& question, const Location& where) {
   const Subject& first = question.subjects[0];
   const Subject& second = question.subjects[1];
@@ -248,9 +247,8 @@ void check_margins(const Question& question) {
   }
 }
 
-/// The largest reference that is known before anything is drawn, that of a second mean too; nullopt
-/// where none is, or where margins are no part of one. A number within its own error or rounding of
-/// 0 is none.
+/// The largest reference known before drawing, also of a second mean. nullopt if there is none,
+/// margins are not relative to it, or it is 0 within its error or rounding.
 std::optional<double> known_size(const Question& question) {
   if (question.kind == QuestionKind::slope || question.of_draws()) return {};
   double largest = 0;
@@ -288,7 +286,6 @@ void refuse_missing_per_cent(const Question& question) {
   }
 }
 
-/// What the suite asks of a test that cannot be had from these sources.
 void check_sizes(const Question& question) {
   const TestEntry& test = *question.test;
   const std::optional<std::uint64_t> most = question.most_rows();
@@ -301,7 +298,7 @@ void check_sizes(const Question& question) {
                                *test.secondaries, *most, longest->estimator->name));
 }
 
-/// A mean with its error has no observations to test anything else with.
+/// A mean with its error has no observations, so nothing else can be tested.
 void require_observations(const Question& question) {
   for (const Subject& subject : question.subjects) {
     if (!recorded::is_reference(*subject.setup)) continue;

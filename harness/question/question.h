@@ -1,7 +1,7 @@
 #pragma once
 
-// A claim about the estimators of a suite: which observations it is about and what they are held
-// against, channel by channel.
+// A claim bound to the estimators of a suite: its observations, and what each channel is compared
+// with.
 
 #include <algorithm>
 #include <cmath>
@@ -16,25 +16,24 @@
 
 namespace assay::harness {
 
-/// The observations of one side of a claim: an estimator's secondary estimates, or a sampler's
-/// draws.
+/// One side of a claim: an estimator's secondary estimates, or a sampler's draws.
 struct Subject {
   const PreparedEstimator* estimator;
-  std::shared_ptr<const Setup> setup;  ///< what is sampled
-  std::string purpose = "";            ///< tells the streams of a sampler from its estimator's
+  std::shared_ptr<const Setup> setup;
+  std::string purpose = "";  ///< Separates a sampler's streams from its estimator's.
   std::uint32_t copy = 0;
-  std::vector<std::size_t> channels;     ///< of the set-up, those the claim is about
-  bool averages = true;                  ///< variance falls like 1 / primaries
-  std::optional<ImageShape> image = {};  ///< what these channels are together
-  /// Where `estimator` is this question's own: a point of a sweep.
+  std::vector<std::size_t> channels;  ///< The channels that the claim is about.
+  bool averages = true;               ///< True if the variance falls like 1 / primaries.
+  std::optional<ImageShape> image = {};
+  /// Owns `estimator` if it is a point of a sweep.
   std::shared_ptr<const PreparedEstimator> own = nullptr;
 
-  /// Observations that it has in a look of this size: all rows of a file where these are fewer.
+  /// Observations in a look of this size, at most all rows of a file.
   std::uint64_t secondaries(std::uint64_t look) const {
     return std::min(look, setup->observations().value_or(look));
   }
 
-  /// Of how many primaries an observation is the average: its variance and cost times this are
+  /// The number of primaries that an observation averages. Its variance and cost times this are
   /// those of one primary.
   double averaged(std::uint64_t primaries) const {
     return averages ? static_cast<double>(primaries) : 1;
@@ -42,53 +41,55 @@ struct Subject {
 };
 
 enum class QuestionKind {
-  mean_of_one,  ///< mean against a number
+  mean_of_one,  ///< A mean against a number.
   mean_of_two,
-  image,            ///< all elements' means of one image against numbers, or of two
-  variance_of_one,  ///< of one primary where the estimator averages
+  image,            ///< All means of one image against numbers, or of two images.
+  variance_of_one,  ///< Of one primary if the estimator averages.
   variance_of_two,
-  fit_to_density,  ///< a sampler's draws against its declared density, in cells
-  fit_to_law,      ///< values against a law's distribution function
-  same_law,        ///< values of two against each other
-  same_cells,      ///< values of two, one or two channels together, counted in cells
-  cost,            ///< of one primary where the estimator averages; the kinds from here on are
-  efficiency,      ///< of one estimator against a number or of two, as the subjects say
+  fit_to_density,  ///< A sampler's draws against its declared density, in cells.
+  fit_to_law,      ///< Values against a law's distribution function.
+  same_law,        ///< Values of two subjects against each other.
+  same_cells,      ///< Values of two subjects, one or two channels, counted in cells.
+  // The kinds below compare with a number or with a second subject.
+  cost,        ///< Of one primary if the estimator averages.
+  efficiency,  ///< 1 / (error x cost).
   quantile,
-  total_variance,  ///< summed over the channels
-  integral,        ///< of a sampler's density, against a number
-  inconsistency,   ///< probability of a draw that contradicts its sampler, against a number
-  slope            ///< a power law over the subjects, one a point of the sweep
+  total_variance,
+  integral,       ///< Of a sampler's density, against a number.
+  inconsistency,  ///< Probability of a draw that contradicts its sampler.
+  slope           ///< A power law; each subject is a point of the sweep.
 };
 
-/// The method that makes a claim about two laws one about cells of all their channels together.
+/// This method turns a claim about two laws into one about cells of all their channels together.
 inline constexpr const char* two_sample_cells = "chi-square-two-sample";
 
-/// What a claim asks of the suite's estimators.
+/// A claim, bound to the suite's estimators.
 struct Question {
   const TestEntry* test;
   QuestionKind kind;
-  std::vector<Subject> subjects;  ///< one or two (a slope: one a point), then perhaps a reference
-  double factor = 1;              ///< first against factor * second
-  double offset = 0;              ///< of a bias: E x against the reference + offset
-  /// A number per channel of the subject, for the kinds "of one".
+  std::vector<Subject> subjects;  ///< One or two (for a slope one a point), then perhaps a
+                                  ///< reference.
+  double factor = 1;              ///< Compares the first with factor * second.
+  double offset = 0;              ///< For a bias: compares E x with the reference + offset.
+  /// For the kinds "of one": a number for each channel.
   std::vector<Constant> references = {};
-  Law law = {};                        ///< for fit_to_law
-  bool has_reference_subject = false;  ///< the last subject's mean is the truth of the others
-  /// Of each subject and channel the truth its error is taken about: of a mean squared error in an
-  /// efficiency, of a bias in a slope. Empty: the variance, the mean itself.
+  Law law = {};                        ///< For fit_to_law.
+  bool has_reference_subject = false;  ///< The last subject's mean is the truth for the others.
+  /// The truth for each subject and channel, about which a mean squared error in an efficiency or a
+  /// bias in a slope is taken. Empty: the variance, or the mean itself.
   std::vector<std::vector<Constant>> truths = {};
-  std::vector<double> sizes = {};  ///< of a slope: the values of the swept parameter
+  std::vector<double> sizes = {};  ///< For a slope: the values of the swept parameter.
 
-  /// One number from all channels together.
+  /// True if all channels together make one number.
   bool pooled() const {
     return kind == QuestionKind::cost || kind == QuestionKind::total_variance ||
            kind == QuestionKind::same_cells || kind == QuestionKind::image;
   }
   std::size_t channel_count() const { return pooled() ? 1 : subjects[0].channels.size(); }
   std::string channel_name(std::size_t channel) const;
-  /// Subjects without a reference.
+  /// The number of subjects without the reference.
   std::size_t compared() const { return subjects.size() - (has_reference_subject ? 1 : 0); }
-  /// The most ready-made observations of a subject; nothing where all are drawn.
+  /// The most ready-made observations of a subject; nullopt if all subjects are drawn.
   std::optional<std::uint64_t> most_rows() const;
   bool of_two() const { return kind != QuestionKind::slope && compared() == 2; }
   bool of_means() const {
@@ -97,58 +98,58 @@ struct Question {
   bool of_variances() const {
     return kind == QuestionKind::variance_of_one || kind == QuestionKind::variance_of_two;
   }
-  /// Theta is the logarithm of a ratio.
+  /// True if theta is the logarithm of a ratio.
   bool on_log_scale() const {
     return of_variances() || kind == QuestionKind::cost || kind == QuestionKind::efficiency ||
            kind == QuestionKind::total_variance;
   }
-  /// What is tested is or contains a variance.
+  /// True if the tested number is or contains a variance.
   bool of_spread() const;
-  /// What is tested is or contains a variance or a cost: its tests have to know the tails of
-  /// values.
+  /// True if the tested number is or contains a variance or a cost. Such tests depend on the tails
+  /// of values.
   bool rests_on_tails() const { return of_spread() || kind == QuestionKind::cost; }
-  /// The law of single values is the subject, not a mean over them.
+  /// True if the claim is about the law of single values, not their mean.
   bool of_laws() const {
     return kind == QuestionKind::fit_to_density || kind == QuestionKind::fit_to_law ||
            kind == QuestionKind::same_law || kind == QuestionKind::same_cells ||
            kind == QuestionKind::quantile || of_draws();
   }
-  /// A sampler's own bookkeeping is the subject.
+  /// True if the claim is about what a sampler declares.
   bool of_draws() const {
     return kind == QuestionKind::integral || kind == QuestionKind::inconsistency;
   }
 };
 
-/// InputError at the claim's place: a part that does not exist, an analytic reference that the
-/// plugin does not know, channels that do not pair, a margin in per cent where there is nothing to
-/// take it of, an estimator of the sweep that its plugin refuses.
-/// Sources that would share a stream under this seed are told apart.
+/// Binds the claim. Sources that would share a stream under this seed get separate ones. InputError
+/// at the claim's place for a part that does not exist, an unknown analytic reference, or channels
+/// that do not pair. InputError also for a relative margin without a reference size, and for a
+/// swept value that the plugin refuses.
 Question ask(const TestEntry& test, const std::map<std::string, PreparedEstimator>& estimators,
              std::uint64_t seed);
 
-/// The `detect` of a claim about laws where nothing says how many observations to take.
+/// The default `detect` of a claim about laws.
 inline constexpr double default_law_effect = 0.05;
 
-/// `ask` of a test as its user wrote it. Gives a claim about laws its default `detect`, unless the
-/// test has `detect` or `secondaries` or its rows are given. InputError at a margin that is larger
-/// than its reference, or than any probability: nearly always a per cent sign is missing.
+/// ask() for a test as its user wrote it. A claim about laws gets the default `detect`, unless the
+/// test has `detect` or `secondaries` or its rows are given. InputError if a margin is larger than
+/// its reference or than any probability: the per cent sign is probably missing.
 Question ask_as_written(TestEntry& test, const std::map<std::string, PreparedEstimator>& estimators,
                         std::uint64_t seed);
 
 /// A key of the test as its user writes it: "`test: t`", or "`--test t`" of the command line.
 std::string written_key(const TestEntry& test, const std::string& key, const std::string& value);
 
-/// The margins that a test has: `detect`, `allow` and that of `within`.
+/// The margins of a test: `detect`, `allow` and that of `within`.
 std::vector<Margin> margins_of(const TestEntry& test);
 
-/// Whether a number is so far from 0 that its error cannot be why: 8 standard errors. Of a mean near
-/// 0 margins are no part.
+/// True if the number is at least 8 standard errors from 0. Margins cannot be relative to a mean
+/// near 0.
 inline bool exceeds_its_error(double value, double standard_error) {
   return std::abs(value) > 8 * standard_error;
 }
 
-/// Says how an absolute margin larger than `size`, what it is held against, is written in per cent.
-/// "" for any other margin.
+/// Suggests the per cent spelling of an absolute margin larger than its reference `size`; "" for
+/// other margins.
 std::string missing_per_cent(const Margin& margin, double size);
 
 }  // namespace assay::harness

@@ -14,7 +14,7 @@ const ScaledQuantity* other_side(const Claim& claim) {
   return std::get_if<ScaledQuantity>(&claim.right);
 }
 
-/// The number on the right, which has no error of its own and is not 0: a ratio to it is tested.
+/// The number on the right, without an error and not 0, so that a ratio to it can be tested.
 Constant exact_number(const Claim& claim) {
   const Constant number = std::get<Constant>(claim.right);
   const char* name = to_string(claim.left.name);
@@ -44,7 +44,7 @@ Question one_or_two(const TestEntry& test, QuestionKind kind, const Estimators& 
   return question;
 }
 
-/// The true mean of each channel: the number of `reference:`, else what the plugin knows.
+/// The true mean of each channel: the number of `reference:`, else the plugin's.
 std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source) {
   std::vector<Constant> truths;
@@ -92,8 +92,8 @@ void require_drawn(const Question& question) {
   }
 }
 
-/// An estimator that averages has as many costs as primaries, and the same of variances; its mean
-/// squared error depends on how many it averages, so that it must be said.
+/// The mean squared error of an averaging estimator depends on `primaries`, so the suite must say
+/// it.
 void require_primaries(const Subject& subject) {
   if (!subject.averages || subject.estimator->primaries) return;
   throw InputError(subject.estimator->where,
@@ -143,7 +143,8 @@ void require_counted(const TestEntry& test) {
   throw InputError(test.where, "a slope of seconds has no method; count `rays` or `samples`");
 }
 
-/// Variance and cost of an estimator that averages are those of one primary, whatever `primaries`.
+/// Variance and cost of an averaging estimator are those of one primary and do not depend on
+/// `primaries`.
 void require_slope_of_something(const TestEntry& test, const Subject& subject) {
   const QuantityName name = test.claim.left.name;
   const bool of_one = name == QuantityName::variance || name == QuantityName::cost;

@@ -1,35 +1,34 @@
 #pragma once
 
-// What claims other than those about means, variances and laws ask. Internal to `ask`.
+// Binds claims other than those about means, variances and laws. Internal to `ask`.
 
 #include "harness/question/question_sources.h"
 
 namespace assay::harness {
 
-/// E x against the reference + the number claimed: the analytic mean, or what `reference:` names.
+/// E x against reference + number. The reference is the analytic mean, or that of `reference:`.
 Question about_bias(const TestEntry& test, const Estimators& estimators);
 
-/// Rays, samples or seconds (`cost:`) of a primary where the estimator averages, of a secondary
-/// estimate otherwise; one number whatever the channels.
+/// Rays, samples or seconds (`cost:`), one number for all channels. They are those of a primary if
+/// the estimator averages, else those of a secondary.
 Question about_cost(const TestEntry& test, const Estimators& estimators);
 
-/// 1 / (error x cost): error is the variance, or the mean squared error where an estimator is
+/// 1 / (error x cost). The error is the variance, or the mean squared error if the estimator is
 /// biased by its class or the test names a `reference`.
 Question about_efficiency(const TestEntry& test, const Estimators& estimators);
 
 Question about_quantile(const TestEntry& test, const Estimators& estimators);
 
-/// The variances of all channels, added.
 Question about_total_variance(const TestEntry& test, const Estimators& estimators);
 
-/// What a sampler's density integrates to, or how often its draws contradict it.
+/// The integral of a sampler's density, or how often its draws contradict it.
 Question about_draws(const TestEntry& test, const Estimators& estimators);
 
-/// The exponent s of a quantity that goes like (swept parameter)^s; a subject a point.
+/// The exponent s of a quantity that goes like (swept parameter)^s; each subject is a point.
 Question about_slope(const TestEntry& test, const Estimators& estimators);
 
-/// The largest variance of several channels is claimed to be at most or below a number: that each
-/// channel's is. InputError for any other claim on several channels.
+/// Allows "at most" and "below" for the largest variance of several channels: every channel's is
+/// bounded then. InputError for any other claim on several channels.
 void check_worst_variance(const Claim& claim, const Estimators& estimators);
 
 }  // namespace assay::harness

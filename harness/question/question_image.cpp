@@ -41,7 +41,7 @@ void require_tested_relation(const Question& question) {
                      element_name(*question.subjects[0].image, 0)));
 }
 
-/// One number's error is common to all pixels, which the methods take to be independent.
+/// A number's error is common to all pixels, but the methods need independent ones.
 void require_exact_number(const Question& question) {
   const auto* number = std::get_if<Constant>(&question.test->claim.right);
   if ((number != nullptr && number->standard_error > 0) ||

@@ -35,7 +35,7 @@ std::string parts_of(const PreparedEstimator& estimator) {
   return text;
 }
 
-/// Of what takes channels, where a sampler of the estimator is named.
+/// Refuses a sampler's name for claims that take channels.
 void require_no_sampler(const Source& source, const PreparedEstimator& estimator) {
   const std::string name = source.part.substr(0, source.part.find('.'));
   const std::vector<NamedSampler> samplers = estimator.setup->samplers();
@@ -69,8 +69,8 @@ std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
   return {};
 }
 
-/// The elements of an image, all or those of the component that the part names; none where it names
-/// something else.
+/// The elements of an image: all, or those of the component that the part names; none for another
+/// name.
 std::vector<std::size_t> elements_named(ImageShape& shape, const std::string& part) {
   const std::size_t components = shape.components.size();
   const auto named = std::find(shape.components.begin(), shape.components.end(), part);
@@ -85,7 +85,7 @@ std::vector<std::size_t> elements_named(ImageShape& shape, const std::string& pa
   return elements;
 }
 
-/// The sampler a part names, itself or before a marginal's name; the only one when it names none.
+/// The sampler that the part names, alone or before a marginal; the only sampler if none is named.
 const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
                                   const std::string& part, std::string& rest) {
   const auto dot = part.find('.');

@@ -1,7 +1,5 @@
 #pragma once
 
-// The sources a claim names, found among the prepared estimators.
-
 #include <map>
 #include <string>
 #include <vector>
@@ -12,29 +10,28 @@ namespace assay::harness {
 
 using Estimators = std::map<std::string, PreparedEstimator>;
 
-/// The estimator a source names. InputError, with a near name, where the suite has none.
+/// The source's estimator. InputError, with a near name, if the suite has none.
 const PreparedEstimator& estimator_of(const Source& source, const Estimators& estimators);
 
-/// The estimator's secondary estimates: all channels that are tested, or the one the part names.
+/// The estimator's secondary estimates: all tested channels, or the one that the part names.
 Subject estimates(const Source& source, const PreparedEstimator& estimator);
 Subject estimates(const Source& source, const Estimators& estimators);
 
-/// A sampler's draws: cells of the whole domain, all marginals, or whether they are consistent. Of
-/// marginals the part may name one.
+/// Views of a sampler's draws: cells of the whole domain, marginals (all or one), or consistency.
 enum class Draws { cells, marginals, consistency };
 Subject draws(const Source& source, const Estimators& estimators, Draws what);
 
-/// A distribution's source: a channel where the part names one, else a sampler.
+/// The source of a distribution: the channel that the part names, else a sampler.
 Subject values(const Source& source, const Estimators& estimators);
 
-/// What the plugin knows of a channel. InputError where it knows nothing.
+/// The plugin's analytic mean. InputError if it has none.
 Constant analytic_mean(const Channel& channel, const Source& source);
 Constant analytic_variance(const Channel& channel, const Source& source);
 
-/// The stream that a subject's observations are or were drawn from.
+/// The stream of a subject's observations.
 StreamKey stream_of(const Subject& subject, std::uint64_t seed);
 
-/// InputError at the claim where it asks of a run's moments what moments do not tell.
+/// InputError at the claim if it needs more of a recorded run than moments.
 void require_moments_suffice(const Question& question);
 
 }  // namespace assay::harness

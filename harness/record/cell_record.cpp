@@ -15,18 +15,17 @@
 namespace assay::harness {
 namespace {
 
-/// Counts in rows of cells of two coordinates.
 struct Cells {
-  std::string axes;  ///< what rows and columns are
+  std::string axes;
   std::size_t width = 0, height = 0;
   std::vector<double> observed = {}, expected = {};
   std::vector<double> z = {};
-  std::string of_z = "";  ///< what else is to be said of z
+  std::string of_z = "";  ///< a remark on z
   std::optional<CloseUp> close = {};
 };
 
-/// In standard deviations, of a count whose variance is `variance` times what is expected. A draw
-/// where none is expected is beyond any scale.
+/// (observed - expected) in standard deviations; the count's variance is `variance` * expected.
+/// Infinite for a draw where none is expected.
 double residual(double observed, double expected, double variance = 1) {
   const double difference = observed - expected;
   if (expected > 0) return difference / std::sqrt(expected * variance);
@@ -37,23 +36,22 @@ std::string axis(const Marginal& marginal, const std::vector<double>& borders) {
   return fmt::format("{} {:.4g} to {:.4g}", marginal.name, borders.front(), borders.back());
 }
 
-/// Of the cells of a domain that have the same measure.
+/// Names the coordinates of cells of equal measure.
 std::string axes_of(const SamplerSetup& draws, const stats::PlaneGrid& grid) {
   const std::vector<Marginal> coordinates = cell_coordinates(draws.sampler());
   return fmt::format("{} from top to bottom, {} from left to right",
                      axis(coordinates[0], grid.x_borders), axis(coordinates[1], grid.y_borders));
 }
 
-/// Whether some cells of the grid hold several that were counted: parts, or lobes.
+/// True if some grid cells hold several counted ones: parts, or lobes.
 bool are_divided(const DensityCells& density, const stats::PlaneGrid& grid) {
   return density.cells.in_domain() > grid.size();
 }
 
-// The fewest expected draws of which a residual is shown: some tell where, before they are enough
-// for a test.
+// The fewest expected draws for a residual. It shows places before they suffice for a test.
 constexpr double least_shown = 5;
 
-/// Of each cell in the domain of which so many draws are expected.
+/// The residual of each cell in the domain that expects enough draws.
 std::vector<std::optional<double>> residuals_of(const DensityCells& density,
                                                 const ChannelData& data, double least) {
   const auto total = static_cast<double>(data.moments.count);
@@ -67,9 +65,8 @@ std::vector<std::optional<double>> residuals_of(const DensityCells& density,
   return residuals;
 }
 
-/// In the grid's cells: counts summed over the lobes and over the parts of what was halved. The
-/// residual is that of the one of these that is farthest off, of those that are tested by
-/// themselves; where there is none, that of the sum.
+/// Counts in the grid's cells, summed over lobes and parts of halved cells. The residual is the
+/// largest of the parts that are tested alone, else that of the sum.
 Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
   const stats::PlaneGrid grid = measure_grid(draws.sampler());
   const DensityCells& density = draws.density_cells();
@@ -79,7 +76,7 @@ Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
               .height = grid.rows(),
               .observed = std::vector<double>(grid.size()),
               .expected = std::vector<double>(grid.size())};
-  // Those of cells that are tested by themselves.
+  // Residuals of cells that are tested alone.
   const std::vector<std::optional<double>> tested =
       residuals_of(density, data, stats::FitOptions{}.minimum_expected);
   std::vector<std::optional<double>> farthest(grid.size());

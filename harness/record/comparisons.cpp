@@ -12,7 +12,7 @@
 namespace assay::harness {
 namespace {
 
-// More pairs than this are no picture any more.
+// More pairs would not be readable.
 constexpr std::size_t most_estimators = 40;
 
 using Pair = std::pair<std::string, std::string>;
@@ -25,7 +25,7 @@ std::set<Pair> pairs_of(const std::vector<std::vector<std::string>>& claimed) {
   return pairs;
 }
 
-/// Estimators of one quantity, as far as can be told.
+/// True if both estimate one quantity, as far as known.
 bool comparable(const Pictured& first, const Pictured& second, const std::set<Pair>& claimed) {
   if (first.image || second.image || !first.drawn || !second.drawn) return false;
   if (claimed.contains(std::minmax(first.name, second.name))) return true;
@@ -34,7 +34,7 @@ bool comparable(const Pictured& first, const Pictured& second, const std::set<Pa
   if (mine.size() != theirs.size()) return false;
   for (std::size_t i = 0; i < mine.size(); ++i) {
     if (mine[i].name != theirs[i].name || !mine[i].mean || !theirs[i].mean) return false;
-    // Closed forms of one number reached in two ways differ in their last digits.
+    // Two closed forms of one number may differ by rounding.
     const double scale = std::max(std::abs(*mine[i].mean), std::abs(*theirs[i].mean));
     if (std::abs(*mine[i].mean - *theirs[i].mean) > 1e-9 * scale) return false;
   }
@@ -67,7 +67,6 @@ ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t 
   return pair;
 }
 
-/// Holm over all means and all variances compared.
 void mark_differences(std::vector<ComparedPair>& pairs, double alpha) {
   std::vector<double> log_p;
   for (const ComparedPair& pair : pairs) {

@@ -1,7 +1,5 @@
 #pragma once
 
-// What made a record: program, machine, time.
-
 #include <string>
 
 #include "reports/record/record.h"

@@ -11,10 +11,10 @@
 namespace assay::harness {
 namespace {
 
-// Less than this holds no summary that is worth reading.
+// Less room would hold no readable summary.
 constexpr std::size_t least_summary = 2048;
 
-/// Why the summary could not be written; "" where it was.
+/// The error, or "" if the summary was written.
 std::string append_summary(const reports::Record& record, const std::string& file) {
   std::error_code none;
   const std::uintmax_t there =

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a job of GitHub Actions is told besides the reports: annotations and the step's summary.
+// Reports a run to GitHub Actions: annotations and the step's summary.
 
 #include <string>
 
@@ -9,11 +9,10 @@
 
 namespace assay::harness {
 
-/// Where GITHUB_ACTIONS is `true`: appends the record as Markdown to the file that
-/// GITHUB_STEP_SUMMARY names, after what earlier steps' commands wrote there, as long as the whole
-/// stays below reports::markdown_limit (cut with a word, above it GitHub drops all of it), and
-/// returns the annotations to print. "" elsewhere. A summary that cannot be written is named in a
-/// warning among the annotations: it is no reason to fail.
+/// Returns the annotations to print; "" unless GITHUB_ACTIONS is `true`. It also appends the record
+/// as Markdown to the file that GITHUB_STEP_SUMMARY names. GitHub drops a summary above
+/// reports::markdown_limit, so the text is cut there, with a remark. A summary that cannot be
+/// written becomes a warning among the annotations, not a failure.
 std::string tell_github(const reports::Record& record, const Environment& environment);
 
 }  // namespace assay::harness

@@ -68,15 +68,13 @@ reports::Image image_of(const ImageOutcome& outcome, const ImageShape& shape) {
   return image;
 }
 
-// ---- Maps
-
 float narrow(double value) {
   constexpr double most = std::numeric_limits<float>::max();
   return std::isfinite(value) ? static_cast<float>(std::clamp(value, -most, most))
                               : static_cast<float>(value);
 }
 
-/// Of value(element) for every element.
+/// A map of value(element).
 template <class Value>
 reports::Map map_of(const char* name, const ImageShape& shape, const Value& value) {
   constexpr std::size_t at_a_time = std::size_t{1} << 16;
@@ -97,14 +95,14 @@ reports::Map map_of(const char* name, const ImageShape& shape, const Value& valu
   return map;
 }
 
-/// |z| up to which an element's adjusted p is 1 to more digits than a map has, e^-40 below it:
-/// nearly all of them, and their tails need not be worked out.
+/// |z| up to which an element's adjusted p is 1 - e^-40 or more, so that its tail need not be
+/// computed.
 double surely_one(double tested) {
-  const double tail = 20 / tested;  // of two
+  const double tail = 20 / tested;  // two-sided
   return tail < 0.25 ? stats::normal_quantile({stats::Tail::upper, std::log(tail)}) : 0;
 }
 
-/// Sidak over the elements that vary.
+/// Sidak's adjustment over the elements that vary.
 double adjusted_p(double z, double tested) {
   const double log_p = std::isfinite(z)
                            ? std::min(0.0, std::log(2.0) + stats::normal_tails(std::abs(z)).upper)
@@ -118,7 +116,6 @@ reports::Map adjusted_map(const ImageShape& shape, const std::vector<double>& z,
                 [&](std::size_t i) { return std::abs(z[i]) < one ? 1 : adjusted_p(z[i], tested); });
 }
 
-/// Mean and variance of one source's elements.
 void add_moments(const DrawnTest& drawn, std::size_t subject, reports::Test& test) {
   const Subject& side = drawn.outcome.question.subjects[subject];
   const Summary& summary = drawn.samples[subject].summary();
@@ -148,7 +145,7 @@ void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test
   }));
 }
 
-/// A file name of letters, digits, `-` and `_`, different for different tests.
+/// A unique file name of letters, digits, `-` and `_` for each test.
 std::string file_name(const std::string& id) {
   constexpr std::size_t longest = 80;
   std::string name;
@@ -167,7 +164,6 @@ std::string file_name(const std::string& id) {
 
 namespace {
 
-/// What all elements of an image have together.
 struct Extremes {
   double minimum = std::numeric_limits<double>::infinity();
   double maximum = -std::numeric_limits<double>::infinity();
@@ -234,10 +230,9 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
 
 namespace {
 
-/// Of the mean over an image whose pixels are independent. Those of a pixel's components may depend
-/// on each other in any way: the standard deviation of their sum is at most the sum of theirs, so
-/// that the interval is too wide rather than too narrow. Degrees of freedom by Satterthwaite
-/// (1946).
+/// The mean over an image whose pixels are independent. A pixel's components may depend on each
+/// other: the standard deviation of their sum is at most the sum of theirs. The interval can thus
+/// be too wide, not too narrow. Degrees of freedom by Satterthwaite (1946).
 reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, double mean,
                              double confidence) {
   reports::Estimate estimate{number(mean), {}, {}};
@@ -302,7 +297,7 @@ void write_maps(reports::Record& record, const std::string& json_path) {
       const MapSize size{test.maps.front().width, test.maps.front().height};
       std::vector<MapLayer> layers;
       for (reports::Map& map : test.maps) {
-        // A close-up of cells stands in the record alone.
+        // Close-ups of cells are kept in the record alone.
         if (map.width != size.width || map.height != size.height) continue;
         map.file = (folder.filename() / name).string();
         layers.push_back({map.name, map.components, map.texels.values});

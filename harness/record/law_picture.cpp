@@ -14,11 +14,12 @@ namespace {
 
 constexpr std::size_t parts = 64;
 
-/// Tenths of a second, and tests of one suite ask for the same again and again.
+/// Cached: it takes tenths of a second, and tests of one suite ask for the same values.
 double pointwise_error(std::uint64_t n, double confidence) {
   static std::mutex once;
   static std::map<std::pair<std::uint64_t, double>, double> known;
-  constexpr std::uint64_t limit_from = 1001;  // one value from there on (distribution_band.h)
+  constexpr std::uint64_t limit_from = 1001;  // the value is constant from there on
+                                              // (distribution_band.h)
   const std::scoped_lock lock(once);
   const auto [place, added] = known.try_emplace({std::min(n, limit_from), confidence});
   if (added) place->second = stats::simultaneous_error(n, parts, confidence);
@@ -38,7 +39,7 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
     const std::uint64_t rank = i * n / parts;
     if (rank <= before) continue;
     const double value = sorted[rank - 1];
-    // Up to the end of a group of equal values.
+    // The end of a group of equal values.
     const auto end = std::upper_bound(sorted.begin(), sorted.end(), value);
     before = static_cast<std::uint64_t>(end - sorted.begin());
     const stats::Interval band = stats::clopper_pearson({before, n}, 1 - gamma);

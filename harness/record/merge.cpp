@@ -21,7 +21,7 @@ namespace {
 
 using reports::Verdict;
 
-/// A test of a shard with what the family needs of it.
+/// A shard's test with the data for Holm's decision.
 struct Part {
   reports::Test test;
   reports::ShardTest family;
@@ -84,20 +84,19 @@ void apply_holm(std::vector<Part>& parts, double alpha) {
   }
 }
 
-/// An estimator as one shard saw it.
 struct View {
   const reports::EstimatorSummary* row;
   const reports::ShardPicture* picture;
 
-  /// One run shows what the test that drew most of it has drawn; only where no test draws it, what
-  /// was drawn for the picture alone.
+  /// A run shows the test that drew most of the estimator. It shows a draw for the picture alone
+  /// only if no test draws it.
   bool shows_less_than(const View& other) const {
     return std::pair(picture->by_tests, picture->secondaries) <
            std::pair(other.picture->by_tests, other.picture->secondaries);
   }
 };
 
-/// Of each estimator the view that one run would have, in the suite's order.
+/// The view of each estimator that one run would have, in the suite's order.
 std::vector<View> views_of(const std::vector<ShardFile>& shards, std::size_t suite) {
   std::vector<View> best;
   for (const ShardFile& shard : shards) {
@@ -129,8 +128,8 @@ Pictured pictured(const View& view) {
   return result;
 }
 
-/// Those of all shards, each once, in the order of the suite's file. A shard has left out what none
-/// of its tests has to do with.
+/// The statements of all shards, each once, in the suite's order. A shard lacks those without one
+/// of its tests.
 std::vector<reports::Statement> statements_of(const std::vector<ShardFile>& shards,
                                               std::size_t suite) {
   std::map<std::pair<int, std::string>, reports::Statement> by_line;
@@ -163,7 +162,7 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
   std::vector<std::vector<std::string>> compared;
   for (Part& part : parts) {
     compared.push_back(part.family.compared);
-    // The file stood beside the shard's record; a report that writes maps names them again.
+    // The file was beside the shard's record; a report that writes maps names it again.
     for (reports::Map& map : part.test.maps) map.file.clear();
     suite.tests.push_back(std::move(part.test));
   }

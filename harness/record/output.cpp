@@ -24,7 +24,7 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// --color wins; then NO_COLOR, FORCE_COLOR; then whether it is a terminal that knows colours.
+/// --color comes first, then NO_COLOR, then FORCE_COLOR, then the terminal's abilities.
 bool use_colour(Colour colour, std::FILE* stream) {
   if (colour != Colour::automatic) return colour == Colour::always;
   if (is_set("NO_COLOR")) return false;
@@ -68,7 +68,7 @@ void write_reports(const Output& output, const ReportWriter& written) {
       } else {
         reports::write_whole(request.path, text);
       }
-    } catch (...) {  // a full disk takes no other report with it
+    } catch (...) {  // a full disk does not stop the other reports
       failures += (failures.empty() ? "" : "\n") + words_of(std::current_exception());
     }
   }
@@ -90,7 +90,7 @@ void write_reports(reports::Record& record, const Output& output) {
 
 void report_run(reports::Record& record, const Output& output) {
   write_reports(record, output);
-  // The runner reads commands from both streams, other programs the reports from standard output.
+  // GitHub's runner reads both streams; other programs read reports from standard output.
   if (output.github) fmt::print(stderr, "{}", tell_github(record, system_environment));
 }
 

@@ -56,7 +56,7 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
           number(primaries * std::exp(log.high))};
 }
 
-/// A sample's moments as those of so many fewer independent values, of the same mean and variance.
+/// Moments of fewer independent values with the same mean and variance.
 stats::Moments of_fewer(stats::Moments x, double factor) {
   const double before = static_cast<double>(x.count);
   const double after = std::max(4.0, std::round(before / factor));
@@ -67,7 +67,7 @@ stats::Moments of_fewer(stats::Moments x, double factor) {
   return x;
 }
 
-/// The first `count` rows of one channel; nothing where they are not kept.
+/// The first `count` rows of one channel; empty if they are not kept.
 std::span<const double> rows_of(const Picture& picture, const SuiteRun& run, std::size_t channel,
                                 std::uint64_t count) {
   const Pilot* const pilot = run.pilots.find(picture.estimator->name);
@@ -78,12 +78,12 @@ std::span<const double> rows_of(const Picture& picture, const SuiteRun& run, std
   return std::span(pilot->values[channel]).first(count);
 }
 
-/// Of rows that may depend on each other those of as many independent ones as they are worth.
+/// Moments, which for dependent rows count only as many as independent ones would be worth.
 stats::Moments moments_of(const Picture& picture, const SuiteRun& run, const Drawn& drawn,
                           std::size_t channel) {
   const stats::Moments& moments = drawn.summary().channels[channel].moments;
   const std::span<const double> rows = rows_of(picture, run, channel, drawn.summary().count);
-  const bool all = moments.count == rows.size();  // the others were not finite
+  const bool all = moments.count == rows.size();  // the others are not finite
   if (!has_spread(moments) || !all || rows.size() < fewest_in_order) return moments;
   const double factor = stats::allowance_for_dependence(rows);
   return factor > 1 ? of_fewer(moments, factor) : moments;
@@ -98,7 +98,7 @@ reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run)
       .name = picture.estimator->name,
       .plugin = information.name,
       .parameters = picture.estimator->parameters,
-      // Of rows that were made elsewhere nothing is known.
+      // Nothing is known of rows made elsewhere.
       .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(nature.bias),
       .original = information.original,
       .defect = information.defect,

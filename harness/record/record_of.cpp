@@ -65,7 +65,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
   sample.nonzero = moments.nonzero;
   sample.nonfinite = kept.nonfinite;
   sample.cost = cost_of(summary);
-  // Another test on the same observations may have kept them: a record must not tell.
+  // A record must not show what another test on the same observations kept.
   const bool costs = outcome.plan.method.keeps == Keeps::costs;
   for (std::size_t i = 0; costs && i < details.with_cost.size(); ++i) {
     const stats::JointMoments& joint = details.with_cost[i];
@@ -75,7 +75,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
                                 .m11 = joint.m11,
                                 .m21 = joint.m21});
   }
-  // The number of a cell is a name: it has no mean.
+  // A cell's number is a name, without a mean.
   if (outcome.plan.method.keeps == Keeps::cells) return sample;
   if (moments.count > 0) {
     sample.mean = number(moments.mean);
@@ -96,7 +96,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
   return sample;
 }
 
-/// The samples of the subjects that yielded all of theirs.
+/// The samples of subjects without a fault.
 std::vector<reports::Sample> samples_of(const TestWork& work) {
   std::vector<reports::Sample> samples;
   const TestOutcome& outcome = work.outcome;
@@ -111,7 +111,7 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
     }
     return samples;
   }
-  // All channels, also where one number is made of them.
+  // All channels, even if they make one number.
   for (std::size_t channel = 0; channel < subjects[0].channels.size(); ++channel) {
     for (std::size_t subject = 0; subject < all.size(); ++subject) {
       if (channel >= subjects[subject].channels.size()) continue;
@@ -142,8 +142,8 @@ reports::Channel channel_of(const ChannelOutcome& outcome, bool adjusted, const 
   return channel;
 }
 
-/// Of each look the p-values as of a single look: of the channel that speaks most against the
-/// claim, and of the one that is least excluded from the forbidden region.
+/// The p-values of each look, as of a single look. They belong to the channel that speaks most
+/// against the claim, and to the one least excluded from the forbidden region.
 std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& regions) {
   std::vector<reports::Look> looks;
   const std::size_t taken = outcome.history.empty() ? 0 : outcome.history[0].log_p_claimed.size();
@@ -195,14 +195,13 @@ Number margin(const Regions& regions) {
   return regions.detect ? Number(*regions.detect) : Number();
 }
 
-/// Whether the clock had a say in the numbers.
+/// True if the clock affects the numbers.
 bool is_timed(const TestWork& work) {
   const std::optional<Budget>& budget = work.outcome.question.test->budget;
   const bool of_suite = work.suite_budget != nullptr && work.suite_budget->seconds;
   return work.outcome.plan.method.keeps == Keeps::blocks || (budget && budget->seconds) || of_suite;
 }
 
-/// Those that a test of the run has to do with.
 std::vector<reports::Statement> statements_of(const Suite& suite,
                                               const std::vector<reports::Test>& ran) {
   const auto has_run = [&](const std::string& name) {
@@ -223,7 +222,6 @@ std::vector<reports::Statement> statements_of(const Suite& suite,
   return statements;
 }
 
-/// What a suite says of a test.
 reports::Test head_of(const TestEntry& entry, const std::string& file) {
   return {.name = entry.name,
           .id = entry.id,
@@ -296,7 +294,7 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
                          .seed = run->seed,
                          .alpha = run->suite.alpha,
                          .beta = run->suite.beta};
-    // In the order of the suite's file, in which both are.
+    // Both lists are in the order of the suite's file.
     auto untested = run->untested.begin();
     const auto add_untested_before = [&](const TestEntry* next) {
       for (; untested != run->untested.end() && (!next || untested->test < next); ++untested) {

@@ -1,7 +1,5 @@
 #pragma once
 
-// From results to the record.
-
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,7 +10,7 @@
 
 namespace assay::harness {
 
-/// What a record says that holds not all tests of its suites.
+/// The note of a record without some tests of its suites.
 inline constexpr const char* partial_note =
     "not every test of the suites ran: verdicts rest on each test's fixed share of alpha, without "
     "Holm's adjustment";
@@ -20,7 +18,6 @@ inline constexpr const char* partial_note =
 reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
                           const RunOptions& options);
 
-/// One test's numbers and verdict.
 reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm);
 
 }  // namespace assay::harness

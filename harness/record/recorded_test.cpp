@@ -9,7 +9,7 @@
 namespace assay::harness {
 namespace {
 
-/// The id that was meant by one that there is not; "" where none is near.
+/// The nearest id to an unknown one; "" if none is near.
 std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
   std::vector<std::string> spellings;
   for (const Recorded& each : all) {
@@ -26,7 +26,6 @@ std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
   return "";
 }
 
-/// The first few ids.
 std::string some_ids(const std::vector<Recorded>& tests) {
   constexpr std::size_t most = 5;
   std::string text;

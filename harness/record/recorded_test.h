@@ -11,7 +11,7 @@ namespace assay::harness {
 struct ReplayArguments {
   std::string record;                             ///< RUN.json
   std::string test;                               ///< id or name
-  std::optional<std::uint64_t> observation = {};  ///< one of them, else the whole test
+  std::optional<std::uint64_t> observation = {};  ///< none: the whole test
 };
 /// A recorded test found in its record.
 struct Recorded {
@@ -20,8 +20,7 @@ struct Recorded {
   std::uint64_t seed;
 };
 
-/// The test whose id or name the arguments give. InputError, with what was meant or which there
-/// are, where there is none or where several have that name.
+/// The test with this id or name. InputError if there is none or several, with suggestions.
 Recorded find_test(const reports::Record& record, const ReplayArguments& arguments);
 
 }  // namespace assay::harness

@@ -37,8 +37,8 @@ Value unmarked(const Value& texts, const Location& where) {
   return Value::list(std::move(items), where);
 }
 
-/// Canonical parameters ("name=value,…") as a suite would give them. Text parameters are written
-/// with a colon before them; null and a scalar's fallback stand for what was not given.
+/// Canonical parameters ("name=value,…") as in a suite. Text parameters have a colon before them.
+/// Null and a scalar's fallback stand for parameters that were not given.
 Value parameters_of(const reports::Sample& sample, const Location& where) {
   const std::vector<ParameterInformation>& declared =
       find_plugin(sample.plugin, where).information.parameters;
@@ -59,7 +59,6 @@ Value parameters_of(const reports::Sample& sample, const Location& where) {
   return Value::map(std::move(members), where);
 }
 
-/// What the claim needs besides itself.
 void read_keys(const reports::Test& recorded, TestEntry& test) {
   const Location where{.file = recorded.file};
   if (!recorded.over.empty()) test.over = read_sweep(read_flow(recorded.over, where));
@@ -75,8 +74,8 @@ bool has_relative_effect(const Claim& claim) {
          claim.left.name == QuantityName::quantile;
 }
 
-/// Where the files lie that the suite names: in the folder of its file, seen from here or else
-/// from the record. Absolute, so that an error about a file says where it was looked for.
+/// The folder of the suite's file, relative to here or else to the record. It is absolute, so that
+/// errors say where a file was expected.
 std::string folder_of(const std::string& suite, const std::string& record) {
   namespace fs = std::filesystem;
   if (suite.empty()) return fs::current_path().string();  // a claim of the command line
@@ -85,7 +84,7 @@ std::string folder_of(const std::string& suite, const std::string& record) {
   return file.parent_path().string();
 }
 
-/// The suite of this one test, rebuilt from the record alone.
+/// The suite of this one test, from the record alone.
 Suite suite_of(const Recorded& recorded, const std::string& record) {
   Suite suite{.name = recorded.suite.name,
               .file = recorded.suite.file,
@@ -107,8 +106,8 @@ Suite suite_of(const Recorded& recorded, const std::string& record) {
                  .claim = parse_claim(recorded.test.claim, {.file = recorded.suite.file}),
                  .method = recorded.test.method};
   read_keys(recorded.test, test);
-  // Margins are recorded on theta's scale; here they only tell whether means are compared in units
-  // of the reference. The plan has the numbers.
+  // Recorded margins are on theta's scale. Here they only tell whether means are compared in units
+  // of the reference; the plan has the numbers.
   if (has_relative_effect(test.claim) && test.claim.relation != Relation::within) {
     const bool relative =
         !recorded.test.channels.empty() && recorded.test.channels[0].effect.relative;
@@ -120,7 +119,7 @@ Suite suite_of(const Recorded& recorded, const std::string& record) {
   return suite;
 }
 
-/// The looks that were taken; a test of constants recorded none.
+/// The looks that were taken; none for constants.
 stats::LookSchedule recorded_looks(const reports::Test& test) {
   stats::LookSchedule looks;
   for (const reports::Look& look : test.looks) {
@@ -131,7 +130,7 @@ stats::LookSchedule recorded_looks(const reports::Test& test) {
   return {{std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries}, {1}};
 }
 
-/// The plan as it was: nothing is chosen anew, so no pilot is drawn.
+/// The recorded plan, so that no pilot is needed.
 Plan recorded_plan(const Question& question, const reports::Test& test) {
   Plan plan{
       .method = find_method(question, test.method),
@@ -139,7 +138,7 @@ Plan recorded_plan(const Question& question, const reports::Test& test) {
       .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U,
       .symmetric = !test.image || test.image->symmetric,
       .gates_invalidate = !test.forced};
-  // Of each channel the subjects in order.
+  // The record has all subjects of a channel together.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const bool drawn = i < test.samples.size() &&
                        test.samples[i].estimator == question.subjects[i].estimator->listed;
@@ -162,7 +161,7 @@ Plan recorded_plan(const Question& question, const reports::Test& test) {
   return plan;
 }
 
-/// The test made ready to be drawn, with everything it refers to.
+/// The test ready to be drawn, with everything it refers to.
 struct Rebuilt {
   Suite suite;
   std::map<std::string, PreparedEstimator> estimators;
@@ -170,8 +169,8 @@ struct Rebuilt {
   TestWork work;
 };
 
-/// The pilots of the run as far as methods take from them: they depend on the seed and the
-/// estimators alone. Larger ones only choose methods and sizes.
+/// The run's pilots, which depend on seed and estimators alone. Larger ones only choose methods and
+/// sizes, so they are not drawn.
 Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t seed) {
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : rebuilt.estimators) all.push_back(&estimator);
@@ -185,12 +184,12 @@ Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t
   return pilots;
 }
 
-/// What the record holds of the observations of a subject's channel; null where it holds nothing.
+/// The record's sample of a subject's channel, or null.
 const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
                                    std::size_t subject, std::size_t channel) {
   const Subject& side = question.subjects[subject];
   if (std::ranges::find(side.channels, channel) == side.channels.end()) return nullptr;
-  // The samples of two subjects that are one estimator stand in the subjects' order.
+  // Samples of two subjects with one estimator are in the subjects' order.
   auto earlier = std::ranges::count_if(
       std::span(question.subjects).first(subject),
       [&](const Subject& each) { return each.estimator->listed == side.estimator->listed; });
@@ -203,14 +202,14 @@ const reports::Sample* recorded_of(const reports::Test& test, const Question& qu
   return nullptr;
 }
 
-/// Data that were recorded elsewhere may have changed since.
+/// InputError if recorded data changed since.
 void require_same_rows(const Question& question, const Plan& plan, const Recorded& recorded,
                        const std::string& record) {
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const Subject& side = question.subjects[i];
     const reports::Sample* then = recorded_of(recorded.test, question, i, side.channels[0]);
     const auto now = side.setup->observations();
-    // A run is taken whole.
+    // A recorded run is taken whole.
     if (!now || !then || then->secondaries == *now) continue;
     if (then->secondaries == side.secondaries(plan.most_secondaries())) continue;
     throw InputError({.file = record},
@@ -243,8 +242,8 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
   return rebuilt;
 }
 
-/// Says whether the value can be one of those recorded: they lie in a known range, and so many of
-/// them are not finite.
+/// Says whether the value is possible: it is in the recorded range, or some recorded values are not
+/// finite.
 bool print_against(const reports::Sample& sample, double value) {
   if (!std::isfinite(value)) {
     const bool same = sample.nonfinite > 0;
@@ -262,7 +261,7 @@ bool print_against(const reports::Sample& sample, double value) {
   return same;
 }
 
-/// Whether nothing in the record contradicts the observation.
+/// True if the record does not contradict the observation.
 bool print_observation(const TestWork& work, const reports::Test& recorded, std::uint64_t index) {
   const Question& question = work.outcome.question;
   if (index >= work.outcome.plan.most_secondaries()) {
@@ -315,7 +314,7 @@ bool same_line(const char* what, const reports::Number& now, const reports::Numb
   return same;
 }
 
-/// Observations that are not finite, where there are any, now or in the record.
+/// Compares the observations that are not finite.
 bool same_nonfinite(const reports::Sample& now, const reports::Sample& then) {
   const bool same = now.nonfinite == then.nonfinite;
   if (same && now.nonfinite == 0) return true;
@@ -324,14 +323,14 @@ bool same_nonfinite(const reports::Sample& now, const reports::Sample& then) {
   return same;
 }
 
-/// The p-value itself beside its logarithm, where a double holds it.
+/// The p-value beside its logarithm, if a double can hold it.
 std::string as_probability(const reports::Number& log10_p) {
   if (!log10_p || *log10_p < -300) return "";
   return fmt::format("   (p = {:.3g})", std::pow(10, *log10_p));
 }
 
-/// Prints the numbers drawn now; whether they are the recorded ones to the last bit, but for what
-/// was made of seconds.
+/// Prints the new numbers. True if they equal the recorded ones to the last bit, except those made
+/// of seconds.
 bool print_comparison(const reports::Test& now, const reports::Test& then, bool timed) {
   bool same = true;
   if (then.verdict == reports::Verdict::invalid || then.verdict == reports::Verdict::error) {
@@ -342,7 +341,7 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
     fmt::print("{}.{}: {} secondaries of {} primaries\n", now.samples[i].estimator,
                now.samples[i].channel, now.samples[i].secondaries, now.samples[i].primaries);
     same &= same_nonfinite(now.samples[i], then.samples[i]);
-    // The number of a cell has neither mean nor variance.
+    // A cell's number has neither mean nor variance.
     if (now.samples[i].channel == cell_channel) continue;
     same &= same_line("mean", now.samples[i].mean, then.samples[i].mean);
     same &=
@@ -361,8 +360,8 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
   return same;
 }
 
-/// Prints what is drawn now beside what was recorded; 0 where it is the same. std::runtime_error
-/// where a source can no longer be drawn.
+/// Prints new beside recorded numbers. Returns 0 if they are equal. std::runtime_error if a source
+/// can no longer be drawn.
 int replay(const Recorded& recorded, const ReplayArguments& arguments) {
   const std::unique_ptr<Rebuilt> rebuilt = rebuild(recorded, arguments.record);
   if (arguments.observation) {

@@ -12,7 +12,7 @@ namespace {
   throw InputError({.file = shard.file}, why);
 }
 
-/// That the parts which belong together have as many entries; a record edited by hand might not.
+/// InputError if parts that belong together have different sizes, as after an edit by hand.
 void check_whole(const ShardFile& shard) {
   const reports::Record& record = shard.record;
   if (!record.shard) {
@@ -39,7 +39,6 @@ void check_whole(const ShardFile& shard) {
     refuse(shard, "its `shard` does not fit its tests: was it edited? Run the shard again");
 }
 
-/// What two shards of one run have in common, and how it is called.
 struct Property {
   const char* name;
   std::string (*of)(const reports::Record&);

@@ -16,12 +16,12 @@
 namespace assay::harness {
 namespace {
 
-/// Of the suite's text and of the data that it names: what two shards must have in common.
+/// A hash of the suite's text and its data, which all shards must share.
 std::string digest_of(const SuiteRun& run) {
   std::uint64_t hash = text_hash(run.suite.text);
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const auto prepared = run.estimators.find(entry.name);
-    if (prepared == run.estimators.end()) continue;  // of a suite that is skipped
+    if (prepared == run.estimators.end()) continue;  // of a skipped suite
     if (const auto rows = recorded::observations_digest(*prepared->second.setup)) {
       hash = text_hash(fmt::format("{:016x}", *rows), hash);
       continue;
@@ -97,7 +97,7 @@ void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOpti
     for (const Untested& each : run->untested) {
       suite.results.push_back({.position = position_of(*each.test, run->suite)});
     }
-    // As the record has its tests.
+    // The record has its tests in this order.
     std::ranges::sort(suite.results, {}, &reports::ShardTest::position);
     shard.suites.push_back(std::move(suite));
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a shard's record holds besides its tests, so that `merge` can join the parts.
+// Adds to a shard's record what `merge` needs to join the parts.
 
 #include <memory>
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace assay::harness {
 
-/// Fills in `record.shard`, and says in the note what a shard's verdicts rest on.
+/// Fills in `record.shard`, and adds a note on the basis of a shard's verdicts.
 void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOptions& options,
                reports::Record& record);
 
-/// The options that decide what a run's numbers are, as a command without seed and shard.
+/// The options that decide a run's numbers, as a command without seed and shard.
 std::string options_text(const RunOptions& options);
 
 }  // namespace assay::harness

@@ -9,7 +9,7 @@
 namespace assay::harness {
 namespace {
 
-/// The original's sampler of that name, or its only one.
+/// The sampler of that name, or the only one.
 const Sampler* sampler_of(const Setup& setup, const std::string& name,
                           std::vector<NamedSampler>& keep) {
   keep = setup.samplers();
@@ -23,7 +23,7 @@ bool same_number(double one, double other) {
   return one == other || (std::isnan(one) && std::isnan(other));
 }
 
-/// What two samplers say of one point.
+/// True if two samplers declare the same at one point.
 bool same_at(const Point& point, const Sampler& one, const Sampler& other) {
   return same_number(one.density(point), other.density(point)) &&
          same_number(one.evaluate(point), other.evaluate(point));
@@ -72,7 +72,7 @@ bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t ob
   std::vector<double> a(mine.size());
   std::vector<double> b(theirs.size());
   for (std::uint64_t i = 0; i < observations; ++i) {
-    // An image, or the mean of many paths, takes as long as all the rest of a look.
+    // One observation, such as an image, may cost as much as the rest of a look.
     if (i >= kept.size()) draw(*one, pool, i, a);
     draw(*other, pool, i, b);
     if (!std::ranges::equal(i < kept.size() ? kept[i] : a, b)) return true;

@@ -7,9 +7,9 @@
 
 namespace assay::harness {
 
-/// Whether a mutant's defect changed anything: an observation of the pool that differs from its
-/// original's on the same stream, or, where only what is declared is broken, a different analytic
-/// mean or density. True for an estimator that is no mutant.
+/// True if a mutant's defect changed something: an observation of the pool differs from its
+/// original's on the same stream. Declarations count too: another analytic mean or density. True
+/// for an estimator that is no mutant.
 bool was_activated(const Subject& subject, const Pool& pool, std::uint64_t observations);
 
 }  // namespace assay::harness

@@ -36,8 +36,8 @@ std::string variance_without_spread(const Question& question, std::size_t channe
 // A shift of a tenth of a standard error raises a tail of one per cent by a third.
 constexpr double tolerated_shift = 0.1;
 
-/// Why two means cannot be compared of which one is constant: what was never seen of it could
-/// decide. "" where they can.
+/// Why two means cannot be compared if one is constant and its unseen values could decide; "" if
+/// they can.
 std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
                                 std::span<const ChannelData> data) {
   const Question& question = outcome.question;
@@ -45,7 +45,7 @@ std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
     const ChannelData& mine = data[subject];
     const ChannelData& other = data[1 - subject];
     if (!is_constant(question, subject, channel, mine.moments)) continue;
-    // On the scale of the first mean: the second enters times the factor.
+    // The second mean enters times the factor.
     const double factor = std::abs(question.factor);
     const double shift = (subject == 1 ? factor : 1) *
                          unseen_shift(question, subject, channel, mine, outcome.share().alpha);
@@ -76,7 +76,7 @@ stats::Gate residual_gate(const Question& question, std::size_t channel,
       data[0].moments, {reference.value + question.offset, reference.standard_error}, x);
 }
 
-/// Of counted costs or of groups' variances, by the logarithm of whose mean the claim is tested.
+/// Gates for tests by the logarithm of a mean: of counted costs, or of groups' variances.
 std::vector<reports::Gate> log_mean_gates(const Question& question,
                                           std::span<const ChannelData> data, double x) {
   const bool variances = question.kind == QuestionKind::total_variance;
@@ -91,7 +91,7 @@ std::vector<reports::Gate> log_mean_gates(const Question& question,
   return gates;
 }
 
-/// At which the verdict rejects values of theta: a pass those beyond its margin, a fail the others.
+/// The level at which the verdict rejects theta: a pass beyond its margin, a fail elsewhere.
 double largest_level(const ErrorShare& share, const Regions& regions) {
   return regions.has_forbidden() ? std::max(share.alpha, share.beta) : share.alpha;
 }
@@ -116,7 +116,7 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
     if (!(data[subject].moments.m2 > 0)) continue;
     const std::string whose = name + " of " + question.subjects[subject].estimator->name;
-    // Of two values none can stand out, of three no kurtosis is known.
+    // Two values cannot show an outlier, and three no kurtosis.
     const std::uint64_t count = data[subject].moments.count;
     if (by_t && count > 2) {
       gates.push_back(gate_of(stats::dominance_gate(data[subject].moments), whose));

@@ -1,7 +1,5 @@
 #pragma once
 
-// What must hold of the data for a test of them to mean anything.
-
 #include <span>
 #include <string>
 #include <vector>
@@ -11,13 +9,12 @@
 
 namespace assay::harness {
 
-/// Gates on the test's own data, of one channel, at the level of the current look; they can only
-/// invalidate.
+/// Gates on one channel's data at the level of the current look. They can only invalidate.
 std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t channel,
                                       std::span<const ChannelData> data);
 
-/// Why a channel of which one sample has no spread cannot be tested: of a variance nothing is
-/// known, of a mean what was never seen could decide. "" where it can.
+/// Why a channel with a constant sample cannot be tested, or "". A variance is unknown then, and
+/// unseen values could decide about a mean.
 std::string lack_of_spread(const TestOutcome& outcome, std::size_t channel,
                            std::span<const ChannelData> data);
 

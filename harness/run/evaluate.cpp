@@ -30,8 +30,7 @@ void settle(TestOutcome& outcome, Verdict verdict, std::string message) {
   outcome.message = std::move(message);
 }
 
-/// A density whose integral exceeds 1 is none, whatever its samples do; nor is one that is negative
-/// somewhere.
+/// False if the density's integral exceeds 1 or the density is negative somewhere.
 bool density_is_proper(TestOutcome& outcome) try {
   if (outcome.question.kind != QuestionKind::fit_to_density) return true;
   const auto& draws = dynamic_cast<const SamplerSetup&>(*outcome.question.subjects[0].setup);
@@ -98,7 +97,7 @@ int badness(Verdict verdict) {
   return 0;
 }
 
-/// Why a channel's data cannot be tested; "" where they can.
+/// Why a channel's data cannot be tested; "" if they can.
 std::string lack_of_numbers(const TestOutcome& outcome, std::size_t channel,
                             std::span<const ChannelData> data) {
   const Question& question = outcome.question;
@@ -110,7 +109,7 @@ std::string lack_of_numbers(const TestOutcome& outcome, std::size_t channel,
   return lack_of_spread(outcome, channel, data);
 }
 
-/// Of the channels whose variances a total is.
+/// Checks the channels whose variances form a total.
 std::string total_lost_to_rounding(const DrawnTest& test) {
   const Question& question = test.outcome.question;
   std::string reason;
@@ -126,8 +125,8 @@ std::string total_lost_to_rounding(const DrawnTest& test) {
   return reason;
 }
 
-/// Numbers and gates of every channel at the current look. Constant channels are judged by
-/// themselves: their verdicts are returned.
+/// Computes numbers and gates of every channel at the current look. Returns the verdicts of
+/// constant channels.
 std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const DrawnTest& test) {
   const Question& question = outcome.question;
   std::vector<ConstantVerdict> constants;
@@ -166,7 +165,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
   return constants;
 }
 
-/// Takes the look's p-values, or nothing where it does not count, into those of all looks.
+/// Adds the look's p-values to those of all looks, or nothing if it does not count.
 void remember(TestOutcome& outcome, bool counts) {
   outcome.history.resize(outcome.question.channel_count());
   for (ChannelHistory& history : outcome.history) {
@@ -198,14 +197,12 @@ Verdict verdict_of_channels(const TestOutcome& outcome) {
   return decide(decisions, outcome.plan.regions[0], outcome.place.share.beta);
 }
 
-/// Of points on no power law every slope is rejected, which shows nothing of any: whatever method
-/// is forced.
+/// Points on no power law reject every slope, which says nothing about any, whatever the method.
 bool shows_by_no_slope(const TestOutcome& outcome) {
   return outcome.question.kind == QuestionKind::slope && outcome.verdict == Verdict::pass &&
          outcome.plan.regions[0].has_forbidden() && !red_gates(outcome.gates).empty();
 }
 
-/// The verdict of everything known at this look, and why.
 void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constants) {
   const std::string red = outcome.plan.gates_invalidate ? red_gates(outcome.gates) : "";
   remember(outcome, red.empty());
@@ -225,7 +222,7 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
 }
 
 void require_activation(TestOutcome& outcome, const DrawnTest& test) {
-  // What is invalid by its plan draws little, and has its reason.
+  // A plan that is invalid draws little, and has its own reason.
   if (outcome.question.test->expect != Expectation::fail || !outcome.plan.invalid.empty()) return;
   for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
     if (was_activated(outcome.question.subjects[subject], test.samples[subject].pool(),
@@ -240,7 +237,6 @@ void require_activation(TestOutcome& outcome, const DrawnTest& test) {
   }
 }
 
-/// Nothing of an earlier look.
 void clear_numbers(TestOutcome& outcome) {
   outcome.channels.clear();
   outcome.gates.clear();
@@ -251,7 +247,7 @@ void judge(TestOutcome& outcome, const DrawnTest& test) {
   try {
     conclude(outcome, evaluate_channels(outcome, test));
   } catch (const std::domain_error& error) {
-    // What stats cannot test: no spread where one is needed, too few cells.
+    // stats cannot test these data: no spread, too few cells.
     outcome.channels.clear();
     remember(outcome, false);
     settle(outcome, Verdict::invalid,
@@ -324,7 +320,6 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
 
 namespace {
 
-/// Judges a test whose numbers can all be used.
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   if (!density_is_proper(outcome)) return;
@@ -347,7 +342,7 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   require_activation(outcome, test);
 }
 
-/// Why the look cannot be taken; nothing if it was.
+/// The reason why the look cannot be taken; nullopt if it was.
 std::optional<std::string> take_drawn_look(TestWork& work, bool may_go_on) {
   if (!work.outcome.plan.error.empty()) return work.outcome.plan.error;
   const std::optional<DrawnTest> test = drawn(work);
@@ -370,7 +365,7 @@ void take_look(TestWork& work, bool may_go_on) {
   } catch (const NoDensity& failure) {
     why = lack_of_density(outcome.question, failure);
   } catch (const std::domain_error& error) {
-    // A defect of the program's own: what it says of this test is lost, and of no other.
+    // A defect of this program stops this test and no other.
     why = fmt::format("internal error: {}", error.what());
   } catch (...) {
     // Judging asks some sources again: for densities, and for a mutant's original.

@@ -14,8 +14,8 @@ namespace {
 
 using reports::Verdict;
 
-/// What the detectable effect and the power are quoted for: the last look, or the one at which a
-/// budget ended the test.
+/// The size for which detectable effect and power are quoted: the last look, or where a budget
+/// ended.
 TestSize full_size(const TestOutcome& outcome) {
   const stats::LookSchedule& looks = outcome.plan.looks;
   const bool ended = outcome.verdict == Verdict::inconclusive;
@@ -25,7 +25,7 @@ TestSize full_size(const TestOutcome& outcome) {
           .secondaries = looks.sizes[look]};
 }
 
-/// That of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
+/// Confidence of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
 double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel,
                            bool refuted) {
   const ErrorShare share = outcome.share();
@@ -36,7 +36,7 @@ double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& cha
   return 1 - (two_tails ? 1 : 2) * share.alpha;
 }
 
-/// Of a claim with a factor the effect is that against so many times the second side.
+/// With a factor the effect is relative to factor * second.
 std::string quantity_of(const Evidence& evidence, double factor) {
   std::string quantity = evidence.quantity;
   if (factor != 1) {

@@ -14,7 +14,7 @@ using reports::Verdict;
 namespace {
 
 std::uint64_t look_of_p(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  // Of several channels the record has no look of its own.
+  // With several channels the record does not tell their looks apart.
   if (outcome.question.channel_count() > 1) return 0;
   const std::vector<double>& log_p = outcome.history[channel.index].log_p_claimed;
   const stats::LookSchedule& schedule = outcome.plan.looks;

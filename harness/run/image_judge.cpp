@@ -58,7 +58,7 @@ ImageViews images_of(const DrawnTest& test, std::size_t subject) {
 }
 
 reports::Gate own_skewness_gate(const ImageOutcome& images) {
-  // What is beyond it in one normal test of some 1e5: common factors are lower limits.
+  // Normal data exceed it about once in 1e5 tests.
   constexpr double limit = 2;
   const double factor = images.level_factor;
   return {.name = "skewness of the images, theirs alone",

@@ -11,18 +11,18 @@
 namespace assay::harness {
 namespace {
 
-// Of each number of a picture: as it is kept, and its share of a sum over a block of 4 x 4 of them.
+// For each number of a picture: itself, and its share of a sum over a block of 4 x 4.
 constexpr double bytes_of_number = 4;
 constexpr double bytes_of_block = .5;
-// Of each element besides: moments of pilot, test and of what is under way, weights and maps; fewer
-// where no picture is kept. Measured (README.md).
+// For each element: moments of pilot, test and blocks in flight, weights and maps. A streamed
+// picture takes less.
 constexpr double bytes_of_element = 143;
 constexpr double bytes_of_streamed_element = 43;
 constexpr double gigabyte = 1e9;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// The side of a claim that is answered from rows of this estimator's pictures, or null.
+/// The side of a streamed claim that this estimator is, or null.
 const Subject* streamed_side(const PreparedEstimator& estimator, const StreamedClaims& streamed) {
   for (const Question* const question : streamed) {
     for (const Subject& side : question->subjects) {
@@ -44,7 +44,7 @@ double bytes_of(const PreparedEstimator& estimator, const StreamedClaims& stream
   return numbers * (bytes_of_number + bytes_of_block) + elements * bytes_of_element;
 }
 
-/// The number in a file of one.
+/// The number in a file that holds one.
 double number_in(const char* file) {
   double value = unknown;
   std::ifstream stream(file);

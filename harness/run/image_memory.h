@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether pictures fit into memory, before they are read.
+// Checks that pictures fit into memory before they are read.
 
 #include <cstdint>
 #include <map>
@@ -12,19 +12,18 @@
 
 namespace assay::harness {
 
-/// Claims that are answered from rows of their estimators' pictures (picture_stream.h).
+/// Claims that are answered row by row (picture_stream.h).
 using StreamedClaims = std::vector<const Question*>;
 
-/// Bytes that testing the pictures of files takes at its peak, of all these estimators together.
+/// Peak bytes of testing the picture files of all these estimators.
 double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators,
                      const StreamedClaims& streamed);
 
-/// Bytes that this process may still take: what the system, or the control group that it runs in,
-/// has available. Infinity where neither tells.
+/// Bytes that this process may still take, by the system or its control group. Infinity if unknown.
 double available_bytes();
 
-/// Throws InputError at the estimator with most pictures where they need more than `available`:
-/// after `fault`, if it is not "", for which they cannot be answered from rows.
+/// InputError at the estimator with most pictures if they need more than `available`. The message
+/// begins with `fault`, if any: why they cannot be read row by row.
 void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
                     const StreamedClaims& streamed, double available,
                     const std::string& fault = "");

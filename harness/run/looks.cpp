@@ -10,7 +10,7 @@
 namespace assay::harness {
 namespace {
 
-/// One progress over all rounds: of the work that remains if no test ends before its last look.
+/// One progress for all rounds, out of the work that remains if no test ends early.
 class Rounds final : public Progress {
  public:
   Rounds(Progress& progress, std::uint64_t total) : progress_(progress) {
@@ -39,7 +39,7 @@ std::uint64_t most_work(const std::vector<std::shared_ptr<Pool>>& pools) {
   return total;
 }
 
-/// CPU seconds of the suites that have a budget in seconds, each pool counted once.
+/// CPU seconds of suites with a budget in seconds; each pool counts once.
 using Clocks = std::map<const Budget*, double>;
 
 Clocks read_clocks(const std::vector<TestWork*>& tests) {
@@ -55,7 +55,7 @@ Clocks read_clocks(const std::vector<TestWork*>& tests) {
   return clocks;
 }
 
-/// Whether a budget in seconds is spent, or would be by a look of twice the size.
+/// True if a budget in seconds is spent, or a look of twice the size would spend it.
 bool is_spent(const TestWork& work, const Clocks& clocks) {
   const auto clock = clocks.find(work.suite_budget);
   if (clock != clocks.end() && 2 * clock->second > *work.suite_budget->seconds) return true;

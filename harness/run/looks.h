@@ -8,9 +8,9 @@
 
 namespace assay::harness {
 
-/// Draws observations in rounds of growing size until every test is decided or has taken its last
-/// look: in each round every undecided test takes its next look. What a test sees at a look depends
-/// on its own plan alone. Stops early when the user interrupts; tests are then left undecided.
+/// Draws in rounds: in each, every undecided test takes its next look. It ends when every test is
+/// decided or has taken its last look. A test's data depend on its own plan alone. Stops early when
+/// the user interrupts; tests are then left undecided.
 void sample_in_looks(const std::vector<TestWork*>& tests,
                      const std::vector<std::shared_ptr<Pool>>& pools, unsigned threads,
                      Progress& progress);

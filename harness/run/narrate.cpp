@@ -22,7 +22,7 @@ std::string p_text(double log_p) {
   return "p = " + reports::p_text(std::exp(log_p), log_p / std::log(10.0));
 }
 
-/// Messages are read by programs too: their spaces are plain.
+/// Programs read messages too, so spaces are plain.
 std::string plain(std::string text) {
   const std::string no_break = "\u00A0";
   for (std::size_t at = text.find(no_break); at != std::string::npos; at = text.find(no_break, at))
@@ -32,7 +32,7 @@ std::string plain(std::string text) {
 
 /// "difference from the reference is +0.31 % [+0.12 %, +0.5 %] (99 % interval)".
 std::string finding(const reports::Effect& effect) {
-  // Of an exponent where one point alone differs from zero.
+  // An exponent of which only one point differs from zero.
   if (!effect.estimate) {
     const std::string interval = reports::interval_text(effect);
     return fmt::format(
@@ -55,8 +55,8 @@ const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
                            });
 }
 
-/// Of two values of theta the one that is shown as the larger: of ratios near one, -14.3 % is less
-/// than +16.2 %, though its logarithm is as far from zero.
+/// The theta that is shown as the larger. For ratios -14.3 % is shown as less than +16.2 %, though
+/// their logarithms are equally far from 0.
 double farther(double x, double y, const Evidence& evidence) {
   constexpr double near = std::numbers::ln2;
   const bool in_per_cent = evidence.ratio && std::abs(x) <= near && std::abs(y) <= near;
@@ -64,9 +64,9 @@ double farther(double x, double y, const Evidence& evidence) {
   return size(x) > size(y) ? x : y;
 }
 
-/// The largest effect in the claim's forbidden direction that the interval holds.
+/// The largest effect in the claim's forbidden direction inside the interval.
 double excluded_beyond(const ChannelOutcome& channel) {
-  // An end that is no number lies at infinity.
+  // A missing end lies at infinity.
   const double low = channel.effect.low.value_or(-HUGE_VAL);
   const double high = channel.effect.high.value_or(HUGE_VAL);
   switch (channel.regions.relation) {
@@ -83,7 +83,7 @@ double excluded_beyond(const ChannelOutcome& channel) {
   return farther(low, high, channel.evidence);
 }
 
-/// The place of a channel among the references; nullopt but for a mean against a number.
+/// A channel's index among the references; nullopt except for a mean against a number.
 std::optional<std::size_t> reference_index(const TestOutcome& outcome,
                                            const ChannelOutcome& channel) {
   const Question& question = outcome.question;
@@ -94,14 +94,14 @@ std::optional<std::size_t> reference_index(const TestOutcome& outcome,
   return {};
 }
 
-/// The exponents or quantiles that speak against the claim and of which the interval excludes none,
-/// however far off; "" where there are none such.
+/// The exponents or quantiles that speak against the claim if the interval excludes none of them;
+/// else "".
 std::string what_is_not_excluded(const Question& question, const ChannelOutcome& channel) {
   const bool no_low = !channel.effect.low || !std::isfinite(*channel.effect.low);
   const bool no_high = !channel.effect.high || !std::isfinite(*channel.effect.high);
   if (question.kind == QuestionKind::slope) return no_low && no_high ? "exponent" : "";
   if (question.kind != QuestionKind::quantile) return "";
-  // A claim `<=` is refuted by a lower limit alone.
+  // A lower limit alone refutes a claim `<=`.
   const bool low_counts = channel.regions.relation != Relation::at_least;
   const bool high_counts = channel.regions.relation != Relation::at_most;
   if (low_counts && no_low && high_counts && no_high) return "quantile";
@@ -109,20 +109,20 @@ std::string what_is_not_excluded(const Question& question, const ChannelOutcome&
   return high_counts && no_high ? "larger quantile" : "";
 }
 
-/// A distance has an end at 0 at least, unless even 0 is too large for these data.
+/// A distance's interval reaches 0, unless even 0 is too large for these data.
 bool holds_no_effect(const ChannelOutcome& channel) {
   return channel.evidence.distance && !channel.effect.low && !channel.effect.high;
 }
 
-/// An interval that decides a pass is narrower than one at the test's share of alpha, and may leave
-/// out what is claimed.
+/// The interval that decides a pass is narrower than the one at the test's share of alpha. It may
+/// leave out the claimed value.
 std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const double edge = edge_of_claimed(channel.regions);
   const bool above = channel.regions.relation != Relation::at_least && channel.effect.low &&
                      *channel.effect.low > edge;
   const bool below = channel.regions.relation != Relation::at_most && channel.effect.high &&
                      *channel.effect.high < -edge;
-  // An image's interval is of the size of the difference, and no part of the verdict.
+  // An image's interval is that of the difference's size, and does not decide.
   if (channel.image || (!above && !below)) return "no evidence against the claim";
   return fmt::format("not enough evidence against the claim, {} where its share of alpha is {:.2g}",
                      p_text(channel.decision.log_p_claimed), outcome.place.share.alpha);
@@ -154,8 +154,8 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
           text, all);
     }
     if (channel.detectable) {
-      // The same sum of squares in a few pixels, or of both signs, is seen by other cells: from
-      // other sizes on.
+      // Other cells see the same sum of squares in a few pixels, or of both signs, from other sizes
+      // on.
       const char* how = outcome.question.kind == QuestionKind::image
                             ? " that is the same all over the image"
                             : " or more";
@@ -197,12 +197,12 @@ std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
                      most_against ? most_against(edge_of_claimed(channel.regions)) : "");
 }
 
-/// In an alarm any estimate decides once the room between the margins holds a standard error
-/// z_alpha and z_beta times; in a proof it decides by how far it lies from the forbidden region,
-/// with one standard error to spare.
+/// The room between margins in standard errors. An alarm needs z_alpha and z_beta of them, then any
+/// estimate decides. A proof needs the estimate's distance from the forbidden region, and one to
+/// spare.
 struct Room {
   double size = 0;
-  double standard_errors = 1;  ///< that it must hold
+  double standard_errors = 1;  ///< the room must hold so many
 };
 
 Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -229,7 +229,7 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return {regions.detect.value_or(0) - regions.allow, z(alpha) + z(share.beta)};
 }
 
-/// The standard error of the reference on theta's scale: what no number of samples takes away.
+/// The reference's standard error on theta's scale, which no number of samples reduces.
 double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const auto index = reference_index(outcome, channel);
   if (!index) return 0;
@@ -238,7 +238,7 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   return reference.standard_error / (relative ? std::abs(reference.value) : 1);
 }
 
-/// So many times the secondaries, and what a `budget` counts.
+/// So many times the secondaries, or the number for a `budget`.
 std::string times_as_many(const TestOutcome& outcome, double factor) {
   const std::string text = sizes_text(outcome, factor) + " secondaries";
   if (primaries_of_each(outcome.question, outcome.plan) == 1) return text;
@@ -247,8 +247,8 @@ std::string times_as_many(const TestOutcome& outcome, double factor) {
   return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
 }
 
-/// How many standard errors half an interval is whose ends each err with `tail`. With few
-/// observations t is far wider than the normal law that more of them will have.
+/// Half the interval in standard errors if each end errs with `tail`. With few observations t is
+/// far wider than the normal law of a larger sample.
 double interval_errors(const ChannelOutcome& channel, double tail) {
   const stats::LogTail beyond{stats::Tail::upper, std::log(tail)};
   const stats::Distribution law = channel.evidence.at(channel.evidence.estimate).distribution;
@@ -256,7 +256,7 @@ double interval_errors(const ChannelOutcome& channel, double tail) {
                                    : stats::normal_quantile(beyond);
 }
 
-/// n grows with the square of how much narrower the interval must become.
+/// n grows with the square of the factor by which the interval must shrink.
 std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
     if (channel.image->wanted == 0) {
@@ -276,7 +276,7 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
     return "the estimate lies where the claim must not pass, yet not clearly so";
   }
-  // The standard errors of the samples must shrink to what the reference's leaves of the room.
+  // The samples' standard errors must shrink to the room that the reference's leaves.
   const double fixed = reference_error(outcome, channel);
   const double error = half / interval_errors(channel, beta);
   const double sampled = error * error - fixed * fixed;

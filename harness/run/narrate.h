@@ -8,23 +8,23 @@
 
 namespace assay::harness {
 
-/// What a tested claim's verdict means in one or two sentences: what was found, what was excluded,
-/// what could have been missed, or how many more samples would decide.
+/// A tested claim's verdict in one or two sentences. They say what was found, what is excluded, and
+/// what could be missed or how many more samples would decide.
 std::string narrate(const TestOutcome& outcome);
 
-/// The observations of the look that the p of all looks is from; 0 where that is the last.
+/// The observations of the look that the p of all looks is from; 0 if that is the last.
 std::uint64_t earlier_look(std::span<const reports::Look> looks);
 
-/// What Holm's adjustment over the suite alone refutes a claim by.
+/// The evidence by which Holm alone refutes a claim.
 struct HolmFinding {
   const reports::Effect& effect;
-  std::string channel = "";  ///< "": the claim has no other
+  std::string channel = "";  ///< "": the claim has one channel
   double log_p = 0;
   double log_p_adjusted = 0;
-  std::uint64_t earlier_look = 0;  ///< whose p that is, if not the last look's
+  std::uint64_t earlier_look = 0;  ///< the look that gave the p, if not the last
 };
 
-/// The same of a claim that only Holm's adjustment over the suite refutes.
+/// The verdict of a claim that only Holm's adjustment refutes.
 std::string narrate_holm(const HolmFinding& found);
 
 }  // namespace assay::harness

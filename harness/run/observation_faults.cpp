@@ -11,7 +11,7 @@
 namespace assay::harness {
 namespace {
 
-/// How to look at one observation again.
+/// The command that repeats one observation.
 std::string replay_line(const TestOutcome& outcome, std::uint64_t observation) {
   return fmt::format(
       "`assay replay RUN.json {} {}` draws it again, where `--report json=RUN.json` saved the run",
@@ -50,7 +50,7 @@ std::string unusable(const DrawnTest& test) {
   for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
     const Subject& side = outcome.question.subjects[subject];
     const Summary& drawn = test.samples[subject].summary();
-    if (drawn.elements) continue;  // all of them are finite
+    if (drawn.elements) continue;  // all finite
     for (const std::size_t channel : side.channels) {
       if (drawn.channels[channel].nonfinite == 0) continue;
       return not_finite(outcome, side, test.samples[subject], channel);
@@ -70,7 +70,8 @@ std::string first_contradiction(const DrawnTest& test) {
   try {
     first = first_inconsistent(test.samples[0].pool(), outcome.secondaries());
   } catch (...) {
-    // Found again by drawing again: a program that ends meanwhile takes no verdict with it.
+    // It is found by drawing again, which may fail: a program that ends meanwhile takes no verdict
+    // with it.
   }
   if (!first) return "";
   return fmt::format("; the first is observation {}: {}", *first, replay_line(outcome, *first));

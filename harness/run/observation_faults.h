@@ -6,15 +6,14 @@
 
 namespace assay::harness {
 
-/// Which source of a test stopped, where, and why; empty where none did.
+/// Says which source of a test stopped, where and why; "" if none did.
 std::string where_it_stopped(const TestWork& work);
 
-/// Why a test's observations cannot be judged: some are not finite, or outside of the range that
-/// their source declares; empty where they can.
+/// Why a test's observations cannot be judged: not finite, or outside their declared range; "" if
+/// they can.
 std::string unusable(const DrawnTest& test);
 
-/// Which draw was the first to contradict its sampler, as the end of a sentence; empty where none
-/// did.
+/// The first draw that contradicts its sampler, as the end of a sentence; "" if none does.
 std::string first_contradiction(const DrawnTest& test);
 
 }  // namespace assay::harness

@@ -30,16 +30,15 @@ static_assert(row_unit % stats::RowCellTails::row_unit == 0 &&
               row_unit % GroupedFlips<float>::row_unit == 0 &&
               Pyramid::rows_before >= stats::RowCellTails::rows_beside &&
               Pyramid::rows_ahead >= stats::RowCellTails::rows_beside);
-// Rows are read up to a multiple of so many: most files compress 16 of them together.
+// Row counts are multiples of it: most files compress 16 rows together.
 constexpr std::size_t read_unit = 16;
-// Of what is taken at a time, where so few rows are enough.
+// Limit of texels read at a time, unless one unit of rows has more.
 constexpr std::size_t most_texels = std::size_t{1} << 22;
 
 std::size_t rounded_up(std::size_t count, std::size_t unit) {
   return (count + unit - 1) / unit * unit;
 }
 
-/// Rows that are taken at a time.
 std::size_t rows_at_a_time(const stats::ImageExtent& extent, std::size_t pictures) {
   const std::size_t rows = most_texels / (extent.row() * pictures) / row_unit * row_unit;
   return std::clamp(rows, row_unit, rounded_up(extent.height, row_unit));
@@ -53,7 +52,7 @@ std::size_t rows_there(const stats::ImageExtent& extent, std::size_t pictures) {
 
 std::uint64_t pictures_of(const Subject& side) { return side.setup->observations().value_or(0); }
 
-/// One side's pictures, as far as their rows are there.
+/// One side's pictures, some rows at a time.
 class Side {
  public:
   explicit Side(const Subject& side)
@@ -65,7 +64,7 @@ class Side {
         texels_(std::make_unique_for_overwrite<float[]>(pictures_ * size_)),
         seconds_(pictures_) {}
 
-  /// Lets go of rows before those of the range and reads on to its last.
+  /// Drops rows before the range and reads on to its last.
   void move_to(stats::RowRange rows) {
     on_all_threads(pictures_, [&](std::size_t i) {
       const double start = thread_seconds();
@@ -90,7 +89,7 @@ class Side {
     return sum;
   }
 
-  /// Where among the rows that are there a number is not finite; "" where all are.
+  /// Names a non-finite number in the current rows; "" if all are finite.
   std::string not_finite() const {
     const Stack rows = stack();
     for (std::size_t i = 0; i < pictures_; ++i) {
@@ -118,13 +117,13 @@ class Side {
   stats::ImageExtent extent_;
   std::unique_ptr<recorded::PictureRows> reader_;
   std::size_t pictures_;
-  std::size_t size_;  // texels of a picture that there is room for
+  std::size_t size_;  // capacity in texels of a picture
   std::unique_ptr<float[]> texels_;
   std::vector<double> seconds_;
   stats::RowRange there_;
 };
 
-/// What is taken of rows.
+/// Results of rows that are collected row by row.
 class Looking {
  public:
   Looking(const Question& question, const FamilyPlace& place)
@@ -147,7 +146,7 @@ class Looking {
   StreamedPictures take_all(Progress& progress) {
     try {
       return {.pilots = take_rows(progress) ? pilots() : Pilots()};
-    } catch (const std::domain_error&) {  // of texels that are not finite, and of their sums
+    } catch (const std::domain_error&) {  // texels or their sums are not finite
       return {.fault = fault()};
     } catch (const Unread& unread) {
       StreamedPictures found;
@@ -157,13 +156,13 @@ class Looking {
   }
 
  private:
-  /// Thrown where a side's pictures cannot be read.
+  /// Thrown if a side's pictures cannot be read.
   struct Unread {
     std::size_t side;
     Fault fault;
   };
 
-  /// False where the user interrupts.
+  /// False if the user interrupts.
   bool take_rows(Progress& progress) {
     const std::size_t step = rows_at_a_time(extent_, 2 * pictures_);
     for (std::size_t row = 0; row < extent_.height; row += step) {
@@ -183,7 +182,7 @@ class Looking {
     return "the squares of their numbers are too large";
   }
 
-  /// After the last rows.
+  /// Call it after the last rows.
   Pilots pilots() {
     if (!sums_.sound()) throw std::domain_error("sums of pictures are not finite");
     finish();
@@ -271,7 +270,7 @@ class Looking {
   std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
   SumsOfTwo sums_;
   std::vector<std::vector<double>> of_pictures_;  // sums, at last averages
-  std::vector<std::vector<double>> of_channels_;  // sums of each picture's
+  std::vector<std::vector<double>> of_channels_;  // sums of each picture's channels
   stats::RowDistance<float> distance_;
   std::optional<Pyramid> pyramid_;
   std::optional<stats::RowCellTails> tails_;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Claims on two stacks of pictures of files, of which no picture is ever there as a whole: they are
-// read once, rows after rows, and what the pilot and the test ask of rows is taken before the next.
+// Claims on two stacks of pictures that are never held as a whole. Rows are read once; the pilot
+// and the test take what they need of them before the next rows.
 
 #include <map>
 #include <string>
@@ -14,23 +14,20 @@
 
 namespace assay::harness {
 
-/// Whether this claim, the only one of its estimators, is answered from rows: it asks whether as
-/// many pictures of either side, and all of them, are equal.
+/// True if the claim can be answered row by row. It must be its estimators' only one, and ask
+/// whether equally many pictures, all of each side, are equal.
 bool is_streamed(const Question& question);
-/// Which of the claims are.
+/// The claims that can be answered row by row.
 std::vector<const Question*> streamed(const std::vector<Question>& questions,
                                       const std::vector<bool>& chosen);
 
-/// Bytes that the pictures of one of its sides take at a time.
+/// Bytes of one side's pictures at a time.
 double streamed_bytes(const Subject& side);
 
-/// What reading two stacks rows after rows came to.
 struct StreamedPictures {
-  /// The pilots of the claim's estimators, with the look at their pictures; or the fault of one
-  /// that could not be read; or none.
+  /// The pilots with the look at their pictures, or the fault of an unreadable source, or none.
   Pilots pilots = {};
-  /// Why there are none: numbers that only pictures kept as a whole can be tested on. "" where the
-  /// user interrupted.
+  /// Why there are no pilots: the numbers need whole pictures. "" if the user interrupted.
   std::string fault = {};
 };
 

@@ -19,7 +19,7 @@
 namespace assay::harness {
 namespace {
 
-// For the suite's picture, of an estimator that no selected mean or variance claim draws.
+// The suite picture's secondaries of an estimator that no selected mean or variance claim draws.
 constexpr std::uint64_t picture_secondaries = 1000;
 constexpr std::uint64_t picture_primaries = 64;
 
@@ -28,8 +28,8 @@ bool selected(const TestEntry& test, std::size_t index, const RunOptions& option
   return selects(options.selection, test);
 }
 
-/// The suite's primaries are split over its tests by weight, whichever of them run: what a test may
-/// draw is then a function of the suite alone. Claims in seconds are timed on whole replicates.
+/// Splits the suite's primaries over all its tests by weight, selected or not: what a test may draw
+/// is a function of the suite alone. Claims in seconds are timed on whole replicates.
 void share_budget(Suite& suite) {
   if (!suite.budget || !suite.budget->primaries) return;
   double weights = 0;
@@ -43,7 +43,7 @@ void share_budget(Suite& suite) {
   }
 }
 
-/// The suite as this run wants it, before `--coarsen`.
+/// The suite with this run's options, before `--coarsen`.
 Suite adjusted(Suite suite, const RunOptions& options) {
   if (options.alpha) suite.alpha = *options.alpha;
   share_budget(suite);
@@ -68,15 +68,14 @@ bool is_about(const Question& question, const std::string& estimator) {
                      [&](const Subject& s) { return s.estimator->listed == estimator; });
 }
 
-/// Whether estimators that no test is about are drawn too, for the picture of the whole suite: of
-/// the shards the first does.
+/// True if estimators without a test are drawn for the suite's picture. Only the first shard draws
+/// them.
 bool draws_idle(const std::vector<Question>& questions, const RunOptions& options) {
   if (options.shard && options.shard->first != 1) return false;
   return std::all_of(questions.begin(), questions.end(),
                      [&](const Question& q) { return selects(options.selection, *q.test); });
 }
 
-/// Estimators that a set of questions is about, in the suite's order.
 std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& questions,
                                               const std::vector<bool>& chosen, const SuiteRun& run,
                                               const RunOptions& options) {
@@ -94,14 +93,13 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
       idle = false;
       wanted = wanted || chosen[i];
     }
-    // A renderer that starts anew for each observation is too slow to draw for a picture alone.
+    // A renderer that starts for each observation is too slow to draw for a picture alone.
     const bool dear = recorded::keeps_files(*estimator.setup);
     if (wanted || (idle && with_idle && !dear)) used.push_back(&estimator);
   }
   return used;
 }
 
-/// And the points of their sweeps.
 std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEstimator*> estimators,
                                                   const std::vector<Question>& questions,
                                                   const std::vector<bool>& chosen) {
@@ -115,8 +113,7 @@ std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEsti
   return estimators;
 }
 
-/// The pilots of a suite's estimators: those of pictures that are taken rows after rows, then the
-/// others.
+/// The pilots of a suite's estimators: first of pictures that are read row by row, then the others.
 Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
                const std::vector<bool>& chosen, std::vector<const PreparedEstimator*> used,
                const RunOptions& options, Progress& progress) {
@@ -141,7 +138,7 @@ Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
   return pilots;
 }
 
-/// Of the streams that the suite's tests draw of an estimator the first, selected or not.
+/// The first of the streams that the suite's tests, selected or not, draw of an estimator.
 std::uint32_t first_copy(const std::vector<Question>& questions,
                          const PreparedEstimator& estimator) {
   std::optional<std::uint32_t> first;
@@ -177,7 +174,7 @@ void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
   }
 }
 
-/// Whether the test runs, by its place in the suite's file.
+/// True if the test runs; depends on its place in the suite's file.
 bool selected(const TestEntry& test, const SuiteRun& run, const RunOptions& options) {
   return selected(test, static_cast<std::size_t>(&test - run.suite.tests.data()), options);
 }
@@ -207,7 +204,7 @@ void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress
   plan_picture(run, questions, used, primaries, pilots, pools);
 }
 
-/// Why the suite's tests cannot run on this machine; "" where they can.
+/// Why the suite's tests cannot run on this machine; "" if they can.
 std::string lack_of(const Suite& suite) {
   for (const std::string& program : suite.needs) {
     if (!program_path(program, suite.folder).empty()) continue;
@@ -216,8 +213,8 @@ std::string lack_of(const Suite& suite) {
   return "";
 }
 
-/// The estimators, and why others cannot be prepared. What an estimator refuses is the user's
-/// mistake; what else it throws is a fault of its own.
+/// Prepares the estimators and returns faults. A refusal by an estimator is the user's mistake; any
+/// other exception is the estimator's fault.
 std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
   std::map<std::string, Fault> faults;
   for (const EstimatorEntry& entry : run.suite.estimators) {
@@ -232,7 +229,7 @@ std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
   return faults;
 }
 
-/// Why a test has no question: a source that cannot be prepared; "" where all are.
+/// Names the source that leaves a test without a question; "" if there is none.
 std::string unprepared(const TestEntry& test, const std::map<std::string, Fault>& faults) {
   std::vector<Source> sources = sources_of(test.claim);
   if (test.reference) sources.push_back(*test.reference);
@@ -260,8 +257,7 @@ void ask_test(SuiteRun& run, TestEntry& test, const std::map<std::string, Fault>
   }
 }
 
-/// Everything a user may have got wrong is found here, before anything is sampled; but of a suite
-/// that is skipped nothing is prepared.
+/// Finds all mistakes of the user before anything is sampled. Prepares nothing of a skipped suite.
 std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options) {
   auto run = std::make_unique<SuiteRun>();
   run->suite = adjusted(suite, options);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What `run` and `plan` have in common: suites prepared, piloted and planned, nothing sampled.
+// The common part of `run` and `plan`: suites prepared, piloted and planned, nothing sampled.
 
 #include <memory>
 #include <vector>
@@ -13,11 +13,11 @@ namespace assay::harness {
 
 struct PlannedRun {
   std::vector<std::unique_ptr<SuiteRun>> suites;
-  Pools pools;  ///< of the selected tests and the suites' pictures; nothing is drawn
+  Pools pools;  ///< For the selected tests and the suites' pictures; nothing is drawn.
 };
 
-/// Prepares all suites, then runs the pilots of the selected tests and freezes their plans.
-/// InputError for anything found wrong, before the first pilot.
+/// Prepares all suites, then draws the pilots of the selected tests and freezes their plans.
+/// InputError for any mistake, before the first pilot.
 PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
                     Progress& progress);
 

@@ -9,7 +9,7 @@
 namespace assay::harness {
 namespace {
 
-// The histogram spans this many standard deviations to each side, within the channel's range.
+// The histogram spans so many standard deviations to each side, within the channel's range.
 constexpr double histogram_deviations = 5;
 
 struct Range {
@@ -32,7 +32,7 @@ Range expected_range(const Channel& channel, const stats::Moments& pilot, double
           std::min({channel.high, pilot.maximum, pilot.mean + reach})};
 }
 
-/// Of bounded data: read through once.
+/// Ranges of bounded data, which are read through once.
 std::vector<Range> data_ranges(const Setup& setup, std::uint64_t rows) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<Range> ranges(setup.channels().size(), {infinity, -infinity});
@@ -61,7 +61,7 @@ std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
 std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimator& estimator,
                                         const Pilots& pilots) {
   std::vector<ChannelPlan> plan;
-  // An image is drawn as maps: no histogram of each pixel.
+  // Images are shown as maps, without a histogram of each pixel.
   if (pool.is_ready_made() || pool.setup()->image()) return {};
   const std::vector<Channel> channels = pool.setup()->channels();
   if (const auto rows = pool.setup()->observations()) {
@@ -82,9 +82,9 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   return plan;
 }
 
-/// Counts draws in the cells of their density: those of the pool's own set-up, which its workers
-/// write the numbers of; the subject's may be another of an equal sampler. Where the density cannot
-/// be had the plan says so, or the look.
+/// Counts draws in the cells of their density. It uses the pool's own set-up, whose cells its
+/// workers count; the subject's may belong to an equal sampler. If the density is out of reach, the
+/// plan or the look says so.
 void count_cells(const Subject& side, Pool& pool) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*pool.setup());
   if (dynamic_cast<const ConsistencySetup*>(&draws) != nullptr) return;
@@ -123,7 +123,7 @@ std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t se
   if (rows && pilot != nullptr && pilot->kept && pilot->kept->size() == *rows) {
     pool->take_known(pilot->kept);
   }
-  // It is not asked again, which may take another time-out.
+  // Asking again may take another time-out.
   if (const Fault* fault = pilots.fault(wanted.estimator.name, wanted.purpose)) pool->fail(*fault);
   const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());
   pool->plan(draws != nullptr ? sampler_plan(*draws)
@@ -158,7 +158,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
     }
   }
   if (plan.method.keeps == Keeps::images) pool->keep_observations(plan.most_secondaries());
-  // A mutant's first, which was_activated holds against its original's.
+  // Keeps a mutant's first observations, which was_activated compares with its original's.
   if (side.estimator->original && side.purpose.empty()) pool->keep_observations(1);
   keep_for(plan.method, side, *pool);
   for (const std::uint64_t size : plan.looks.sizes) pool->mark(side.secondaries(size));

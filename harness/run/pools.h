@@ -12,16 +12,16 @@
 
 namespace assay::harness {
 
-/// Values stored of every channel: for the normal quantile plot.
+/// Stored values of every channel, for the normal quantile plot.
 inline constexpr std::uint64_t plotted_values = 2000;
 
-/// All pools of a run: tests that draw the same stream from the same plugin share one.
+/// All pools of a run. Tests that draw the same stream from the same plugin share one.
 class Pools {
  public:
-  /// The pools of a test, one a subject, planned for what the method keeps.
+  /// The pools of a test, one for each subject, planned for what the method keeps.
   std::vector<std::shared_ptr<Pool>> for_question(const Question& question, const Plan& plan,
                                                   std::uint64_t seed, const Pilots& pilots);
-  /// The pool of an estimator's secondary estimates for the suite's picture.
+  /// An estimator's pool for the suite's picture.
   struct Shown {
     const PreparedEstimator& estimator;
     std::uint32_t copy;

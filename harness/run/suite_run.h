@@ -1,7 +1,5 @@
 #pragma once
 
-// A suite in a run, from what it says to what came out.
-
 #include <map>
 #include <memory>
 #include <string>
@@ -12,7 +10,6 @@
 
 namespace assay::harness {
 
-/// An estimator with the pool its picture is drawn from.
 struct Picture {
   const PreparedEstimator* estimator;
   std::shared_ptr<Pool> pool;
@@ -20,29 +17,29 @@ struct Picture {
   std::optional<std::uint64_t> own = {};
 };
 
-/// A test that no question can be made of: it is skipped where a program is missing that its suite
-/// needs, and an error where one of its sources cannot be prepared.
+/// A test without a question. It is skipped if a program that its suite needs is missing, and an
+/// error if a source cannot be prepared.
 struct Untested {
   const TestEntry* test;
   reports::Verdict verdict;
   std::string message;
 };
 
-/// A suite in a run: what it says, what was prepared from it, what came out.
+/// A suite in a run: its text, what was prepared from it, and its results.
 struct SuiteRun {
   Suite suite;
   std::uint64_t seed = 1;
   std::map<std::string, PreparedEstimator> estimators;
-  std::vector<Question> questions = {};  ///< of its tests, but for those that cannot be tested
-  Pilots pilots = {};                    ///< of the estimators of the selected tests
-  std::vector<TestWork> tests = {};      ///< the selected ones
-  std::vector<Untested> untested = {};   ///< of the selected ones the others
+  std::vector<Question> questions = {};  ///< Questions of its tests, without untested ones.
+  Pilots pilots = {};                    ///< Pilots of the selected tests' estimators.
+  std::vector<TestWork> tests = {};      ///< The selected tests.
+  std::vector<Untested> untested = {};   ///< Selected tests without a question.
   std::vector<Picture> pictures = {};
-  bool holm = false;  ///< the whole family ran
+  bool holm = false;  ///< True if the whole family ran.
 };
 
-/// The number of observations that a picture shows: those of the test that drew most of them. It is
-/// the same whatever else ran, but for the suite's other tests.
+/// The number of observations that a picture shows: those of the test that drew most. It depends on
+/// the suite's tests alone.
 std::uint64_t shown_by(const Picture& picture, const SuiteRun& run);
 
 }  // namespace assay::harness

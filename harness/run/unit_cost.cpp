@@ -43,8 +43,8 @@ UnitCost unit_cost(const Summary& summary) {
           .seconds = summary.seconds / n};
 }
 
-/// The pilot's observations, where they are of as many primaries as the pool's: images and others
-/// that average nothing may take minutes each.
+/// The pilot's observations, if they have as many primaries as the pool's. An image or another
+/// non-averaging observation may take minutes.
 const Summary* piloted(const Pool& pool, const PreparedEstimator& estimator,
                        const std::string& purpose, const Pilots& pilots) {
   const Pilot* const pilot = pilots.find(estimator.name);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What one secondary estimate costs, measured on the pilot's or a few from streams of their own.
+// The cost of one secondary estimate, measured on the pilot or a few from separate streams.
 
 #include <map>
 #include <variant>
@@ -15,13 +15,13 @@ struct UnitCost {
   double seconds = 0;  ///< CPU seconds
 };
 
-/// By the pool that a test reads or a picture is drawn from: what its secondaries cost, or why they
-/// could not be drawn. Missing are recorded data, which are only read.
+/// The cost of secondaries by pool, or why they could not be drawn. Recorded data, which are only
+/// read, are missing.
 using UnitCosts = std::map<const Pool*, std::variant<UnitCost, Fault>>;
 
-/// Draws about 16 thousand primaries, each element of an image counted, of each pool's estimator or
-/// sampler, at the pool's own primaries a secondary: one primary alone costs more than its share of
-/// many. Of one that does not average the pilot tells. The pools themselves stay as they are.
+/// Draws about 16 thousand primaries (times an image's elements) for each pool, at its primaries
+/// for each secondary. A single primary would cost more than its share. Non-averaging estimators
+/// use the pilot. Does not change the pools.
 UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& progress);
 
 }  // namespace assay::harness

@@ -8,8 +8,7 @@
 namespace assay::harness {
 namespace {
 
-/// So far from the ends of doubles that no shape can be beyond them: nearly all are, and an image
-/// has millions of them.
+/// A quick test that settles nearly all of an image's millions of elements.
 bool are_ordinary(const stats::Moments& moments) {
   return moments.m2 > 1e-60 && moments.m2 < 1e60 && std::abs(moments.m3) < 1e90 &&
          moments.m4 > 1e-120 && moments.m4 < 1e120;

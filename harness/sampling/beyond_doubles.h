@@ -6,8 +6,8 @@
 
 namespace assay::harness {
 
-/// Why moments cannot be computed with: the fourth power of the spread is beyond doubles, or what
-/// underflows leaves none. "" where they can. Of `name`'s observations, which are not all the same.
+/// An error message if moments of `name` cannot be computed with, else "". The fourth power of the
+/// spread may overflow, or underflow to nothing. The observations must not all be equal.
 std::string beyond_doubles(const stats::Moments& moments, const std::string& name);
 
 }  // namespace assay::harness

@@ -10,7 +10,7 @@ struct Cumulants {
   double third = 0;
 };
 
-/// Of one element of one replicate, times the factor.
+/// Cumulants of one element of one replicate, times the factor.
 Cumulants cumulants_of(const SkewedSide& side) {
   if (side.pilot.count < 3 || !(side.pilot.m2 > 0)) return {};
   const double factor = side.factor;

@@ -1,7 +1,5 @@
 #pragma once
 
-// How skewed the difference of two images is at one element.
-
 #include <optional>
 #include <span>
 
@@ -9,14 +7,15 @@
 
 namespace assay::harness {
 
-/// One side of it: moments over a pilot, which one replicate averages so many of, times the factor.
+/// One side: its moments over a pilot, the number of pilot observations that one replicate
+/// averages, and its factor.
 struct SkewedSide {
   stats::Moments pilot;
   double averaged = 1;
   double factor = 1;
 };
 
-/// |skewness of one replicate's difference|; nullopt where nothing varies.
+/// |skewness| of one replicate's difference at an element; nullopt if nothing varies.
 std::optional<double> difference_skewness(std::span<const SkewedSide> sides);
 
 }  // namespace assay::harness

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t elements_at_a_time = 4096;
 
-/// What some elements have together.
+/// Extremes over some elements.
 struct Extremes {
   double minimum = std::numeric_limits<double>::infinity();
   double maximum = -std::numeric_limits<double>::infinity();
@@ -34,7 +34,7 @@ Extremes extremes_of(std::span<const stats::Moments> elements) {
   return extremes;
 }
 
-/// Of some elements of both sides.
+/// Sums of some elements of both sides.
 struct Part {
   std::array<Extremes, 2> sides = {};
   std::vector<double> skewness = {};
@@ -42,7 +42,7 @@ struct Part {
 
 using Elements = std::vector<stats::Moments>;
 
-/// The moments of these elements, of which `sums` keeps its part.
+/// The moments of these elements; `sums` keeps a part of them.
 Elements take_side(const stats::ImageStack<float>& stack, stats::ElementRange range,
                    ElementSums& sums) {
   Elements moments(range.size());

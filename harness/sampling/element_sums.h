@@ -1,6 +1,6 @@
 #pragma once
 
-// What is kept of pictures of millions of elements, from reading their rows once.
+// Sums over pictures of millions of elements, whose rows are read once.
 
 #include <cstdint>
 #include <limits>
@@ -12,40 +12,40 @@
 
 namespace assay::harness {
 
-/// Of every element of pictures the moments that maps show; all values are finite.
+/// The moments of every element that maps show. All values are finite.
 struct ElementSums {
-  std::uint64_t count = 0;  ///< of pictures
+  std::uint64_t count = 0;  ///< number of pictures
   std::vector<double> mean = {};
   std::vector<double> m2 = {};
-  stats::Moments first = {};    ///< of the first element everything, for who asks of one
-  stats::Moments average = {};  ///< of the pictures' averages
+  stats::Moments first = {};                                 ///< all moments of the first element
+  stats::Moments average = {};                               ///< moments of the pictures' averages
   double minimum = std::numeric_limits<double>::infinity();  ///< over all elements
   double maximum = -std::numeric_limits<double>::infinity();
-  std::uint64_t nonzero = 0;  ///< values of all elements
+  std::uint64_t nonzero = 0;  ///< values, over all elements
 
-  /// Of an element, or of the average, which comes after them.
+  /// The moments of an element, or of the average, which follows the elements.
   stats::Moments moments(std::size_t channel) const;
 };
 
-/// Of two stacks of pictures the sums of elements, rows after rows, and what they say together.
+/// Sums of two stacks of pictures, read row by row, and of their differences.
 class SumsOfTwo {
  public:
   SumsOfTwo(const stats::ImageExtent& extent, std::uint64_t pictures);
 
-  /// Rows that follow on those before.
+  /// Takes the rows that follow.
   void take(const stats::ImagePair<float>& pair, stats::RowRange rows);
-  /// After the last rows, with the averages of either side's pictures.
+  /// Call it after the last rows, with the averages of each side's pictures.
   std::vector<ElementSums> finish(std::span<const std::vector<double>> averages);
-  /// Mean over the elements that vary of |skewness of one picture's difference|.
+  /// Mean of |skewness of one picture's difference| over the elements that vary.
   double skewness() const;
-  /// Whether moments can be made of the numbers of every element that is not constant.
+  /// True if every element that varies has finite moments.
   bool sound() const { return sound_; }
 
  private:
   stats::ImageExtent extent_;
   std::vector<ElementSums> sides_;
   double skewness_ = 0;
-  double varying_ = 0;  // elements that it is the sum over
+  double varying_ = 0;  // number of elements in the sum
   bool sound_ = true;
 };
 

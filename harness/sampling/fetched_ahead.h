@@ -9,15 +9,15 @@
 
 namespace assay::harness {
 
-/// What is made of the streams of announced observations, many at a time: for samplers elsewhere,
-/// which take longer to be asked than to answer.
+/// Results for announced observations, fetched many at a time: a sampler in another program takes
+/// longer to be asked than to answer.
 template <class Row>
 class FetchedAhead {
  public:
   void announce(const Announcement& next) { announced_ = next; }
 
-  /// The row of an observation. `fetch` makes the rows of the first few of the streams that it is
-  /// given, at least one; it throws where the first cannot be had.
+  /// The row of an observation. `fetch` gets streams and makes the rows of the first few, at least
+  /// one. It throws if it cannot make the first.
   template <class Fetch>
   const Row& of(const Stream& random, Fetch fetch) {
     if (!holds(random)) {

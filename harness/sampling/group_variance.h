@@ -1,12 +1,10 @@
 #pragma once
 
-// The variances of several channels, added, as observations of their own. Consecutive observations
-// are taken in groups of 8; a group's value is the sum over the channels of its sample variance.
-// Groups are independent and their expectation is exactly the total variance, whatever the
-// covariance of the channels: so the mean over the groups, with the standard error of these values,
-// estimates it without a covariance matrix, a second pass or a pilot's mean. The price is one
-// degree of freedom in 8: 8/7 as many observations as the full sample variance of normal data
-// takes.
+// Turns the variances of several channels, added, into observations. A group is 8 consecutive
+// observations; its value is the sum over the channels of its sample variance. Groups are
+// independent, and their expectation is exactly the total variance, whatever the covariance. Their
+// mean and standard error need no covariance matrix, second pass or pilot mean. The price is one
+// degree of freedom in 8.
 
 #include <cmath>
 #include <cstdint>
@@ -17,17 +15,17 @@
 
 namespace assay::harness {
 
-/// Blocks are multiples of it, so that no group spans two.
+/// Block sizes are multiples of it, so that no group spans two blocks.
 inline constexpr std::uint64_t variance_group = 8;
 
 class GroupVariance {
  public:
-  /// Of these channels; of none, nothing is computed.
+  /// No channels: computes nothing.
   explicit GroupVariance(std::vector<std::size_t> channels)
       : channels_(std::move(channels)), means_(channels_.size()) {}
 
-  /// Takes the next observation; the sum of variances where it completes a group, and nothing where
-  /// a value of the group was not finite.
+  /// Takes the next observation. Returns the group's value if it is complete and all its values are
+  /// finite.
   std::optional<double> add(std::span<const double> values) {
     if (channels_.empty()) return {};
     ++count_;
@@ -48,7 +46,7 @@ class GroupVariance {
  private:
   std::vector<std::size_t> channels_;
   std::vector<double> means_;
-  double squares_ = 0;  // summed over the channels
+  double squares_ = 0;  // sum over the channels
   std::uint64_t count_ = 0;
 };
 

@@ -1,7 +1,5 @@
 #pragma once
 
-// Images as the elements of whole observations.
-
 #include <cstddef>
 #include <span>
 #include <variant>
@@ -9,25 +7,25 @@
 
 namespace assay::harness {
 
-/// Whole observations: as they were drawn, or pictures of files in the precision that these have.
+/// Whole observations: as they were drawn, or pictures of files in their own precision.
 using Observations =
     std::variant<std::span<const std::vector<double>>, std::span<const std::span<const float>>>;
 
-/// Of each observation the elements at these channels, in their order and precision: views where
-/// they stand side by side, as those of a whole image do, else copies.
+/// The elements of each observation at these channels, in their order and precision. Channels that
+/// stand side by side are viewed, others copied.
 class ImageViews {
  public:
   template <class Real>
   using Images = std::vector<std::span<const Real>>;
 
   ImageViews() = default;
-  /// The observations outlive it.
+  /// The observations must outlive it.
   ImageViews(const Observations& observations, std::span<const std::size_t> channels);
-  /// Of images of its own.
+  /// Owns the images.
   explicit ImageViews(std::vector<std::vector<double>> images);
   ImageViews(const ImageViews&) = delete;  // views point into copies
   ImageViews& operator=(const ImageViews&) = delete;
-  // Moving a vector leaves its elements where they are.
+  // Moving a vector does not move its elements.
   ImageViews(ImageViews&&) noexcept = default;
   ImageViews& operator=(ImageViews&&) noexcept = default;
   ~ImageViews() = default;
@@ -37,7 +35,7 @@ class ImageViews {
   const Images<Real>& images() const {
     return std::get<Kept<Real>>(kept_).images;
   }
-  /// What `use` makes of the images of either precision.
+  /// Calls `use` with the images in their precision and returns its result.
   template <class Use>
   auto with(const Use& use) const {
     return std::visit([&](const auto& kept) { return use(kept.images); }, kept_);

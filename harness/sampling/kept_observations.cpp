@@ -11,7 +11,7 @@ Observations KeptObservations::range(std::uint64_t begin, std::uint64_t end) con
   const std::size_t last = std::min<std::size_t>(size(), end);
   const std::size_t first = std::min<std::size_t>(begin, last);
   if (!pictures.empty()) return std::span(pictures).subspan(first, last - first);
-  if (values.empty()) return {};  // read and not kept
+  if (values.empty()) return {};  // read but not kept
   return std::span(values).subspan(first, last - first);
 }
 

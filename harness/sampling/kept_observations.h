@@ -1,7 +1,5 @@
 #pragma once
 
-// Observations that are kept whole.
-
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -15,19 +13,19 @@
 namespace assay::harness {
 
 struct KeptObservations {
-  std::vector<std::vector<double>> values = {};       ///< as they were drawn; of pictures none
-  std::vector<std::unique_ptr<float[]>> texels = {};  ///< of pictures of files, a block each
-  std::vector<std::span<const float>> pictures = {};  ///< the same, without their averages
+  std::vector<std::vector<double>> values = {};       ///< as they were drawn; empty for pictures
+  std::vector<std::unique_ptr<float[]>> texels = {};  ///< of pictures, one block each
+  std::vector<std::span<const float>> pictures = {};  ///< the texels without averages
   std::vector<Cost> costs = {};
-  /// Of the first so many of them, nothing but moments.
+  /// Moments of the first observations, by their number.
   std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
 
   std::size_t size() const { return costs.size(); }
-  /// Those of [begin, end) that there are.
+  /// The observations of [begin, end) that exist.
   Observations range(std::uint64_t begin, std::uint64_t end) const;
-  /// All channels of one: where they are kept, or in `out`, which has room for them.
+  /// All channels of one observation: a view, or `out`, which must have room for them.
   std::span<const double> whole(std::size_t index, std::span<double> out) const;
-  /// Takes those that follow.
+  /// Appends the observations that follow.
   void append(KeptObservations&& next);
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t channels_at_a_time = 4096;
 
-/// One by one, as observations are taken elsewhere: with what is not finite counted by itself.
+/// Adds values one by one, as elsewhere; non-finite ones are counted apart.
 template <class Real>
 ChannelSummary one_by_one(const stats::ImageStack<Real>& stack, std::size_t channel) {
   ChannelSummary summary;
@@ -37,7 +37,7 @@ void take(const stats::ImageStack<Real>& stack, std::size_t first, std::span<Cha
   }
 }
 
-/// Of a range of the elements.
+/// Sums of a range of the elements.
 template <class Real>
 void take_all(const stats::ImageStack<Real>& stack, stats::ElementRange range,
               std::span<ChannelSummary> out) {

@@ -1,7 +1,5 @@
 #pragma once
 
-// Sums over observations that are kept whole.
-
 #include <span>
 #include <vector>
 
@@ -10,10 +8,9 @@
 
 namespace assay::harness {
 
-/// The summary of every channel over these observations, of which there is one at least, and of
-/// pictures that of their average besides: the moments of finite values, some channels of all
-/// observations at a time, on all threads of the caller's arena. The same bits for any number of
-/// them.
+/// The summary of every channel over the observations, at least one; for pictures also of their
+/// average. It has moments of the finite values. It works on all threads of the caller's arena and
+/// gives the same bits for any number of threads.
 std::vector<ChannelSummary> sums_of_kept(const Observations& observations);
 
 }  // namespace assay::harness

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a claim on two stacks of pictures of files takes from them.
+// Results of reading two stacks of pictures for one claim.
 
 #include <cstdint>
 #include <optional>
@@ -15,19 +15,19 @@
 
 namespace assay::harness {
 
-/// Of each channel of an image its mean over the pixels, with its standard error.
+/// The mean of each image channel over the pixels, with its standard error.
 using ChannelMeans = std::vector<Constant>;
 
 struct PictureLook {
-  std::uint64_t pictures = 0;  ///< of each side
-  std::uint64_t piloted = 0;   ///< the first so many of them chose what the test leaves out
-  std::vector<stats::CellTails> tails = {};     ///< of those
-  stats::ImageDistance distance = {};           ///< in the images' own units
-  stats::ImageFamily family = {};               ///< with cells of every size
-  std::vector<double> z = {};                   ///< Welch's, of every element
-  std::optional<stats::FlipMatrix> flips = {};  ///< where signs of whole images are to be flipped
-  std::vector<ChannelMeans> means = {};         ///< of either side
-  double skewness = 0;  ///< mean over the elements of that of one picture's difference
+  std::uint64_t pictures = 0;                ///< of each side
+  std::uint64_t piloted = 0;                 ///< The first of them chose what the test leaves out.
+  std::vector<stats::CellTails> tails = {};  ///< of the piloted pictures
+  stats::ImageDistance distance = {};        ///< In the images' own units.
+  stats::ImageFamily family = {};            ///< With cells of every size.
+  std::vector<double> z = {};                ///< Welch's, for every element.
+  std::optional<stats::FlipMatrix> flips = {};  ///< If signs of whole images are to be flipped.
+  std::vector<ChannelMeans> means = {};         ///< One for each side.
+  double skewness = 0;  ///< Mean over the elements of the skewness of one picture's difference.
 };
 
 }  // namespace assay::harness

@@ -19,8 +19,8 @@
 namespace assay::harness {
 namespace {
 
-// A block is some milliseconds of work at a microsecond a primary: long against the cost of handing
-// it out, short against a run.
+// A block takes milliseconds at a microsecond a primary: long against handing it out, short against
+// a run.
 constexpr std::uint64_t primaries_per_block = 16384;
 constexpr std::uint64_t least_block = 8;
 constexpr std::uint64_t most_block = 4096;
@@ -50,10 +50,9 @@ ObservationCost counted(const Cost& cost) {
   return {static_cast<double>(cost.rays()), static_cast<double>(cost.samples)};
 }
 
-/// Takes the observations of a block into its sums, in order. Some wait, and then some channels of
-/// all of them are taken before the next: drawing need not wait for a value to be summed, nor do
-/// the sums of a picture leave the cache at every observation. Each channel's sums are as if its
-/// values had been taken one by one.
+/// Sums up the observations of a block, in order. It buffers some, then takes a few channels of all
+/// of them. Drawing does not wait for sums, and the sums of a picture stay in the cache. Each
+/// channel's sums are the same as if values were taken one by one.
 class Intake {
  public:
   explicit Intake(std::vector<ChannelSummary>& channels)
@@ -62,12 +61,11 @@ class Intake {
             std::clamp<std::size_t>(at_a_time / std::max<std::size_t>(channels.size(), 1), 1, 32)),
         rows_(most_rows_ * channels.size()) {}
 
-  /// Where an observation may be drawn.
   std::span<double> row() {
     return std::span(rows_).subspan(filled_ * channels_.size(), channels_.size());
   }
 
-  /// An observation drawn in row(), or one that stays where it is until the end of the block.
+  /// Takes an observation drawn in row(), or one that stays in place until the block ends.
   void take(std::span<const double> values, std::uint64_t index, const ObservationCost& cost) {
     waiting_.push_back({values, index, cost});
     if (values.data() != row().data()) return;
@@ -103,7 +101,7 @@ class Intake {
   std::vector<Waiting> waiting_;
 };
 
-/// Observations below it have channels whose values are kept.
+/// Channels keep values of observations below it.
 std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
   std::uint64_t most = 0;
   for (const ChannelPlan& channel : plan) most = std::max(most, channel.keep);
@@ -149,7 +147,7 @@ void Pool::request(std::uint64_t count) {
 }
 
 Sample Pool::sample(std::uint64_t count) const {
-  // Moments of a run live as long as their set-up.
+  // An earlier run's moments live as long as their set-up.
   if (is_ready_made()) return Drawn(*this, count, {setup_, ready_made_});
   if (count <= drawn()) return Drawn(*this, count, prefixes_.at(count));
   if (fault_) return *fault_;
@@ -176,7 +174,7 @@ std::uint64_t Pool::block_end(std::uint64_t first) const {
       {first + block_size_, most_marked(), setup_->observations().value_or(most_observations)});
 }
 
-/// A picture goes from its file to where it is kept.
+/// Reads a picture to where it is kept.
 void Pool::keep_picture(Estimator& estimator, std::uint64_t index, Block& block) const {
   const std::size_t elements = channels_ - 1;
   KeptObservations& kept = block.observations;
@@ -188,8 +186,8 @@ void Pool::keep_picture(Estimator& estimator, std::uint64_t index, Block& block)
   kept.pictures.emplace_back(picture);
 }
 
-/// One observation, kept where that was asked for: in `out`, or where it stays. A picture that is
-/// summed later is not widened.
+/// One observation, in `out` or in kept storage. A picture that is summed later stays in its
+/// precision.
 std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
                                       std::span<double> out, Block& block) const {
   if (known_ && index < known_->size()) {
@@ -197,8 +195,8 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
     return sums_later_ ? std::span<const double>() : known_->whole(index, out);
   }
   const bool kept = !known_ && index < kept_observations_;
-  // Counted where the sum stands: to load as a whole what an estimator has just stored in parts
-  // would hold up every observation.
+  // Counted at the sum: reading back at once what an estimator just stored in parts stalls the
+  // processor.
   Cost before;
   if (kept) before = block.whole.cost;
   std::span<const double> drawn = out;
@@ -268,7 +266,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   return block;
 }
 
-/// The first observations, summed once for all pools that share them.
+/// Summed once for all pools that share the observations.
 std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Summary& drawn) {
   const auto shared = all_kept().sums.find(count);
   if (shared != all_kept().sums.end()) return shared->second;
@@ -278,7 +276,7 @@ std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Su
   return summed;
 }
 
-/// Of kept observations, as draw() takes it of those that go: what is kept beside moments.
+/// Takes what is kept beside moments of kept observations, as draw() does of others.
 void Pool::take_details(Summary& summary) const {
   std::vector<std::size_t> detailed;
   for (std::size_t c = 0; c < plan_.size(); ++c) {
@@ -301,10 +299,10 @@ void Pool::take_details(Summary& summary) const {
   }
 }
 
-/// Of kept observations the values of channels that are asked for by themselves.
+/// Stores the values of channels that asked for them, from kept observations.
 void Pool::keep_values() {
   const std::uint64_t most = std::min(most_kept(plan_), drawn());
-  if (values_taken_ >= most) return;  // room for a whole picture is not made for nothing
+  if (values_taken_ >= most) return;  // reserve no room for a whole picture
   std::vector<double> out(channels_);
   values_.resize(channels_);
   for (; values_taken_ < most; ++values_taken_) {
@@ -332,7 +330,6 @@ void Pool::end_drawing() {
   }
 }
 
-/// The block that begins at observation `first`.
 void Pool::keep_block(const Summary& block, std::uint64_t first) {
   const auto channels = [&] {
     return sums_later_ ? moments_of(sums_of_kept(all_kept().range(first, first + block.count)))

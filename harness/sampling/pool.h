@@ -1,7 +1,7 @@
 #pragma once
 
-// A pool of observations: one stream key, one number of primaries, drawn in blocks. Every test on
-// the same estimator, parameters and primaries reads a prefix of the same pool.
+// A pool of observations: one stream key, one number of primaries, drawn in blocks. Tests with
+// equal estimator, parameters and primaries read prefixes of the same pool.
 
 #include <algorithm>
 #include <cstdint>
@@ -20,11 +20,11 @@
 
 namespace assay::harness {
 
-/// Primaries that an observation takes: of an image those of every pixel and component.
+/// Primaries of an observation; for an image those of every pixel and component.
 std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries);
 
-/// Observations of a block, a power of two that depends on `primaries` alone; of an image they are
-/// those of all its elements.
+/// Observations of a block: a power of two that depends on an observation's `primaries` alone. An
+/// image's are those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);
 
 class Pool {
@@ -36,89 +36,86 @@ class Pool {
   std::uint64_t primaries() const { return primaries_; }
 
   std::size_t channels() const { return channels_; }
-  /// What to keep of each channel, before anything is drawn; none: of no channel more than its
-  /// moments, and an image's millions need no plans.
+  /// Sets what to keep of each channel beyond moments, before anything is drawn. An image's
+  /// millions of channels need no plans.
   void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
   const std::vector<ChannelPlan>& plan() const { return plan_; }
-  /// One for each channel, to be changed.
+  /// The plan of each channel, to be changed.
   std::vector<ChannelPlan>& plans();
 
-  /// To sum the variances of these channels in groups; before anything is drawn.
+  /// Sums the variances of these channels in groups. Call it before anything is drawn.
   void keep_group_variances(std::vector<std::size_t> channels) {
     grouped_channels_ = std::move(channels);
   }
-  /// To keep every block by itself (some hundred bytes for each 16384 primaries); before anything
+  /// Keeps every block's sums, some hundred bytes for each 16384 primaries. Call it before anything
   /// is drawn.
   void keep_blocks() { keeps_blocks_ = true; }
   bool keeps_blocks() const { return keeps_blocks_; }
-  /// To store the first `count` observations whole; before anything is drawn.
+  /// Stores the first `count` observations whole. Call it before anything is drawn.
   void keep_observations(std::uint64_t count) {
     kept_observations_ = std::max(kept_observations_, count);
   }
 
-  /// The observations that were kept, to share with another pool.
+  /// The kept observations, to share with another pool.
   std::shared_ptr<const KeptObservations> kept() const { return kept_; }
-  /// Not to draw these but to take them: rows of files, which are the same whoever reads them.
-  /// Before anything is drawn.
+  /// Takes these observations, rows of files, instead of drawing them. Call it before anything is
+  /// drawn.
   void take_known(std::shared_ptr<const KeptObservations> known) { known_ = std::move(known); }
 
-  /// Observations [0, count) may be read as a prefix. std::logic_error once they are drawn.
+  /// Allows [0, count) to be read as a prefix. std::logic_error once they are drawn.
   void mark(std::uint64_t count);
-  /// Marks `count` and asks for everything up to it to be drawn next.
+  /// Marks `count` and has everything up to it drawn next.
   void request(std::uint64_t count);
   std::uint64_t most_marked() const { return prefixes_.empty() ? 0 : prefixes_.rbegin()->first; }
-  /// The most that is requested.
   std::uint64_t requested() const { return requested_; }
 
-  /// The first `count` observations, once drawn, or why they cannot be; `count` as marked.
+  /// The first `count` observations, or why they cannot be drawn. `count` must be marked.
   /// std::logic_error before they are drawn.
   Sample sample(std::uint64_t count) const;
-  /// Not to draw from a source that failed before.
+  /// Marks the source as failed: nothing is drawn.
   void fail(const Fault& fault) { fault_ = fault; }
-  /// Why drawing ended early, if it did: nothing more will be drawn.
+  /// The reason if drawing ended early: nothing more will be drawn.
   const std::optional<Fault>& fault() const { return fault_; }
   /// CPU seconds of drawing up to the largest marked count that is drawn.
   double seconds() const;
 
-  // The scheduler's side. Observations per block are a function of `primaries` alone.
+  // For the scheduler. Observations per block are a function of `primaries` alone.
   std::uint64_t block_size() const { return block_size_; }
-  /// Where the block that begins at `first` ends. Blocks are drawn whole, even where less was
-  /// requested: a later look then continues as if it had been one run. The last one ends with what
-  /// is marked, as nobody asks for more: an observation of another program may take seconds.
+  /// The end of the block that begins at `first`. Blocks are drawn whole even beyond the request,
+  /// so that a later look continues as one run. The last block ends at the last mark: another
+  /// program's observation may take seconds.
   std::uint64_t block_end(std::uint64_t first) const;
 
-  /// A drawn block, and copies of it at the marked counts that lie inside.
+  /// A drawn block, and copies of it at the marks inside.
   struct Block {
     Summary whole;
-    std::vector<std::vector<double>> values;  ///< of each channel, where they are kept
-    KeptObservations observations;            ///< where they are kept
+    std::vector<std::vector<double>> values;  ///< of each channel, if kept
+    KeptObservations observations;            ///< if kept
     std::vector<std::pair<std::uint64_t, Summary>> partial;
     std::optional<Fault> fault;
-    std::uint64_t size = 0;  ///< observations that it is to have
+    std::uint64_t size = 0;  ///< observations when complete
   };
-  /// Draws observations [first, last) of one block with a worker's estimator, which it may have to
-  /// make. Thread-safe. Whatever the source throws becomes the block's fault.
+  /// Draws observations [first, last) of one block with a worker's estimator, made if needed.
+  /// Thread-safe. An exception of the source becomes the block's fault.
   Block draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
              std::uint64_t last) const;
-  /// Takes the next block, in order.
+  /// Adds the next block, in order.
   void fold(Block&& block);
-  /// After the last block that is drawn for now, by one thread, on all of them: pictures of files
-  /// are summed when all are there, an element over all of them at a time instead of picture by
-  /// picture (kept_sums.h). Whatever else is kept of them, so that their numbers do not depend on
-  /// it.
+  /// Call it on one thread after the last block of a round. Pictures of files are summed here over
+  /// all of them, element by element (kept_sums.h).
   void end_drawing();
   std::uint64_t drawn() const { return running_.count; }
-  /// Moments of an earlier run: nothing is drawn, and every prefix is the whole.
+  /// True for moments of an earlier run: nothing is drawn, and every prefix is the whole.
   bool is_ready_made() const { return ready_made_ != nullptr; }
 
  private:
   std::shared_ptr<const Setup> setup_;
-  const Summary* ready_made_;  ///< of `setup_`
+  const Summary* ready_made_;  ///< points into `setup_`
   StreamKey key_;
   std::uint64_t primaries_;
   std::uint64_t block_size_;
   std::size_t channels_;
-  /// Pictures of files, which stay and are summed when all are there.
+  /// True for pictures of files, which are kept and summed in end_drawing().
   bool sums_later_;
   std::vector<ChannelPlan> plan_;
   friend class Drawn;
@@ -144,14 +141,13 @@ class Pool {
   std::shared_ptr<KeptObservations> kept_ = std::make_shared<KeptObservations>();
   std::shared_ptr<const KeptObservations> known_;
   std::uint64_t kept_observations_;
-  std::uint64_t values_taken_ = 0;  ///< of kept observations, for `values_`
+  std::uint64_t values_taken_ = 0;  ///< kept observations copied to `values_`
   bool keeps_blocks_ = false;
   std::vector<BlockSums> blocks_;
   bool started_ = false;
   std::optional<Fault> fault_;
 };
 
-/// One observation alone, all channels.
 std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,
                                      std::uint64_t index);
 

@@ -19,7 +19,7 @@ std::shared_ptr<const Setup> set_up(const Entry& entry, Parameters& parameters) 
   return setup;
 }
 
-/// The part of a mutant's parameters that its original knows.
+/// The members of a mutant's parameters that its original knows.
 Value only(const Value& given, const std::vector<std::string>& names) {
   std::vector<Value::Member> kept;
   for (const Value::Member& member : given.members()) {
@@ -28,7 +28,7 @@ Value only(const Value& given, const std::vector<std::string>& names) {
   return Value::map(std::move(kept), given.where());
 }
 
-/// Of moments of an earlier run the primaries are the run's.
+/// Sets the primaries to those of the recorded run.
 void use_recorded_run(const RecordedRun& run, PreparedEstimator& prepared) {
   if (prepared.primaries.value_or(run.primaries()) != run.primaries()) {
     throw InputError(prepared.where, fmt::format("the moments of `{}` are of {} primaries each: "

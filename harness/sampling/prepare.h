@@ -1,6 +1,6 @@
 #pragma once
 
-// A suite's estimators made ready: plugins found, parameters checked, set-ups prepared.
+// Prepares a suite's estimators: finds plugins, checks parameters, makes set-ups.
 
 #include <map>
 #include <memory>
@@ -14,34 +14,33 @@
 namespace assay::harness {
 
 struct PreparedEstimator {
-  std::string name;    ///< in the suite; of a point of a sweep with the value it has there
-  std::string listed;  ///< in the suite
+  std::string name;    ///< In the suite; at a point of a sweep with its value.
+  std::string listed;  ///< In the suite, without a sweep's value.
   const Entry* entry;
   std::shared_ptr<const Setup> setup;
-  std::string parameters;  ///< canonical, as recorded
-  std::string folder;      ///< what file names in them are relative to
-  std::string key_plugin;  ///< whose streams are used: a mutant's are its original's
+  std::string parameters;  ///< Canonical, as recorded.
+  std::string folder;      ///< Base of relative file names.
+  std::string key_plugin;  ///< Owner of the streams: a mutant uses its original's.
   std::string key_parameters;
-  std::optional<std::uint64_t> primaries;  ///< as the suite says; nullopt: auto
-  std::shared_ptr<const Setup> original;   ///< of a mutant: its original at the same parameters
+  std::optional<std::uint64_t> primaries;  ///< Given in the suite; nullopt: auto.
+  std::shared_ptr<const Setup> original;   ///< A mutant's original at the same parameters.
   Location where;
-  Value given = {};  ///< the parameters as the suite gives them
+  Value given = {};  ///< Given in the suite.
 
-  /// Whether a secondary estimate is the mean of its primaries; how it is biased, if that is known.
+  /// Says whether a secondary is the mean of its primaries, and how it is biased if that is known.
   Nature nature() const;
 };
 
-/// The names of the parameters an estimator's streams depend on.
+/// The parameters on which an estimator's streams depend.
 std::vector<std::string> parameter_names(const Information&);
 
-/// InputError naming plugin, parameter and place for anything a plugin refuses.
+/// InputError with plugin, parameter and place for anything that a plugin refuses.
 PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder);
 
-/// All estimators of a suite by name.
 std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite);
 
-/// The key of an estimator's stream. `copy` tells apart: 0 the first source of a claim, 1 a second
-/// one of the same key. `purpose` keeps the pilot and each sampler to streams of their own.
+/// The key of an estimator's stream. `copy` is 1 for a claim's second source with the same key.
+/// `purpose` separates the pilot and each sampler.
 StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::uint32_t copy,
                  const std::string& purpose);
 

@@ -1,7 +1,5 @@
 #pragma once
 
-// Moments as a shard's record keeps them, there and back.
-
 #include "reports/record/record.h"
 #include "stats/basics/moments.h"
 

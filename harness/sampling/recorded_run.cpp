@@ -19,7 +19,6 @@
 namespace assay::harness {
 namespace {
 
-/// Samples of the estimator in one test.
 struct Kept {
   std::vector<const reports::Sample*> channels = {};
   std::uint32_t copy = 0;
@@ -48,7 +47,7 @@ bool is_of_moments(QuantityName name) {
   return false;
 }
 
-/// Those of a list of canonical parameters.
+/// Keeps only these names of a list of canonical parameters.
 std::string only(const std::string& parameters, const std::vector<std::string>& names) {
   std::string kept;
   for (const std::string& piece : split_outside_brackets(parameters)) {
@@ -59,8 +58,8 @@ std::string only(const std::string& parameters, const std::vector<std::string>& 
   return kept;
 }
 
-/// Whose stream a sample is from, and the canonical parameters that shape it: a mutant's are its
-/// original's.
+/// The plugin whose stream a sample is from, and the parameters that shape the stream. A mutant
+/// uses its original's.
 std::pair<std::string, std::string> stream_of(const reports::Sample& sample) {
   for (const Entry& entry : catalogue()) {
     if (entry.information.name != sample.plugin) continue;
@@ -71,8 +70,8 @@ std::pair<std::string, std::string> stream_of(const reports::Sample& sample) {
   return {sample.plugin, sample.parameters};
 }
 
-/// What a test kept of the estimator; nothing where it is about something else, or where it cannot
-/// be told which of two sources of one name a sample is of.
+/// The samples of the estimator in a test. nullopt for a test of something else. Also nullopt if
+/// two sources share a name and cannot be told apart.
 std::optional<Kept> kept_in(const reports::Test& test, const std::string& estimator) {
   if (!test.over.empty() || test.image) return std::nullopt;
   const Claim claim = parse_claim(test.claim, {.file = test.file});
@@ -88,7 +87,7 @@ std::optional<Kept> kept_in(const reports::Test& test, const std::string& estima
     if (channels.insert(sample.channel).second) kept.channels.push_back(&sample);
   }
   if (kept.channels.empty()) return std::nullopt;
-  // Of two sources of one stream the second has the copy.
+  // The second of two sources of one stream has the copy.
   const bool second = !named(sources.front());
   for (const reports::Sample& other : test.samples) {
     const bool same_stream = other.estimator == sources.front().estimator &&
@@ -123,7 +122,7 @@ Cost cost_of(const reports::Cost& recorded) {
 
 constexpr const char* kinds[] = {"rays", "samples"};
 
-/// Values with their costs of one kind; nothing where they are not known.
+/// Joint moments of values and one kind of cost; nullopt if unknown.
 std::optional<stats::JointMoments> joint_of(const reports::Sample& sample, CountedCost kind) {
   stats::JointMoments joint{.x = moments_of(sample), .cost = {}};
   joint.cost.count = sample.secondaries;
@@ -169,7 +168,6 @@ RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite)
   return contents;
 }
 
-/// The estimators of a record that tests drew.
 std::vector<std::string> names_in(const reports::Record& record) {
   std::set<std::string> names;
   for (const reports::Suite& suite : record.suites) {

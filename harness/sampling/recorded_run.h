@@ -1,7 +1,6 @@
 #pragma once
 
-// Moments of an earlier run as a source of a claim: a saved record stands where an estimator would,
-// and nothing is drawn.
+// Uses a saved record in place of an estimator: a claim reads its moments, and nothing is drawn.
 
 #include <array>
 #include <memory>
@@ -14,8 +13,8 @@
 
 namespace assay::harness {
 
-/// One estimator of a record (`recorded` with `run` and `estimator`): the moments of its secondary
-/// estimates, all channels of one test of the record together.
+/// One estimator of a record (`recorded` with `run` and `estimator`): the moments of its
+/// secondaries, all channels from one test.
 class RecordedRun final : public Setup {
  public:
   struct Contents {
@@ -25,7 +24,7 @@ class RecordedRun final : public Setup {
     std::uint64_t primaries = 1;
     bool averages = false;  ///< variance falls like 1 / primaries
     std::optional<StreamKey> stream = {};
-    /// By CountedCost: whether the joint moments of value and cost are known.
+    /// By CountedCost: true if the joint moments of value and cost are known.
     std::array<bool, counted_costs> knows_cost = {};
   };
   explicit RecordedRun(Contents contents);
@@ -40,7 +39,7 @@ class RecordedRun final : public Setup {
   const Summary& summary() const { return contents_.summary; }
   std::uint64_t primaries() const { return contents_.primaries; }
   bool knows_cost(CostKind kind) const;
-  /// That of `recorded`, but for what is known of averaging.
+  /// The entry of `recorded`, with what is known of averaging.
   const Entry& entry() const { return entry_; }
 
  private:
@@ -48,14 +47,14 @@ class RecordedRun final : public Setup {
   Entry entry_;
 };
 
-/// The set-up as moments of an earlier run; null where it is anything else.
+/// The set-up as moments of an earlier run, or null.
 const RecordedRun* as_recorded_run(const Setup& setup);
 
-/// Reads `run` and `estimator`. Of the record's tests whose claims are about moments of that
-/// estimator alone it takes the one with the most channels, of these one that kept moments of
-/// costs, of these the largest. Where costs were not kept, they are known if every observation must
-/// have cost the same: the total divides by their number. InputError where the record cannot be
-/// read or has no such estimator, or where no test kept its moments.
+/// Reads `run` and `estimator`. A test is eligible if its claim is about moments of that estimator
+/// alone. It takes the one with most channels, then one with moments of costs, then the largest.
+/// Costs that were not kept are known if the total divides by the number of observations: each then
+/// cost the same. InputError if the record is unreadable, lacks the estimator, or has no eligible
+/// test.
 std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters);
 
 }  // namespace assay::harness

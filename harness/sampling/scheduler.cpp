@@ -21,15 +21,14 @@ struct Task {
 
 struct DrawnBlock {
   std::size_t pool;
-  std::shared_ptr<Pool::Block> block;  // shared: a pipeline's items are copied
+  std::shared_ptr<Pool::Block> block;  // shared because a pipeline copies its items
 };
 
-/// The blocks still to draw, pool by pool; at last those of pools that are compared by their
-/// seconds, of the one that is farthest behind: they are timed side by side, on a machine that
-/// slows down as well. (Of all pools that would leave workers idle: blocks are folded in their
-/// order, and a long one holds up short ones.) Of a pool that is in trouble no more are: what comes
-/// after counts for nothing, and may take a time-out each. Handing out and folding may go on at the
-/// same time, so that the pool itself cannot be asked.
+/// The blocks still to draw, pool by pool. Pools that are compared by their seconds come last,
+/// interleaved: a machine that slows down then slows all of them. Interleaving every pool would
+/// leave workers idle, since blocks are folded in order. A failed pool gets no more blocks: each
+/// may take a time-out. Handing out and folding are concurrent, so the list cannot ask the pool
+/// itself.
 class TaskList {
  public:
   explicit TaskList(const std::vector<std::shared_ptr<Pool>>& pools)
@@ -62,7 +61,6 @@ class TaskList {
     return last;
   }
 
-  /// Of what is to be drawn of it, the part that was handed out.
   double share_of(std::size_t pool) const {
     return static_cast<double>(next_[pool] - begun_[pool]) /
            static_cast<double>(pools_[pool]->requested() - begun_[pool]);
@@ -74,7 +72,7 @@ class TaskList {
   std::vector<std::uint64_t> next_;
 };
 
-/// A worker's estimators, made when it first needs one.
+/// A worker's estimators, each made at its first use.
 class Workers {
  public:
   explicit Workers(const std::vector<std::shared_ptr<Pool>>& pools) : pools_(pools) {}
@@ -91,8 +89,7 @@ class Workers {
   tbb::enumerable_thread_specific<std::vector<std::unique_ptr<Estimator>>> estimators_;
 };
 
-/// Blocks under way at a time. Each has sums of every channel: of large images only as many as
-/// there are workers.
+/// Blocks in flight. Each has sums of every channel, so large images get only one for each worker.
 std::size_t under_way(const std::vector<std::shared_ptr<Pool>>& pools, unsigned workers) {
   constexpr std::size_t many_channels = std::size_t{1} << 16;
   const bool large =

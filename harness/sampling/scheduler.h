@@ -14,9 +14,9 @@ struct Drawing {
   std::string phase = "sampling";
 };
 
-/// Draws every pool up to what is requested of it, on a number of threads. Blocks go
-/// out in order and are folded in order, so the pools' contents do not depend on the threads.
-/// Stops early, leaving pools short, when the user interrupts.
+/// Draws every pool up to its request. Blocks go out in order and are folded in order, so the
+/// contents do not depend on the number of threads. Stops early, leaving pools short, when the user
+/// interrupts.
 void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& drawing,
               Progress& progress);
 

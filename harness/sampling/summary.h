@@ -1,7 +1,7 @@
 #pragma once
 
-// What is kept of many observations: moments, a histogram, counts of cells. Mergeable and of fixed
-// size.
+// Summaries of many observations: moments, a histogram, counts of cells. They are mergeable and of
+// fixed size.
 
 #include <array>
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace assay::harness {
 
-/// Counts in equal bins of [low, high); what lies outside is counted at its side.
+/// Counts in equal bins of [low, high), and below and above it.
 struct Histogram {
   double low = 0;
   double high = 0;
@@ -40,26 +40,25 @@ struct Histogram {
   void merge(const Histogram& other);
 };
 
-/// What to keep of one channel.
 struct ChannelPlan {
-  double histogram_low = 0;  ///< equal bounds: no histogram
+  double histogram_low = 0;  ///< Equal bounds: no histogram.
   double histogram_high = 0;
-  std::uint64_t keep = 0;  ///< the values of the first `keep` observations are stored
-  std::size_t cells = 0;   ///< the channel's values are cell numbers 0 … cells - 1 to be counted
-  bool with_cost = false;  ///< keep the joint moments of value and cost
+  std::uint64_t keep = 0;  ///< Stores the values of the first `keep` observations.
+  std::size_t cells = 0;   ///< Counts values, which are cell numbers 0 … cells - 1.
+  bool with_cost = false;  ///< Keeps the joint moments of value and cost.
 
   bool has_histogram() const { return histogram_low < histogram_high; }
-  /// Whether more is kept of the channel's sums than moments.
+  /// True if the channel's sums need more than moments.
   bool has_details() const { return has_histogram() || cells != 0 || with_cost; }
 };
 
 inline constexpr std::size_t histogram_bins = 60;
 
-/// What is kept of a channel beside its moments.
+/// Results beside the moments of a channel.
 struct ChannelDetails {
   Histogram histogram = {};
   std::vector<std::uint64_t> cells = {};
-  std::vector<stats::JointMoments> with_cost = {};  ///< by CountedCost, where they are kept
+  std::vector<stats::JointMoments> with_cost = {};  ///< by CountedCost, if kept
 };
 
 inline const ChannelDetails& no_details() {
@@ -67,8 +66,8 @@ inline const ChannelDetails& no_details() {
   return none;
 }
 
-/// The details of a channel that has any, copied with it: the millions of channels of an image have
-/// none and take no room for them.
+/// Details of a channel that has any, copied with it. An image's millions of channels have none and
+/// take no room.
 class RareDetails {
  public:
   RareDetails() = default;
@@ -83,7 +82,7 @@ class RareDetails {
 
   explicit operator bool() const { return details_ != nullptr; }
   const ChannelDetails& operator*() const { return *details_; }
-  /// Made where there are none yet.
+  /// Makes them if there are none.
   ChannelDetails& made() {
     if (!details_) details_ = std::make_unique<ChannelDetails>();
     return *details_;
@@ -93,18 +92,18 @@ class RareDetails {
   std::unique_ptr<ChannelDetails> details_;
 };
 
-/// One channel of a run of consecutive observations.
+/// One channel of consecutive observations.
 struct ChannelSummary {
   stats::Moments moments = {};  ///< of the finite values
   std::uint64_t nonfinite = 0;
   std::uint64_t first_nonfinite = std::numeric_limits<std::uint64_t>::max();
   RareDetails rare = {};
 
-  /// Empty ones where there are none.
+  /// Empty details if there are none.
   const ChannelDetails& details() const { return rare ? *rare : no_details(); }
 };
 
-/// What an observation cost, as far as it is counted: the index of a channel's joint moments.
+/// A kind of cost of an observation, the index of a channel's joint moments.
 enum CountedCost : std::size_t { rays_cost, samples_cost, counted_costs };
 using ObservationCost = std::array<double, counted_costs>;
 
@@ -112,16 +111,16 @@ using ObservationCost = std::array<double, counted_costs>;
 struct Summary {
   std::uint64_t count = 0;
   std::vector<ChannelSummary> channels = {};
-  /// In place of `channels`: of pictures that were read once, rows after rows.
+  /// In place of `channels` for pictures that are read once, row by row.
   std::shared_ptr<const ElementSums> elements = {};
-  stats::Moments group_variances = {};  ///< of whole groups, where they are kept (GroupVariance)
+  stats::Moments group_variances = {};  ///< of whole groups, if kept (GroupVariance)
   Cost cost = {};
-  double seconds = 0;  ///< CPU seconds of drawing
+  double seconds = 0;
 
-  /// Of no observations yet. Without a plan nothing but moments is kept.
+  /// A summary of no observations. Without a plan it keeps moments alone.
   explicit Summary(std::size_t count_of_channels = 0, std::span<const ChannelPlan> plan = {});
-  /// Appends the observations that follow: in block order, so that the result is a function of the
-  /// blocks and not of who drew them.
+  /// Appends the observations that follow. The order of blocks decides the result, not who drew
+  /// them.
   void append(const Summary& next);
 
   stats::Moments moments(std::size_t channel) const {
@@ -132,13 +131,13 @@ struct Summary {
   }
 };
 
-/// Takes a finite value and what its observation cost.
+/// Takes a finite value and its observation's cost.
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost);
 
-/// Takes one channel's value of observation `index` into the summary.
+/// Adds one channel's value of observation `index`.
 inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index,
                             const ObservationCost& cost = {}) {
-  if (!(value - value == 0)) {  // not finite
+  if (!(value - value == 0)) {
     if (summary.nonfinite++ == 0) summary.first_nonfinite = index;
   } else {
     summary.moments.add(value);

@@ -4,7 +4,7 @@
 
 namespace assay::harness {
 
-/// The only test of `suite_of_claim`: its estimators are not looked up.
+/// The only test of `suite_of_claim`, without looking up its estimators.
 TestEntry test_of_claim(const CheckArguments& arguments);
 
 }  // namespace assay::harness

@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of files that are there, and of one that the command is about to begin.
+/// Compares files that exist, or one that the command is about to make.
 bool is_same_file(const std::string& one, const std::string& other) {
   std::error_code failure;
   if (fs::equivalent(one, other, failure)) return true;

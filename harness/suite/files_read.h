@@ -1,6 +1,6 @@
 #pragma once
 
-// What a command reads or keeps, so that no report is written over it.
+// Protects files that a command reads from being overwritten by a report.
 
 #include <string>
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace assay::harness {
 
-/// The suites' own files and the files, relative to their suite, that a parameter of an estimator
-/// names: recorded rows, programs, libraries.
+/// The suites' own files, and every file that an estimator's parameter names, relative to its
+/// suite: recorded rows, programs, libraries.
 std::vector<std::string> files_read(const std::vector<Suite>& suites);
 
-/// InputError where the report would be written over one of `kept`, by whichever path.
+/// InputError if the report would replace one of `kept`, by whichever path.
 void refuse_overwriting(const std::string& report, const std::vector<std::string>& kept);
 
 }  // namespace assay::harness

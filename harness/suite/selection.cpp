@@ -44,7 +44,6 @@ std::vector<const TestEntry*> selected(const std::vector<Suite>& suites,
   return found;
 }
 
-/// The first few, each on a line of its own.
 std::string few_of(const std::vector<std::string>& ids) {
   constexpr std::size_t most = 5;
   std::string text;

@@ -1,7 +1,5 @@
 #pragma once
 
-// Which tests of a suite run: those that `--filter` and `--tag` name.
-
 #include <string>
 #include <vector>
 
@@ -10,22 +8,22 @@
 namespace assay::harness {
 
 struct Selection {
-  /// Globs on whole ids, suite/name. One that begins with `-` excludes what the rest matches.
+  /// Globs on whole ids, suite/name. A glob that begins with `-` excludes tests.
   std::vector<std::string> filters = {};
   std::vector<std::string> tags = {};
 
   bool empty() const { return filters.empty() && tags.empty(); }
 };
 
-/// True if the test has one of the tags, matches one of the filters that include, and matches none
-/// that excludes. A list without members asks for nothing.
+/// True if the test has one of the tags, matches an including filter, and matches no excluding one.
+/// An empty list selects everything.
 bool selects(const Selection& selection, const TestEntry& test);
 
 /// The options that make the selection, each after a blank: " --filter '*/mean*' --tag slow".
 std::string options_text(const Selection& selection);
 
-/// Says that no test has a tag, that no id matches a filter, or that no test is left. Names the
-/// tags there are, or the nearest ids. "" else. A filter that excludes may match no id.
+/// An error message if a tag or an including filter matches nothing, or no test is left; else "".
+/// It lists the tags, or the nearest ids.
 std::string unmatched(const std::vector<Suite>& suites, const Selection& selection);
 
 }  // namespace assay::harness

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* estimators_example = "estimators: {area: {plugin: luminaire/area}}";
 constexpr const char* tests_example = "tests: [claim: mean(area) == analytic]";
 
-/// A suite's numbers repeat; a fresh seed is the command line's to ask for.
+/// A suite's seed is fixed; only the command line can ask for a fresh one.
 std::uint64_t seed_of(const Value& value) {
   if (value.kind() == Value::Kind::scalar && value.text() == "random") {
     throw InputError(value.where(),
@@ -176,7 +176,7 @@ Suite load_suite(const std::string& file) {
 }
 
 std::string excerpt(const Location& where) {
-  // A pipe would be waited for.
+  // Reading a pipe would block.
   std::error_code ignored;
   if (where.line < 1 || !std::filesystem::is_regular_file(where.file, ignored)) return "";
   try {
@@ -184,7 +184,7 @@ std::string excerpt(const Location& where) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) return "";  // nothing to point at
     const std::vector<std::string_view> lines = lines_of(text);
     const auto index = static_cast<std::size_t>(where.line) - 1;
-    // A file that ends too early is blamed on the line after its last.
+    // An error at the end of the file is shown at the line after its last.
     const bool exists = index < lines.size();
     if (!exists && index > lines.size()) return "";
     std::string_view line = exists ? lines[index] : std::string_view{};

@@ -1,6 +1,6 @@
 #pragma once
 
-// A suite file, read and checked: data only, nothing is sampled or prepared here.
+// A suite file, read and checked. Nothing is sampled or prepared here.
 
 #include <cstdint>
 #include <functional>
@@ -46,7 +46,7 @@ struct TestEntry {
   std::string id = {};    ///< suite file's stem, slash, name
   Claim claim = {};
   std::optional<Margin> detect = {};
-  bool detect_by_default = false;  ///< nobody wrote it (ask_as_written)
+  bool detect_by_default = false;  ///< not written in the suite (ask_as_written)
   std::optional<Margin> allow = {};
   double weight = 1;
   std::optional<std::string> method = {};         ///< `test:`: forced
@@ -59,9 +59,10 @@ struct TestEntry {
   Expectation expect = Expectation::pass;
   std::vector<std::string> tags = {};
   Location where = {};
-  std::map<std::string, Location, std::less<>> keys = {};  ///< where each that is given stands
+  std::map<std::string, Location, std::less<>> keys = {};  ///< the places of the keys that are
+                                                           ///< given
 
-  /// Of a key, or of the test where it is not given.
+  /// The place of the key, or of the test if the key is not given.
   const Location& place_of(std::string_view key) const {
     const auto found = keys.find(key);
     return found == keys.end() ? where : found->second;
@@ -72,25 +73,25 @@ struct TestEntry {
 struct StatementEntry {
   std::string text = {};
   std::string source = {};
-  std::string condition = {};           ///< completes "only if"; of one with both lists
-  std::vector<std::string> holds = {};  ///< names of tests whose expected verdicts show it true
-  std::vector<std::string> fails = {};  ///< of those that show it false, or where it is
+  std::string condition = {};           ///< Completes "only if"; with both lists.
+  std::vector<std::string> holds = {};  ///< Tests whose expected verdicts show it true.
+  std::vector<std::string> fails = {};  ///< Tests that show it false, or its limits.
   Location where = {};
 };
 
 struct Suite {
   std::string name = {};
   std::string about = {};
-  std::string file = {};    ///< as given by the user
-  std::string stem = {};    ///< "luminaire" of suites/luminaire.yaml
-  std::string text = {};    ///< of the file
-  std::string folder = {};  ///< what relative file names are relative to
+  std::string file = {};  ///< as given by the user
+  std::string stem = {};  ///< Of suites/luminaire.yaml: "luminaire".
+  std::string text = {};
+  std::string folder = {};  ///< Relative file names start here.
   double alpha = 0.01;
   double beta = 0.01;
   std::optional<std::uint64_t> seed = {};
-  /// Programs; where one of them is missing, its tests are skipped.
+  /// Programs; if one is missing, the suite's tests are skipped.
   std::vector<std::string> needs = {};
-  /// Of all tests together; see README.md of the suites.
+  /// The budget of all tests together; see README.md of the suites.
   std::optional<Budget> budget = {};
   Value scenes =
       {};  ///< map of `scenes:`, for --set; their names are already replaced in `estimators`
@@ -99,15 +100,14 @@ struct Suite {
   std::vector<StatementEntry> statements = {};
 };
 
-/// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite:
-/// syntax, an unknown, duplicate or misspelt key, a wrong type, a merge key, an estimator a claim
-/// names and the suite lacks, a plugin that does not exist, a duplicate test name, `detect` not
-/// above `allow`, … Parameters of plugins are checked when they are prepared. Named scenes of
-/// `scenes:` are put in place of their names.
+/// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite.
+/// It refuses a syntax error, a merge key, a wrong type, and a key that is unknown or repeated. It
+/// also refuses unknown estimators and plugins, a duplicate test name, `detect` not above `allow`,
+/// … Named scenes replace their names. Parameters of plugins are checked when they are prepared.
 Suite load_suite(const std::string& file);
 
-/// The suite of a single claim from the command line. Each of `estimators` is
-/// "NAME=PLUGIN[,key=value]…" with YAML flow values; a plugin named in the claim needs none.
+/// The suite of a single claim from the command line. An estimator is "NAME=PLUGIN[,key=value]…"
+/// with YAML flow values; a plugin that the claim names needs none.
 struct CheckArguments {
   std::string claim;
   std::vector<std::string> estimators = {};
@@ -124,24 +124,23 @@ struct CheckArguments {
 };
 Suite suite_of_claim(const CheckArguments&);
 
-/// `--set estimator.key=value`: replaces or adds a parameter of an estimator in every suite that
-/// has it; InputError when none has.
+/// `--set estimator.key=value`: replaces or adds a parameter in every suite that has the estimator.
+/// InputError if none has.
 void set_parameter(std::vector<Suite>& suites, const std::string& assignment);
 
 /// The entry that "NAME=PLUGIN[,key=value]…" describes.
 EstimatorEntry parse_estimator_option(const std::string& text);
 
-/// An entry for each estimator a claim names, in order: of `options` as above where one has that
-/// name, else a plugin of that name with its defaults. `primaries`, when given, is everybody's.
+/// One entry for each estimator that a claim names, in order. The entry comes from `options`
+/// ("NAME=PLUGIN…"), else it is the plugin of that name. `primaries` goes to all.
 std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
                                           const std::vector<std::string>& options,
                                           std::optional<std::uint64_t> primaries);
 
-/// The sources a claim names, left to right.
+/// The sources that the claim names, left to right.
 std::vector<Source> sources_of(const Claim& claim);
 
-/// The line of the file with a caret under the column, or "" where the file cannot be read: what
-/// is printed under an InputError.
+/// The line of the file with a caret under the column; "" if the file cannot be read.
 std::string excerpt(const Location&);
 
 }  // namespace assay::harness

@@ -19,7 +19,7 @@ std::vector<std::string> parameter_names(const Entry& plugin) {
   return names;
 }
 
-/// Whether the file has the text in one piece where the value says that it begins.
+/// True if the file has the text unbroken at the value's place.
 bool stands_in_one_piece(const Document& document, const Value& value, const std::string& text) {
   const std::string_view line = document.line(value.where().line);
   const auto at = static_cast<std::size_t>(std::max(value.where().column, 1)) - 1;

@@ -1,7 +1,5 @@
 #pragma once
 
-// The entries of a suite file, one by one.
-
 #include <functional>
 
 #include "harness/suite/suite.h"
@@ -9,15 +7,15 @@
 
 namespace assay::harness {
 
-/// An entry of `estimators:`. `scenes` is the map under the suite's `scenes:`.
+/// Reads an entry of `estimators:`. `scenes` is the suite's map `scenes:`.
 EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
                               const Value& scenes);
 
-/// A claim from a document: columns of errors are those of the file where the claim stands in one
-/// piece, else they are given in the claim.
+/// Reads a claim. Columns of errors count in the file if the claim stands there unbroken, else in
+/// the claim.
 Claim read_claim(const Document& document, const Value& value);
 
-/// An entry of `tests:`, without its id; estimators are not looked up yet.
+/// Reads an entry of `tests:`, without its id and without looking up estimators.
 TestEntry read_test(const Document& document, const Value& value);
 
 /// `over:`, `reference:` and `cost:` of a test.
@@ -33,11 +31,10 @@ Budget read_short_budget(const Value& value);
 /// `budget: 1e7`, `budget: 30s` or a map of both.
 Budget read_budget(const Document& document, const Value& value);
 
-/// What a test must satisfy beyond the type of each key: `allow` below `detect`, and only keys that
-/// its claim gives a meaning to. InputError at the offending key.
+/// Checks a test beyond the types of its keys: `allow` is below `detect`, and the claim uses every
+/// key. InputError at the offending key.
 void check_test(const TestEntry& test);
 
-/// The value, or the scene that it names.
 const Value& scene_or(const Value& value, const Value& scenes);
 
 }  // namespace assay::harness

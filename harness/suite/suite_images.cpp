@@ -12,12 +12,11 @@
 namespace assay::harness {
 namespace {
 
-/// Where an option stands, as messages call it.
+/// The place of an option, as messages show it.
 Location place(const char* option, const std::string& text) {
   return {fmt::format("{} {}", option, text), 0, 0};
 }
 
-/// The files that an option names, looked at for what is wrong with them.
 std::vector<std::string> files_given(const char* option, const std::string& pattern) {
   try {
     return recorded::files_of(pattern);
@@ -56,7 +55,7 @@ EstimatorEntry stack_entry(const char* name, const Location& where, const std::s
   return entry(name, where, std::move(members));
 }
 
-/// One file, with what it says of its error.
+/// One reference file, with the error that its channels tell.
 EstimatorEntry reference_entry(const Location& where, const std::string& file,
                                const ImagesArguments& arguments) {
   std::vector<Value::Member> members{member("file", file, where),

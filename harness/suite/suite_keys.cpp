@@ -42,7 +42,7 @@ const Value& Keys::require(std::string_view key, std::string_view example) const
 
 namespace {
 
-/// Wrong type and wrong value get the same sentence: what is allowed, and what was given.
+/// A wrong type and a wrong value get the same message: what is allowed, and what was given.
 template <class Read, class Allowed>
 auto read_within(const Value& value, std::string_view what, const std::string& range, Read read,
                  Allowed allowed) {
@@ -53,7 +53,6 @@ auto read_within(const Value& value, std::string_view what, const std::string& r
       const auto number = read();
       if (allowed(number)) return number;
     } catch (const InputError&) {
-      // Not a number: said below.
     }
   }
   throw InputError(value.where(), fmt::format("{} must be {}, but it is {}", what, range, found));

@@ -1,7 +1,5 @@
 #pragma once
 
-// Reading maps of a suite strictly.
-
 #include <string>
 #include <vector>
 
@@ -9,16 +7,15 @@
 
 namespace assay::harness {
 
-/// A map of a suite file of which all keys are known. Refuses unknown ones when it is made.
+/// A map of a suite file. The constructor refuses unknown keys.
 class Keys {
  public:
-  /// `what` names the map in messages: "a suite", "a test". Messages offer the keys of `known`;
-  /// those of `reserved` are read as well.
+  /// `what` names the map in messages: "a suite", "a test". Messages offer `known`, not `reserved`.
   Keys(const Document& document, const Value& map, std::string what,
        const std::vector<std::string>& known, const std::vector<std::string>& reserved = {});
 
   const Value* find(std::string_view key) const { return map_.find(key); }
-  /// InputError at the map when the key is not there, with a line to write instead.
+  /// The value of the key. InputError at the map if it is missing, with a line to write.
   const Value& require(std::string_view key, std::string_view example) const;
   Location where(const Value& member) const { return document_.key(member); }
 
@@ -28,21 +25,21 @@ class Keys {
   std::string what_;
 };
 
-/// "; did you mean `x`?", or "; " and the candidates where none is near.
+/// "; did you mean `x`?", or "; " and all candidates if none is near.
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates);
 
-/// In [1e-9, 0.5]: shares of less, of many tests or looks, would be lost beside 1 in a confidence.
+/// True in [1e-9, 0.5]: a smaller rate, divided among tests and looks, is lost beside 1.
 bool is_error_rate(double rate);
 
-/// Finite numbers in a range that `what` must have; InputError at the value.
+/// A finite number above 0; InputError at the value.
 double positive_number(const Value& value, std::string_view what);
 double error_rate(const Value& value, std::string_view what);  ///< is_error_rate
 std::uint64_t count_from(const Value& value, std::string_view what, std::uint64_t least);
 
-/// Text that is not empty and has one line.
+/// Non-empty text of one line; InputError otherwise.
 std::string one_line(const Value& value, std::string_view what);
 
-/// The index of a text among those allowed.
+/// The index of the text among those allowed; InputError otherwise.
 std::size_t choice(const Value& value, std::string_view what,
                    const std::vector<std::string>& allowed);
 

@@ -35,7 +35,6 @@ void require_parameter(const std::string& plugin, const std::string& key, const 
                    fmt::format("{} has no parameter `{}`{}", plugin, key, suggestion(key, names)));
 }
 
-/// The map with one member replaced or added.
 Value with_member(const Value& map, const std::string& key, const Value& value) {
   std::vector<Value::Member> members = map.members();
   const auto found = std::ranges::find(members, key, &Value::Member::first);
@@ -56,7 +55,6 @@ void assign(EstimatorEntry& estimator, const std::string& key, const Value& valu
   }
 }
 
-/// One piece of --set.
 struct Assignment {
   std::string estimator;
   std::string key;
@@ -146,7 +144,7 @@ void refuse_unused(const std::vector<EstimatorEntry>& given,
   }
 }
 
-/// The keys of a test that stand beside its claim, from options of the same names.
+/// The options of a test that are named as its keys in a suite.
 class TestOptions {
  public:
   explicit TestOptions(TestEntry& test) : test_(test) {}
@@ -158,7 +156,6 @@ class TestOptions {
     margin->where = place(key, *text);
   }
 
-  /// The text of the option with its place; nullopt where it is not given.
   std::optional<Value> value(const char* key, const std::optional<std::string>& text) {
     if (!text) return {};
     return Value::scalar(*text, place(key, *text));

@@ -17,7 +17,7 @@ bool is_in(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-/// A name as it stands, though a claim's factor has an asterisk in it, goes before a glob.
+/// An exact name goes before a glob: a claim's factor contains an asterisk.
 std::vector<const TestEntry*> tests_named(const std::string& name, const Tests& tests) {
   std::vector<const TestEntry*> found;
   for (const TestEntry& test : tests) {

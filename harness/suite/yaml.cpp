@@ -21,7 +21,7 @@ constexpr std::size_t deepest = 64;
 constexpr std::string_view no_aliases =
     "anchors and aliases are not read; write the value out, or name a scene under `scenes:`";
 
-/// yaml-cpp's messages name the state of its scanner; these say what to do.
+/// Replaces yaml-cpp's messages by what to do.
 std::string readable(const std::string& message) {
   struct Translation {
     std::string_view terse, plain;
@@ -58,7 +58,7 @@ std::string readable(const std::string& message) {
 
 }  // namespace
 
-/// Receives yaml-cpp's events, in which tags, anchors and repeated keys are still visible.
+/// Receives yaml-cpp's events, which still show tags, anchors and repeated keys.
 class DocumentBuilder final : public YAML::EventHandler {
  public:
   explicit DocumentBuilder(Document& document) : document_(document) {}
@@ -108,7 +108,6 @@ class DocumentBuilder final : public YAML::EventHandler {
   }
 
  private:
-  /// A list or map whose end has not come yet.
   struct Frame {
     bool map = false;
     Location where;
@@ -123,8 +122,7 @@ class DocumentBuilder final : public YAML::EventHandler {
     return {document_.file_, mark.line + 1, mark.column + 1};
   }
 
-  /// yaml-cpp reports a missing item where the next token is; the dash stands on the line before,
-  /// blank lines and comments apart.
+  /// yaml-cpp reports a missing item at the next token; the dash is before it, on an earlier line.
   Location dash_before(const YAML::Mark& mark) const {
     for (int number = mark.line; number >= 1; --number) {
       const std::string_view line = document_.line(number);
@@ -137,7 +135,7 @@ class DocumentBuilder final : public YAML::EventHandler {
     return document_.at_most_last(mark.line + 1, mark.column + 1);
   }
 
-  /// Where the characters of a quoted or block scalar begin.
+  /// The first character of a quoted or block scalar.
   Location content(const YAML::Mark& mark) const {
     Location where = place(mark);
     const std::string_view line = document_.line(where.line);
@@ -192,8 +190,8 @@ class DocumentBuilder final : public YAML::EventHandler {
     frame.key.reset();
   }
 
-  /// In `{claim: quantile(a, 0.5) == 1}` YAML ends the claim at its comma and takes the rest for a
-  /// key: the brackets of the two tell.
+  /// YAML reads `{claim: quantile(a, 0.5) == 1}` as a claim that ends at the comma, and another
+  /// key. Unbalanced brackets reveal it.
   [[noreturn]] void refuse_without_value(const Frame& frame) const {
     const auto open_brackets = [](const std::string& text) {
       return std::ranges::count(text, '(') - std::ranges::count(text, ')');
@@ -246,8 +244,8 @@ Document::Document(std::string file, std::string_view text) : file_(std::move(fi
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   for (const std::string_view line : lines_of(text)) lines_.emplace_back(line);
   refuse_tabs(lines_, file_);
-  // yaml-cpp takes the end of the text for a closing quote when it comes right after a line end; a
-  // comment there takes that away.
+  // yaml-cpp takes the end of a text right after a line end for a closing quote; a comment prevents
+  // it.
   std::istringstream in(std::string(text) + "\n#");
   DocumentBuilder builder(*this);
   try {
@@ -309,7 +307,7 @@ Value read_flow(std::string_view text, const Location& where) {
   if (text.find_first_not_of(' ') == std::string_view::npos) {
     throw InputError(where, "a value is missing after the `=`");
   }
-  // Standard input, not a list: nothing follows.
+  // Standard input, not a list.
   if (text == "-") return Value::scalar("-", where);
   try {
     return moved_to(read_yaml_text(text, "").root(), where);

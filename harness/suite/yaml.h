@@ -1,6 +1,6 @@
 #pragma once
 
-// YAML read strictly: what two readers could understand differently is an error at its place.
+// Strict YAML: text that readers could understand differently is an error at its place.
 
 #include <map>
 #include <string>
@@ -12,17 +12,17 @@
 
 namespace assay::harness {
 
-/// A YAML text as a Value, with what a Value does not know: the lines, and where keys stand.
+/// A YAML text as a Value, with its lines and the places of its keys.
 ///
-/// A node's place is its first character; of quoted text the one after the quote, of a block scalar
-/// (`|`, `>`) the first of its first line. Columns count bytes.
+/// A node's place is its first character. Quoted text begins after the quote, and a block scalar
+/// (`|`, `>`) at its first line. Columns count bytes.
 class Document {
  public:
   Document(std::string file, std::string_view text);
 
   const Value& root() const { return root_; }
   const std::string& file() const { return file_; }
-  /// Where the key of this member of a map stands; the value's own place for anything else.
+  /// The place of the key of this member of a map; for other values their own place.
   Location key(const Value& member) const;
   /// A line without its end, counted from 1; "" where there is none.
   std::string_view line(int number) const;
@@ -30,7 +30,7 @@ class Document {
  private:
   friend class DocumentBuilder;
 
-  /// The place, or the end of the text for one behind it.
+  /// The place, or the end of the text if it lies behind that.
   Location at_most_last(int line, int column) const;
 
   std::string file_;
@@ -39,15 +39,14 @@ class Document {
   Value root_;
 };
 
-/// Reads one YAML document. InputError at its place for: a file that cannot be read or is not
-/// UTF-8, a syntax error, no document or several, a tab in indentation, a key that is repeated,
-/// empty or not text, a merge key `<<`, an anchor or alias, a tag, a key or list item without a
-/// value, nesting deeper than 64.
+/// Reads one YAML document. InputError at its place for any of these. Unreadable file or not UTF-8.
+/// Syntax error, no document or several, tab in indentation, nesting deeper than 64. Key that is
+/// repeated, empty or not text. Merge key `<<`, anchor, alias or tag. Key or list item without a
+/// value.
 Document read_yaml_file(const std::string& file);
 Document read_yaml_text(std::string_view text, const std::string& file);
 
-/// A value as it stands on a command line: one line of YAML flow. `where` becomes the place of
-/// every node and of every error.
+/// Reads one line of YAML flow from a command line. `where` is the place of every node and error.
 Value read_flow(std::string_view text, const Location& where);
 
 /// Splits at commas that are outside brackets and quotes: `a=1,b=[1, 2]` has two pieces.
