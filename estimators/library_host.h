@@ -22,11 +22,4 @@ std::string library_host();
 /// protocol's.
 int host_library(const std::vector<std::string>& arguments);
 
-/// Asked some times a second by whoever waits for another program; where it says true the wait ends
-/// with std::runtime_error.
-void set_stop_question(bool (*stop)());
-
-/// Told, by any thread, what a user should know before a program answers, in a sentence.
-void set_notice(void (*say)(const std::string& sentence));
-
 }  // namespace assay

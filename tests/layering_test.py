@@ -134,7 +134,7 @@ def show_that_it_can_fail():
         ("stats/a.cpp", "#include <boost/math/distributions.hpp>\n// of a profile, a file\n"),
         ("estimators/render/a.cpp", "#include <embree3/rtcore.h>\n"),
         ("harness/a.cpp", '#include "stats/moments.h"\n#include "reports/record.h"\n'),
-        ("harness/plan/a.cpp", '#include "harness/base/shell.h"\n'),
+        ("harness/plan/a.cpp", '#include "harness/base/text_file.h"\n'),
     ]
     for path, text in wrong:
         assert faults(pathlib.Path(path), text), f"not noticed: {text} in {path}"

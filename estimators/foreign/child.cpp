@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -21,6 +20,8 @@
 #include <system_error>
 #include <thread>
 #include <utility>
+
+#include "estimators/core/waiting.h"
 
 namespace assay::foreign {
 
@@ -35,9 +36,6 @@ constexpr milliseconds glance{100};
 constexpr milliseconds grace{1000};
 constexpr std::size_t kept_errors = 4096;
 constexpr int wanted_pipe = 1 << 20;
-
-std::atomic<bool (*)()> stop_question{nullptr};
-std::atomic<void (*)(const std::string&)> say_notice{nullptr};
 
 [[noreturn]] void system_failure(int error, const std::string& what) {
   throw std::system_error(error, std::generic_category(), what);
@@ -199,19 +197,6 @@ int milliseconds_until(Deadline deadline) {
 }
 
 }  // namespace
-
-void set_stop_question(bool (*stop)()) { stop_question.store(stop); }
-
-void stop_if_asked() {
-  bool (*const asked)() = stop_question.load();
-  if (asked != nullptr && asked()) throw std::runtime_error("interrupted");
-}
-
-void set_notice(void (*say)(const std::string& sentence)) { say_notice.store(say); }
-
-void notice(const std::string& sentence) {
-  if (auto* const say = say_notice.load(); say != nullptr) say(sentence);
-}
 
 Child::Child(const Launch& launch) {
   Pipe input;

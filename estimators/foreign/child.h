@@ -29,16 +29,6 @@ class TimeOut : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Sets the question that ends all waiting: `stop` is asked some times a second, nullptr for never.
-/// Another thread or a signal handler makes it true. Waits then throw std::runtime_error.
-void set_stop_question(bool (*stop)());
-/// Throws that std::runtime_error where waiting is to end.
-void stop_if_asked();
-
-/// Sets the receiver of sentences that no result depends on, of any thread; nullptr for none.
-void set_notice(void (*say)(const std::string& sentence));
-void notice(const std::string& sentence);
-
 /// A running program at the head of a process group of its own. Whatever of the group still runs is
 /// killed when this object goes. The end of its standard error is kept. Descriptors of this process
 /// are not handed on.

@@ -1,5 +1,6 @@
 #include "estimators/foreign/children.h"
 
+#include <algorithm>
 #include <span>
 
 namespace assay::foreign {
@@ -8,6 +9,8 @@ namespace {
 
 // The time for a program to end by itself once its standard input is closed.
 constexpr std::chrono::milliseconds farewell{500};
+// Observations that a further program must have in common with the first one.
+constexpr std::size_t asked_of_further = 2;
 
 }  // namespace
 
@@ -41,23 +44,31 @@ void Children::give_back(std::unique_ptr<Dialogue> dialogue) {
   idle_.push_back(std::move(dialogue));
 }
 
-Children::Known Children::known_of(const Question& wanted) {
-  const std::size_t width = hello_.width();
-  const std::scoped_lock lock(mutex_);
-  Known known{.first = {.question = {.key = wanted.key,
-                                     .first = 0,
-                                     .count = asked_twice(width),
-                                     .primaries = wanted.primaries},
-                        .width = width}};
-  return known_.try_emplace(wanted.primaries, std::move(known)).first->second;
+/// Whether the caller is to draw the first observations. Waits while another one draws them.
+bool Children::is_to_draw(const Question& wanted) {
+  std::unique_lock lock(mutex_);
+  Known& known = known_[wanted.primaries];
+  drawn_.wait(lock, [&] { return !known.being_drawn; });
+  known.being_drawn = !known.complete;
+  return known.being_drawn;
 }
 
-bool Children::keep(const FirstObservations& drawn) {
-  const std::scoped_lock lock(mutex_);
-  Known& known = known_.at(drawn.question.primaries);
-  if (known.complete) return false;
-  known = {.first = drawn, .complete = true, .usual = drawn.usual()};
-  return true;
+void Children::keep(const FirstObservations& drawn, double seconds) {
+  {
+    const std::scoped_lock lock(mutex_);
+    known_.at(drawn.question.primaries) = {
+        .first = drawn, .complete = true, .seconds = seconds, .usual = drawn.usual()};
+  }
+  drawn_.notify_all();
+}
+
+/// Leaves the first observations to the next one who comes.
+void Children::leave_undrawn(const Question& wanted) {
+  {
+    const std::scoped_lock lock(mutex_);
+    known_.at(wanted.primaries).being_drawn = false;
+  }
+  drawn_.notify_all();
 }
 
 void Children::refuse_unless_empty(const std::string& why) {
@@ -86,22 +97,29 @@ bool Children::draw_ahead(Dialogue& dialogue, FirstObservations& mine) {
 }
 
 bool Children::examine(Dialogue& dialogue, const Question& wanted) {
-  Known known = known_of(wanted);
-  FirstObservations mine{.question = known.first.question, .width = known.first.width};
-  if (!known.complete) {
-    const bool runs = draw_ahead(dialogue, mine);
-    if (keep(mine)) return runs && examine_first(dialogue, mine);
-    if (!runs) return false;
-    known = known_of(wanted);
-  }
-  const auto recall = [&](const Question& one) {
-    return one.first < mine.count() ? mine.row(one.first) : dialogue.ask(one);
-  };
-  refuse_unless_empty(why_not_repeated(recall, known.first, terms_.name));
+  if (is_to_draw(wanted)) return examine_first(dialogue, wanted);
+  examine_further(dialogue, wanted);
   return true;
 }
 
-bool Children::examine_first(Dialogue& dialogue, const FirstObservations& mine) {
+bool Children::examine_first(Dialogue& dialogue, const Question& wanted) {
+  const std::size_t width = hello_.width();
+  FirstObservations mine{.question = {.key = wanted.key,
+                                      .first = 0,
+                                      .count = asked_twice(width),
+                                      .primaries = wanted.primaries},
+                         .width = width};
+  const double begin = dialogue.cpu_seconds();
+  bool runs = false;
+  try {
+    runs = draw_ahead(dialogue, mine);
+  } catch (...) {
+    leave_undrawn(wanted);
+    throw;
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(mine.count(), 1));
+  keep(mine, (dialogue.cpu_seconds() - begin) / count);
+  if (!runs) return false;
   const auto ask = [&](const Question& one) { return dialogue.ask(one); };
   refuse_unless_empty(why_not_repeated(ask, mine, terms_.name));
   std::string why;
@@ -112,6 +130,30 @@ bool Children::examine_first(Dialogue& dialogue, const FirstObservations& mine) 
   }
   refuse_unless_empty(why);
   return true;
+}
+
+void Children::examine_further(Dialogue& dialogue, const Question& wanted) {
+  FirstObservations few;
+  {
+    const std::scoped_lock lock(mutex_);
+    few = known_.at(wanted.primaries).first;
+  }
+  few.numbers.resize(std::min(few.count(), asked_of_further) * few.width);
+  const auto ask = [&](const Question& one) { return dialogue.ask(one); };
+  refuse_unless_empty(why_not_repeated(ask, few, terms_.name));
+}
+
+Recalled Children::recalled(const Question& question) const {
+  const std::scoped_lock lock(mutex_);
+  const auto found = known_.find(question.primaries);
+  if (found == known_.end() || !found->second.complete) return {};
+  const FirstObservations& first = found->second.first;
+  if (first.question.key != question.key || question.first >= first.count()) return {};
+  const std::uint64_t count = std::min(question.count, first.count() - question.first);
+  const double* const begin = first.numbers.data() + question.first * first.width;
+  return {.numbers = {begin, begin + count * first.width},
+          .count = count,
+          .seconds = found->second.seconds * static_cast<double>(count)};
 }
 
 void Children::examine_unusual(Dialogue& dialogue, const Question& question,

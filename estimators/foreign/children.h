@@ -2,6 +2,7 @@
 
 // The running programs of one set-up: one a worker, kept from one round of sampling to the next.
 
+#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -14,6 +15,13 @@
 #include "estimators/foreign/examination.h"
 
 namespace assay::foreign {
+
+/// Observations that need not be asked for again, and the CPU seconds that they took.
+struct Recalled {
+  std::vector<double> numbers = {};
+  std::uint64_t count = 0;
+  double seconds = 0;
+};
 
 class Children {
  public:
@@ -33,11 +41,13 @@ class Children {
   void give_back(std::unique_ptr<Dialogue> dialogue);
 
   /// Asks a program that is new to observations of so many primaries for the first ones
-  /// (examination.h). The set-up's first program is asked twice, every other is compared with it.
-  /// Throws NoAnswer where numbers are no function of key and index, and where a program ends at
-  /// what another has answered. False where the first one ended: the observation that ends it
-  /// tells.
+  /// (examination.h). The set-up's first program is asked for all of them twice. Every other waits
+  /// until they are drawn and is compared with two of them. Throws NoAnswer where numbers are no
+  /// function of key and index, and where a program ends at what another has answered. False where
+  /// the first one ended: the observation that ends it tells.
   bool examine(Dialogue& dialogue, const Question& wanted);
+  /// Returns those observations at the head of the question that an examination has drawn.
+  Recalled recalled(const Question& question) const;
   /// If all first observations were the same, asks again for the first other one among these
   /// numbers. Throws NoAnswer if it is then another.
   void examine_unusual(Dialogue& dialogue, const Question& question,
@@ -53,17 +63,21 @@ class Children {
  private:
   /// First observations, incomplete until a program has drawn them.
   struct Known {
-    FirstObservations first;
+    FirstObservations first = {};
+    bool being_drawn = false;
     bool complete = false;
+    double seconds = 0;  ///< of CPU, for each
     /// The only value so far; none once another was asked for again.
     std::optional<std::vector<double>> usual = {};
   };
 
-  Known known_of(const Question& wanted);
+  bool is_to_draw(const Question& wanted);
   bool draw_ahead(Dialogue& dialogue, FirstObservations& mine);
-  bool keep(const FirstObservations& drawn);
+  void keep(const FirstObservations& drawn, double seconds);
+  void leave_undrawn(const Question& wanted);
   void refuse_unless_empty(const std::string& why);
-  bool examine_first(Dialogue& dialogue, const FirstObservations& mine);
+  bool examine_first(Dialogue& dialogue, const Question& wanted);
+  void examine_further(Dialogue& dialogue, const Question& wanted);
 
   struct Failure {
     std::uint64_t index;
@@ -75,6 +89,7 @@ class Children {
   Hello hello_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<Dialogue>> idle_;
+  std::condition_variable drawn_;         ///< no longer being drawn
   std::map<std::uint64_t, Known> known_;  ///< by primaries
   std::map<StreamName, Failure> failures_;
   std::string unfit_ = "";  ///< why no observation of any stream is worth anything

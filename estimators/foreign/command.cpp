@@ -123,11 +123,26 @@ struct Look {
   bool independent;
 };
 
-/// Renders one picture of one sample a pixel, with a seed of its own, to see its size.
-Contents look_at_one(foreign::Renderings& renderings, const Look& look) {
+/// Renders one picture of one sample a pixel, with a seed of its own. Returns its file.
+std::string make_one(foreign::Renderings& renderings) {
   const StreamKey key = stream_key(0, "command", "size", 0);
   renderings.make({.key = key, .first = 0, .last = 1, .samples = 1});
-  const std::string file = renderings.file(key, 0, 1);
+  return renderings.file(key, 0, 1);
+}
+
+/// Why no channels of a picture can be chosen; "" where they can.
+std::string why_no_channels(const std::string& file, const std::string& channels) {
+  if (!is_exr(file)) return "";
+  const ExrFile picture(file);
+  try {
+    recorded::choose_channels(picture, channels);
+  } catch (const InputError& error) {
+    return error.message();
+  }
+  return "";
+}
+
+Contents look_at(const std::string& file, const Look& look) {
   Contents contents;
   if (is_exr(file)) {
     contents.pictures = recorded::open_stack({file}, look.channels);
@@ -188,13 +203,24 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   }
   const Look look{parameters.string("channels"), parameters.string("pixels") == "independent"};
   rendering.cache = std::filesystem::absolute(rendering.cache).string();
+  std::string why;
+  std::string file;
   try {
     auto renderings = std::make_shared<foreign::Renderings>(std::move(rendering));
-    Contents contents = look_at_one(*renderings, look);
-    return std::make_shared<CommandSetup>(std::move(renderings), std::move(contents));
+    file = make_one(*renderings);
+    why = why_no_channels(file, look.channels);
+    if (why.empty()) {
+      return std::make_shared<CommandSetup>(std::move(renderings), look_at(file, look));
+    }
+  } catch (const foreign::RenderingError& error) {
+    parameters.refuse(error.member(), std::string("cannot be used: ") + error.what());
   } catch (const InputError& error) {
     throw_useless(error);
   }
+  // The suite chooses the channels: the program is not to blame.
+  parameters.refuse("channels",
+                    (parameters.given("channels") ? "does not fit" : "must choose from") +
+                        (" the picture `" + file + "`: " + why));
 }
 
 }  // namespace

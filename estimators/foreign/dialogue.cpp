@@ -6,6 +6,7 @@
 #include <limits>
 #include <system_error>
 
+#include "estimators/core/waiting.h"
 #include "estimators/foreign/words.h"
 
 namespace assay::foreign {

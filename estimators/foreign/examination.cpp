@@ -170,17 +170,21 @@ std::string why_unfit(const Asking& ask, const FirstObservations& first, const s
   const std::size_t count = std::min(numbers_twice, most);
   const auto other_key = [&](std::size_t i) { return source.of_other_key(i); };
   const auto twice_as_many = [&](std::size_t i) { return source.of_twice_as_many(i); };
-  std::string others;
+  const std::string same =
+      "`" + name + "` ignores the index: observations 0 to " + std::to_string(count - 1);
+  const std::string again =
+      " they all have the same ones again, but others than before; seed its random numbers with "
+      "key and index";
   if (ignores_index(source, other_key, first.width, count, primaries)) {
-    others = "another key";
-  } else if (means > 0 && ignores_index(source, twice_as_many, means, count, 2 * primaries)) {
-    others = "twice as many: they are not means of independent primaries";
-  } else {
-    return "";
+    return same + " all have the same numbers; under another key" + again;
   }
-  return "`" + name + "` gave the same numbers for observations 0 to " + std::to_string(count - 1) +
-         " of " + std::to_string(primaries) + " primaries, and others for all of " + others +
-         "; seed its random numbers with key and index";
+  if (means > 0 && ignores_index(source, twice_as_many, means, count, 2 * primaries)) {
+    return same + ", means of " + std::to_string(primaries) +
+           (primaries == 1 ? " primary" : " primaries") +
+           ", all have the same numbers; as means of " + std::to_string(2 * primaries) +
+           " primaries" + again;
+  }
+  return "";
 }
 
 std::optional<std::size_t> first_unusual(std::span<const double> numbers,

@@ -112,7 +112,7 @@ void refuse_printing(const Channels& channels) {
   const std::string printed = channels.printed();
   if (printed.empty()) return;
   throw foreign::LibraryError(
-      "the library printed `" + foreign::shown(printed) +
+      "the library printed `" + shown(printed) +
       "` to standard output, which is not its own; print to standard error");
 }
 
@@ -231,10 +231,6 @@ std::string library_host() {
       "needs the program `assay` to run in; name it by the environment variable ASSAY_PROGRAM, or "
       "set `isolated: false`");
 }
-
-void set_stop_question(bool (*stop)()) { foreign::set_stop_question(stop); }
-
-void set_notice(void (*say)(const std::string& sentence)) { foreign::set_notice(say); }
 
 int host_library(const std::vector<std::string>& arguments) {
   const Channels channels;

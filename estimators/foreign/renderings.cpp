@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "estimators/core/program_path.h"
+#include "estimators/core/waiting.h"
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/render_seed.h"
 #include "estimators/foreign/words.h"
@@ -118,7 +119,8 @@ std::string stamp_of(const Rendering& rendering) {
   for (const std::string& file : rendering.depends) {
     const fs::path path = fs::path(rendering.folder) / file;
     if (!fs::is_regular_file(path, ignored)) {
-      throw std::runtime_error("there is no file `" + file + "` that it could depend on");
+      throw RenderingError("depends",
+                           "there is no file `" + file + "`; it is sought from the suite's folder");
     }
     hash.add(stamp_of(path, false));
   }
@@ -189,7 +191,7 @@ std::string Renderings::folder_of(std::uint64_t samples) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error) {
-    throw std::runtime_error("the folder `" + path + "` cannot be made: " + error.message());
+    throw RenderingError("cache", "the folder `" + path + "` cannot be made: " + error.message());
   }
   remove_leftovers(path);
   std::ofstream(path + "/command.txt") << joined(rendering_.command) << "\nin " << rendering_.folder

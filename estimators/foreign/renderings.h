@@ -7,8 +7,10 @@
 #include <memory>
 #include <mutex>
 #include <semaphore>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "estimators/stream.h"
@@ -35,6 +37,17 @@ struct Rendering {
   bool takes_several() const;
 };
 
+/// A rendering that cannot be made, and which member of it is to blame: `depends` or `cache`.
+class RenderingError : public std::runtime_error {
+ public:
+  RenderingError(std::string member, const std::string& why)
+      : std::runtime_error(why), member_(std::move(member)) {}
+  const std::string& member() const { return member_; }
+
+ private:
+  std::string member_;
+};
+
 /// A run of observations, each of so many primaries.
 struct Wanted {
   StreamKey key;
@@ -55,12 +68,13 @@ struct Wanted {
 /// whole, and an interrupted run goes on where it stopped.
 class Renderings {
  public:
-  /// Throws std::runtime_error where the cache cannot be made or a file of `depends` is not there.
+  /// Throws RenderingError where a file of `depends` is not there.
   explicit Renderings(Rendering rendering);
 
   /// Makes what is missing, `jobs` at a time. A program that fails is started again by the same
   /// words, which notice() tells. The last failures are kept for file() to tell. CPU seconds of
-  /// the programs, without those of programs that they start and do not wait for.
+  /// the programs, without those of programs that they start and do not wait for. Throws
+  /// RenderingError where the cache cannot be made.
   double make(const Wanted& wanted);
   bool takes_samples() const { return has_place(rendering_.command, "{samples}"); }
   /// The file of one observation, made or not.

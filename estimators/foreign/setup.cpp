@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "estimators/core/thread_seconds.h"
 #include "estimators/foreign/isolated_sampler.h"
@@ -97,14 +98,27 @@ class ForeignEstimator final : public Estimator {
     try {
       take(wanted);
       question.count = ahead(wanted);
-      question.count = dialogue_->well_sized(question);
-      numbers_ = ask(question);
+      if (!recall(question)) {
+        question.count = dialogue_->well_sized(question);
+        numbers_ = ask(question);
+      }
     } catch (const NoAnswer& failure) {
       drop();
       if (question.count == 1) give_up(wanted, failure);
       question.count = narrowed(question, failure);
     }
     held_ = question;
+  }
+
+  /// Whether the first of the observations are known; the question is then for these alone. They
+  /// cost what they cost when they were drawn.
+  bool recall(Question& question) {
+    Recalled known = children_->recalled(question);
+    if (known.count == 0) return false;
+    numbers_ = std::move(known.numbers);
+    question.count = known.count;
+    seconds_ += known.seconds;
+    return true;
   }
 
   std::vector<double> ask(const Question& question) {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "estimators/core/quoting.h"
 #include "estimators/sampler.h"
 
 namespace assay::foreign {
@@ -64,17 +65,6 @@ inline std::string joined(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
   return out;
-}
-
-/// The beginning of what a program wrote, fit to be shown in a message.
-inline std::string shown(std::string_view text, std::size_t most = 60) {
-  std::string out;
-  for (const char c : text.substr(0, most)) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += c == '\n' ? ' ' : byte < 0x20 || byte >= 0x7f ? '?' : c;
-  }
-  while (out.ends_with(' ')) out.pop_back();
-  return text.size() > most ? out + "…" : out;
 }
 
 /// The end of a sentence on a program: the last lines of its standard error, on one line; "" where

@@ -12,8 +12,8 @@
 #include <filesystem>
 
 #include "estimators/core/value.h"
+#include "estimators/core/waiting.h"
 #include "estimators/ready_made.h"
-#include "foreign/child.h"
 
 namespace assay::recorded {
 
@@ -21,20 +21,25 @@ namespace {
 
 constexpr std::size_t portion = std::size_t{1} << 16;
 
-/// Waits until there is something to read. Files are always ready.
-void wait_for(int descriptor) {
-  pollfd wanted{.fd = descriptor, .events = POLLIN, .revents = 0};
-  while (poll(&wanted, 1, -1) < 0 && errno == EINTR) foreign::stop_if_asked();
-}
+// How long a wait goes on before it asks whether to stop.
+constexpr int glance_in_milliseconds = 100;
 
-/// Returns how many bytes came at once: 0 at the end, -1 where reading fails.
+/// Waits until there is something to read; files are always ready. Returns how many bytes came at
+/// once: 0 at the end, -1 where reading fails.
 ssize_t read_some(int descriptor, char* to, std::size_t most) {
   while (true) {
-    wait_for(descriptor);
+    stop_if_asked();
+    pollfd wanted{.fd = descriptor, .events = POLLIN, .revents = 0};
+    const int ready = poll(&wanted, 1, glance_in_milliseconds);
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
     const ssize_t count = ::read(descriptor, to, most);
     if (count >= 0 || (errno != EINTR && errno != EAGAIN)) return count;
-    foreign::stop_if_asked();
   }
+}
+
+/// Zero bytes fill up a block behind a member of gzip data.
+void skip_zeros(z_stream& stream) {
+  for (; stream.avail_in > 0 && *stream.next_in == 0; ++stream.next_in) --stream.avail_in;
 }
 
 }  // namespace
@@ -143,7 +148,11 @@ bool ByteSource::unpack() {
       if (inflater_->between) return false;
       refuse("its gzip data end too early: the file is cut short;\n  copy or write it again");
     }
-    if (inflater_->between) inflateReset(&stream);
+    if (inflater_->between) {
+      skip_zeros(stream);
+      if (stream.avail_in == 0) continue;
+      inflateReset(&stream);
+    }
     const int code = inflate(&stream, Z_NO_FLUSH);
     inflater_->between = code == Z_STREAM_END;
     if (code != Z_OK && code != Z_STREAM_END) {

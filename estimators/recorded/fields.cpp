@@ -84,15 +84,6 @@ std::string unquoted(std::string_view text) {
   return inside;
 }
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t most = 24;
-  if (text.size() <= most) return "`" + std::string(text) + "`";
-  std::size_t end = most;
-  // Not within a character of UTF-8.
-  while (end > most - 4 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80) --end;
-  return "`" + std::string(text.substr(0, end)) + "…`";
-}
-
 Parsed parse(std::string_view text, bool decimal_comma) {
   if (is_quoted(text)) text = text.substr(1, text.size() - 2);
   std::string pointed;

@@ -34,9 +34,6 @@ std::vector<Field> split(std::string_view line, char separator);
 /// Returns the text between quotes, a doubled one for one.
 std::string unquoted(std::string_view text);
 
-/// Returns a field as a message shows it: short.
-std::string shown(std::string_view text);
-
 /// The number that a text is, if it is one.
 struct Parsed {
   double value = 0;

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "estimators/core/quoting.h"
+#include "estimators/ready_made.h"
+#include "recorded/byte_source.h"
+
 namespace assay::recorded {
 
 namespace {
@@ -11,8 +15,9 @@ using namespace std::string_view_literals;
 
 struct Format {
   std::string_view magic;
-  std::string_view what;  ///< behind "it is a binary file, not text: "
-  std::string_view mend;  ///< $ stands for the file
+  std::string_view what;         ///< behind "it is a binary file, not text: "
+  std::string_view mend;         ///< $ stands for the file as a shell takes it, @ as Python does
+  std::string_view filter = "";  ///< a command that makes text of it, from its input to its output
 };
 
 constexpr std::string_view as_exr =
@@ -31,25 +36,42 @@ constexpr std::array formats{
            "`unzip $` gives the arrays of an .npz as .npy files, which can be read;\n"
            "  save a spreadsheet as CSV"},
     Format{"\x89HDF\r\n\x1a\n"sv, "HDF5",
-           "in Python `numpy.save(\"mine.npy\", h5py.File(\"$\")[\"NAME\"][:])`"},
+           "in Python `numpy.save(\"mine.npy\", h5py.File(@)[\"NAME\"][:])`"},
     Format{"MATLAB 5.0 MAT-file"sv, "MATLAB's .mat",
            "in MATLAB `writematrix(x, 'mine.csv')`, x being the matrix"},
-    Format{"PAR1"sv, "Parquet", "in Python `pandas.read_parquet(\"$\").to_csv(\"mine.csv\")`"},
+    Format{"PAR1"sv, "Parquet", "in Python `pandas.read_parquet(@).to_csv(\"mine.csv\")`"},
     Format{"SQLite format 3"sv, "an SQLite database",
            "`sqlite3 -csv -header $ 'select x from t' > mine.csv`"},
     Format{"\x28\xb5\x2f\xfd"sv, "compressed by zstd",
-           "`zstd -dc $ | assay …` with `file=-`, or compress by gzip"},
+           "`zstd -dc $ | assay …` with `file=-`, or compress by gzip", "zstd -dc"},
     Format{"\xfd\x37zXZ\0"sv, "compressed by xz",
-           "`xz -dc $ | assay …` with `file=-`, or compress by gzip"},
+           "`xz -dc $ | assay …` with `file=-`, or compress by gzip", "xz -dc"},
     Format{"BZh"sv, "compressed by bzip2",
-           "`bzip2 -dc $ | assay …` with `file=-`, or compress by gzip"},
+           "`bzip2 -dc $ | assay …` with `file=-`, or compress by gzip", "bzip2 -dc"},
     Format{"\x7f"
            "ELF"sv,
            "a program", "let it write into a pipe: `PROGRAM | assay …` with `file=-`"},
     Format{"\xff\xfe"sv, "UTF-16, as PowerShell and Excel write it",
-           "`iconv -f UTF-16 -t UTF-8 $ > mine.txt` makes text of it"},
-    Format{"\xfe\xff"sv, "UTF-16", "`iconv -f UTF-16 -t UTF-8 $ > mine.txt` makes text of it"},
+           "`iconv -f UTF-16 -t UTF-8 $ > mine.txt` makes text of it", "iconv -f UTF-16 -t UTF-8"},
+    Format{"\xfe\xff"sv, "UTF-16", "`iconv -f UTF-16 -t UTF-8 $ > mine.txt` makes text of it",
+           "iconv -f UTF-16 -t UTF-8"},
 };
+
+/// What a line to paste calls a file. Of a pipe only its user knows what it came from.
+std::string to_paste(const std::string& file) {
+  return file == called("-") || is_read_once(file) ? "FILE" : file;
+}
+
+std::string mend_of(const Format& format, const std::string& file) {
+  if (file == called("-") && !format.filter.empty()) {
+    return "put `" + std::string(format.filter) + " |` before `assay`";
+  }
+  std::string mend(format.mend);
+  const std::size_t place = mend.find_first_of("$@");
+  if (place == mend.npos) return mend;
+  const std::string name = to_paste(file);
+  return mend.replace(place, 1, mend[place] == '$' ? shell_quoted(name) : python_quoted(name));
+}
 
 }  // namespace
 
@@ -71,16 +93,14 @@ std::string no_text(std::string_view beginning, const std::string& file) {
     const bool printable = first_binary_byte(format.magic) == format.magic.npos &&
                            static_cast<unsigned char>(format.magic[0]) < 0x80;
     if (printable && text) continue;
-    std::string mend(format.mend);
-    const std::size_t place = mend.find('$');
-    if (place != mend.npos) mend.replace(place, 1, file);
-    return "it is a binary file, not text: " + std::string(format.what) + ";\n  " + mend;
+    return "it is a binary file, not text: " + std::string(format.what) + ";\n  " +
+           mend_of(format, file);
   }
   if (text) return "";
   return "it is a binary file, not text; write the numbers as text, an observation a\n"
          "  line, or as .npy, from raw doubles in Python:\n"
-         "  `numpy.save(\"mine.npy\", numpy.fromfile(\"" +
-         file + "\"))`";
+         "  `numpy.save(\"mine.npy\", numpy.fromfile(" +
+         python_quoted(to_paste(file)) + "))`";
 }
 
 }  // namespace assay::recorded

@@ -6,7 +6,7 @@
 namespace assay::recorded {
 
 /// Names the format of a binary file by its first bytes, and says how to come to numbers. Returns
-/// "" for what may be text. `file` is its name.
+/// "" for what may be text. `file` is its name, as called() says it.
 std::string no_text(std::string_view beginning, const std::string& file);
 
 /// Returns the place of the first byte that no text has, npos where there is none. Escapes of

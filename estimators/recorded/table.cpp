@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "estimators/core/line_error.h"
+#include "estimators/core/quoting.h"
 #include "recorded/byte_source.h"
 #include "recorded/fields.h"
 #include "recorded/foreign_formats.h"
@@ -23,18 +24,8 @@ namespace {
 constexpr std::string_view stream_keyword = "stream:";
 constexpr std::size_t longest_line = std::size_t{64} << 20;
 
-/// A file's name as a shell takes it.
-std::string in_shell(const std::string& file) {
-  constexpr std::string_view plain = "/._-+=:,@%";
-  const auto is_plain = [&](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           plain.find(c) != plain.npos;
-  };
-  if (std::ranges::all_of(file, is_plain)) return file;
-  std::string quoted = "'";
-  for (const char c : file) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
+/// A field as a message shows it.
+std::string in_message(std::string_view field) { return "`" + shown(field, 24) + "`"; }
 
 std::vector<std::string> default_names(std::size_t count) {
   if (count == 1) return {"value"};
@@ -49,6 +40,7 @@ class Reader {
       : source_(source), most_(most), expected_(expected) {}
 
   void line(std::string_view text) {
+    if (text.ends_with('\r')) text.remove_suffix(1);
     if (line_ < std::numeric_limits<int>::max()) ++line_;
     text_ = text;
     const std::string_view content = without_comment(text);
@@ -88,13 +80,13 @@ class Reader {
 
   [[noreturn]] void refuse_one_row(std::size_t columns) const {
     const bool file = source_.name() != called("-");
-    const std::string name = in_shell(source_.name());
-    std::string command = source_.packed() ? "zcat " + name + " | " : "";
+    const std::string name = file ? " " + shell_quoted(source_.name()) : "";
+    std::string command = source_.packed() ? "zcat" + name + " | " : "";
     command += std::string("tr -s '") +
                (first_separator_ == blank ? "" : std::string(1, first_separator_)) +
                " \\t\\r' '\\n'";
     if (first_separator_ == ';') command += " | tr , .";
-    if (file) command += (source_.packed() ? "" : " < " + name) + std::string(" > lines.txt");
+    if (file) command += (source_.packed() ? "" : " <" + name) + std::string(" > lines.txt");
     throw InputError({.file = source_.name()},
                      "it is one row of " + std::to_string(columns) +
                          " numbers, and an observation is a row;\n  if each is an observation, "
@@ -154,7 +146,7 @@ class Reader {
       if (name.empty()) refuse(skipped + field.column, "the name of a column is empty");
       if (!seen.insert(name).second) {
         refuse(skipped + field.column,
-               "there are two columns " + shown(name) + "; give each its own name");
+               "there are two columns " + in_message(name) + "; give each its own name");
       }
       table_.columns.push_back(name);
     }
@@ -179,7 +171,7 @@ class Reader {
     }
     const Parsed parsed = parse(field.text, separator_ == ';');
     if (parsed.is_number) return parsed.value;
-    const std::string text = shown(field.text);
+    const std::string text = in_message(field.text);
     if (parsed.out_of_range) {
       refuse(field.column,
              text + " is beyond what a double can hold;\n  write `inf` or 0 if meant");

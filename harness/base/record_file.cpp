@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
-#include "harness/base/shell.h"
 #include "reports/formats/read_json.h"
 
 namespace assay::harness {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "harness/base/shell.h"
+#include "estimators/core/quoting.h"
 #include "harness/base/version.h"
 #include "harness/command/cli_options.h"
 #include "harness/command/cli_values.h"

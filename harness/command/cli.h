@@ -6,7 +6,6 @@
 #include <variant>
 #include <vector>
 
-#include "harness/base/shell.h"
 #include "harness/calibration/calibrate.h"
 #include "harness/command/commands.h"
 #include "harness/record/merge.h"

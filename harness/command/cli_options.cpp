@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "harness/base/shell.h"
+#include "estimators/core/quoting.h"
 #include "harness/command/cli_help.h"
 #include "harness/language/method_names.h"
 #include "harness/suite/suite_entries.h"

@@ -8,6 +8,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "estimators/core/waiting.h"
 #include "estimators/library_host.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/progress_terminal.h"

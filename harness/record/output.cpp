@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
-#include "harness/base/shell.h"
 #include "harness/record/github.h"
 #include "harness/record/image_record.h"
 #include "harness/sampling/sample.h"

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "estimators/core/quoting.h"
 #include "harness/base/numbers.h"
 #include "harness/base/quantiles.h"
-#include "harness/base/shell.h"
 #include "harness/families/methods.h"
 #include "harness/question/question_image.h"
 #include "harness/record/cell_record.h"

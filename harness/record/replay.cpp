@@ -13,7 +13,6 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/progress_terminal.h"
 #include "harness/base/record_file.h"
-#include "harness/base/shell.h"
 #include "harness/draws/draw_text.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/methods.h"

@@ -6,7 +6,6 @@
 #include <iterator>
 
 #include "estimators/ready_made.h"
-#include "harness/base/shell.h"
 #include "harness/base/text_hash.h"
 #include "harness/record/picture.h"
 #include "harness/run/found_effect.h"

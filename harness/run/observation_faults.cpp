@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "estimators/core/quoting.h"
 #include "estimators/ready_made.h"
-#include "harness/base/shell.h"
 #include "harness/draws/consistency_setup.h"
 #include "harness/question/declared_range.h"
 #include "harness/sampling/pool.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "estimators/core/quoting.h"
 #include "estimators/core/text_pattern.h"
-#include "harness/base/shell.h"
 #include "harness/suite/suite_keys.h"
 
 namespace assay::harness {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "estimators/catalogue.h"
-#include "harness/base/shell.h"
+#include "estimators/core/quoting.h"
 #include "harness/language/method_names.h"
 #include "harness/suite/claim_entry.h"
 #include "harness/suite/suite.h"

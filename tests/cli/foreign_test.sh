@@ -193,6 +193,7 @@ test_mistakes_are_2_before_anything_is_sampled() {
   library loud 'call->out[0] = 1; return 0;' '#include <stdio.h>
 __attribute__((constructor)) static void greet(void) { puts("welcome"); }' ' '
   local line
+  echo 1 >one.txt
   while IFS='|' read -r line wanted; do
     suite bad.yaml "mine: {$line}"
     expect 2 run bad.yaml
@@ -210,6 +211,8 @@ plugin: library, file: loud.so|the library printed `welcome`
 plugin: process, command: [no_such_program]|cannot be started: No such file or directory
 plugin: process, command: python3|must be a list of texts
 plugin: process, command: [sh, none.sh], timeout: 0|must be above 0
+plugin: command, command: [cp, one.txt, "{out}", "{seed}"], output: text, depends: [no.txt]|parameter `depends` cannot be used: there is no file `no.txt`
+plugin: command, command: [cp, one.txt, "{out}", "{seed}"], output: text, cache: one.txt|parameter `cache` cannot be used: the folder
 LINES
   none_left
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -14,6 +15,7 @@
 #include <thread>
 
 #include "estimators/core/line_error.h"
+#include "estimators/core/waiting.h"
 #include "estimators/ready_made.h"
 #include "recorded/byte_source.h"
 #include "recorded/table.h"
@@ -25,6 +27,23 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// As gzip does it.
+std::string packed(const std::string& text) {
+  z_stream stream = {};
+  deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
+  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
+  std::string in = text;
+  stream.next_in = reinterpret_cast<Bytef*>(in.data());
+  stream.avail_in = static_cast<uInt>(in.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
 
 // A file of its own for every test, gone afterwards.
 class Recorded : public ::testing::Test {
@@ -308,6 +327,66 @@ TEST_F(Recorded, NamesBinaryFiles) {
   EXPECT_THAT(read("PF\n1\n2\n").columns, ElementsAre("PF"));
 }
 
+const std::string of_zstd("\x28\xb5\x2f\xfd\0\0\0\0", 8);
+const std::string of_zip("PK\x03\x04\0\0\0\0", 8);
+const std::string of_utf16("\xff\xfe\x31\0\n\0", 6);
+const std::string of_hdf5("\x89HDF\r\n\x1a\n\0", 9);
+
+// What is to be pasted can be pasted.
+TEST_F(Recorded, QuotesTheNameOfABinaryFile) {
+  const std::string file = (folder_ / "it's \"my\" file").string();
+  const auto said = [&](const std::string& bytes) -> std::string {
+    std::ofstream(file, std::ios::binary) << bytes;
+    try {
+      recorded::read_table(file, recorded::Rows::several);
+    } catch (const InputError& error) {
+      return error.message();
+    }
+    return "nothing was refused";
+  };
+  const std::string folder = folder_.string();
+  const std::string in_shell = "'" + folder + "/it'\\''s \"my\" file'";
+  const std::string in_python = "\"" + folder + "/it's \\\"my\\\" file\"";
+  EXPECT_THAT(said(of_zstd), HasSubstr("`zstd -dc " + in_shell + " | assay …`"));
+  EXPECT_THAT(said(of_zip), HasSubstr("`unzip " + in_shell + "`"));
+  EXPECT_THAT(said(of_utf16), HasSubstr("-t UTF-8 " + in_shell + " > mine.txt`"));
+  EXPECT_THAT(said(of_hdf5), HasSubstr("h5py.File(" + in_python + ")"));
+  EXPECT_THAT(said(std::string(8, '\0')), HasSubstr("numpy.fromfile(" + in_python + ")"));
+}
+
+/// Why standard input is refused that holds these bytes.
+std::string refusal_of_standard_input(const std::string& file) {
+  const int standard = dup(STDIN_FILENO);
+  const int other = open(file.c_str(), O_RDONLY);
+  EXPECT_EQ(dup2(other, STDIN_FILENO), STDIN_FILENO);
+  std::string message = "nothing was refused";
+  try {
+    recorded::read_table("-", recorded::Rows::several);
+  } catch (const InputError& error) {
+    message = error.message();
+  }
+  dup2(standard, STDIN_FILENO);
+  close(other);
+  close(standard);
+  return message;
+}
+
+TEST_F(Recorded, SaysWhatToPutBeforeAssayWhereStandardInputIsBinary) {
+  const auto said = [&](const std::string& bytes) {
+    return refusal_of_standard_input(write(bytes));
+  };
+  EXPECT_THAT(said(of_zstd), HasSubstr("put `zstd -dc |` before `assay`"));
+  EXPECT_THAT(said(of_utf16), HasSubstr("put `iconv -f UTF-16 -t UTF-8 |` before `assay`"));
+  EXPECT_THAT(said(of_zip), HasSubstr("`unzip FILE`"));
+  EXPECT_THAT(said(of_hdf5), HasSubstr("h5py.File(\"FILE\")"));
+  EXPECT_THAT(said(std::string(8, '\0')), HasSubstr("numpy.fromfile(\"FILE\")"));
+  EXPECT_THAT(said(packed("1 2 3\n")), HasSubstr("`zcat | tr -s ' \\t\\r' '\\n'`"));
+  for (const std::string& bytes :
+       {of_zstd, of_zip, of_utf16, of_hdf5, std::string(8, '\0'), packed("1 2 3\n")}) {
+    EXPECT_THAT(said(bytes), Not(HasSubstr("standard input")));
+  }
+}
+
 TEST_F(Recorded, ReadsAPipeOnceAndForAll) {
   const std::string pipe = (folder_ / "pipe").string();
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -348,6 +427,45 @@ TEST_F(Recorded, ReadsStandardInput) {
   close(standard);
 }
 
+std::atomic<bool> asked_to_stop{false};
+
+// Though no signal reaches the thread that reads, and no byte comes.
+TEST_F(Recorded, StopsReadingWhenAsked) {
+  const std::string pipe = (folder_ / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  asked_to_stop = false;
+  set_stop_question([] { return asked_to_stop.load(); });
+  std::thread user([&] {
+    std::ofstream to(pipe);
+    to << "1\n";
+    to.flush();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    asked_to_stop = true;
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+  });
+  for (const std::string& file : {pipe, write("1\n2\n")}) {
+    try {
+      recorded::read_table(file, recorded::Rows::several);
+      ADD_FAILURE() << "read to the end: " << file;
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "interrupted");
+    }
+  }
+  set_stop_question(nullptr);
+  user.join();
+}
+
+TEST_F(Recorded, ShowsALineWithoutItsEnd) {
+  for (const char* text : {"1\r\nx\r\n", "1\nx\n", "1\r\nx\r"}) {
+    try {
+      read(text);
+      ADD_FAILURE() << "`x` was taken";
+    } catch (const LineError& error) {
+      EXPECT_EQ(error.line(), "x");
+    }
+  }
+}
+
 TEST_F(Recorded, RefusesAFileThatChangesMeanwhile) {
   for (const bool longer : {true, false}) {
     std::string numbers;
@@ -365,21 +483,6 @@ TEST_F(Recorded, RefusesAFileThatChangesMeanwhile) {
 }
 
 // ---- gzip
-
-std::string packed(const std::string& text) {
-  z_stream stream = {};
-  deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
-  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
-  std::string in = text;
-  stream.next_in = reinterpret_cast<Bytef*>(in.data());
-  stream.avail_in = static_cast<uInt>(in.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
-}
 
 TEST_F(Recorded, UnpacksGzip) {
   std::string text = "x\n";
@@ -407,6 +510,14 @@ TEST_F(Recorded, RefusesDamagedGzip) {
   damaged[damaged.size() - 6] ^= 0x10;  // the check sum
   expect_refused(damaged, {0, 0}, "damaged");
   expect_refused(whole + "junk", {0, 0}, "damaged");
+}
+
+// gzip(1) and tapes fill up a block so.
+TEST_F(Recorded, TakesZerosBehindGzip) {
+  const std::string zeros(100000, '\0');
+  EXPECT_THAT(read(packed("1\n2\n") + zeros).values, ElementsAre(1, 2));
+  EXPECT_THAT(read(packed("1\n") + zeros + packed("2\n")).values, ElementsAre(1, 2));
+  expect_refused(packed("1\n2\n") + zeros + "junk", {0, 0}, "damaged");
 }
 
 // ---- numpy's format, https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html

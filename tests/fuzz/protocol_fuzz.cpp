@@ -2,7 +2,7 @@
 // in pieces as in one. A reply that was understood is written and read again as the same.
 
 // sources: estimators/estimator.cpp estimators/foreign/hello.cpp estimators/foreign/reply.cpp
-// sources: estimators/image.cpp
+// sources: estimators/image.cpp estimators/core/quoting.cpp
 
 #include <algorithm>
 #include <cstdint>

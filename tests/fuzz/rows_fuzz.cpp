@@ -4,7 +4,8 @@
 
 // sources: estimators/recorded/table.cpp estimators/recorded/byte_source.cpp
 // sources: estimators/recorded/npy.cpp estimators/recorded/foreign_formats.cpp
-// sources: estimators/recorded/fields.cpp estimators/foreign/child.cpp estimators/core/value.cpp
+// sources: estimators/recorded/fields.cpp estimators/core/quoting.cpp estimators/core/waiting.cpp
+// sources: estimators/core/value.cpp
 // libraries: -lz
 
 #include <cstddef>

@@ -355,13 +355,6 @@ TEST(CommandLine, RefusesTwoReportsInOnePlace) {
             "two reports to standard output");
 }
 
-TEST(ShellQuoted, ReadsBackInAShell) {
-  EXPECT_EQ(shell_quoted("a/b-c_1.yaml"), "a/b-c_1.yaml");
-  EXPECT_EQ(shell_quoted(""), "''");
-  EXPECT_EQ(shell_quoted("mean(a) == 1"), "'mean(a) == 1'");
-  EXPECT_EQ(shell_quoted("it's"), "'it'\\''s'");
-}
-
 // Any words are a command or an InputError: what CLI11 throws never gets out.
 TEST(CommandLineFuzz, AnyWordsAreReadOrRefused) {
   const std::vector<std::string> words{

@@ -8,8 +8,8 @@
 #include <mutex>
 #include <set>
 
+#include "estimators/core/waiting.h"
 #include "estimators/foreign/render_seed.h"
-#include "estimators/library_host.h"
 #include "estimators/ready_made.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr_kinds.h"
@@ -17,7 +17,9 @@
 namespace assay {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(RenderSeed, IsPositiveOf31BitsAndNeverTwiceInAStream) {
   const StreamKey key = stream_key(1, "command", "a", 0);
@@ -216,6 +218,70 @@ TEST_F(Commands, ThatFailSayHowAndWhatTheySaidLast) {
                 prepare({{"output", Value::scalar("text")}, {"timeout", Value::scalar("0.2")}});
               }),
               HasSubstr("took more than"));
+}
+
+/// What is said of a mistake of the suite, with its place.
+template <class Act>
+std::string refusal(const Act& act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    return to_string(error.where()) + ": " + error.message();
+  } catch (const std::exception& error) {
+    return std::string("no mistake of the suite: ") + error.what();
+  }
+  return "nothing was refused";
+}
+
+TEST_F(Commands, RefuseAFileOfDependsThatIsNotThere) {
+  write_program("echo 1 >$3");
+  EXPECT_EQ(refusal([&] {
+              prepare({{"output", Value::scalar("text")},
+                       {"depends", Value::list({Value::scalar("none.txt")}, {"s.yaml", 4, 7})}});
+            }),
+            "s.yaml:4:7: command: parameter `depends` cannot be used: there is no file "
+            "`none.txt`; it is sought from the suite's folder");
+}
+
+TEST_F(Commands, RefuseACacheThatCannotBeMade) {
+  write_program("echo 1 >$3");
+  EXPECT_THAT(refusal([&] {
+                prepare({{"output", Value::scalar("text")},
+                         {"cache", Value::scalar("render.sh", {"s.yaml", 4, 7})}});
+              }),
+              AllOf(HasSubstr("s.yaml:4:7: command: parameter `cache` cannot be used: the folder "
+                              "`" +
+                              file("render.sh") + "/"),
+                    HasSubstr("cannot be made: Not a directory")));
+}
+
+TEST_F(Commands, RefuseChannelsThatThePictureDoesNotHave) {
+  draws::write_scan_lines(file("made.exr"),
+                          {.width = 4, .height = 3, .channels = {"one.R", "one.G", "two.R"}});
+  write_program("cp made.exr $3");
+  EXPECT_THAT(refusal([&] {
+                prepare({{"channels", Value::scalar("oen.*", {"s.yaml", 4, 7})}});
+              }),
+              AllOf(HasSubstr("s.yaml:4:7: command: parameter `channels` does not fit the picture "
+                              "`" +
+                              file(".assay-cache")),
+                    HasSubstr("no channel matches `oen.*`"), Not(HasSubstr("mend the program"))));
+  EXPECT_THAT(refusal([&] {
+                prepare({{"pixels", Value::scalar("dependent")}});
+              }),
+              AllOf(HasSubstr("command: parameter `channels` must choose from the picture"),
+                    HasSubstr("it is not plain which channels are meant"),
+                    Not(HasSubstr("mend the program"))));
+}
+
+TEST_F(Commands, SayToMendAProgramWhosePictureCannotBeRead) {
+  draws::write_scan_lines(file("made.exr"), {.width = 4, .height = 3, .channels = {"R"}});
+  write_program("head -c 40 made.exr >$3");
+  EXPECT_THAT(refusal([&] {
+                prepare({{"channels", Value::scalar("R")}});
+              }),
+              AllOf(HasSubstr("no mistake of the suite: what the program wrote is of no use"),
+                    HasSubstr("mend the program and delete the file")));
 }
 
 // The observation fails, the others stand, and what was half written is not taken the next time.

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <thread>
 
-#include "estimators/library_host.h"
+#include "estimators/core/waiting.h"
 #include "tests/estimators/foreign/foreign.h"
 
 namespace assay::foreign {
@@ -323,7 +323,7 @@ TEST_F(Process, IsExaminedForEachNumberOfPrimaries) {
   EXPECT_THROW(draw(*setup, 3, 3, 64), std::runtime_error);
 }
 
-// Two images, the same again, and one of another key.
+// Two images, the same again, and one of another key; the first is not rendered a third time.
 TEST_F(Process, OfImagesIsAskedForFewAgain) {
   const auto setup = run({"sh", "-c", R"(printf 'assay 1 text\nimage 4 4 r g\nready\n'
 while read -r high low first count primaries; do
@@ -335,7 +335,60 @@ while read -r high low first count primaries; do
   draw(*setup, 1, 0);
   std::ifstream file(folder_ / "questions");
   const std::string asked{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_EQ(asked, "0 0 1\n0 1 1\n0 1 1\n0 0 1\n1 0 1\n0 0 1\n");
+  EXPECT_EQ(asked, "0 0 1\n0 1 1\n0 1 1\n0 0 1\n1 0 1\n");
+}
+
+/// A program that notes the observations it draws in the file `drawn`.
+std::string noting() {
+  return "while read -r high low first count primaries; do i=$first\n"
+         "  while [ $i -lt $((first + count)) ]; do\n"
+         "    echo $i >>drawn; echo $((i + high % 2)); i=$((i + 1)); done\n"
+         "  echo \"$high $low $first $count $primaries\"; done\n";
+}
+
+std::size_t lines_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>(file), {}, '\n'));
+}
+
+TEST_F(Process, IsNotAskedAThirdTimeForWhatIsKnown) {
+  const auto setup = run_shell(noting());
+  // 32 observations twice, and one of another key.
+  EXPECT_THAT(draw(*setup, 3, 3), ElementsAre(0, 1, 2));
+  EXPECT_EQ(lines_of(folder_ / "drawn"), 65u);
+  const std::vector<double> all = draw(*setup, 40, 40);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], static_cast<double>(i));
+  EXPECT_EQ(lines_of(folder_ / "drawn"), 65u + 8);
+  // Of another stream none is known.
+  draw(*setup, 3, 3, 1, 17);
+  EXPECT_EQ(lines_of(folder_ / "drawn"), 65u + 8 + 3);
+}
+
+TEST_F(Process, IsAskedForTwoObservationsWhereAnotherProgramIsKnown) {
+  const auto setup = run_shell(noting());
+  std::vector<std::unique_ptr<Estimator>> workers;
+  double out = 0;
+  Cost cost;
+  for (int worker = 0; worker < 3; ++worker) {
+    workers.push_back(setup->make());
+    Stream random({0x9876543210abcdef}, 40);
+    workers.back()->secondary(random, 1, {&out, 1}, cost);
+    EXPECT_EQ(out, 40);
+  }
+  EXPECT_EQ(lines_of(folder_ / "drawn"), 65u + 1 + 2 * (2 + 1));
+}
+
+// Though they begin at once.
+TEST_F(Process, IsAskedForManyObservationsByOneWorkerAlone) {
+  const auto setup = run_shell("sleep 0.2\n" + noting());
+  std::vector<std::jthread> workers;
+  for (int worker = 0; worker < 3; ++worker) {
+    workers.emplace_back([&] { EXPECT_THAT(draw(*setup, 2, 2), ElementsAre(0, 1)); });
+  }
+  workers.clear();
+  const std::size_t drawn = lines_of(folder_ / "drawn");
+  EXPECT_GE(drawn, 65u);
+  EXPECT_LE(drawn, 65u + 2 * 2);
 }
 
 TEST_F(Process, RefusesObservationsThatAreNoFunctionOfTheirIndex) {
@@ -362,16 +415,18 @@ std::string of_means(const std::string& value, const std::string& word = "averag
 TEST_F(Process, RefusesMeansThatTheirIndexDoesNotChange) {
   const auto setup = run({"sh", write("program.sh", of_means("$((7 * primaries % 31))"))});
   EXPECT_THAT(failure(*setup, 4, 4),
-              HasSubstr("gave the same numbers for observations 0 to 31 of 1 primaries, and others "
-                        "for all of twice as many"));
+              HasSubstr("ignores the index: observations 0 to 31, means of 1 primary, all have the "
+                        "same numbers; as means of 2 primaries they all have the same ones again, "
+                        "but others than before; seed its random numbers with key and index"));
   // Nor is any other stream of it worth anything.
   EXPECT_THROW(draw(*setup, 4, 4, 1, 17), std::runtime_error);
 }
 
 TEST_F(Process, RefusesObservationsThatTheirKeyAloneChanges) {
   EXPECT_THAT(failure(*run_shell(of_index("$low")), 4, 4),
-              HasSubstr("gave the same numbers for observations 0 to 31 of 1 primaries, and others "
-                        "for all of another key"));
+              HasSubstr("ignores the index: observations 0 to 31 all have the same numbers; under "
+                        "another key they all have the same ones again, but others than before; "
+                        "seed its random numbers with key and index"));
 }
 
 TEST_F(Process, TakesMeansThatAreConstantForWhatTheyAre) {
