@@ -67,8 +67,6 @@ Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed) {
   return run_pilots(estimators, pilot_run_of(questions, seed, 1), silence);
 }
 
-bool is_red(const reports::Gate& gate) { return gate.state == "red"; }
-
 /// Turns off histograms, which a calibration does not show.
 void leave_out_pictures(const Pools& pools) {
   for (const auto& pool : pools.all()) {
@@ -77,8 +75,8 @@ void leave_out_pictures(const Pools& pools) {
 }
 
 void tally(VerdictCounts& counts, const TestOutcome& outcome, bool proof) {
-  const auto any_red = [](const std::vector<reports::Gate>& gates) {
-    return std::any_of(gates.begin(), gates.end(), is_red);
+  const auto any_red = [](const std::vector<Gate>& gates) {
+    return std::ranges::any_of(gates, &Gate::is_red);
   };
   const bool red = any_red(outcome.plan.gates) || any_red(outcome.gates);
   const bool passed = outcome.verdict == Verdict::pass;

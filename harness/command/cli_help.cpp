@@ -20,7 +20,7 @@ Commands (each has its own --help, with examples and defaults):
   images    hold rendered pictures against each other, without a suite
   calibrate how often the methods err, and how much they find, on known laws
   sample    print observations of an estimator
-  list      list plugins, tests of suites, methods, quantities, laws, reports
+  list      list plugins, tests of suites, methods, quantities, laws, gates, reports
   describe  print the manual of a plugin, a method, a quantity or a law
   replay    draw the numbers of a recorded test again
   merge     join the records of shards to that of one run

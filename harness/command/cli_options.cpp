@@ -200,7 +200,8 @@ void define_others(CLI::App& app, Given& given) {
        "console=/dev/null silences it");
 
   CLI::App* list = subcommand(app, "list");
-  list->add_option("WHAT", given.what, "plugins, tests, methods, quantities, laws or reports")
+  list->add_option("WHAT", given.what,
+                   "plugins, tests, methods, quantities, laws, gates or reports")
       ->type_name("");
   list->add_option("SUITE", given.suites, "suite files, of which the tests are listed")
       ->type_name("");

@@ -107,21 +107,21 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
                                      .relative = is_relative(test.question, 0)}));
 }
 
-std::string gate_text(const reports::Gate& gate) {
+std::string gate_text(const Gate& gate) {
   return fmt::format("{}: {} {}, limit {}", gate.state, gate.name, reports::human(gate.value),
                      reports::human(gate.limit));
 }
 
 /// The gates that are not green in words, and the number of green ones.
-std::vector<std::string> gate_notes(const std::vector<reports::Gate>& gates) {
+std::vector<std::string> gate_notes(const std::vector<Gate>& gates) {
   std::vector<std::string> notes;
   std::size_t green = 0;
   std::size_t more = 0;
-  const reports::Gate* nearest = nullptr;
-  const auto nearness = [](const reports::Gate& gate) {
+  const Gate* nearest = nullptr;
+  const auto nearness = [](const Gate& gate) {
     return std::abs(gate.value.value_or(0)) / gate.limit.value_or(1);
   };
-  for (const reports::Gate& gate : gates) {
+  for (const Gate& gate : gates) {
     if (gate.state != "green") {
       if (notes.size() < most_gates)
         notes.push_back(gate_text(gate));

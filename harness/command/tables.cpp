@@ -8,6 +8,7 @@
 #include "harness/families/methods.h"
 #include "harness/language/laws.h"
 #include "harness/language/quantities.h"
+#include "harness/theta/gate.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {
@@ -90,6 +91,19 @@ Table law_table() {
   return table;
 }
 
+Table gate_table() {
+  Table table{"gates", "a gate", {}};
+  for (const GateKind& gate : gate_kinds()) {
+    const std::string red =
+        gate.sentence.empty() ? "" : fmt::format(fmt::runtime(gate.sentence), "VALUE", "LIMIT");
+    std::string page = "  A red gate makes the test invalid, unless `test` forces the method.\n";
+    if (gate.heavy_tail) page += "  More observations may only show more of the tail.\n";
+    table.rows.push_back(
+        {gate.name, red.empty() ? "independence of the rows of a file" : red, page});
+  }
+  return table;
+}
+
 Table report_table() {
   Table table{"reports", "a report", {}};
   for (const reports::ReportFormat& format : reports::report_formats()) {
@@ -103,7 +117,8 @@ Table report_table() {
 }  // namespace
 
 const std::vector<Table>& tables() {
-  static const std::vector<Table> all{methods(), quantity_table(), law_table(), report_table()};
+  static const std::vector<Table> all{methods(), quantity_table(), law_table(), gate_table(),
+                                      report_table()};
   return all;
 }
 

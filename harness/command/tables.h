@@ -1,6 +1,6 @@
 #pragma once
 
-// The tables that a user can read: methods, quantities, laws, reports.
+// The tables that a user can read: methods, quantities, laws, gates, reports.
 
 #include <string>
 #include <vector>

@@ -150,8 +150,8 @@ Evidence evidence_of_slope(const Question& question, std::size_t channel,
           .quantity = "difference from the claimed slope"};
 }
 
-reports::Gate power_law_gate(const Question& question, std::size_t channel,
-                             std::span<const ChannelData> data, double level) {
+Gate power_law_gate(const Question& question, std::size_t channel,
+                    std::span<const ChannelData> data, double level) {
   const SlopeData points = points_of(question, channel, data);
   double log_p = 0;
   if (is_exact(points)) {
@@ -161,10 +161,10 @@ reports::Gate power_law_gate(const Question& question, std::size_t channel,
     log_p = stats::slope_estimate(points).log_p_best;
   }
   const double limit = std::max(least_p_of_fit, level);
-  return {.name = "p of a power law",
-          .value = std::exp(log_p),
-          .limit = limit,
-          .state = log_p <= std::log(limit) ? "red" : "green"};
+  return gate_of(reports::Gate{.name = "p of a power law",
+                               .value = std::exp(log_p),
+                               .limit = limit,
+                               .state = log_p <= std::log(limit) ? "red" : "green"});
 }
 
 std::string point_without_spread(const Question& question, std::size_t channel,

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "harness/theta/gate.h"
 #include "harness/theta/method.h"
 #include "reports/record/record.h"
 
@@ -17,8 +18,8 @@ Evidence evidence_of_slope(const Question& question, std::size_t channel,
 /// to max(`level`, 1e-5); `level` is the largest at which a verdict rejects a slope. A red gate
 /// leaves no slope: to reject all others neither shows nor refutes a claim. Under a power law it is
 /// red with at most this probability.
-reports::Gate power_law_gate(const Question& question, std::size_t channel,
-                             std::span<const ChannelData> data, double level);
+Gate power_law_gate(const Question& question, std::size_t channel,
+                    std::span<const ChannelData> data, double level);
 
 /// Why the points of a sweep cannot be fitted: one has no spread, so its error is unknown. Empty if
 /// all have. Costs that never vary are exact.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/base/parallel.h"
-#include "harness/theta/family.h"
+#include "harness/theta/decision.h"
 
 namespace assay::harness {
 namespace {

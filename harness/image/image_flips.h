@@ -9,7 +9,6 @@
 
 #include "estimators/stream.h"
 #include "harness/theta/decision.h"
-#include "harness/theta/family.h"
 #include "stats/images/image_family.h"
 #include "stats/images/image_sign_flip.h"
 

@@ -107,11 +107,11 @@ void note(const Question& question, const std::vector<std::optional<Atom>>& atom
     if (!atoms[channel]) continue;
     const std::string part =
         atoms.size() > 1 ? " in channel " + question.channel_name(channel) : "";
-    plan.gates.push_back(
-        {.name = fmt::format("share of {:.6g}{}, pilots of both", atoms[channel]->value, part),
-         .value = atoms[channel]->share,
-         .limit = least_share,
-         .state = "amber"});
+    plan.gates.push_back(gate_of(reports::Gate{
+        .name = fmt::format("share of {:.6g}{}, pilots of both", atoms[channel]->value, part),
+        .value = atoms[channel]->share,
+        .limit = least_share,
+        .state = "amber"}));
   }
 }
 

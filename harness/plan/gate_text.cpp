@@ -13,64 +13,19 @@
 namespace assay::harness {
 namespace {
 
-/// Sentence for a red gate; {0} is its value, {1} its limit.
-struct Meaning {
-  const char* gate;
-  const char* text;
-};
-
-constexpr Meaning meanings[] = {
-    {"count",
-     "{0} rows are too few to show how skewed they are: at this level it takes {1}; give more"},
-    {"skewness of the mean", "the rows are too few for how skewed they are"},
-    {"level factor by skewness",
-     "the observations are so skewed that one tail of the test is off by a factor of {0}, limit "
-     "{1}"},
-    {"level factor of the mean cost",
-     "the costs are so skewed that one tail of the test is off by a factor of {0}, limit {1}"},
-    {"level factor of the mean variance",
-     "the variances of groups of observations are so skewed that one tail of the test is off by a "
-     "factor of {0}, limit {1}"},
-    {"level factor after correction",
-     "the observations are so skewed that one tail of the test is off by a factor of {0} even "
-     "after correction, limit {1}"},
-    {"largest deviation",
-     "one observation outweighs the others: its deviation over standard deviation and sqrt(n) is "
-     "{0}, limit {1}"},
-    {"excess kurtosis",
-     "the observations are not normal enough for this test of their variance: their excess "
-     "kurtosis is {0}, limit {1}"},
-    {"p of a power law",
-     "the points lie on no power law: p {0} of the best one, limit {1}; let `over` begin where one "
-     "holds, often at larger values"},
-    {"skewness of the images, theirs alone",
-     "rare bright pixels (fireflies), of which the pilot saw too few, move the tails of the test "
-     "by a factor of {0} at least, limit {1}; take more samples a picture"},
-    {"rounding",
-     "the values are rounded too coarsely to be held against a continuous law: a step is {0} of "
-     "the distance that is rejected, limit {1}; write more digits"},
-};
-
 std::string short_number(reports::Number value) {
   if (!value) return "not a number";
   return std::abs(*value) >= 1000 ? reports::human(*value, 3) : fmt::format("{:.3g}", *value);
 }
 
-std::string sentence(const reports::Gate& gate) {
+std::string sentence(const Gate& gate) {
   const std::string value = short_number(gate.value);
   const std::string limit = short_number(gate.limit);
-  for (const Meaning& meaning : meanings) {
-    const std::string_view name = meaning.gate;
-    if (!gate.name.starts_with(name)) continue;
-    // The rest of the name is a channel or an estimator.
-    return fmt::format(fmt::runtime(meaning.text), value, limit) +
-           (gate.name.size() > name.size() ? " (" + gate.name + ")" : "");
-  }
-  return fmt::format("{} is {}, limit {}", gate.name, value, limit);
-}
-
-bool is_red(const reports::Gate& gate, std::string_view name) {
-  return gate.state == "red" && gate.name.starts_with(name);
+  const GateKind& row = gate.row();
+  if (row.sentence.empty()) return fmt::format("{} is {}, limit {}", gate.name, value, limit);
+  // The rest of the name is a channel or an estimator.
+  return fmt::format(fmt::runtime(row.sentence), value, limit) +
+         (gate.name.size() > row.name.size() ? " (" + gate.name + ")" : "");
 }
 
 /// A claim that does not rest on moments.
@@ -79,30 +34,31 @@ std::string median_of(const Question& question) {
 }
 
 /// Factor on the observations that would turn the gate green.
-double wanted(const reports::Gate& gate) {
-  if (!gate.value || !gate.limit) return 1;
-  // The level factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
-  if (is_red(gate, "level factor by skewness") || is_red(gate, "level factor of the mean ")) {
-    return std::pow(std::log(*gate.value) / std::log(1.25), 2);
+double wanted(const Gate& gate) {
+  if (!gate.is_red() || !gate.value || !gate.limit) return 1;
+  switch (gate.row().falls) {
+    case Falls::by_its_logarithm:
+      // The level factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
+      return std::pow(std::log(*gate.value) / std::log(1.25), 2);
+    case Falls::like_the_root:
+      return std::pow(*gate.value / *gate.limit, 2);
+    case Falls::not_known:
+      break;
   }
-  if (is_red(gate, "skewness of the mean")) return std::pow(*gate.value / *gate.limit, 2);
   return 1;
 }
 
 }  // namespace
 
-std::string red_gates(const std::vector<reports::Gate>& gates) {
-  // Nothing else is worth saying of too few rows.
-  for (const char* name : {"count", "skewness of the mean"}) {
-    for (const reports::Gate& gate : gates) {
-      if (is_red(gate, name)) return sentence(gate);
-    }
+std::string red_gates(const std::vector<Gate>& gates) {
+  for (const Gate& gate : gates) {
+    if (gate.is_red() && gate.row().stands_alone) return sentence(gate);
   }
   std::string text;
   constexpr int most = 4;
   int red = 0;
-  for (const reports::Gate& gate : gates) {
-    if (gate.state != "red" || ++red > most) continue;
+  for (const Gate& gate : gates) {
+    if (!gate.is_red() || ++red > most) continue;
     text += (text.empty() ? "" : "; ") + sentence(gate);
   }
   if (red > most) text += fmt::format("; {} gates are red in all", red);
@@ -136,14 +92,15 @@ std::string what_would_help(const TestOutcome& outcome) {
   bool says_it_all = true;
   bool heavy = false;
   double factor = 1;
-  for (const reports::Gate& gate : outcome.gates) {
-    if (is_red(gate, "count")) {
+  for (const Gate& gate : outcome.gates) {
+    if (!gate.is_red()) continue;
+    const GateKind& row = gate.row();
+    if (row.asks_for_normal_values) {
       return ", or, if they are near normal, add " +
              written_key(*outcome.question.test, "test", "t");
     }
-    if (gate.state != "red") continue;
-    says_it_all = says_it_all && (gate.name == "rounding" || gate.name == "p of a power law");
-    heavy = heavy || is_red(gate, "excess kurtosis") || is_red(gate, "largest deviation");
+    says_it_all = says_it_all && row.says_what_helps;
+    heavy = heavy || row.heavy_tail;
     factor = std::max(factor, wanted(gate));
   }
   if (says_it_all) return "";

@@ -11,7 +11,7 @@
 namespace assay::harness {
 
 /// One sentence for each red gate; "" if none is red.
-std::string red_gates(const std::vector<reports::Gate>& gates);
+std::string red_gates(const std::vector<Gate>& gates);
 
 /// The message of an error from stats as a sentence, without the leading "function: ".
 std::string in_words(const std::exception& error);

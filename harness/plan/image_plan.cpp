@@ -87,12 +87,12 @@ void judge_skewness(const Question& question, const Pilots& pilots, std::uint64_
   const double skewness = mean_skewness(question, plan, pilots, look);
   const bool too_skewed = skewness > most_skewed;
   const bool answered = !plan.method.frozen.weights.empty();
-  plan.gates.push_back({.name = "skewness of an image's pixels, pilot",
-                        .value = skewness,
-                        .limit = most_skewed,
-                        .state = !too_skewed ? "green"
-                                 : answered  ? "amber"
-                                             : "red"});
+  plan.gates.push_back(gate_of(reports::Gate{.name = "skewness of an image's pixels, pilot",
+                                             .value = skewness,
+                                             .limit = most_skewed,
+                                             .state = !too_skewed ? "green"
+                                                      : answered  ? "amber"
+                                                                  : "red"}));
   if (!too_skewed || answered || question.test->method) return;
   plan.invalid = fmt::format(
       "the pixels of one image are too skewed ({:.2g} on average, limit {:g}) for sums over them "
@@ -140,11 +140,11 @@ std::uint32_t smallest_cell(const std::vector<stats::CellTails>& tails, const Im
   while (kept > 0 && keeps_level(tails[kept - 1])) --kept;
   for (std::size_t i = 0; i <= kept; ++i) {
     const ShownFactor shown = shown_factor(tails[i]);
-    plan.gates.push_back(
-        {.name = fmt::format("skewness of {}, pilot", cells_text(tails[i].size, shape)),
-         .value = std::isfinite(shown.value) ? reports::Number(shown.value) : reports::Number(),
-         .limit = shown.limit,
-         .state = keeps_level(tails[i]) ? "green" : "amber"});
+    plan.gates.push_back(gate_of(reports::Gate{
+        .name = fmt::format("skewness of {}, pilot", cells_text(tails[i].size, shape)),
+        .value = std::isfinite(shown.value) ? reports::Number(shown.value) : reports::Number(),
+        .limit = shown.limit,
+        .state = keeps_level(tails[i]) ? "green" : "amber"}));
   }
   return tails[kept].size;
 }

@@ -32,10 +32,11 @@ std::uint64_t whole_secondaries(double count) {
 }
 
 void note_too_few(Plan& plan, std::uint64_t size, std::uint64_t needed) {
-  plan.gates.push_back({.name = "number of observations (limit: the fewest that keep the level)",
-                        .value = static_cast<double>(size),
-                        .limit = static_cast<double>(needed),
-                        .state = "red"});
+  plan.gates.push_back(gate_of(
+      reports::Gate{.name = "number of observations (limit: the fewest that keep the level)",
+                    .value = static_cast<double>(size),
+                    .limit = static_cast<double>(needed),
+                    .state = "red"}));
 }
 
 }  // namespace assay::harness

@@ -11,6 +11,7 @@
 #include "harness/question/question.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/family.h"
+#include "harness/theta/gate.h"
 #include "harness/theta/method.h"
 #include "reports/record/record.h"
 #include "stats/planning/looks.h"
@@ -24,7 +25,7 @@ struct Plan {
   std::vector<std::uint64_t> primaries = {};  ///< One a subject.
   stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
   std::vector<Regions> regions = {};          ///< One a channel.
-  std::vector<reports::Gate> gates = {};      ///< Gates of the pilot.
+  std::vector<Gate> gates = {};               ///< Gates of the pilot.
   std::uint32_t smallest_cell = 1;            ///< Smallest cells of an image that keep their level.
   /// True if the shared skewness of an image's elements is too small to add up to a finding. The
   /// sum of squares takes part then.
@@ -75,7 +76,7 @@ struct TestOutcome {
   bool decided = false;  ///< No further look will be taken.
   std::vector<ChannelHistory> history = {};
   std::vector<ChannelOutcome> channels = {};  ///< The worst first.
-  std::vector<reports::Gate> gates = {};      ///< Gates of the test's own data.
+  std::vector<Gate> gates = {};               ///< Gates of the test's own data.
   std::optional<double> power = {};           ///< Power at `detect`, with the observed spread.
   reports::Verdict verdict = reports::Verdict::skipped;
   std::string message = "";

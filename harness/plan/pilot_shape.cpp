@@ -162,7 +162,7 @@ std::vector<double> as_secondaries(const Subject& side, std::span<const double> 
 }
 
 void answer_red_gates(Plan& plan) {
-  for (reports::Gate& gate : plan.gates) {
+  for (Gate& gate : plan.gates) {
     if (gate.state == "red") gate.state = "amber";
   }
 }

@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "harness/theta/decision.h"
-#include "harness/theta/family.h"
 #include "stats/means/bounded_mean.h"
 
 namespace assay::harness {

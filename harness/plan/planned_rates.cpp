@@ -1,6 +1,6 @@
 #include "harness/plan/planned_rates.h"
 
-#include "harness/theta/family.h"
+#include "harness/theta/decision.h"
 namespace assay::harness {
 
 stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions) {

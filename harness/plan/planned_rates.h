@@ -3,7 +3,6 @@
 // Levels at which a test is planned to find what it must reject.
 
 #include "harness/theta/decision.h"
-#include "harness/theta/family.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {

@@ -47,11 +47,11 @@ void note_repeated_images(const Question& question, const Pilots& pilots, Plan& 
           "changes the image",
           all, subject.estimator->name);
     }
-    plan.gates.push_back(
-        {.name = fmt::format("different images of {}, pilot", subject.estimator->name),
-         .value = static_cast<double>(different),
-         .limit = static_cast<double>(all),
-         .state = different < all ? "amber" : "green"});
+    plan.gates.push_back(gate_of(
+        reports::Gate{.name = fmt::format("different images of {}, pilot", subject.estimator->name),
+                      .value = static_cast<double>(different),
+                      .limit = static_cast<double>(all),
+                      .state = different < all ? "amber" : "green"}));
   }
 }
 

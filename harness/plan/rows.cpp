@@ -24,7 +24,6 @@
 namespace assay::harness {
 namespace {
 
-using stats::Gate;
 using stats::GateState;
 
 // In fewer rows the gates of independence miss strong dependence.
@@ -101,7 +100,7 @@ std::string dependent(const Question& question, const Rows& rows, bool at_a_lag)
 }
 
 /// A red gate on something that chance does not make.
-Gate red_gate(const char* name, std::size_t value, std::size_t limit) {
+stats::Gate red_gate(const char* name, std::size_t value, std::size_t limit) {
   const auto shown = static_cast<double>(value);
   return {.name = name,
           .value = shown,
@@ -181,10 +180,11 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
     const bool constant = first.values.size() > 1 && !(first.moments.m2 > 0);
     if (first.values.empty() || constant) continue;
     const std::uint64_t rows = std::min<std::uint64_t>(first.values.size(), count);
-    plan.gates.push_back({.name = "rows that show their independence of " + side.estimator->name,
-                          .value = static_cast<double>(rows),
-                          .limit = static_cast<double>(fewest_in_order_to_tell),
-                          .state = rows < fewest_in_order_to_tell ? "red" : "green"});
+    plan.gates.push_back(gate_of(
+        reports::Gate{.name = "rows that show their independence of " + side.estimator->name,
+                      .value = static_cast<double>(rows),
+                      .limit = static_cast<double>(fewest_in_order_to_tell),
+                      .state = rows < fewest_in_order_to_tell ? "red" : "green"}));
     if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
     // A forced method runs unchecked, but no method takes the variance of a single row.
     const std::string forced =
@@ -206,10 +206,11 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
     if (!(factor > 1)) continue;
     plan.method.frozen.row_allowances.push_back(
         {.subject = rows.subject, .channel = rows.channel, .factor = factor});
-    plan.gates.push_back({.name = "variance of the mean, allowed for dependence, " + rows.label,
-                          .value = factor,
-                          .limit = 1,
-                          .state = "amber"});
+    plan.gates.push_back(
+        gate_of(reports::Gate{.name = "variance of the mean, allowed for dependence, " + rows.label,
+                              .value = factor,
+                              .limit = 1,
+                              .state = "amber"}));
   }
 }
 
@@ -256,17 +257,18 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
                   ", " + rows.label));
       if (reason.empty()) reason = recurring(rows, *alike);
     }
-    std::vector<Gate> gates{stats::lag_one_gate(rows.values), stats::lagged_gate(rows.values),
-                            stats::batch_gate(rows.values)};
-    const bool red = std::any_of(gates.begin(), gates.end(),
-                                 [](const Gate& gate) { return gate.state == GateState::red; });
+    std::vector<stats::Gate> gates{stats::lag_one_gate(rows.values),
+                                   stats::lagged_gate(rows.values), stats::batch_gate(rows.values)};
+    const bool red = std::any_of(gates.begin(), gates.end(), [](const stats::Gate& gate) {
+      return gate.state == GateState::red;
+    });
     const bool averaged = red && batches && !forced;
     answered = answered || averaged;
     if (red && !averaged && reason.empty()) {
       reason = dependent(question, rows,
                          gates[1].state == GateState::red && gates[0].state != GateState::red);
     }
-    for (Gate& gate : gates) {
+    for (stats::Gate& gate : gates) {
       if (averaged && gate.state == GateState::red) gate.state = GateState::amber;
       plan.gates.push_back(gate_of(gate, ", " + rows.label));
     }
@@ -315,11 +317,11 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
   return moments;
 }
 
-std::vector<Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
-                            double critical_value) {
+std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
+                                   double critical_value) {
   const Question& question = outcome.question;
   const MethodTraits& method = outcome.plan.method.is;
-  std::vector<Gate> gates;
+  std::vector<stats::Gate> gates;
   if (!has_rows(question)) return gates;
   if (question.kind == QuestionKind::fit_to_law || question.kind == QuestionKind::fit_to_density) {
     if (!method.of_distinct_values || data[0].values.size() < 2) return gates;

@@ -265,7 +265,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   test.detect = margin(regions);
   test.allow = regions.allow;
   test.power = outcome.power;
-  test.gates = outcome.plan.gates;
+  test.gates.assign(outcome.plan.gates.begin(), outcome.plan.gates.end());
   test.gates.insert(test.gates.end(), outcome.gates.begin(), outcome.gates.end());
   test.samples = samples_of(work);
   if (const std::optional<DrawnTest> drawn = harness::drawn(work)) {

@@ -77,10 +77,10 @@ stats::Gate residual_gate(const Question& question, std::size_t channel,
 }
 
 /// Gates for tests by the logarithm of a mean: of counted costs, or of groups' variances.
-std::vector<reports::Gate> log_mean_gates(const Question& question,
-                                          std::span<const ChannelData> data, double x) {
+std::vector<Gate> log_mean_gates(const Question& question, std::span<const ChannelData> data,
+                                 double x) {
   const bool variances = question.kind == QuestionKind::total_variance;
-  std::vector<reports::Gate> gates;
+  std::vector<Gate> gates;
   for (std::size_t subject = 0; subject < question.compared(); ++subject) {
     const stats::Moments& values = variances ? data[subject].group_variances
                                              : by_its_cost(question, data[subject].with_cost).cost;
@@ -98,9 +98,9 @@ double largest_level(const ErrorShare& share, const Regions& regions) {
 
 }  // namespace
 
-std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t channel,
-                                      std::span<const ChannelData> data) {
-  std::vector<reports::Gate> gates;
+std::vector<Gate> data_gates(const TestOutcome& outcome, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  std::vector<Gate> gates;
   const Question& question = outcome.question;
   const MethodTraits& method = outcome.plan.method.is;
   const bool several = question.channel_count() > 1;
@@ -128,7 +128,7 @@ std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t ch
   // Channels share their costs.
   const Keeps keeps = outcome.plan.method.keeps;
   if ((keeps == Keeps::costs || keeps == Keeps::group_variances) && channel == 0) {
-    for (const reports::Gate& gate : log_mean_gates(question, data, x)) gates.push_back(gate);
+    for (const Gate& gate : log_mean_gates(question, data, x)) gates.push_back(gate);
   }
   if (question.kind == QuestionKind::slope) {
     gates.push_back(power_law_gate(question, channel, data,

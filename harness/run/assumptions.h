@@ -10,8 +10,8 @@
 namespace assay::harness {
 
 /// Gates on one channel's data at the level of the current look. They can only invalidate.
-std::vector<reports::Gate> data_gates(const TestOutcome& outcome, std::size_t channel,
-                                      std::span<const ChannelData> data);
+std::vector<Gate> data_gates(const TestOutcome& outcome, std::size_t channel,
+                             std::span<const ChannelData> data);
 
 /// Why a channel with a constant sample cannot be tested, or "". A variance is unknown then, and
 /// unseen values could decide about a mean.

@@ -154,7 +154,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
       add(channel, {Verdict::invalid, reason});
       continue;
     }
-    for (reports::Gate& gate : data_gates(outcome, channel, data)) {
+    for (Gate& gate : data_gates(outcome, channel, data)) {
       outcome.gates.push_back(std::move(gate));
     }
     outcome.channels.push_back(channel_outcome(test, channel, data));

@@ -57,14 +57,15 @@ ImageViews images_of(const DrawnTest& test, std::size_t subject) {
   return {test.samples[subject].observations(), test.outcome.question.subjects[subject].channels};
 }
 
-reports::Gate own_skewness_gate(const ImageOutcome& images) {
+Gate own_skewness_gate(const ImageOutcome& images) {
   // Normal data exceed it about once in 1e5 tests.
   constexpr double limit = 2;
   const double factor = images.level_factor;
-  return {.name = "skewness of the images, theirs alone",
-          .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
-          .limit = limit,
-          .state = factor <= limit ? "green" : "red"};
+  return gate_of(
+      reports::Gate{.name = "skewness of the images, theirs alone",
+                    .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
+                    .limit = limit,
+                    .state = factor <= limit ? "green" : "red"});
 }
 
 std::string means_where_it_differs(const DrawnTest& test) {

@@ -16,7 +16,7 @@ ImageTest image_test(const DrawnTest& test);
 ImageViews images_of(const DrawnTest& test, std::size_t subject);
 
 /// Red if rare lights that the pilot did not meet move the level.
-reports::Gate own_skewness_gate(const ImageOutcome& images);
+Gate own_skewness_gate(const ImageOutcome& images);
 
 /// "; the mean at that place is 1.03 against 1, +3 %" for a failed claim on images that one window
 /// decided; else "".

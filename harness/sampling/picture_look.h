@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "estimators/estimator.h"
+#include "harness/language/claim.h"
 #include "stats/basics/moments.h"
 #include "stats/images/image_cell_skewness.h"
 #include "stats/images/image_equivalence.h"

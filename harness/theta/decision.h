@@ -12,7 +12,6 @@
 
 #include "harness/language/claim.h"
 #include "harness/theta/evidence.h"
-#include "harness/theta/family.h"
 #include "reports/record/record.h"
 
 namespace assay::harness {

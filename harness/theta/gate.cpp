@@ -1,13 +1,91 @@
 #include "harness/theta/gate.h"
 
+#include <algorithm>
+
 namespace assay::harness {
 
-reports::Gate gate_of(const stats::Gate& gate, const std::string& where) {
+const std::vector<GateKind>& gate_kinds() {
+  static const std::vector<GateKind> table{
+      {.name = "count",
+       .sentence = "{0} rows are too few to show how skewed they are: at this level it takes {1}; "
+                   "give more",
+       .stands_alone = true,
+       .asks_for_normal_values = true},
+      {.name = "skewness of the mean",
+       .sentence = "the rows are too few for how skewed they are",
+       .stands_alone = true,
+       .falls = Falls::like_the_root},
+      {.name = "level factor by skewness",
+       .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
+                   "{0}, limit "
+                   "{1}",
+       .falls = Falls::by_its_logarithm},
+      {.name = "level factor of the mean cost",
+       .sentence =
+           "the costs are so skewed that one tail of the test is off by a factor of {0}, limit {1}",
+       .falls = Falls::by_its_logarithm},
+      {.name = "level factor of the mean variance",
+       .sentence = "the variances of groups of observations are so skewed that one tail of the "
+                   "test is off by a "
+                   "factor of {0}, limit {1}",
+       .falls = Falls::by_its_logarithm},
+      {.name = "level factor after correction",
+       .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
+                   "{0} even "
+                   "after correction, limit {1}"},
+      {.name = "largest deviation",
+       .sentence = "one observation outweighs the others: its deviation over standard deviation "
+                   "and sqrt(n) is "
+                   "{0}, limit {1}",
+       .heavy_tail = true},
+      {.name = "excess kurtosis",
+       .sentence =
+           "the observations are not normal enough for this test of their variance: their excess "
+           "kurtosis is {0}, limit {1}",
+       .heavy_tail = true},
+      {.name = "p of a power law",
+       .sentence = "the points lie on no power law: p {0} of the best one, limit {1}; let `over` "
+                   "begin where one "
+                   "holds, often at larger values",
+       .says_what_helps = true},
+      {.name = "skewness of the images, theirs alone",
+       .sentence = "rare bright pixels (fireflies), of which the pilot saw too few, move the tails "
+                   "of the test "
+                   "by a factor of {0} at least, limit {1}; take more samples a picture"},
+      {.name = "rounding",
+       .sentence = "the values are rounded too coarsely to be held against a continuous law: a "
+                   "step is {0} of "
+                   "the distance that is rejected, limit {1}; write more digits",
+       .says_what_helps = true},
+      {.name = "correlation of successive values"},
+      {.name = "variance of batch means"},
+      {.name = "correlation of values some steps apart"},
+      {.name = "longest repetition"},
+      {.name = "values that occur equally often"},
+      {.name = "tail index", .heavy_tail = true},
+  };
+  return table;
+}
+
+const GateKind& Gate::row() const {
+  static const GateKind none{};
+  const auto found = std::ranges::find(gate_kinds(), kind, &GateKind::name);
+  return found == gate_kinds().end() ? none : *found;
+}
+
+Gate gate_of(const reports::Gate& gate, const std::string& where) {
+  Gate result{gate, gate.name};
+  result.name += where;
+  return result;
+}
+
+Gate gate_of(const stats::Gate& gate, const std::string& where) {
   constexpr const char* states[] = {"green", "amber", "red"};
-  return {.name = gate.name + where,
-          .value = gate.value,
-          .limit = gate.limit,
-          .state = states[static_cast<int>(gate.state)]};
+  return gate_of(reports::Gate{.name = gate.name,
+                               .value = gate.value,
+                               .limit = gate.limit,
+                               .state = states[static_cast<int>(gate.state)]},
+                 where);
 }
 
 }  // namespace assay::harness

@@ -1,13 +1,42 @@
 #pragma once
 
+// Gates: assumptions of a test as numbers with limits.
+
 #include <string>
+#include <vector>
 
 #include "reports/record/record.h"
-#include "stats/gates/assumption_gates.h"
+#include "stats/basics/gate.h"
 
 namespace assay::harness {
 
-/// A gate as a record has it. `where` follows its name.
-reports::Gate gate_of(const stats::Gate& gate, const std::string& where);
+/// How a red gate's value falls with the number of observations, towards its limit.
+enum class Falls { not_known, by_its_logarithm, like_the_root };
+
+/// A row of the table of gates. A gate without a row is shown by its name.
+struct GateKind {
+  std::string name;
+  std::string sentence = "";            ///< if it is red; {0} is its value, {1} its limit
+  bool stands_alone = false;            ///< if it is red, no other gate is worth a word
+  bool asks_for_normal_values = false;  ///< Student's t may be forced for near-normal values
+  bool heavy_tail = false;              ///< more observations may only show more of the tail
+  bool says_what_helps = false;         ///< its sentence does
+  Falls falls = Falls::not_known;
+};
+
+const std::vector<GateKind>& gate_kinds();
+
+/// A gate as reports show it, with its kind. Its name may go on with a channel or an estimator.
+struct Gate : reports::Gate {
+  std::string kind;
+
+  bool is_red() const { return state == "red"; }
+  /// The row of the table, or an empty one.
+  const GateKind& row() const;
+};
+
+/// A gate of its own kind. `where` follows the kind in its name.
+Gate gate_of(const reports::Gate& gate, const std::string& where = "");
+Gate gate_of(const stats::Gate& gate, const std::string& where);
 
 }  // namespace assay::harness

@@ -14,7 +14,7 @@ struct DearOnes {
   double more;
 };
 /// The gates on a thousand of them.
-std::vector<reports::Gate> gates_of_costs(const std::string& claim, DearOnes dear) {
+std::vector<Gate> gates_of_costs(const std::string& claim, DearOnes dear) {
   const auto asked = ask_text(R"(suite: costs
 estimators: {multi: {plugin: direct_light/multi_sample, primaries: 1}}
 tests: [{name: t, claim: )" + claim +
@@ -40,7 +40,7 @@ tests: [{name: t, claim: )" + claim +
 TEST(Assumptions, RareCostsThatWeighAreRed) {
   const DearOnes rare_ones{.every = 1000, .more = 1000};
   for (const char* claim : {"cost(multi) == 2", "efficiency(multi) == 1"}) {
-    const std::vector<reports::Gate> rare = gates_of_costs(claim, rare_ones);
+    const std::vector<Gate> rare = gates_of_costs(claim, rare_ones);
     ASSERT_EQ(rare.size(), 1) << claim;
     EXPECT_EQ(rare[0].name, "level factor of the mean cost of multi");
     EXPECT_EQ(rare[0].state, "red");
@@ -48,14 +48,14 @@ TEST(Assumptions, RareCostsThatWeighAreRed) {
     EXPECT_TRUE(gates_of_costs(claim, {.every = 1, .more = 1}).empty())
         << "a cost that does not vary";
   }
-  const std::vector<reports::Gate> groups = gates_of_costs("total_variance(multi) == 1", rare_ones);
+  const std::vector<Gate> groups = gates_of_costs("total_variance(multi) == 1", rare_ones);
   ASSERT_EQ(groups.size(), 1);
   EXPECT_EQ(groups[0].name, "level factor of the mean variance of multi");
   EXPECT_EQ(groups[0].state, "red");
   // A pool keeps costs for all its tests.
   for (const char* claim :
        {"mean(multi) == 1", "variance(multi) == 1", "cost(multi) == 1, cost: seconds"}) {
-    for (const reports::Gate& gate : gates_of_costs(claim, rare_ones)) {
+    for (const Gate& gate : gates_of_costs(claim, rare_ones)) {
       EXPECT_EQ(gate.name.find("cost"), std::string::npos) << claim << ": " << gate.name;
     }
   }

@@ -56,7 +56,7 @@ Law some_law() {
 
 /// A valid claim of any kind.
 Claim some_claim() {
-  const QuantityName name = gen::elementOf(quantities())->name;
+  const QuantityName name = (*gen::elementOf(quantities())).name;
   const double u = *gen::inRange(1, 999) / 1000.0;
   Claim claim{.left = quantity(name, *source(), u)};
   if (name == QuantityName::distribution) {

@@ -150,9 +150,10 @@ TEST(CommandLine, SamplesListsDescribesReplaysAndReports) {
   EXPECT_EQ(sample.secondaries, 5U);
   EXPECT_EQ(sample.primaries, 1U);
   EXPECT_EQ(sample.seed, 9U);
-  EXPECT_FALSE(parsed<ListCommand>({"list", "plugins"}).tests);
+  EXPECT_EQ(parsed<ListCommand>({"list", "plugins"}).what, "plugins");
+  EXPECT_EQ(parsed<ListCommand>({"list", "methods"}).what, "methods");
   EXPECT_THAT(parsed<ListCommand>({"list", "tests", "a.yaml"}).suites, ElementsAre("a.yaml"));
-  EXPECT_EQ(parsed<DescribeCommand>({"describe", "luminaire/area"}).plugin, "luminaire/area");
+  EXPECT_EQ(parsed<DescribeCommand>({"describe", "luminaire/area"}).name, "luminaire/area");
   const auto replay = parsed<ReplayArguments>({"replay", "run.json", "s/t", "0"});
   EXPECT_EQ(replay.record, "run.json");
   EXPECT_EQ(replay.test, "s/t");

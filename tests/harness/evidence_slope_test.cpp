@@ -53,7 +53,7 @@ std::string state_of(const std::string& test, ErrorShare share, std::span<const 
   const bool within = test == "within";
   outcome.plan.regions = {
       {.relation = within ? Relation::within : Relation::equal, .within = within ? 0.3 : 0}};
-  const std::vector<reports::Gate> gates = data_gates(outcome, 0, data);
+  const std::vector<Gate> gates = data_gates(outcome, 0, data);
   return gates.empty() ? "none" : gates.back().name + " " + gates.back().state;
 }
 

@@ -100,7 +100,7 @@ tests:
 
 // The numbers of those that can be tested are the same with and without the dead source.
 TEST(Family, KeepsThePartOfATestThatCannotBeAsked) {
-  for (const std::string& dead : {"analytic", "expected", "mutant"}) {
+  for (const std::string dead : {"analytic", "expected", "mutant"}) {
     const auto asked = ask_text(with_mutants);
     const std::vector<FamilyPlace> sound = places(asked->suite, asked->questions);
     std::vector<FamilyPlace> known;

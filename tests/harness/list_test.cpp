@@ -1,7 +1,9 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
+#include "harness/command/tables.h"
 
 namespace assay::harness {
 namespace {
@@ -40,6 +42,38 @@ TEST(List, SaysSoWhereNoTestIsSelected) {
   EXPECT_EQ(list_tests(suites, {.tags = {"slow"}}), 4);
   std::fflush(stderr);
   EXPECT_TRUE(testing::internal::GetCapturedStderr().starts_with("assay: --tag slow: "));
+}
+
+/// What `assay list` or `assay describe` prints.
+std::string printed(const std::function<int()>& command) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(command(), 0);
+  std::fflush(stdout);
+  return testing::internal::GetCapturedStdout();
+}
+
+TEST(List, PrintsEveryRowOfATableIn80Columns) {
+  for (const Table& table : tables()) {
+    const std::string text = printed([&] { return list_table(table.plural); });
+    for (const TableRow& row : table.rows) {
+      EXPECT_THAT(text, testing::HasSubstr(row.name + " ")) << table.plural;
+      EXPECT_FALSE(row.summary.empty()) << row.name;
+    }
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
+  }
+}
+
+TEST(Describe, PrintsTheRowsOfAName) {
+  const std::string t = printed([] { return describe("t"); });
+  EXPECT_THAT(t, testing::HasSubstr("Student's t"));
+  EXPECT_THAT(t, testing::HasSubstr("test: t"));
+  // A method and a quantity have this name.
+  const std::string quantile = printed([] { return describe("quantile"); });
+  EXPECT_THAT(quantile, testing::HasSubstr("quantile, a method"));
+  EXPECT_THAT(quantile, testing::HasSubstr("quantile, a quantity"));
+  EXPECT_THAT(printed([] { return describe("normal"); }), testing::HasSubstr("normal(mean, sd)"));
+  EXPECT_THAT(printed([] { return describe("rounding"); }), testing::HasSubstr("a gate"));
 }
 
 }  // namespace

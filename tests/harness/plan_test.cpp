@@ -196,7 +196,7 @@ TEST(Plan, ForcedMethodStandsWithItsGatesShown) {
       plan_text("  - {claim: variance(heavy-single) <= 100, test: chi-square}\n");
   EXPECT_EQ(planned.plans[0].method.name, "chi-square");
   EXPECT_TRUE(planned.plans[0].invalid.empty());
-  const std::vector<reports::Gate>& gates = planned.plans[0].gates;
+  const std::vector<Gate>& gates = planned.plans[0].gates;
   EXPECT_TRUE(std::any_of(gates.begin(), gates.end(), [](const reports::Gate& gate) {
     return gate.name.starts_with("excess kurtosis") && gate.state == "red";
   }));
