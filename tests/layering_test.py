@@ -74,6 +74,17 @@ def points_up(path, include):
     return None
 
 
+METHOD_NAME = re.compile(r'method(?:\(\))?(?:\.name)? *[!=]= *"|method\.name *[!=]=')
+
+
+def compared_names(path, text):
+    """A method is asked for its properties. Only the table finds a row by its name."""
+    if path.parts[0] != "harness" or path == pathlib.Path("harness/families/methods.cpp"):
+        return []
+    return [f"`{match.group()}` compares the name of a method"
+            for match in METHOD_NAME.finditer(text)]
+
+
 def largest_cycle(texts):
     """The units of the largest cycle of includes and its part of all lines; texts by path."""
     lines, includes = collections.Counter(), collections.defaultdict(set)
@@ -109,6 +120,7 @@ def faults(path, text):
     """What is wrong with a source of this path (relative to the root)."""
     found = [wrong_include(path, include) for include in INCLUDE.findall(text)]
     found += [points_up(path, include) for include in INCLUDE.findall(text)]
+    found += compared_names(path, text)
     if path.parts[0] == "stats":
         found += [f"the word `{match.group()}` in stats"
                   for match in FOREIGN_TO_STATS.finditer(code_only(text))]
@@ -129,6 +141,7 @@ def show_that_it_can_fail():
         ("harness/a.cpp", "#include <ImfRgbaFile.h>\n"),
         ("harness/base/a.cpp", '#include "harness/plan/plan.h"\n'),
         ("harness/base/a.cpp", '#include "harness/elsewhere/plan.h"\n'),
+        ("harness/plan/a.cpp", 'if (plan.method.name == "t") return;\n'),
     ]
     right = [
         ("stats/a.cpp", "#include <boost/math/distributions.hpp>\n// of a profile, a file\n"),

@@ -154,6 +154,9 @@ std::string Reply::so_far() const {
     const bool ended = std::string_view(bytes_.data(), filled_).ends_with(end_);
     count = std::min((filled_ - (ended ? end_.size() : 0)) / 8, wanted());
   }
+  if (count == wanted()) {
+    return "its " + of(count, "number") + " came, but not the question again, which ends a reply";
+  }
   return of(count, "number") + " of " + std::to_string(wanted()) + " came";
 }
 

@@ -116,6 +116,7 @@ struct Draft {
   std::optional<Margin> detect = {};
   bool is_default = true;
   CostKind cost = CostKind::samples;
+  std::uint64_t alone = classical_samples;  ///< Observations of a method alone.
 };
 
 void means(const Facts& f, std::vector<Draft>& drafts) {
@@ -222,7 +223,8 @@ void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
                     .is_default = false});
 }
 
-void images(std::vector<Draft>& drafts) {
+std::vector<Draft> images() {
+  std::vector<Draft> drafts;
   const Margin bias{.value = image_bias};
   drafts.push_back({"image", "image == analytic", "mean(picture) == analytic",
                     fmt::format("bias(picture) == {:.17g}", image_bias), bias});
@@ -234,6 +236,8 @@ void images(std::vector<Draft>& drafts) {
   drafts.push_back({"image", "image within x of analytic",
                     fmt::format("bias(picture) within {0:.17g} of {0:.17g}", image_bias),
                     within + "analytic"});
+  for (Draft& draft : drafts) draft.alone = classical_replicates;
+  return drafts;
 }
 
 std::vector<Draft> drafts_of(const Facts& facts) {
@@ -241,14 +245,14 @@ std::vector<Draft> drafts_of(const Facts& facts) {
   means(facts, drafts);
   variances(facts, drafts);
   laws_themselves(facts, drafts);
-  images(drafts);
+  for (Draft& draft : images()) drafts.push_back(std::move(draft));
   return drafts;
 }
 
 TestEntry test_of(const std::string& claim, const Draft& draft) {
   TestEntry test{.name = claim, .id = "calibration/" + claim, .claim = parse_claim(claim, {})};
   test.cost = draft.cost;
-  if (draft.method == "slope") {
+  if (test.claim.left.slope) {
     test.over = Sweep{
         "scale", {Value::scalar("1"), Value::scalar("2"), Value::scalar("4"), Value::scalar("8")}};
   }
@@ -266,9 +270,7 @@ CalibrationCase case_of(const Draft& draft, const CalibrationScope& scope) {
   CalibrationCase made{.method = draft.method, .question = draft.question};
   made.alone = test_of(draft.true_claim, draft);
   made.alone->method = draft.method;
-  const bool of_images = draft.method == "image";
-  made.alone->secondaries =
-      scope.samples.value_or(of_images ? classical_replicates : classical_samples);
+  made.alone->secondaries = scope.samples.value_or(draft.alone);
   made.proof = made.alone->claim.relation == Relation::within;
   if (!draft.is_default) return made;
   made.true_claim = planned(draft.true_claim, draft, scope);

@@ -359,14 +359,14 @@ const std::vector<MethodRow> table{
      Keeps::values,
      law_against_law,
      {.power_is_known = false, .from_pilot = FromPilot::atoms}},
-    {two_sample_cells,
+    {"chi-square-two-sample",
      "chi-square of two: one or two coordinates together, in cells",
      [](const Question& q) {
        return q.kind == QuestionKind::same_law || q.kind == QuestionKind::same_cells;
      },
      Keeps::points,
      cells_of_two,
-     {.from_pilot = FromPilot::cells}},
+     {.joins_channels = true, .from_pilot = FromPilot::cells}},
     {"chi-square-fit", "chi-square: draws against their declared density, in cells", of_whole_draws,
      Keeps::cells, cells_of_density},
     {"log-cost", "normal law of the logarithm of a cost",
@@ -441,6 +441,11 @@ const std::vector<std::string>& method_names() {
     return each;
   }();
   return names;
+}
+
+bool joins_channels(const std::string& method) {
+  return std::ranges::any_of(
+      table, [&](const MethodRow& row) { return row.name == method && row.is.joins_channels; });
 }
 
 std::vector<Method> methods_for(const Question& question) {

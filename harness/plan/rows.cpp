@@ -28,6 +28,8 @@ using stats::GateState;
 
 // In fewer rows the gates of independence miss strong dependence.
 constexpr std::size_t fewest_in_order_to_tell = 100;
+// Of fewer no method of means keeps its level: nobody is told to force one.
+constexpr std::size_t fewest_to_force = 20;
 // Student's t on fewer batch means is off (Glynn and Iglehart 1990).
 constexpr std::size_t fewest_batches = 20;
 
@@ -186,11 +188,11 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
                       .limit = static_cast<double>(fewest_in_order_to_tell),
                       .state = rows < fewest_in_order_to_tell ? "red" : "green"}));
     if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
-    // A forced method runs unchecked, but no method takes the variance of a single row.
+    // A forced method runs unchecked.
     const std::string forced =
-        rows < 2 ? ""
-                 : fmt::format("; if they are independent, add {}",
-                               written_key(*question.test, "test", plan.method.name));
+        rows < fewest_to_force ? ""
+                               : fmt::format("; if they are independent, add {}",
+                                             written_key(*question.test, "test", plan.method.name));
     reason = fmt::format(
         "`{}` has {} row{}, and it takes {} to see that they do not depend on each other: give "
         "more{}",

@@ -7,6 +7,7 @@
 
 #include "estimators/ready_made.h"
 #include "harness/draws/sampler_setup.h"
+#include "harness/language/method_names.h"
 #include "harness/question/question_claims.h"
 #include "harness/question/question_image.h"
 #include "harness/sampling/recorded_run.h"
@@ -157,7 +158,7 @@ void require_plane(const Question& question) {
   throw InputError(question.test->place_of("test"),
                    fmt::format("`{}` counts in cells of one or two coordinates, the same of both "
                                "sides, which have {} and {}; name one channel of each",
-                               two_sample_cells, first, second));
+                               *question.test->method, first, second));
 }
 
 /// The compared marginals, as "u, v".
@@ -189,7 +190,7 @@ Question about_distribution(const TestEntry& test, const Estimators& estimators)
   const Claim& claim = test.claim;
   const Source& source = claim.left.source;
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
-    const bool cells = test.method == two_sample_cells;
+    const bool cells = test.method && joins_channels(*test.method);
     Question question{
         .test = &test,
         .kind = cells ? QuestionKind::same_cells : QuestionKind::same_law,
@@ -391,7 +392,8 @@ std::vector<Margin> margins_of(const TestEntry& test) {
 std::string missing_per_cent(const Margin& margin, double size) {
   if (margin.relative || !(size > 0) || margin.value <= size) return "";
   return fmt::format(
-      "{0:g} is larger than the reference, {1:.3g}: for {0:g} per cent write `{0:g}%`; if so much is "
+      "{0:g} is larger than the reference, {1:.3g}: for {0:g} per cent write `{0:g}%`; if so much "
+      "is "
       "meant, `{2:.0f}%`",
       margin.value, size, std::ceil(100 * margin.value / size));
 }

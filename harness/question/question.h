@@ -60,9 +60,6 @@ enum class QuestionKind {
   slope           ///< A power law; each subject is a point of the sweep.
 };
 
-/// This method turns a claim about two laws into one about cells of all their channels together.
-inline constexpr const char* two_sample_cells = "chi-square-two-sample";
-
 /// A claim, bound to the suite's estimators.
 struct Question {
   const TestEntry* test;

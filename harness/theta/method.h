@@ -91,6 +91,7 @@ struct MethodTraits {
   bool excludes_larger = true;      ///< Refutes "theta is larger" at some sample size.
   bool scores = false;              ///< The estimate does not show its standard error.
   bool power_is_known = true;       ///< A formula gives the power.
+  bool joins_channels = false;      ///< compares all channels of two estimators together
   FromPilot from_pilot = FromPilot::nothing;
   std::optional<stats::ExactMethod> plans = {};  ///< Planning of an exact method of a mean.
 };

@@ -248,10 +248,15 @@ TEST(CommandLine, NamesWhatIsMissingOrTooMuch) {
             "`assay check` tests one claim; a suite is run by `assay run a.yaml`");
   EXPECT_EQ(refused({"check", "mean(a)", "==", "3"}),
             "`==` is one argument too many; quote the claim: `assay check 'mean(a) == 3'`");
-  EXPECT_EQ(refused({"list"}), "`assay list` needs `plugins` or `tests`; see `assay list --help`");
+  EXPECT_EQ(
+      refused({"list"}),
+      "`assay list` needs one of plugins, tests, methods, quantities, laws, gates, reports; see "
+      "`assay list --help`");
   EXPECT_EQ(refused({"list", "tests"}), "`assay list` needs a suite file; see `assay list --help`");
   EXPECT_EQ(refused({"list", "plugins", "a.yaml"}), "`assay list plugins` takes no suite");
-  EXPECT_EQ(refused({"describe"}), "`assay describe` needs a plugin; see `assay describe --help`");
+  EXPECT_EQ(refused({"describe"}),
+            "`assay describe` needs a plugin, a method, a quantity or a law; see "
+            "`assay describe --help`");
   EXPECT_EQ(refused({"replay", "r.json"}),
             "`assay replay` needs a test, as `assay list tests SUITE` prints them; see `assay "
             "replay --help`");

@@ -350,7 +350,7 @@ TEST(PictureClaims, ADamagedFileIsAnErrorWithItsName) {
   const reports::Record record = run_files({suite});
   const reports::Test& test = record.suites[0].tests[0];
   EXPECT_EQ(test.verdict, Verdict::error);
-  EXPECT_THAT(test.message, HasSubstr("`b` stopped in the pilot at "));
+  EXPECT_THAT(test.message, HasSubstr("`b` stopped in the pilot: "));
   EXPECT_THAT(test.message, HasSubstr(file));
   EXPECT_THAT(test.message, HasSubstr("damaged or cut short"));
 }
