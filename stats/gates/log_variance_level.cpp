@@ -9,8 +9,6 @@
 namespace assay::stats {
 namespace {
 
-constexpr double largest_exponent = 700;
-
 // Least |B| as a share of the skewness's and the bend's parts together. It stands for the next
 // order where the two cancel. The two parts differ by a seventh of their sum for normal values.
 // Costs are often of few outcomes, and need a quarter (measurements.md).
@@ -42,14 +40,6 @@ double slope_of_both(const SixthOrderShape& x, const SixthOrderShape& y, double 
   const double of_y = std::max(0.0, y.kurtosis - 1) / allocation;
   if (of_x + of_y == 0) return 0;
   return slope(x, of_x / (of_x + of_y)) + slope(y, of_y / (of_x + of_y)) / std::sqrt(allocation);
-}
-
-double factor(double slope, PlannedLogVariance plan) {
-  check::at_least({"log_variance_level_factor", "count"}, plan.count, 2);
-  check::positive({"log_variance_level_factor", "critical_value"}, plan.critical_value);
-  const double cube = plan.critical_value * plan.critical_value * plan.critical_value;
-  const double exponent = slope * cube / std::sqrt(static_cast<double>(plan.count));
-  return std::exp(std::min(exponent, largest_exponent));
 }
 
 std::uint64_t needed(double slope, double critical_value, double level_factor) {
@@ -100,16 +90,6 @@ SixthOrderShape averaged(const SixthOrderShape& shape, std::uint64_t count) {
           .kurtosis = k4 + 3,
           .fifth = k5 + 10 * k3,
           .sixth = k6 + 15 * k4 + 10 * k3 * k3 + 15};
-}
-
-double log_variance_level_factor(const SixthOrderShape& x, PlannedLogVariance plan) {
-  return factor(slope(x, 1), plan);
-}
-
-double log_variance_level_factor(const SixthOrderShape& x, const SixthOrderShape& y,
-                                 PlannedLogVariance plan) {
-  check::positive({"log_variance_level_factor", "allocation"}, plan.allocation);
-  return factor(slope_of_both(x, y, plan.allocation), plan);
 }
 
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, double critical_value,

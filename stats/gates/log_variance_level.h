@@ -21,29 +21,18 @@ SixthOrderShape sixth_order_shape(std::span<const double> values);
 // The shape of means of `count` such values, by their cumulants: kappa_r / count^(r / 2 - 1).
 SixthOrderShape averaged(const SixthOrderShape& shape, std::uint64_t count);
 
-// A planned test of one sample of `count` values, or of two. The second has count * allocation.
-struct PlannedLogVariance {
-  std::uint64_t count = 2;
-  double critical_value = 0;
-  double allocation = 1;
-};
-
-// The factor exp(|B| x^3) by which the worse tail of the test of ln s2 departs from nominal.
+// The smallest count at which the worse tail of the test of ln s2 departs from nominal by a factor
+// of at most `level_factor` (> 1). The factor is exp(|B| x^3) at critical value x.
 //   B = (g / 3 - c / 2) / sqrt n.
 // Here psi = (x - mean)^2 / variance - 1 has variance c^2 = kurtosis - 1. Its skewness is g =
 // (sixth - 3 kurtosis + 2) / c^3. The term g / 3 is that of the Studentised mean of psi
 // (self-normalised moderate deviations: Jing, Shao & Wang 2003). The term c / 2 is the bend of the
 // logarithm. If the two nearly cancel the next order rules. So |B| is at least a seventh of (|g| /
-// 3 + c / 2) / sqrt n. With two samples each B is weighted by its share of the variance of the
-// difference to the power 3/2. Their absolute values add up, which is a bound. The factor is 1 for
-// a two-valued law at 1/2.
-double log_variance_level_factor(const SixthOrderShape& x, PlannedLogVariance plan);
-double log_variance_level_factor(const SixthOrderShape& x, const SixthOrderShape& y,
-                                 PlannedLogVariance plan);
-
-// The smallest count at which that factor is at most `level_factor` (> 1).
+// 3 + c / 2) / sqrt n. The factor is 1 for a two-valued law at 1/2.
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, double critical_value,
                                       double level_factor = 1.25);
+// The same with two samples, the second of count * allocation. Each B is weighted by its share of
+// the variance of the difference to the power 3/2. Their absolute values add up, which is a bound.
 std::uint64_t values_for_log_variance(const SixthOrderShape& x, const SixthOrderShape& y,
                                       double critical_value, double level_factor = 1.25,
                                       double allocation = 1);

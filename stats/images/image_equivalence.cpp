@@ -120,26 +120,7 @@ ASSAY_VECTOR_COPIES void squared_norms(const Estimates& b, Block& out, std::size
   for (std::size_t i = 0; i < size; ++i) term[i] = b.mean[i] * b.mean[i] - b.squared_error[i];
 }
 
-// Each fills in its terms of a block. Terms of the first `kinds_of_a` kinds depend on a.
-struct Absolute {
-  static constexpr std::size_t kinds_of_a = 1;
-  void operator()(const Estimates& a, const Estimates& b, Terms<1>& out, std::size_t size) const {
-    squared_differences(a, b, out[0], size);
-  }
-};
-
-struct Relative {
-  static constexpr std::size_t kinds_of_a = 1;
-  double constant;
-  double elements;
-  void operator()(const Estimates& a, const Estimates& b, Terms<1>& out, std::size_t size) const {
-    squared_differences(a, b, out[0], size);
-    for (std::size_t i = 0; i < size; ++i) {
-      out[0][i] /= elements * (b.mean[i] * b.mean[i] + constant);
-    }
-  }
-};
-
+// The terms of a block. Those of the first `kinds_of_a` kinds depend on a.
 struct BiasAndNorm {
   static constexpr std::size_t kinds_of_a = 1;
   void operator()(const Estimates& a, const Estimates& b, Terms<2>& out, std::size_t size) const {
@@ -148,33 +129,12 @@ struct BiasAndNorm {
   }
 };
 
-Relative relative_term(const ImageExtent& extent, double constant) {
-  check::positive({"relative_bias", "constant"}, constant);
-  return {constant, static_cast<double>(extent.elements())};
-}
-
 template <class Real>
 StackBlock<Real> block_of(const char* function, const ImageStack<Real>& stack) {
   return {function, stack};
 }
 ReferenceBlock block_of(const char* function, const ImageReference& reference) {
   return {function, reference};
-}
-
-template <std::size_t count, class Real, class Second, class Term>
-Jackknife<count> jackknife_of(const char* function, const ImageStack<Real>& a, const Second& b,
-                              const Term& term, const ForEach& for_each = one_by_one) {
-  check::same_extent(function, a.extent, b.extent);
-  RunningJackknife<count> sums;
-  sums.add({0, a.extent.elements()}, block_of(function, a), block_of(function, b), term, for_each);
-  return sums.finish(Term::kinds_of_a);
-}
-
-template <class Real, class Second, class Term>
-SquaredBias bias_of(const char* function, const ImageStack<Real>& a, const Second& b,
-                    const Term& term) {
-  const auto sums = jackknife_of<1>(function, a, b, term);
-  return {sums.whole[0], std::sqrt(sums.covariance(0, 0)), sums.degrees()};
 }
 
 ImageDistance distance_of(const Jackknife<2>& sums) {
@@ -188,42 +148,15 @@ ImageDistance distance_of(const Jackknife<2>& sums) {
 
 template <class Real, class Second>
 ImageDistance distance_of(const ImageStack<Real>& a, const Second& b, const ForEach& for_each) {
-  return distance_of(jackknife_of<2>("image_distance", a, b, BiasAndNorm{}, for_each));
-}
-
-template <class Real, class Second>
-TestResult equivalence_of(const ImageStack<Real>& a, const Second& b, double margin) {
-  check::positive({"image_equivalence", "margin"}, margin);
-  return squared_margin_test(distance_of(a, b, one_by_one), margin * margin);
+  constexpr const char* function = "image_distance";
+  check::same_extent(function, a.extent, b.extent);
+  RunningJackknife<2> sums;
+  sums.add({0, a.extent.elements()}, block_of(function, a), block_of(function, b), BiasAndNorm{},
+           for_each);
+  return distance_of(sums.finish(BiasAndNorm::kinds_of_a));
 }
 
 }  // namespace
-
-template <class Real>
-SquaredBias squared_bias(const ImageStack<Real>& a, const ImageStack<Real>& b) {
-  return bias_of("squared_bias", a, b, Absolute{});
-}
-template <class Real>
-SquaredBias squared_bias(const ImageStack<Real>& a, const ImageReference& b) {
-  return bias_of("squared_bias", a, b, Absolute{});
-}
-
-template <class Real>
-SquaredBias relative_bias(const ImageStack<Real>& a, const ImageStack<Real>& b, double constant) {
-  return bias_of("relative_bias", a, b, relative_term(a.extent, constant));
-}
-template <class Real>
-SquaredBias relative_bias(const ImageStack<Real>& a, const ImageReference& b, double constant) {
-  return bias_of("relative_bias", a, b, relative_term(a.extent, constant));
-}
-
-Interval squared_bias_interval(const SquaredBias& bias, double confidence) {
-  check::inside_unit({"squared_bias_interval", "confidence"}, confidence);
-  const double half =
-      student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, bias.degrees) *
-      bias.standard_error;
-  return {bias.estimate - half, bias.estimate + half, confidence};
-}
 
 template <class Real>
 ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b,
@@ -274,26 +207,11 @@ TestResult squared_margin_test(const ImageDistance& distance, double squared_mar
   return {t, {"student-t", {distance.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
 }
 
-template <class Real>
-TestResult image_equivalence(const ImageStack<Real>& a, const ImageStack<Real>& b, double margin) {
-  return equivalence_of(a, b, margin);
-}
-template <class Real>
-TestResult image_equivalence(const ImageStack<Real>& a, const ImageReference& b, double margin) {
-  return equivalence_of(a, b, margin);
-}
-
-#define ASSAY_FOR_REAL(Real)                                                                       \
-  template SquaredBias squared_bias(const ImageStack<Real>&, const ImageStack<Real>&);             \
-  template SquaredBias squared_bias(const ImageStack<Real>&, const ImageReference&);               \
-  template SquaredBias relative_bias(const ImageStack<Real>&, const ImageStack<Real>&, double);    \
-  template SquaredBias relative_bias(const ImageStack<Real>&, const ImageReference&, double);      \
-  template ImageDistance image_distance(const ImageStack<Real>&, const ImageStack<Real>&,          \
-                                        const ForEach&);                                           \
-  template ImageDistance image_distance(const ImageStack<Real>&, const ImageReference&,            \
-                                        const ForEach&);                                           \
-  template TestResult image_equivalence(const ImageStack<Real>&, const ImageStack<Real>&, double); \
-  template TestResult image_equivalence(const ImageStack<Real>&, const ImageReference&, double)
+#define ASSAY_FOR_REAL(Real)                                                              \
+  template ImageDistance image_distance(const ImageStack<Real>&, const ImageStack<Real>&, \
+                                        const ForEach&);                                  \
+  template ImageDistance image_distance(const ImageStack<Real>&, const ImageReference&,   \
+                                        const ForEach&)
 ASSAY_FOR_REAL(float);
 ASSAY_FOR_REAL(double);
 #undef ASSAY_FOR_REAL

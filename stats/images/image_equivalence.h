@@ -7,36 +7,13 @@
 namespace assay::stats {
 
 // Squared norm of the bias E a - E b of two images, without the noise of their means:
-//   U = sum over elements w ((mean a - mean b)^2 - va - vb),    E U = sum w (E a - E b)^2.
+//   U = sum over elements ((mean a - mean b)^2 - va - vb),    E U = sum (E a - E b)^2.
 // Here va and vb are the squared errors of the means, or se^2 of a reference. U may be negative.
-// The standard error is the jackknife over replicates, each stack's left out in turn (Efron & Stein
-// 1981: on average not too small). It allows for correlated elements. Degrees: the smaller count of
-// replicates, less one. A reference's own error is subtracted, but the variance that it adds is not
-// included; image_reference_error.h adds that. All throw std::domain_error as welch_z does.
-struct SquaredBias {
-  double estimate = 0;
-  double standard_error = 0;
-  double degrees = 0;
-};
-
-// w = 1.
-template <class Real>
-SquaredBias squared_bias(const ImageStack<Real>& a, const ImageStack<Real>& b);
-template <class Real>
-SquaredBias squared_bias(const ImageStack<Real>& a, const ImageReference& b);
-
-// Relative mean squared error: w = 1 / (elements (b^2 + constant)). Here b is the mean of the
-// second image, or the reference. The constant is above 0, in squared units of the image.
-template <class Real>
-SquaredBias relative_bias(const ImageStack<Real>& a, const ImageStack<Real>& b, double constant);
-template <class Real>
-SquaredBias relative_bias(const ImageStack<Real>& a, const ImageReference& b, double constant);
-
-// Student's interval around the estimate. Throws for a confidence outside (0, 1).
-Interval squared_bias_interval(const SquaredBias& bias, double confidence);
-
-// The squared bias beside the squared norm that a margin is relative to. N = sum (mean b^2 - vb) is
-// unbiased for ||E b||^2. The jackknife gives the covariance of the two.
+// Beside it stands the squared norm that a margin is relative to: N = sum (mean b^2 - vb) is
+// unbiased for ||E b||^2. Variances and covariance are the jackknife's over replicates, each
+// stack's left out in turn (Efron & Stein 1981: on average not too small). It allows for correlated
+// elements. Degrees: the smaller count of replicates, less one. A reference's own error is
+// subtracted, but the variance that it adds is not included; image_reference_error.h adds that.
 struct ImageDistance {
   double squared_bias = 0;
   double squared_norm = 0;
@@ -63,11 +40,5 @@ ImageDistance with_norm(ImageDistance distance, double squared_norm);
 // A negative squared margin only serves to invert for an interval of U / N. ZeroVariance for a zero
 // standard error.
 TestResult squared_margin_test(const ImageDistance& distance, double squared_margin);
-
-// The same for ||E a - E b|| >= margin ||E b||. Throws for a margin that is not positive.
-template <class Real>
-TestResult image_equivalence(const ImageStack<Real>& a, const ImageStack<Real>& b, double margin);
-template <class Real>
-TestResult image_equivalence(const ImageStack<Real>& a, const ImageReference& b, double margin);
 
 }  // namespace assay::stats

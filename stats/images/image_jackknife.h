@@ -165,7 +165,7 @@ class RunningJackknife {
       std::copy(sums_.whole.begin() + kinds_of_a, sums_.whole.end(), without.begin() + kinds_of_a);
     }
     for (const double sum : sums_.whole) {
-      if (!std::isfinite(sum)) check::fail({"squared_bias", "sum over the image"}, sum, "finite");
+      if (!std::isfinite(sum)) check::fail({"image_distance", "sum over the image"}, sum, "finite");
     }
     return sums_;
   }

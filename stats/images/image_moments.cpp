@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "stats/basics/check.h"
 #include "stats/basics/vector_copies.h"
 
 namespace assay::stats {
@@ -78,61 +77,7 @@ std::size_t moments_of_block(const ImageStack<Real>& stack, std::size_t first, M
   return count;
 }
 
-template <class Real>
-inline void welford(std::span<const Real> image, MomentArrays to, double inverse_count) {
-  const Real* const values = image.data();
-  double* const __restrict mean = to.mean.data();
-  double* const __restrict m2 = to.m2.data();
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    const double value = static_cast<double>(values[i]);
-    const double delta = value - mean[i];
-    mean[i] += delta * inverse_count;
-    m2[i] += delta * (value - mean[i]);
-  }
-}
-
-ASSAY_VECTOR_COPIES void add_image(std::span<const float> image, MomentArrays to, double inverse) {
-  welford(image, to, inverse);
-}
-ASSAY_VECTOR_COPIES void add_image(std::span<const double> image, MomentArrays to, double inverse) {
-  welford(image, to, inverse);
-}
-
 }  // namespace
-
-template <class Real>
-void ImageMoments::add(std::span<const Real> image) {
-  if (image.size() != mean.size()) {
-    check::fail({"ImageMoments::add", "size of the image"}, image.size(), "that of the moments");
-  }
-  ++count;
-  add_image(image, {mean, m2}, 1 / static_cast<double>(count));
-}
-
-template void ImageMoments::add(std::span<const float>);
-template void ImageMoments::add(std::span<const double>);
-
-void ImageMoments::merge(const ImageMoments& other) {
-  if (other.mean.size() != mean.size()) {
-    check::fail({"ImageMoments::merge", "size of the other"}, other.mean.size(), "that of this");
-  }
-  if (other.count == 0) return;
-  const double na = static_cast<double>(count);
-  const double nb = static_cast<double>(other.count);
-  const double share = nb / (na + nb);
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    const double delta = other.mean[i] - mean[i];
-    mean[i] += delta * share;
-    m2[i] += other.m2[i] + delta * delta * na * share;
-  }
-  count += other.count;
-}
-
-double ImageMoments::squared_error(std::size_t element) const {
-  check::at_least({"ImageMoments::squared_error", "count"}, count, 2);
-  const double n = static_cast<double>(count);
-  return m2.at(element) / (n * (n - 1));
-}
 
 template <class Real>
 void moments_of_range(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,

@@ -10,6 +10,7 @@
 #include "stats/basics/errors.h"
 #include "stats/basics/vector_copies.h"
 #include "stats/gates/normal_test.h"
+#include "stats/images/image_moments.h"
 #include "stats/means/student_t.h"
 #include "stats/means/welch_t.h"
 #include "stats/tails/t_to_z.h"
@@ -90,15 +91,6 @@ void load(const ImageStack<Real>& stack, ElementRange range, Side& side) {
   scale(side, {static_cast<double>(stack.images.size())}, size);
 }
 
-void load(const ImageMoments& moments, ElementRange range, Side& side) {
-  const auto copy = [&](const std::vector<double>& from, Block& to) {
-    std::copy(from.data() + range.first, from.data() + range.last, to.begin());
-  };
-  copy(moments.mean, side.mean);
-  copy(moments.m2, side.squared_error);
-  scale(side, {static_cast<double>(moments.count)}, range.last - range.first);
-}
-
 void load(const ImageReference& reference, ElementRange range, Side& side) {
   side.inverse_degrees = 0;
   for (std::size_t i = range.first; i < range.last; ++i) {
@@ -129,8 +121,6 @@ void check_range(std::size_t elements, std::size_t first, std::size_t size) {
                 "at most " + std::to_string(elements));
   }
 }
-
-void check_moments(const ImageMoments& moments) { check::replicates("welch_z", moments.count); }
 
 template <class Real>
 Moments element_moments(const ImageStack<Real>& stack, std::size_t element) {
@@ -173,22 +163,6 @@ WelchCounts welch_z(const ImageStack<Real>& a, const ImageReference& b, std::siz
   check::image_reference("welch_z", b);
   check::same_extent("welch_z", a.extent, b.extent);
   check_range(a.extent.elements(), first, z.size());
-  return z_of_range(a, b, first, z);
-}
-
-WelchCounts welch_z(const ImageMoments& a, const ImageMoments& b, std::size_t first,
-                    std::span<double> z) {
-  check_moments(a);
-  check_moments(b);
-  check_range(std::min(a.mean.size(), b.mean.size()), first, z.size());
-  return z_of_range(a, b, first, z);
-}
-
-WelchCounts welch_z(const ImageMoments& a, const ImageReference& b, std::size_t first,
-                    std::span<double> z) {
-  check_moments(a);
-  check::image_reference("welch_z", b);
-  check_range(std::min(a.mean.size(), b.value.size()), first, z.size());
   return z_of_range(a, b, first, z);
 }
 

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "stats/images/image.h"
-#include "stats/images/image_moments.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
@@ -33,10 +32,6 @@ WelchCounts welch_z(const ImageStack<Real>& a, const ImageStack<Real>& b, std::s
                     std::span<double> z);
 template <class Real>
 WelchCounts welch_z(const ImageStack<Real>& a, const ImageReference& b, std::size_t first,
-                    std::span<double> z);
-WelchCounts welch_z(const ImageMoments& a, const ImageMoments& b, std::size_t first,
-                    std::span<double> z);
-WelchCounts welch_z(const ImageMoments& a, const ImageReference& b, std::size_t first,
                     std::span<double> z);
 
 // One element's T and its exact tails. Throws ZeroVariance where neither side varies.

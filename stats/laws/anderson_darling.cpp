@@ -46,14 +46,6 @@ double log_limit_upper(double x) {
   return std::min(0.0, std::log(sum) - x);
 }
 
-void check_sorted(const char* function, std::span<const double> sorted) {
-  check::finite({function, "smallest value"}, sorted.front());
-  check::finite({function, "largest value"}, sorted.back());
-  if (!std::is_sorted(sorted.begin(), sorted.end())) {
-    check::fail({function, "values"}, sorted.size(), "sorted ascending");
-  }
-}
-
 // A2 with u_i moved towards (2i - 1) / 2n by `error` at most.
 double least_statistic(std::span<const double> given, double error) {
   const std::size_t n = given.size();
@@ -75,16 +67,6 @@ double least_statistic(std::span<const double> given, double error) {
   return -size - sum / size;
 }
 
-std::vector<double> continuous_probabilities(std::span<const double> sorted,
-                                             const ContinuousLaw& law) {
-  check::at_least({"anderson_darling", "values"}, sorted.size(), 5);
-  check_sorted("anderson_darling", sorted);
-  if (law.left_limit) {
-    throw std::domain_error("anderson_darling: the law has atoms, must be continuous");
-  }
-  return probabilities(sorted, law);
-}
-
 }  // namespace
 
 double log_anderson_darling_upper(double x, std::uint64_t n) {
@@ -93,19 +75,6 @@ double log_anderson_darling_upper(double x, std::uint64_t n) {
   const double correction = std::max(0.0, (x - 1) / 5) / static_cast<double>(n);
   return std::max(std::min(0.0, log_limit_upper(x) + std::log1p(correction)),
                   std::numeric_limits<double>::lowest());
-}
-
-double anderson_darling_statistic(std::span<const double> sorted, const ContinuousLaw& law) {
-  return least_statistic(continuous_probabilities(sorted, law), 0);
-}
-
-TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law) {
-  return anderson_darling(sorted, law, 0);
-}
-
-TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law,
-                            double error) {
-  return anderson_darling(Probabilities{continuous_probabilities(sorted, law)}, error);
 }
 
 TestResult anderson_darling(Probabilities at, double error) {

@@ -19,21 +19,15 @@ namespace assay::stats {
 // n < 5, x not finite.
 double log_anderson_darling_upper(double x, std::uint64_t n);
 
-// A2 = -n - (1/n) sum (2i - 1) (ln u_i + ln(1 - u_{n+1-i})), u = F(x). It weighs the tails more
-// than Kolmogorov and Smirnov's distance does. `sorted` ascends. The law must be continuous: a law
-// with a left_limit is refused, because atoms invalidate the law of A2. A value where F is 0 or 1
-// is impossible under the null hypothesis, and A2 is then the largest double. Throws
-// std::domain_error: fewer than 5 values, unsorted, non-finite, cdf outside [0, 1].
-double anderson_darling_statistic(std::span<const double> sorted, const ContinuousLaw& law);
-
-// Null hypothesis: the sample follows the law. log_p_upper is the p-value, log_p_lower 0.
-TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law);
-
-// The same for a law known up to `error` >= sup |law - given|. The statistic is the least A2 over
-// all u_i within error of F(x_i). So p is an upper bound over all such laws. A2 falls as u_i nears
-// (2i - 1) / 2n, the only minimum of its term. Also throws if error is negative or not finite.
-TestResult anderson_darling(std::span<const double> sorted, const ContinuousLaw& law, double error);
-// The same where the F(x_i) are known, in the values' order. Throws as above.
+// Null hypothesis: the sample follows a continuous law, known up to `error` >= sup |law - given|.
+// `at` holds u_i = F(x_i) of the sorted values.
+//   A2 = -n - (1/n) sum (2i - 1) (ln u_i + ln(1 - u_{n+1-i})).
+// It weighs the tails more than Kolmogorov and Smirnov's distance does. The statistic is the least
+// A2 over all u_i within error of F(x_i). So p is an upper bound over all such laws. A2 falls as
+// u_i nears (2i - 1) / 2n, the only minimum of its term. A value where even then F is 0 or 1 is
+// impossible under the null hypothesis, and A2 is the largest double. log_p_upper is the p-value,
+// log_p_lower 0. Throws std::domain_error: fewer than 5 values, probabilities outside [0, 1], a
+// negative or infinite error.
 TestResult anderson_darling(Probabilities at, double error);
 
 }  // namespace assay::stats

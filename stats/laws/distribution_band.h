@@ -2,11 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
-
-#include "stats/basics/two_sizes.h"
-#include "stats/tails/test_result.h"
 
 namespace assay::stats {
 
@@ -18,9 +14,8 @@ namespace assay::stats {
 
 // A point at which the path is looked at: z_i = i / points, i = 1 .. points - 1.
 struct BandPoint {
-  double z = 0;            // Probability under the null law. Two samples: of the pooled sample.
-  std::uint64_t rank = 0;  // Two samples: the number of pooled values up to here. One sample: 0.
-  std::uint64_t low = 0;   // Smallest and largest count inside the band.
+  double z = 0;           // Probability under the null law.
+  std::uint64_t low = 0;  // Smallest and largest count inside the band.
   std::uint64_t high = 0;
 };
 
@@ -35,33 +30,10 @@ struct DistributionBand {
 // std::domain_error: n < 1, points < 2, confidence outside (0, 1).
 DistributionBand ecdf_band(std::uint64_t n, std::size_t points, double confidence);
 
-// Band for the number of x among the first r_i = i (m + n) / points pooled sorted values, rounded.
-// If both samples have one continuous law it is hypergeometric. m, n >= 1.
-DistributionBand ecdf_band(TwoSizes sizes, std::size_t points, double confidence);
-
 // The pointwise error gamma at which intervals of Clopper & Pearson (binomial.h) hold their law all
 // together with this confidence. They stand at points - 1 equally spaced order statistics of n
 // values. It is the band's gamma above, exact up to n = 1000. Beyond, gamma falls to a limit like 1
 // / sqrt(n). The limit is given, extrapolated from n = 1000 and 4000. Throws as ecdf_band.
 double simultaneous_error(std::uint64_t n, std::size_t points, double confidence);
-
-struct BandTest {
-  TestResult test;
-  BandPoint worst;  // Point of the smallest pointwise error. Its band is that at this error.
-  std::uint64_t count = 0;  // Count observed there.
-};
-
-// Null hypothesis: the values are independent and uniform on [0, 1], as probability transforms of a
-// continuous law are. The statistic gamma is the smallest over the points of twice the smaller
-// binomial tail. log_p_upper = ln P(gamma as small), exact. Below 1e-200 the p-value is the sum of
-// the pointwise ones, (points - 1) gamma. log_p_lower is 0. Throws std::domain_error: unsorted
-// values or values outside [0, 1], points < 2.
-BandTest band_test(std::span<const double> sorted_uniforms, std::size_t points);
-
-// Null hypothesis: two independent samples of one law. Each r_i is moved up to the end of its group
-// of ties. There the law given the pooled values is hypergeometric, ties or not, so the test is
-// exact.
-BandTest band_test(std::span<const double> sorted_x, std::span<const double> sorted_y,
-                   std::size_t points);
 
 }  // namespace assay::stats

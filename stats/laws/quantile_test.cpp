@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "stats/basics/check.h"
-#include "stats/planning/planning.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -206,32 +205,6 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
     }
   };
   return {end(rejected_below, middle - reach), end(rejected_above, middle + reach), confidence};
-}
-
-std::optional<std::uint64_t> quantile_sample_size(const QuantilePlan& plan) {
-  planning::check_rates("quantile_sample_size", plan.rates);
-  check::inside_unit({"quantile_sample_size", "allow"}, plan.allow);
-  check::inside_unit({"quantile_sample_size", "detect"}, plan.detect);
-  if (plan.detect == plan.allow) {
-    check::fail({"quantile_sample_size", "detect"}, plan.detect, "different from allow");
-  }
-  // Too many values below v, or by symmetry too few.
-  const bool many = plan.detect > plan.allow;
-  const double null = many ? plan.allow : 1 - plan.allow;
-  const double truth = many ? plan.detect : 1 - plan.detect;
-  const double log_level = planning::log_tail_level(plan.rates);
-  const auto enough = [&](double size) {
-    const auto n = static_cast<std::uint64_t>(size);
-    const std::uint64_t critical = largest_kept({n, null}, log_level) + 1;
-    if (critical > n) return false;
-    return binomial_upper(critical, {n, truth}) >= std::log1p(-plan.rates.beta);
-  };
-  const double z =
-      normal_quantile(planning::critical_tail(plan.rates)) * std::sqrt(null * (1 - null)) +
-      planning::z_upper(plan.rates.beta) * std::sqrt(truth * (1 - truth));
-  const double guess = z * z / (truth - null) / (truth - null);
-  if (guess > planning::most_samples) return std::nullopt;
-  return planning::smallest_sample(enough, guess, 1);
 }
 
 double quantile_standard_deviation(double probability, double density) {

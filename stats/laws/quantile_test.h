@@ -1,10 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 
-#include "stats/planning/power.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
@@ -55,16 +53,6 @@ TestResult quantile_compare(std::span<const double> sorted_x, std::span<const do
 Interval quantile_difference_interval(std::span<const double> sorted_x,
                                       std::span<const double> sorted_y, double probability,
                                       double confidence);
-
-// The smallest n that finds P(X <= v) = detect with power 1 - beta. The test is quantile_test at v
-// of "probability up to v = allow". Exact binomial, one-sided (or alpha / 2 a side), for a law
-// without an atom at v.
-struct QuantilePlan {
-  double allow = 0.5;   // P(X <= v) under the null hypothesis.
-  double detect = 0.6;  // P(X <= v) to be found, on either side.
-  ErrorRates rates;
-};
-std::optional<std::uint64_t> quantile_sample_size(const QuantilePlan& plan);
 
 // Standard deviation of one observation in the normal limit of a sample quantile, sqrt(q (1 - q)) /
 // density. Pass it to normal_sample_size to plan in units of the value.

@@ -39,11 +39,4 @@ Interval clopper_pearson(Successes observed, double confidence) {
           all ? 1 : beta_quantile({Tail::upper, log_tail}, {k + 1, n - k}), confidence};
 }
 
-double unseen_probability_bound(std::uint64_t trials, double log_error) {
-  check::at_least({"unseen_probability_bound", "trials"}, trials, 1);
-  if (!(log_error < 0))
-    check::fail({"unseen_probability_bound", "log_error"}, log_error, "below 0");
-  return -std::expm1(log_error / static_cast<double>(trials));
-}
-
 }  // namespace assay::stats

@@ -18,8 +18,4 @@ TestResult binomial(Successes observed, double null_probability);
 // Clopper & Pearson (1934): central interval of P(success), coverage at least `confidence`.
 Interval clopper_pearson(Successes observed, double confidence);
 
-// The largest probability of a value that n observations can have missed. It is the p with (1 -
-// p)^n = exp(log_error). Throws for n = 0 or log_error >= 0.
-double unseen_probability_bound(std::uint64_t trials, double log_error);
-
 }  // namespace assay::stats

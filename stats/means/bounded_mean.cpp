@@ -112,21 +112,6 @@ double log_p_below(const UnitSample& x, UnitMean m) {
   return special::clamp_log(std::log(3.0) + smallest);
 }
 
-// The distance above the mean of the largest m not rejected at log_error. p falls with m.
-double room_above(const UnitSample& x, double log_error) {
-  const auto kept = [&](double room) {
-    return log_p_below(x, {x.mean.above_low + room, x.mean.below_high - room}) > log_error;
-  };
-  if (kept(x.mean.below_high)) return x.mean.below_high;
-  double inside = 0;
-  double outside = x.mean.below_high;
-  for (int halving = 0; halving < 100; ++halving) {
-    const double middle = inside + (outside - inside) / 2;
-    (kept(middle) ? inside : outside) = middle;
-  }
-  return outside;
-}
-
 }  // namespace
 
 TestResult bounded_mean(const Moments& x, Range range, double null_mean) {
@@ -138,16 +123,6 @@ TestResult bounded_mean(const Moments& x, Range range, double null_mean) {
           log_p_below(unit, null),
           log_p_below(unit.mirrored(), null.mirrored()),
           Exactness::exact};
-}
-
-Interval bounded_mean_interval(const Moments& x, Range range, double confidence) {
-  check::inside_unit({"bounded_mean_interval", "confidence"}, confidence);
-  const UnitSample unit = unit_sample("bounded_mean_interval", x, range);
-  const double width = range.high - range.low;
-  const double log_error = std::log((1 - confidence) / 2);
-  const double mean = std::clamp(x.mean, range.low, range.high);
-  return {std::max(range.low, mean - width * room_above(unit.mirrored(), log_error)),
-          std::min(range.high, mean + width * room_above(unit, log_error)), confidence};
 }
 
 }  // namespace assay::stats

@@ -31,7 +31,4 @@ struct Range {
 // mean.
 TestResult bounded_mean(const Moments& x, Range range, double null_mean);
 
-// Central interval of E x by inversion, inside the range; coverage at least `confidence`.
-Interval bounded_mean_interval(const Moments& x, Range range, double confidence);
-
 }  // namespace assay::stats

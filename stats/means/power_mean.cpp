@@ -230,17 +230,4 @@ double equivalence_power(const EquivalencePlan& plan, double n, double effect) {
                     0.0, 1.0);
 }
 
-std::optional<std::uint64_t> equivalence_sample_size(const EquivalencePlan& plan, double effect) {
-  check::finite({"equivalence_sample_size", "effect"}, effect);
-  check::positive({"equivalence_sample_size", "margin"}, plan.margin);
-  if (!(std::abs(effect) < plan.margin)) return std::nullopt;
-  const double gap = plan.margin - std::abs(effect);
-  const double guess =
-      normal_sample_size(plan.standard_deviation, {0, gap},
-                         {plan.alpha, effect == 0 ? plan.beta / 2 : plan.beta, false});
-  if (guess > planning::most_samples) return std::nullopt;
-  const auto enough = [&](double n) { return equivalence_power(plan, n, effect) >= 1 - plan.beta; };
-  return planning::smallest_sample(enough, guess, 2);
-}
-
 }  // namespace assay::stats

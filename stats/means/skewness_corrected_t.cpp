@@ -2,25 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "stats/basics/check.h"
-#include "stats/basics/errors.h"
-#include "stats/basics/interval_end.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
 
-// Hall's transformation with a = skewness of the mean / 6, and its inverse. Neither divides by a.
+// Hall's transformation with a = skewness of the mean / 6, without a division by a.
 double transformed(double t, double a) {
   const double b = a * t;
   return t * (1 + 2 * b + 4 * b * b / 3) + a;
-}
-
-double untransformed(double h, double a) {
-  const double root = std::cbrt(1 + 6 * a * (h - a));
-  return 3 * (h - a) / (root * root + root + 1);  // (root - 1) / (2 a)
 }
 
 struct Law {
@@ -71,28 +63,6 @@ TestResult result_of(double difference, const Law& law) {
   const LogTails tails = student_t_tails(h, law.degrees);
   return {h, {"student-t", {law.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
 }
-
-Interval interval_of(double difference, const Law& law, double confidence) {
-  const double h = student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, law.degrees);
-  return {difference - law.standard_error * untransformed(h, law.a),
-          difference - law.standard_error * untransformed(-h, law.a), confidence};
-}
-
-// ---- Intervals of a ratio
-
-// Distance of E x - ratio E y = 0 beyond its critical value. Negative if it is not rejected.
-struct Excess {
-  const Moments& x;
-  const Moments& y;
-  double confidence;
-
-  double operator()(double ratio) const {
-    const Law law = law_of(x, y, ratio);
-    const double h = transformed(contrast_of_means(x, y, {ratio, 0}) / law.standard_error, law.a);
-    return std::abs(h) -
-           student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, law.degrees);
-  }
-};
 
 // ---- The remaining error
 
@@ -171,30 +141,9 @@ TestResult skewness_corrected_t(const Moments& x, Reference null_mean) {
   return result_of(x.mean_less(null_mean.value), law_of(x, null_mean));
 }
 
-Interval skewness_corrected_t_interval(const Moments& x, Reference reference, double confidence) {
-  check::inside_unit({"skewness_corrected_t_interval", "confidence"}, confidence);
-  return interval_of(x.mean_less(reference.value), law_of(x, reference), confidence);
-}
-
 TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value) {
   check::finite({"skewness_corrected_welch", "offset"}, null_value.offset);
   return result_of(contrast_of_means(x, y, null_value), law_of(x, y, null_value.scale));
-}
-
-Interval skewness_corrected_welch_interval(const Moments& x, const Moments& y, double confidence) {
-  check::inside_unit({"skewness_corrected_welch_interval", "confidence"}, confidence);
-  return interval_of(contrast_of_means(x, y, {}), law_of(x, y, 1), confidence);
-}
-
-Interval skewness_corrected_ratio_interval(const Moments& x, const Moments& y, double confidence) {
-  // Throws for bad arguments, and is unbounded where y is not separated from zero.
-  const Interval plain = welch_ratio_interval(x, y, confidence);
-  if (std::isinf(plain.low) || std::isinf(plain.high)) return plain;
-  const Excess excess{x, y, confidence};
-  const double centre = x.mean / y.mean;
-  const double step = law_of(x, y, centre).standard_error / std::abs(y.mean);
-  return {interval_end(excess, centre, -step) - 1, interval_end(excess, centre, step) - 1,
-          confidence};
 }
 
 double corrected_level_factor(const Moments& x, Reference null_mean, double critical_value) {

@@ -19,21 +19,14 @@ namespace assay::stats {
 // (Hall 1992, "On the removal of skewness by transformation", J. R. Statist. Soc. B 54.) For one
 // sample a = g1 / (6 sqrt n). T_H is referred to Student's t with nu degrees of freedom, not to
 // Hall's normal law. That exceeds the level .001 by a factor 1.9 for 50 normal values. T_H rises
-// with T, so intervals are exact inversions. Asymptotic: use it where corrected_level_factor is
+// with T, so an interval is its exact inversion. Asymptotic: use it where corrected_level_factor is
 // small. All throw as the tests they correct.
 
 // Null hypothesis: E x = null_mean.value.
 TestResult skewness_corrected_t(const Moments& x, Reference null_mean);
-// Central interval of E x - reference.value.
-Interval skewness_corrected_t_interval(const Moments& x, Reference reference, double confidence);
 
 // Null hypothesis: E x - scale E y = offset.
 TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value);
-// Central interval of E x - E y.
-Interval skewness_corrected_welch_interval(const Moments& x, const Moments& y, double confidence);
-// Central interval of E x / E y - 1 by inversion of E x - r E y = 0. Its ends are the rejected
-// ratios nearest the estimate. Unbounded as welch_ratio_interval.
-Interval skewness_corrected_ratio_interval(const Moments& x, const Moments& y, double confidence);
 
 // ---- Validity of the correction
 

@@ -135,13 +135,6 @@ TestResult two_valued_mean(const TwoValued& x, double null_mean) {
   return result;
 }
 
-Interval two_valued_mean_interval(const TwoValued& x, double confidence) {
-  check_sample("two_valued_mean_interval", x);
-  const Interval share = clopper_pearson(x.high, confidence);
-  const double width = width_of(x.range);
-  return {x.range.low + width * share.low, x.range.low + width * share.high, confidence};
-}
-
 TestResult two_valued_contrast(const TwoValued& x, const TwoValued& y, Contrast null_value) {
   check_sample("two_valued_contrast", x);
   check_sample("two_valued_contrast", y);

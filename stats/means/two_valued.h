@@ -27,8 +27,6 @@ TwoValued two_valued(const Moments& x, Range range);
 // outside the range is impossible: the tail that rejects it has the lowest logarithm. Throws
 // std::domain_error: range empty or infinite, no values, non-finite null mean.
 TestResult two_valued_mean(const TwoValued& x, double null_mean);
-// Clopper & Pearson's interval of E x; coverage at least `confidence`.
-Interval two_valued_mean_interval(const TwoValued& x, double confidence);
 
 // Null hypothesis: E x - scale E y = offset (1 and d: a difference; r and 0: a ratio). A scale
 // below 0 is one above it of -y. With 0 it is the exact test of E x.

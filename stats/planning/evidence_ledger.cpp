@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "stats/basics/check.h"
 #include "stats/tails/special.h"
-#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
@@ -86,41 +84,12 @@ double log_e_value(const Evidence& total, const LedgerPrior& prior) {
   return log_ratio(total.score, score_variance(total.information, prior));
 }
 
-std::vector<double> log_e_values(std::span<const Evidence> nights, const LedgerPrior& prior) {
-  std::vector<double> values;
-  Evidence total;
-  for (const Evidence& night : nights) {
-    check_evidence(night);
-    total += night;
-    values.push_back(log_e_value(total, prior));
-  }
-  return values;
-}
-
 std::optional<std::size_t> first_alarm(std::span<const double> log_e, double alpha) {
   check::inside_unit({"first_alarm", "alpha"}, alpha);
   const auto found = std::find_if(log_e.begin(), log_e.end(),
                                   [&](double value) { return value >= -std::log(alpha); });
   if (found == log_e.end()) return std::nullopt;
   return static_cast<std::size_t>(found - log_e.begin());
-}
-
-double log_p_anytime(std::span<const double> log_e) {
-  double largest = 0;
-  for (const double value : log_e) largest = std::max(largest, value);
-  return -largest;
-}
-
-double log_e_detector(std::span<const Evidence> nights, const LedgerPrior& prior) {
-  check::at_least({"log_e_detector", "nights"}, nights.size(), 1);
-  std::vector<double> starts;
-  Evidence since;
-  for (auto night = nights.rbegin(); night != nights.rend(); ++night) {
-    check_evidence(*night);
-    since += *night;
-    starts.push_back(log_e_value(since, prior));
-  }
-  return special::log_sum_of(starts);
 }
 
 ChangePoint change_point(std::span<const Evidence> nights, const LedgerPrior& prior) {
@@ -168,27 +137,6 @@ double log_e_from_log_p(double log_p) {
     term *= x / k;
   }
   return std::log(sum);
-}
-
-std::optional<std::uint64_t> nights_to_find(const LedgerPlan& plan) {
-  check_prior(plan.prior);
-  check::positive({"nights_to_find", "information"}, plan.information);
-  check::finite({"nights_to_find", "effect"}, plan.effect);
-  check::inside_unit({"nights_to_find", "alpha"}, plan.alpha);
-  check::inside_unit({"nights_to_find", "beta"}, plan.beta);
-  constexpr std::uint64_t longest = 1'000'000;
-  for (std::uint64_t night = 1; night <= longest; ++night) {
-    const double v = plan.information * static_cast<double>(night);
-    const Widening variance = score_variance(v, plan.prior);
-    // The score at which ln E = -ln alpha, in standard deviations of the score.
-    const double needed = -std::log(plan.alpha) - log_ratio(0, variance);
-    const double curvature = log_ratio(1, variance) - log_ratio(0, variance);
-    const double deviation = std::sqrt(variance.narrow);
-    const double threshold = std::sqrt(needed / curvature) / deviation;
-    const double shift = std::abs(v * plan.effect) / deviation;
-    if (normal_tails(threshold - shift).upper >= std::log1p(-plan.beta)) return night;
-  }
-  return std::nullopt;
 }
 
 }  // namespace assay::stats

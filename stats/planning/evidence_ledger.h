@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -44,18 +43,8 @@ struct LedgerPrior {
 // 1970; Ville 1939). Asymptotic in the size of a night, because its standard error is estimated.
 double log_e_value(const Evidence& total, const LedgerPrior& prior);
 
-std::vector<double> log_e_values(std::span<const Evidence> nights, const LedgerPrior& prior);
-
 // The first night with E >= 1 / alpha.
 std::optional<std::size_t> first_alarm(std::span<const double> log_e, double alpha);
-
-// ln p valid at any time: minus the largest ln E so far, at most 0.
-double log_p_anytime(std::span<const double> log_e);
-
-// Says when theta moved: Shiryaev and Roberts' sum, over every start j, of the E of the nights
-// j..now. While nothing is wrong, alarms at 1 / alpha come on average at most every 1 / alpha
-// nights (e-detector: Shin, Ramdas & Rinaldo 2024). It never needs a reset.
-double log_e_detector(std::span<const Evidence> nights, const LedgerPrior& prior);
 
 // Likelihood of "theta was 0 before night k and normal(0, tau^2) from it on", against "0
 // throughout". The error of the reference is integrated out of both.
@@ -75,17 +64,5 @@ std::vector<std::size_t> credible_nights(const ChangePoint& change, double credi
 // It integrates p^(kappa - 1) kappa (Vovk & Wang 2021, eq. 2): E = (1 - p + p ln p) / (p (ln p)^2).
 // For independent nights add the logarithms.
 double log_e_from_log_p(double log_p);
-
-// The number of equal nights after which an alarm has probability >= 1 - beta when theta = effect.
-// It counts the last night alone, so it is an upper bound. Nothing if the reference's error forbids
-// it or a million nights do not suffice.
-struct LedgerPlan {
-  double information = 1;  // Information of one night.
-  double effect = 1;       // theta to be found.
-  LedgerPrior prior;
-  double alpha = 3e-3;
-  double beta = 0.1;
-};
-std::optional<std::uint64_t> nights_to_find(const LedgerPlan& plan);
 
 }  // namespace assay::stats

@@ -80,22 +80,4 @@ double log_p_over_looks(const LookSchedule& schedule, std::span<const double> lo
   return smallest;
 }
 
-TestResult over_looks(const LookSchedule& schedule, std::span<const TestResult> results) {
-  check_taken("over_looks", schedule, results.size());
-  std::vector<double> lower;
-  std::vector<double> upper;
-  for (const TestResult& result : results) {
-    lower.push_back(result.log_p_lower);
-    upper.push_back(result.log_p_upper);
-  }
-  TestResult combined = results.back();
-  combined.log_p_lower = log_p_over_looks(schedule, lower);
-  combined.log_p_upper = log_p_over_looks(schedule, upper);
-  const bool exact = std::all_of(results.begin(), results.end(), [](const TestResult& result) {
-    return result.exactness == Exactness::exact;
-  });
-  combined.exactness = exact ? Exactness::exact : Exactness::asymptotic;
-  return combined;
-}
-
 }  // namespace assay::stats

@@ -5,8 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "stats/tails/test_result.h"
-
 namespace assay::stats {
 
 // When a growing sample is looked at, and which share of the error each look may spend. The data
@@ -35,9 +33,5 @@ LookSchedule geometric_looks(LookRange range, double growth);
 // first looks, in order. Throws std::domain_error: no look or more than scheduled, a malformed
 // schedule, a log p above 0 or NaN.
 double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p);
-
-// Both one-sided p-values of a method over its looks, each combined as above. Statistic and law are
-// those of the latest look. Exact only if every look is.
-TestResult over_looks(const LookSchedule& schedule, std::span<const TestResult> results);
 
 }  // namespace assay::stats

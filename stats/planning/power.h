@@ -64,32 +64,14 @@ struct EquivalencePlan {
   double beta = 0.01;
 };
 double equivalence_power(const EquivalencePlan& plan, double n, double effect);
-std::optional<std::uint64_t> equivalence_sample_size(const EquivalencePlan& plan, double effect);
 
-// ---- Variances.
-// Effects are ratios (variance over the null variance, or variance x over variance y). The null is
-// ratio <= allow, or ratio in [1/allow, allow] when two-sided; allow >= 1. To plan for small ratios
-// exchange the samples (F) or set `below` (chi-square). With `below` effects are ratios < 1, and
-// the null is ratio >= 1/allow.
-struct VariancePlan {
-  double allow = 1;
-  bool below = false;
-  ErrorRates rates;
-};
-double chi_square_variance_power(const VariancePlan& plan, double n, double ratio);
-double chi_square_variance_detectable(const VariancePlan& plan, double n);
-std::optional<std::uint64_t> chi_square_variance_sample_size(const VariancePlan& plan,
-                                                             double detect);
+// Of two samples.
 struct SampleSizes {
   double x = 2;
   double y = 2;
 };
 
-double f_ratio_power(const VariancePlan& plan, SampleSizes sizes, double ratio);
-double f_ratio_detectable(const VariancePlan& plan, SampleSizes sizes);
-// Size of each of two equal samples.
-std::optional<std::uint64_t> f_ratio_sample_size(const VariancePlan& plan, double detect);
-
+// ---- Variances: log-variance. Effects are ratios of variances; allow >= 1.
 // Normal approximation with SE^2 = (kurtosis_x - 1) / n_x [+ (kurtosis_y - 1) / n_y]. With
 // kurtosis_y = 1 it is the one-sample test. n is n_x, and n_y = n_x * allocation.
 struct LogVariancePlan {

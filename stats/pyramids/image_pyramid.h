@@ -14,17 +14,6 @@ namespace assay::stats {
 // signs. The energy is a sum of squares over all elements. One family p-value covers all of it
 // (image_family.h).
 
-// A map of z-values of known variance: independent and N(0, 1) under the null hypothesis. A cell of
-// k tested elements has z = sum z / sqrt k. The energy sum z^2 is chi-square, upper tail. Exact.
-// Non-zero `untested` marks elements that are equal constants; empty means all are tested. An
-// infinite z is a certain difference. Throws std::domain_error for wrong sizes and NaN.
-struct ZMap {
-  ImageExtent extent;
-  std::span<const double> z;
-  std::span<const unsigned char> untested = {};
-};
-ImageFamily image_pyramid(const ZMap& map);
-
 // Replicates of two images, or of one against a reference. Null hypothesis: E a = E b at every
 // element. Asymptotic (Welch's law).
 //

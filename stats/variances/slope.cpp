@@ -204,12 +204,6 @@ SlopeTest slope_test(const SlopeData& unordered, double null_slope) {
            Exactness::asymptotic}};
 }
 
-double log_p_of_slope(const SlopeData& unordered, double null_slope) {
-  check::finite({"log_p_of_slope", "null_slope"}, null_slope);
-  const SlopeData data = ordered(unordered);
-  return log_p(Misfit(data)(null_slope), degrees_of(data));
-}
-
 SlopeSet slope_set(const SlopeData& unordered, double confidence) {
   check::inside_unit({"slope_set", "confidence"}, confidence);
   const SlopeData data = ordered(unordered);

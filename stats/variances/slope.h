@@ -48,9 +48,6 @@ struct SlopeTest {
 };
 SlopeTest slope_test(const SlopeData& data, double null_slope);
 
-// Only log_p_equal, without the search that the one-sided values need.
-double log_p_of_slope(const SlopeData& data, double null_slope);
-
 // The smallest interval that holds every slope with p > 1 - confidence. Confidence is that of the
 // equality test, not split over two sides. Slopes outside are rejected at 1 - confidence each. So
 // the interval at confidence 1 - beta rejects "slope outside [low, high]" at beta.

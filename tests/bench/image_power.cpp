@@ -1,8 +1,7 @@
 // Power and false alarms of the family of an image pair (stats/image_pyramid.h). Prints one line a
 // row: name, repetitions, rates. Seed 1.
 
-//   image_power known REPETITIONS           Defects at 128 x 128, variances known.
-//   image_power stacks REPETITIONS          The same with 16 and 64 replicates a side.
+//   image_power stacks REPETITIONS          Defects at 128 x 128, 16 and 64 replicates a side.
 //   image_power level REPETITIONS [LAW]     False alarms under six laws.
 //   image_power samples REPETITIONS         2 million samples of a 48 x 48 image.
 
@@ -30,23 +29,6 @@ constexpr double alpha = 1e-3;
 
 bool rejects(const stats::ImageFamily& family, double level) {
   return family.log_p <= std::log(level);
-}
-
-void known(std::size_t repetitions) {
-  const stats::ImageExtent extent{128, 128, 1};
-  std::uint32_t test_case = 9000;
-  for (const Defect& defect : tests::defects()) {
-    Philox random(test_case++);
-    std::size_t found = 0;
-    for (std::size_t i = 0; i < repetitions; ++i) {
-      std::vector<double> z = tests::normals(random, extent.elements());
-      tests::add_defect(z, extent, defect, random);
-      found += rejects(stats::image_pyramid({extent, z}), alpha);
-    }
-    std::printf("known | %-24s | %.3f\n", defect.name,
-                static_cast<double>(found) / static_cast<double>(repetitions));
-    std::fflush(stdout);
-  }
 }
 
 // The defects in units of the standard error of a - b, which needs two stacks of unit law scaled.
@@ -233,10 +215,9 @@ void samples(std::size_t repetitions) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string what = argc > 1 ? argv[1] : "known";
+  const std::string what = argc > 1 ? argv[1] : "stacks";
   const std::size_t repetitions = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 400;
   const std::size_t only = argc > 3 ? std::strtoul(argv[3], nullptr, 10) : repetitions;
-  if (what == "known") known(repetitions);
   if (what == "stacks") stacks(repetitions);
   if (what == "level") level(repetitions, only);
   if (what == "samples") samples(repetitions);

@@ -54,34 +54,26 @@ TEST(SixthOrderShape, OfMeansOfExponentialsIsAGammaLaws) {
 
 // For the normal law psi = chi2_1 - 1 has skewness sqrt 8: B = (sqrt 8 / 3 - sqrt 2 / 2) / sqrt n.
 TEST(LogVarianceLevel, IsTheFormula) {
-  const PlannedLogVariance plan{.count = 1000, .critical_value = 2.3263};
   const double cube = 2.3263 * 2.3263 * 2.3263;
-  const double of_normal = (std::sqrt(8) / 3 - std::sqrt(2) / 2) / std::sqrt(1000);
-  EXPECT_NEAR(log_variance_level_factor(normal, plan), std::exp(of_normal * cube), 1e-12);
-  EXPECT_NEAR(log_variance_level_factor(exponential, plan),
-              std::exp(2.121320343559643 / std::sqrt(1000) * cube), 1e-9);
-  EXPECT_NEAR(log_variance_level_factor(normal, normal, plan),
-              std::exp(2 * std::pow(0.5, 1.5) * of_normal * cube), 1e-12);
-}
-
-TEST(LogVarianceLevel, NeedsTheCountAtWhichItsFactorIsTheLimit) {
-  const std::uint64_t count = values_for_log_variance(exponential, 3);
-  EXPECT_LE(log_variance_level_factor(exponential, {.count = count, .critical_value = 3}), 1.25);
-  EXPECT_GT(log_variance_level_factor(exponential, {.count = count - 1, .critical_value = 3}),
-            1.25);
+  const double unit = cube / std::log(1.01);
+  const auto count = [&](double slope) { return std::ceil(slope * unit * slope * unit); };
+  const double of_normal = std::sqrt(8) / 3 - std::sqrt(2) / 2;
+  EXPECT_NEAR(static_cast<double>(values_for_log_variance(normal, 2.3263, 1.01)), count(of_normal),
+              1);
+  EXPECT_NEAR(static_cast<double>(values_for_log_variance(exponential, 2.3263, 1.01)),
+              count(2.121320343559643), 1);
+  EXPECT_NEAR(static_cast<double>(values_for_log_variance(normal, normal, 2.3263, 1.01)),
+              count(2 * std::pow(0.5, 1.5) * of_normal), 1);
   EXPECT_EQ(values_for_log_variance({.kurtosis = 1, .sixth = 1}, 3), 2U) << "two values, evenly";
 }
 
 TEST(LogVarianceLevel, OfUnequalSizesIsThatOfTheSamplesExchanged) {
   for (const double allocation : {1.6, 4.0}) {
-    const double one = log_variance_level_factor(
-        exponential, normal, {.count = 4000, .critical_value = 3, .allocation = allocation});
-    const double other =
-        log_variance_level_factor(normal, exponential,
-                                  {.count = static_cast<std::uint64_t>(4000 * allocation),
-                                   .critical_value = 3,
-                                   .allocation = 1 / allocation});
-    EXPECT_NEAR(one / other, 1, 1e-12);
+    const auto one =
+        static_cast<double>(values_for_log_variance(exponential, normal, 3, 1.01, allocation));
+    const auto other =
+        static_cast<double>(values_for_log_variance(normal, exponential, 3, 1.01, 1 / allocation));
+    EXPECT_NEAR(other / one, allocation, 1e-4);
   }
   // With far more values of the second only the first is uncertain.
   EXPECT_NEAR(static_cast<double>(values_for_log_variance(exponential, normal, 3, 1.25, 1e12)) /

@@ -55,17 +55,6 @@ TEST(Looks, AProbabilityOfZeroStaysFinite) {
   EXPECT_EQ(log_p_over_looks(schedule, std::vector<double>{lowest}), lowest);
 }
 
-TEST(Looks, CombineBothSidesOfAMethodAndKeepTheLatestStatistic) {
-  const auto schedule = geometric_looks({1, 2}, 2);
-  const std::vector<TestResult> results{{3, {"normal", {}}, -1, -9, Exactness::exact},
-                                        {2, {"normal", {}}, -2, -8, Exactness::asymptotic}};
-  const TestResult combined = over_looks(schedule, results);
-  EXPECT_DOUBLE_EQ(combined.log_p_lower, -2 + std::log(2));
-  EXPECT_DOUBLE_EQ(combined.log_p_upper, -9 + std::log(2));
-  EXPECT_EQ(combined.statistic, 2);
-  EXPECT_EQ(combined.exactness, Exactness::asymptotic);
-}
-
 TEST(Looks, RefuseWhatCannotKeepTheLevel) {
   EXPECT_THROW(geometric_looks({0, 4}, 2), std::domain_error);
   EXPECT_THROW(geometric_looks({5, 4}, 2), std::domain_error);
@@ -99,7 +88,9 @@ TEST(Looks, KeepTheLevelOverTenDoublings) {
   const auto calibration =
       calibrate(Experiment{301, 10000, Shape::at_most_uniform}, [&](Philox& random) {
         return looked_at(random, schedule, [&](const auto& results) {
-          return log_p_two_sided(over_looks(schedule, results));
+          std::vector<double> log_p;
+          for (const TestResult& result : results) log_p.push_back(log_p_two_sided(result));
+          return log_p_over_looks(schedule, log_p);
         });
       });
   EXPECT_TRUE(calibration.ok) << calibration.text();

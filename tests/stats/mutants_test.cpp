@@ -205,7 +205,7 @@ TEST(Mutants, ABinomialTailWithoutItsOwnCountIsCaught) {
 TEST(Mutants, EquivalenceByTheSmallerOfTwoPValuesIsCaught) {
   expect_caught({121, 20000, Shape::at_most_uniform}, [](Philox& random) {
     const Moments x = draw_moments(60, [&] { return .5 + random.normal(); });
-    const Equivalence both = student_t_equivalence(x, {0}, {-.5, .5});
+    const Equivalence both = equivalence(student_t(x, {-.5}), student_t(x, {.5}));
     return std::min(both.at_low.log_p_upper, both.at_high.log_p_lower);
   });
 }

@@ -9,10 +9,9 @@
 #include "stats/cells/chi_square_fit.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/equivalence.h"
+#include "stats/means/student_t.h"
 #include "stats/means/welch_t.h"
 #include "stats/planning/power.h"
-#include "stats/variances/chi_square_variance.h"
-#include "stats/variances/f_ratio.h"
 #include "stats/variances/log_variance.h"
 #include "tests/stats/samples.h"
 
@@ -81,22 +80,6 @@ TEST(PowerSimulation, WelchWithUnequalVariances) {
     return log_p_two_sided(welch_t(x, y, {}));
   });
   EXPECT_NEAR(rate, welch_power(plan, static_cast<double>(n), 1), bound(10000));
-}
-
-TEST(PowerSimulation, Variances) {
-  const VariancePlan plan{.rates = {.01, .2, false}};
-  const auto n = chi_square_variance_sample_size(plan, 2).value();
-  const double chi = rate_of({205}, [&](Philox& random) {
-    const double sd = std::sqrt(2);
-    return chi_square_variance(draw_moments(n, [&] { return sd * random.normal(); }), 1)
-        .log_p_upper;
-  });
-  EXPECT_NEAR(chi, chi_square_variance_power(plan, static_cast<double>(n), 2), bound(10000));
-  const double f = rate_of({206}, [&](Philox& random) {
-    const Moments x = draw_moments(30, [&] { return 1.5 * random.normal(); });
-    return f_ratio(x, draw_moments(40, [&] { return random.normal(); }), 1).log_p_upper;
-  });
-  EXPECT_NEAR(f, f_ratio_power(plan, {30, 40}, 2.25), bound(10000));
 }
 
 TEST(PowerSimulation, LogVarianceRatio) {
@@ -207,11 +190,11 @@ TEST(PowerSimulation, ChiSquareFit) {
 }
 
 TEST(PowerSimulation, Equivalence) {
-  const EquivalencePlan plan{.margin = .5, .alpha = .01, .beta = .2};
-  const auto n = equivalence_sample_size(plan, .1).value();
+  const EquivalencePlan plan{.margin = .5, .alpha = .01};
+  constexpr std::size_t n = 70;
   const double rate = rate_of({210}, [&](Philox& random) {
     const Moments x = draw_moments(n, [&] { return .1 + random.normal(); });
-    return student_t_equivalence(x, {0}, {-.5, .5}).log_p;
+    return equivalence(student_t(x, {-.5}), student_t(x, {.5})).log_p;
   });
   EXPECT_NEAR(rate, equivalence_power(plan, static_cast<double>(n), .1), bound(10000));
 }

@@ -89,11 +89,12 @@ TEST(TabulatedLaw, SaysHowWrongItIsWhenItsEvaluationsRunOut) {
 // A disc's marginal: 2 sqrt(r^2 - (x - 1/2)^2) / (pi r^2), whose density jumps along a curve.
 TEST(TabulatedLaw, OfAMarginalAcrossAJumpIsItsClosedForm) {
   constexpr double r = .3;
-  const PlaneDensity disc{.x = {0, 1}, .y = {0, 1}, .values = point_by_point([](double x, double y) {
-                                                      return std::hypot(x - .5, y - .5) < r
-                                                                 ? 1 / (std::numbers::pi * r * r)
-                                                                 : 0;
-                                                    })};
+  const PlaneDensity disc{
+      .x = {0, 1}, .y = {0, 1}, .values = point_by_point([](double x, double y) {
+                                  return std::hypot(x - .5, y - .5) < r
+                                             ? 1 / (std::numbers::pi * r * r)
+                                             : 0;
+                                })};
   AdaptiveQuadrature rule({.tolerance = 1e-7});
   const auto table = tabulate(marginal_density(disc, rule), cut({0, 1}, {0, 1}, 32), rule);
   const auto law = [](double x) {

@@ -40,11 +40,6 @@ TEST(TwoValuedMean, IsTheExactBinomialTest) {
   const TestResult direct = binomial({3, 50}, .07);
   EXPECT_NEAR(result.log_p_lower, direct.log_p_lower, 1e-12);
   EXPECT_NEAR(result.log_p_upper, direct.log_p_upper, 1e-12);
-  const Interval interval = two_valued_mean_interval(hits(3, 50, {-1, 3}), .99);
-  EXPECT_NEAR(two_valued_mean(hits(3, 50, {-1, 3}), interval.low).log_p_upper, std::log(.005),
-              1e-9);
-  EXPECT_NEAR(two_valued_mean(hits(3, 50, {-1, 3}), interval.high).log_p_lower, std::log(.005),
-              1e-9);
 }
 
 TEST(TwoValuedMean, AnImpossibleMeanIsRejectedOutright) {

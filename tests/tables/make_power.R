@@ -13,14 +13,6 @@ for (alpha in c(0.05, 0.01, 1e-4)) for (n in c(5, 20, 200)) for (d in c(0.1, 0.5
     row("student_t", alpha, n, 0, d, as.integer(side == "two.sided"), one)
     row("welch", alpha, n, n, d, as.integer(side == "two.sided"), two)
   }
-  ratio <- 1 + d
-  row("chi_square_variance", alpha, n, 0, ratio, 0,
-      pchisq(qchisq(alpha, n - 1, lower.tail = FALSE) / ratio, n - 1, lower.tail = FALSE))
-  row("chi_square_variance", alpha, n, 0, ratio, 1,
-      pchisq(qchisq(alpha / 2, n - 1, lower.tail = FALSE) / ratio, n - 1, lower.tail = FALSE) +
-        pchisq(qchisq(alpha / 2, n - 1) / ratio, n - 1))
-  row("f_ratio", alpha, n, n + 10, ratio, 0,
-      pf(qf(alpha, n - 1, n + 9, lower.tail = FALSE) / ratio, n - 1, n + 9, lower.tail = FALSE))
   row("chi_square_fit", alpha, n * 20, 15, d / 2, 0,
       pchisq(qchisq(alpha, 15, lower.tail = FALSE), 15, ncp = n * 20 * (d / 2)^2, lower.tail = FALSE))
 }

@@ -153,10 +153,9 @@ def ledger_rows():
             law = lambda c: stats.multivariate_normal(np.zeros(count - start), c).logpdf(y[start:])
             return law(base + tau**2 * np.outer(moved, moved)) - law(base)
 
-        detector = math.log(sum(math.exp(ratio(j, j)) for j in range(count)))
         changes = np.array([ratio(j) for j in range(count)])
         share = np.exp(changes) / np.exp(changes).sum()
-        yield [k, count, tau, u, ratio(0), detector, int(changes.argmax()), changes.max(), share[2]]
+        yield [k, count, tau, u, ratio(0), int(changes.argmax()), changes.max(), share[2]]
 
 
 def leaving(start, steps, low, high):
@@ -178,19 +177,6 @@ def band_chain(n, points):
     return [stats.binom(n, v) for v in z], steps, n
 
 
-def pooled_chain(m, n, points):
-    ranks = sorted({round(i * (m + n) / points) for i in range(1, points)} - {0, m + n})
-    x = np.arange(m + 1)
-    steps, before = [], 0
-    for rank in ranks:
-        left = m + n - before
-        steps.append(np.array([[stats.hypergeom.pmf(b - a, left, max(m - a, 0), rank - before)
-                                if before - a <= n and a <= before else 0.0
-                                for b in x] for a in x]))
-        before = rank
-    return [stats.hypergeom(m + n, m, rank) for rank in ranks], steps, m
-
-
 def band_limits(laws, gamma, largest):
     x = np.arange(largest + 1)
     low, high = [], []
@@ -202,10 +188,9 @@ def band_limits(laws, gamma, largest):
 
 
 def band_rows():
-    """Transition matrices and every step of gamma, for one sample and for two."""
-    for case, arguments in enumerate(((20, 10), (100, 100), (12, 15, 9))):
-        chain = band_chain(*arguments) if len(arguments) == 2 else pooled_chain(*arguments)
-        laws, steps, largest = chain
+    """Transition matrices and every step of gamma."""
+    for case, arguments in enumerate(((20, 10), (100, 100))):
+        laws, steps, largest = band_chain(*arguments)
         start = [1.0] + [0.0] * largest
         x = np.arange(largest + 1)
         tails = np.concatenate([np.minimum(law.cdf(x), law.sf(x - 1)) for law in laws])
@@ -246,6 +231,6 @@ if __name__ == "__main__":
           efficiency_rows())
     write("slope", "case,logs,null,misfit,p,low,high,power", slope_rows())
     write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
-    write("ledger", "k,nights,tau,u,log_e,detector,night,change,share_2", ledger_rows())
+    write("ledger", "k,nights,tau,u,log_e,night,change,share_2", ledger_rows())
     write("band", "case,confidence,step,next_step,coverage", band_rows())
     write("anderson_darling", "x,log_upper", anderson_darling_limit())
