@@ -274,8 +274,6 @@ std::string_view Document::line(int number) const {
   return number < 1 || index >= lines_.size() ? std::string_view{} : lines_[index];
 }
 
-Document read_yaml_file(const std::string& file) { return {file, read_text_file(file)}; }
-
 Document read_yaml_text(std::string_view text, const std::string& file) { return {file, text}; }
 
 namespace {

@@ -39,11 +39,10 @@ class Document {
   Value root_;
 };
 
-/// Reads one YAML document. InputError at its place for any of these. Unreadable file or not UTF-8.
+/// Reads one YAML document. InputError at its place in `file` for any of these. Text not UTF-8.
 /// Syntax error, no document or several, tab in indentation, nesting deeper than 64. Key that is
 /// repeated, empty or not text. Merge key `<<`, anchor, alias or tag. Key or list item without a
 /// value.
-Document read_yaml_file(const std::string& file);
 Document read_yaml_text(std::string_view text, const std::string& file);
 
 /// Reads one line of YAML flow from a command line. `where` is the place of every node and error.

@@ -24,20 +24,6 @@ std::string of_tests(int some, int total) {
 
 }  // namespace
 
-std::string outcome_word(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::passed:
-      return "ok";
-    case Outcome::failed:
-      return "not ok";
-    case Outcome::inconclusive:
-      return "undecided";
-    case Outcome::skipped:
-      break;
-  }
-  return "not run";
-}
-
 std::string mark(Outcome outcome) {
   switch (outcome) {
     case Outcome::passed:

@@ -8,10 +8,7 @@
 
 namespace assay::reports {
 
-/// "ok", "not ok", "undecided", "not run".
-std::string outcome_word(Outcome);
-
-/// ✓ ✗ ? – : the same in one column.
+/// ✓ ✗ ? – for ok, not ok, undecided and not run, in one column.
 std::string mark(Outcome);
 
 /// The verdict with what was expected of it, where that is not pass: "fail (as expected)",

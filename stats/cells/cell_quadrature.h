@@ -17,13 +17,6 @@ struct PlaneDensity {
   std::size_t y_panels = 1;
 };
 
-template <class Density>
-PlaneValues point_by_point(Density density) {
-  return [density](std::span<const double> x, std::span<const double> y, std::span<double> values) {
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = density(x[i], y[i]);
-  };
-}
-
 // The density at x, integrated over part of the other coordinate. `density` must outlive the
 // result.
 AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, AdaptiveQuadrature& rule);

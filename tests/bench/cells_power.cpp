@@ -14,11 +14,13 @@
 #include "stats/cells/adaptive_cells.h"
 #include "stats/cells/chi_square_fit.h"
 #include "tests/philox.h"
+#include "tests/stats/point_by_point.h"
 
 namespace {
 
 using namespace assay::stats;
 using assay::tests::Philox;
+using assay::tests::point_by_point;
 
 constexpr int points = 10'000;
 constexpr int samples = 400;

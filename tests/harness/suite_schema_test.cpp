@@ -21,7 +21,8 @@ const std::string suites = std::string(ASSAY_SOURCE_DIR) + "/suites/";
 
 /// The schema of a test's key. JSON is YAML.
 Value schema_of(const std::string& key) {
-  static const Document schema = read_yaml_file(suites + "suite.schema.json");
+  const std::string file = suites + "suite.schema.json";
+  static const Document schema = read_yaml_text(read_text_file(file), file);
   return *schema.root().find("definitions")->find("test")->find("properties")->find(key);
 }
 

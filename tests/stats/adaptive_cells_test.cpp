@@ -10,6 +10,7 @@
 
 #include "stats/cells/chi_square_fit.h"
 #include "tests/stats/calibration.h"
+#include "tests/stats/point_by_point.h"
 
 namespace assay::stats {
 namespace {
@@ -17,6 +18,7 @@ namespace {
 using tests::calibrate;
 using tests::Experiment;
 using tests::Philox;
+using tests::point_by_point;
 
 std::vector<double> even(std::size_t cells) {
   std::vector<double> borders;

@@ -8,10 +8,12 @@
 #include <stdexcept>
 
 #include "stats/cells/plane_cells.h"
+#include "tests/stats/point_by_point.h"
 
 namespace assay::stats {
 namespace {
 
+using tests::point_by_point;
 using Line = AdaptiveQuadrature::Line;
 
 // Jumps along a circle and has a ridge.

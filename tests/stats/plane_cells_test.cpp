@@ -8,9 +8,12 @@
 #include <stdexcept>
 
 #include "stats/cells/adaptive_cells.h"
+#include "tests/stats/point_by_point.h"
 
 namespace assay::stats {
 namespace {
+
+using tests::point_by_point;
 
 /// The grid's own cells.
 CellProbabilities cell_probabilities(const PlaneGrid& grid, const PlaneDensity& density,

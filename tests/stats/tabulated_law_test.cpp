@@ -8,9 +8,12 @@
 #include <stdexcept>
 
 #include "stats/cells/plane_cells.h"
+#include "tests/stats/point_by_point.h"
 
 namespace assay::stats {
 namespace {
+
+using tests::point_by_point;
 
 /// The largest distance of a table to its law, at 20001 places.
 template <class Law>
