@@ -7,7 +7,6 @@
 
 #include "stats/basics/check.h"
 #include "stats/laws/band_walk.h"
-#include "stats/means/binomial.h"
 
 namespace assay::stats {
 namespace {
@@ -49,18 +48,6 @@ TestResult proportions(std::uint64_t among_x, std::uint64_t atoms, BandWalk::Poo
 }
 
 }  // namespace
-
-TwoPartTest two_part_ks(std::span<const double> sorted, const AtomLaw& law) {
-  check::unit({"two_part_ks", "probability"}, law.probability);
-  const Parts parts = split(sorted, law.value);
-  TwoPartTest result;
-  result.atoms_x = parts.atoms;
-  result.atom = binomial({parts.atoms, sorted.size()}, law.probability);
-  result.rest =
-      parts.rest.empty() ? nothing_to_say : kolmogorov_smirnov(ks_distance(parts.rest, law.rest));
-  result.log_p = combined(result.atom, result.rest);
-  return result;
-}
 
 TwoPartTest two_part_ks(std::span<const double> sorted_x, std::span<const double> sorted_y,
                         double atom) {

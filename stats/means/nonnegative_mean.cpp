@@ -31,16 +31,6 @@ void NonnegativeMean::add(double value) {
   }
 }
 
-void NonnegativeMean::merge(const NonnegativeMean& other) {
-  if (other.null_mean_ != null_mean_) {
-    check::fail({"NonnegativeMean::merge", "null_mean"}, other.null_mean_, "that of this one");
-  }
-  if (other.count_ == 0) return;
-  count_ += other.count_;
-  mean_ += (other.mean_ - mean_) * (other.count_ / count_);
-  for (std::size_t k = 0; k < scales; ++k) log_wealth_[k] += other.log_wealth_[k];
-}
-
 double NonnegativeMean::log_e() const {
   if (null_mean_ < 0 || (null_mean_ == 0 && mean_ > 0)) return infinity;
   const double largest = *std::max_element(log_wealth_.begin(), log_wealth_.end());

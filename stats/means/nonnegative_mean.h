@@ -16,13 +16,11 @@ namespace assay::stats {
 // is about (E x / m - 1) / Var(x / m). A scale off by sqrt 2 keeps at least .83 of its growth, and
 // the mixture costs at most ln 12. The opposite claim has no test without a bound on the values. A
 // rare large value can make up for what is missing (Bahadur & Savage 1956). So log_p_lower is 0.
-// The products do not depend on the order, so accumulators of one null mean merge.
 class NonnegativeMean {
  public:
   explicit NonnegativeMean(double null_mean);  // Throws std::domain_error: not finite.
 
-  void add(double value);                    // Throws std::domain_error: negative or not finite.
-  void merge(const NonnegativeMean& other);  // Throws std::domain_error: another null mean.
+  void add(double value);  // Throws std::domain_error: negative or not finite.
 
   double log_e() const;
   // Statistic: mean - null_mean; law "bound". A null mean below zero, or zero with a positive value

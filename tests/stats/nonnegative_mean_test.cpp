@@ -38,18 +38,6 @@ TEST(NonnegativeMean, AgreesWithTheProductsMultipliedOut) {
   }
 }
 
-TEST(NonnegativeMean, MergesInAnyOrder) {
-  const auto values = skewed(2, 100);
-  NonnegativeMean first(.9);
-  NonnegativeMean second(.9);
-  for (std::size_t i = 0; i < values.size(); ++i) (i < 30 ? first : second).add(values[i]);
-  second.merge(first);
-  const TestResult whole = nonnegative_mean(values, .9);
-  EXPECT_NEAR(second.result().log_p_upper, whole.log_p_upper, 1e-12);
-  EXPECT_NEAR(second.result().statistic, whole.statistic, 1e-13);
-  EXPECT_THROW(first.merge(NonnegativeMean(.8)), std::domain_error);
-}
-
 TEST(NonnegativeMean, TheLowerLimitIsJustRejected) {
   const auto values = skewed(2, 300);
   const double limit = nonnegative_mean_lower_limit(values, .999);
