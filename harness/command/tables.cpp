@@ -94,12 +94,10 @@ Table law_table() {
 Table gate_table() {
   Table table{"gates", "a gate", {}};
   for (const GateKind& gate : gate_kinds()) {
-    const std::string red =
-        gate.sentence.empty() ? "" : fmt::format(fmt::runtime(gate.sentence), "VALUE", "LIMIT");
+    const std::string red = fmt::format(fmt::runtime(gate.sentence), "VALUE", "LIMIT");
     std::string page = "  A red gate makes the test invalid, unless `test` forces the method.\n";
     if (gate.heavy_tail) page += "  More observations may only show more of the tail.\n";
-    table.rows.push_back(
-        {gate.name, red.empty() ? "independence of the rows of a file" : red, page});
+    table.rows.push_back({gate.name, red, page});
   }
   return table;
 }

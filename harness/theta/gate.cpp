@@ -57,12 +57,20 @@ const std::vector<GateKind>& gate_kinds() {
                    "step is {0} of "
                    "the distance that is rejected, limit {1}; write more digits",
        .says_what_helps = true},
-      {.name = "correlation of successive values"},
-      {.name = "variance of batch means"},
-      {.name = "correlation of values some steps apart"},
-      {.name = "longest repetition"},
-      {.name = "values that occur equally often"},
-      {.name = "tail index", .heavy_tail = true},
+      {.name = "correlation of successive values",
+       .sentence = "each value depends on the one before: correlation {0}, limit {1}"},
+      {.name = "variance of batch means",
+       .sentence =
+           "means of consecutive values vary too much for independent ones: ratio {0}, limit {1}"},
+      {.name = "correlation of values some steps apart",
+       .sentence = "values some steps apart depend on each other: correlation {0}, limit {1}"},
+      {.name = "longest repetition", .sentence = "a run of {0} values occurs twice"},
+      {.name = "values that occur equally often",
+       .sentence = "{0} values occur equally often, limit {1}: they are no independent draws"},
+      {.name = "tail index",
+       .sentence =
+           "the tail is too heavy for the moments that the claim needs: index {0}, limit {1}",
+       .heavy_tail = true},
   };
   return table;
 }
