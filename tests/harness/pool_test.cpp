@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "harness/base/progress.h"
+#include "harness/question/pilot.h"
 #include "harness/sampling/scheduler.h"
 #include "stats/basics/for_each.h"
 
@@ -356,6 +357,23 @@ TEST(Pool, PicturesOfFilesHaveTheSumsOfOneByOne) {
   known->take_known(kept->kept());
   drawn_from(known, 1);
   EXPECT_EQ(&sample_of(*known, 30).summary(), &sample_of(*kept, 30).summary()) << "sums are shared";
+}
+
+// A sampler's tests do not read its estimator: the estimator's death is none of theirs.
+TEST(Pilots, FaultOfAnEstimatorIsNotItsSamplers) {
+  Pilots pilots;
+  pilots.add("lamp", Fault{.words = "it burnt out"});
+  EXPECT_NE(pilots.fault("lamp", ""), nullptr);
+  EXPECT_EQ(pilots.fault("lamp", "cells"), nullptr);
+  pilots.add("lamp.cells", Fault{.words = "no filament"});
+  ASSERT_NE(pilots.fault("lamp", "cells"), nullptr);
+  EXPECT_EQ(pilots.fault("lamp", "cells")->words, "no filament");
+}
+
+// An empty text would be taken for no fault.
+TEST(Fault, OfAnExceptionWithoutWordsHasSome) {
+  const auto thrown = std::make_exception_ptr(std::runtime_error(""));
+  EXPECT_EQ(words_of(thrown), "it threw an exception without words");
 }
 
 }  // namespace
