@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "harness/families/evidence_ratio.h"
-#include "harness/families/methods.h"
 #include "harness/theta/constant.h"
 #include "stats/variances/log_variance.h"
 #include "stats/variances/slope.h"

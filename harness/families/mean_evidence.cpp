@@ -77,12 +77,6 @@ constexpr MeanTest corrected{corrected_of_one, corrected_of_two};
 constexpr MeanTest binomial{binomial_of_one, binomial_of_two};
 constexpr MeanTest bounded{bounded_of_one, nullptr};
 
-Interval map_ends(const Interval& interval, const std::function<double(double)>& map) {
-  const double one = map(interval.low);
-  const double other = map(interval.high);
-  return {std::min(one, other), std::max(one, other), interval.confidence};
-}
-
 /// Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
 double log_p_of_no_sign(const Moments& y, const OneMeanTest& test) {
   if (y.m2 == 0) return y.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();

@@ -15,6 +15,7 @@
 #include "harness/families/mean_evidence.h"
 #include "harness/language/method_names.h"
 #include "harness/sampling/recorded_run.h"
+#include "harness/theta/inversion.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
 #include "stats/variances/log_variance.h"
@@ -25,12 +26,6 @@ namespace {
 using stats::Interval;
 using stats::Moments;
 using stats::TestResult;
-
-Interval map_ends(const Interval& interval, const std::function<double(double)>& map) {
-  const double one = map(interval.low);
-  const double other = map(interval.high);
-  return {std::min(one, other), std::max(one, other), interval.confidence};
-}
 
 /// theta = ln(Var x per primary / v0).
 Evidence variance_against_number(bool chi_square, const Method& method, const Question& question,

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/families/methods.h"
 namespace assay::harness {
 namespace {
 

@@ -28,7 +28,7 @@ using stats::GateState;
 
 // In fewer rows the gates of independence miss strong dependence.
 constexpr std::size_t fewest_in_order_to_tell = 100;
-// Of fewer no method of means keeps its level: nobody is told to force one.
+// No method of means keeps its level with fewer rows: nobody is told to force one.
 constexpr std::size_t fewest_to_force = 20;
 // Student's t on fewer batch means is off (Glynn and Iglehart 1990).
 constexpr std::size_t fewest_batches = 20;

@@ -256,18 +256,20 @@ std::optional<double> known_size(const Question& question) {
   const auto add = [&](double value, double error) {
     if (exceeds_its_error(value, error)) largest = std::max(largest, std::abs(value));
   };
-  const std::vector<std::size_t>& first = question.subjects[0].channels;
-  const std::vector<Channel> channels = question.subjects[0].setup->channels();
-  for (std::size_t i = 0; i < question.references.size(); ++i) {
-    const Constant& reference = question.references[i];
-    const double rounding = channels[first[question.pooled() ? 0 : i]].rounding;
-    add(reference.value, std::max(reference.standard_error, rounding));
+  if (!question.references.empty()) {
+    const std::vector<std::size_t>& first = question.subjects[0].channels;
+    const std::vector<Channel> channels = question.subjects[0].setup->channels();
+    for (std::size_t i = 0; i < question.references.size(); ++i) {
+      const Constant& reference = question.references[i];
+      const double rounding = channels[first[question.pooled() ? 0 : i]].rounding;
+      add(reference.value, std::max(reference.standard_error, rounding));
+    }
   }
   if (question.of_means() && question.of_two()) {
     const std::vector<Channel> others = question.subjects[1].setup->channels();
     for (const std::size_t channel : question.subjects[1].channels) {
       const Channel& other = others[channel];
-      add(question.factor * other.mean.value_or(0), question.factor * other.rounding);
+      add(question.factor * other.mean.value_or(0), std::abs(question.factor) * other.rounding);
     }
   }
   return largest > 0 ? std::optional(largest) : std::nullopt;
@@ -275,6 +277,7 @@ std::optional<double> known_size(const Question& question) {
 
 void refuse_missing_per_cent(const Question& question) {
   const bool law = question.test->claim.left.name == QuantityName::distribution;
+  const double size = known_size(question).value_or(0);
   for (const Margin& margin : margins_of(*question.test)) {
     if ((law || question.of_draws()) && margin.value > 1) {
       throw InputError(margin.where,
@@ -282,7 +285,7 @@ void refuse_missing_per_cent(const Question& question) {
                                    "here {:g} per cent is written `{:g}`",
                                    margin.value, margin.value, margin.value / 100));
     }
-    const std::string per_cent = missing_per_cent(margin, known_size(question).value_or(0));
+    const std::string per_cent = missing_per_cent(margin, size);
     if (!per_cent.empty()) throw InputError(margin.where, "the margin " + per_cent);
   }
 }

@@ -1,5 +1,6 @@
 #include "harness/theta/inversion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -37,6 +38,13 @@ stats::Interval interval_by_inversion(const std::function<stats::TestResult(doub
   const auto above = [&](double theta) { return at(theta).log_p_lower > level; };
   const auto below = [&](double theta) { return at(theta).log_p_upper > level; };
   return {end_of(below, around, -1), end_of(above, around, 1), confidence};
+}
+
+stats::Interval map_ends(const stats::Interval& interval,
+                         const std::function<double(double)>& map) {
+  const double one = map(interval.low);
+  const double other = map(interval.high);
+  return {std::min(one, other), std::max(one, other), interval.confidence};
 }
 
 }  // namespace assay::harness

@@ -18,4 +18,7 @@ struct Whereabouts {
 stats::Interval interval_by_inversion(const std::function<stats::TestResult(double)>& at,
                                       const Whereabouts& around, double confidence);
 
+/// The interval of a monotone function of the number, rising or falling.
+stats::Interval map_ends(const stats::Interval& interval, const std::function<double(double)>& map);
+
 }  // namespace assay::harness

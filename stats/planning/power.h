@@ -65,7 +65,7 @@ struct EquivalencePlan {
 };
 double equivalence_power(const EquivalencePlan& plan, double n, double effect);
 
-// Of two samples.
+// How many observations each of two samples has.
 struct SampleSizes {
   double x = 2;
   double y = 2;

@@ -359,7 +359,7 @@ TEST_F(Process, IsNotAskedAThirdTimeForWhatIsKnown) {
   const std::vector<double> all = draw(*setup, 40, 40);
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i], static_cast<double>(i));
   EXPECT_EQ(lines_of(folder_ / "drawn"), 65u + 8);
-  // Of another stream none is known.
+  // The examination drew nothing of another stream.
   draw(*setup, 3, 3, 1, 17);
   EXPECT_EQ(lines_of(folder_ / "drawn"), 65u + 8 + 3);
 }
