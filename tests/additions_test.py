@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Adds a method, a report and an estimator to a copy of the sources: additions_test.py SOURCE BUILD
+"""Adds a quantity, a method, a report and an estimator to a copy: additions_test.py SOURCE BUILD
 
 Each addition is files of its own and lines in one existing file. The changed files are compiled and
 linked with the objects of the build, and the program must offer and use what was added. So an
@@ -36,6 +36,72 @@ Evidence added_evidence(const Method& method, const Question& question, std::siz
                         std::span<const ChannelData> data) {
   return mean_by_t(method, question, channel, data);
 }
+
+}  // namespace assay::harness
+""",
+    "harness/families/added_quantity.h": """#pragma once
+
+#include "harness/theta/theta.h"
+
+namespace assay::harness {
+
+Question bind_second_moment(const TestEntry&, const Estimators&);
+const Theta& theta_of_second_moments();
+
+}  // namespace assay::harness
+""",
+    "harness/families/added_quantity.cpp": """#include "harness/families/added_quantity.h"
+
+#include "harness/families/families.h"
+#include "harness/question/question_sources.h"
+#include "harness/theta/critical.h"
+#include "stats/means/student_t.h"
+
+namespace assay::harness {
+namespace {
+
+/// theta = E x^2 - r.
+Evidence t_of_squares(const Method&, const Question& question, std::size_t channel,
+                      std::span<const ChannelData> data) {
+  stats::Moments squares;
+  for (const double x : data[0].values) squares.add(x * x);
+  const double null = question.references[channel].value;
+  return {.estimate = squares.mean - null,
+          .at = [=](double t) { return stats::student_t(squares, {.value = null + t}); },
+          .interval =
+              [=](double confidence) {
+                return stats::student_t_interval(squares, {.value = null}, confidence);
+              },
+          .quantity = "second moment"};
+}
+
+class SecondMomentTheta final : public Theta {
+ public:
+  SecondMomentTheta() : Theta({.of_single_values = true}) {}
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{
+        {"t-of-squares", "Student's t of the squares", any_question, Keeps::values, t_of_squares}};
+    return table;
+  }
+  std::uint64_t choose(const Question&, const FamilyPlace&, const Pilots&, std::uint64_t,
+                       Plan&) const override {
+    return least_secondaries;
+  }
+  std::optional<std::uint64_t> secondaries(const Question&, const ErrorShare&, const Pilots&,
+                                           const Plan&) const override {
+    return std::nullopt;
+  }
+};
+
+const SecondMomentTheta second_moment_theta;
+
+}  // namespace
+
+Question bind_second_moment(const TestEntry& test, const Estimators& estimators) {
+  return one_or_two(test, second_moment_theta, estimators);
+}
+
+const Theta& theta_of_second_moments() { return second_moment_theta; }
 
 }  // namespace assay::harness
 """,
@@ -81,17 +147,26 @@ std::vector<Entry> analytic_added() {
 # before.
 METHOD_ROW = """    {"added-method",
      "an added test of a mean",
-     [](const Question& q) { return q.kind == QuestionKind::mean_of_one; },
+     [](const Question& q) { return !q.of_two(); },
      Keeps::moments,
      added_evidence},
+"""
+QUANTITY_ROW = """      {.word = "second_moment",
+       .example = "second_moment(a) == 1",
+       .summary = "an added quantity",
+       .bind = bind_second_moment,
+       .theta = &theta_of_second_moments()},
 """
 REPORT_ROW = """      {"added", "added", "an added report",
        [](const Record& record, bool) { return added_report(record); }},
 """
 EDITS = {
-    "harness/families/methods.cpp": (
+    "harness/families/mean.cpp": (
         '#include "harness/families/mean_evidence.h"\n',
-        '#include "harness/families/added_method.h"\n', '    {"F",\n', METHOD_ROW),
+        '#include "harness/families/added_method.h"\n', '      {"batch-means",\n', METHOD_ROW),
+    "harness/families/quantities.cpp": (
+        '#include <algorithm>\n', '#include "harness/families/added_quantity.h"\n',
+        '      {.word = "variance",\n', QUANTITY_ROW),
     "reports/report_formats.cpp": (
         '#include "reports/formats/console.h"\n', '#include "reports/formats/added_report.h"\n',
         '      {"junit",', REPORT_ROW),
@@ -146,7 +221,7 @@ def main():
         objects = []
         for path in [p for p in (*NEW_FILES, *EDITS) if p.endswith(".cpp")] + [
                 "build/estimators/catalogue_list.cpp"]:
-            like = {"harness": "harness/families/methods.cpp",
+            like = {"harness": "harness/families/mean.cpp",
                     "reports": "reports/report_formats.cpp",
                     "estimators": "estimators/analytic/antithetic.cpp",
                     "build": "estimators/analytic/antithetic.cpp"}[path.split("/")[0]]
@@ -171,12 +246,19 @@ def main():
         assert "added-method" in run(assay, "list", "methods")
         assert "an added test of a mean" in run(assay, "describe", "added-method")
         assert "added-method" in run(assay, "check", "--help")
+        assert "t-of-squares" in run(assay, "list", "methods")
+        assert "an added quantity" in run(assay, "describe", "second_moment")
         assert "an added report" in run(assay, "list", "reports")
         assert "analytic/added" in run(assay, "list", "plugins")
         said = run(assay, "check", "mean(analytic/added) == analytic", "--test", "added-method",
                    "--report", "added=-", "--report", "console=/dev/null", "--quiet")
         assert said == "methods: added-method\n", said
-    print("a method, a report and an estimator took a line or two in one file each")
+        claim = "second_moment(analytic/added) == 0.3333333333333333"
+        assert "1 pass" in run(assay, "check", claim), run(assay, "check", claim)
+        slip = subprocess.run([assay, "check", "second_momen(analytic/uniform) == 1"],
+                              capture_output=True, text=True, check=False)
+        assert "second_moment" in slip.stderr, slip.stderr
+    print("a quantity, a method, a report and an estimator took a line or two in one file each")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 """Holds the sources to the layers: layering_test.py SOURCE_FOLDER
 
 Wrong includes between layers and folders, cycles of includes, folders that hold too many files,
-renderer libraries outside estimators/render, words of other layers in stats. It first shows that it
+questions for the kind of a claim or the name of a method outside their tables, renderer libraries outside estimators/render, words of other layers in stats. It first shows that it
 can fail.
 """
 import collections
@@ -21,7 +21,7 @@ MAY_INCLUDE = {
 FOLDERS = {
     "stats": "basics tails planning gates means variances laws cells images pyramids",
     "reports": "record words formats viewer",
-    "harness": "base language suite sampling draws question theta image families plan run record "
+    "harness": "base language suite sampling draws question theta image plan run families record "
                "ledger calibration command googletest",
 }
 MOST_FILES = 40  # in one folder
@@ -79,10 +79,22 @@ METHOD_NAME = re.compile(r'method(?:\(\))?(?:\.name)? *[!=]= *"|method\.name *[!
 
 def compared_names(path, text):
     """A method is asked for its properties. Only the table finds a row by its name."""
-    if path.parts[0] != "harness" or path == pathlib.Path("harness/families/methods.cpp"):
+    if path.parts[0] != "harness" or path == pathlib.Path("harness/theta/methods.cpp"):
         return []
     return [f"`{match.group()}` compares the name of a method"
             for match in METHOD_NAME.finditer(text)]
+
+
+QUANTITY = re.compile(r"theta *[!=]= *&|row->word *[!=]=|row *[!=]= *&|theta_of_\w+\(\)|"
+                      r"dynamic_cast<const \w*Theta")
+
+
+def asked_kinds(path, text):
+    """A claim's theta is asked for what it does. Only its family knows what it is."""
+    if path.parts[0] != "harness" or path.parts[1] == "families":
+        return []
+    return [f"`{match.group()}` asks for the kind of a claim; ask its Theta"
+            for match in QUANTITY.finditer(text)]
 
 
 def largest_cycle(texts):
@@ -121,6 +133,7 @@ def faults(path, text):
     found = [wrong_include(path, include) for include in INCLUDE.findall(text)]
     found += [points_up(path, include) for include in INCLUDE.findall(text)]
     found += compared_names(path, text)
+    found += asked_kinds(path, text)
     if path.parts[0] == "stats":
         found += [f"the word `{match.group()}` in stats"
                   for match in FOREIGN_TO_STATS.finditer(code_only(text))]
@@ -142,6 +155,8 @@ def show_that_it_can_fail():
         ("harness/base/a.cpp", '#include "harness/plan/plan.h"\n'),
         ("harness/base/a.cpp", '#include "harness/elsewhere/plan.h"\n'),
         ("harness/plan/a.cpp", 'if (plan.method.name == "t") return;\n'),
+        ("harness/plan/a.cpp", 'if (question.theta == &theta_of_means()) return;\n'),
+        ("harness/run/a.cpp", 'if (claim.left.row->word == "mean") return;\n'),
     ]
     right = [
         ("stats/a.cpp", "#include <boost/math/distributions.hpp>\n// of a profile, a file\n"),

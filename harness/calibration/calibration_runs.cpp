@@ -11,6 +11,7 @@
 #include "harness/plan/plan.h"
 #include "harness/run/looks.h"
 #include "harness/run/pools.h"
+#include "harness/theta/ask.h"
 
 namespace assay::harness {
 namespace {

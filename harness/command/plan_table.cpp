@@ -10,6 +10,7 @@
 #include "harness/plan/forecast.h"
 #include "harness/run/observation_faults.h"
 #include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
 #include "reports/words/columns.h"
 #include "reports/words/effect.h"
 #include "reports/words/number.h"
@@ -103,8 +104,8 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
   }
   if (!effect) return unknown;
   return plain(
-      reports::margin_text(*effect, {.quantity = test.question.on_log_scale() ? "ln(ratio)" : "",
-                                     .relative = is_relative(test.question, 0)}));
+      reports::margin_text(*effect, {.quantity = test.question.is().logarithm ? "ln(ratio)" : "",
+                                     .relative = test.question.theta->is_relative(test.question, 0)}));
 }
 
 std::string gate_text(const Gate& gate) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "harness/command/describe.h"
-#include "harness/families/methods.h"
+#include "harness/theta/methods.h"
 #include "harness/language/laws.h"
 #include "harness/language/quantities.h"
 #include "harness/theta/gate.h"

@@ -7,6 +7,7 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/law_evidence.h"
+#include "harness/question/declared_range.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/cells/chi_square_two_sample.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "harness/families/evidence_ratio.h"
+#include "harness/families/costs.h"
 #include "harness/theta/inversion.h"
 #include "stats/means/uncertain_reference.h"
 #include "stats/variances/log_efficiency.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
 #include "stats/basics/sorted.h"
 #include "stats/laws/quantile_test.h"
 
@@ -24,7 +24,7 @@ double middle(const std::vector<double>& sorted, double probability) {
 Evidence against_number(const Question& question, std::size_t channel, std::vector<double> values) {
   const double probability = question.test->claim.left.arguments[0];
   const double null = question.references[channel].value;
-  const bool relative = is_relative(question, channel);
+  const bool relative = question.theta->is_relative(question, channel);
   const double unit = relative ? std::abs(null) : 1;
   const double estimate = middle(values, probability);
   const auto at = [values, probability, null, unit](double theta) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/families/evidence_ratio.h"
+#include "harness/families/costs.h"
 #include "harness/theta/constant.h"
 #include "stats/variances/log_variance.h"
 #include "stats/variances/slope.h"
@@ -21,7 +21,10 @@ using stats::SlopePoint;
 // The gate is red below this p, however small the test's level.
 constexpr double least_p_of_fit = 1e-5;
 
-QuantityName name_of(const Question& question) { return question.test->claim.left.name; }
+bool of_costs(const Question& question) { return question.test->claim.left.row->counts_cost; }
+
+/// Each point of a bias has a truth.
+bool of_biases(const Question& question) { return !question.truths.empty(); }
 
 SlopePoint logarithm_of_cost(const Question& question, std::size_t i, const ChannelData& data) {
   const Moments& cost = counted_cost(question, data).cost;
@@ -49,7 +52,7 @@ SlopeData biases(const Question& question, std::size_t channel, std::span<const 
     const Moments& x = data[i].moments;
     SlopePoint point{
         .size = question.sizes[i], .estimate = x.mean, .standard_error = x.standard_error()};
-    if (name_of(question) == QuantityName::bias) {
+    if (of_biases(question)) {
       const Constant truth = truth_of(question, i, channel, data);
       point.estimate -= truth.value;
       if (reference_is_shared(question)) {
@@ -65,14 +68,13 @@ SlopeData biases(const Question& question, std::size_t channel, std::span<const 
 
 SlopeData points_of(const Question& question, std::size_t channel,
                     std::span<const ChannelData> data) {
-  if (name_of(question) == QuantityName::bias || name_of(question) == QuantityName::mean) {
+  if (!question.is().of_spread && !of_costs(question)) {
     return biases(question, channel, data);
   }
   SlopeData slope{.scale = stats::SlopeScale::logarithms};
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    slope.points.push_back(name_of(question) == QuantityName::cost
-                               ? logarithm_of_cost(question, i, data[i])
-                               : logarithm_of_variance(question, i, data[i]));
+    slope.points.push_back(of_costs(question) ? logarithm_of_cost(question, i, data[i])
+                                              : logarithm_of_variance(question, i, data[i]));
   }
   return slope;
 }
@@ -168,7 +170,7 @@ Gate power_law_gate(const Question& question, std::size_t channel,
 
 std::string point_without_spread(const Question& question, std::size_t channel,
                                  std::span<const ChannelData> data) {
-  if (name_of(question) == QuantityName::cost) return "";
+  if (of_costs(question)) return "";
   for (std::size_t i = 0; i < question.compared(); ++i) {
     if (!is_constant(question, i, channel, data[i].moments)) continue;
     return fmt::format(

@@ -215,12 +215,6 @@ void require_points(const Points& points) {
 
 }  // namespace
 
-std::optional<double> no_point_of(const Subject& side) {
-  const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
-  if (draws == nullptr) return std::nullopt;
-  return no_point(draws->marginals()[side.channels[0]]);
-}
-
 Points points_of(const Question& question, std::size_t subject, std::size_t channel,
                  std::span<const double> values) {
   Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
@@ -236,7 +230,7 @@ Points points_of(const Question& question, std::size_t subject, std::size_t chan
 DeclaredLaw declared_law(const Question& question, std::size_t channel) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
   DeclaredLaw declared;
-  if (question.kind == QuestionKind::fit_to_law) {
+  if (!question.law.name.empty()) {
     declared.law = {.cdf = law_cdf(question.law), .left_limit = {}, .of_sorted = {}};
   } else {
     const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));

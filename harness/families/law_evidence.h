@@ -24,9 +24,6 @@ struct Points {
   std::uint64_t missing() const { return draws - sorted.size(); }
 };
 
-/// The value of a subject's first channel that stands for "no point"; only samplers have one.
-std::optional<double> no_point_of(const Subject& side);
-
 Points points_of(const Question& question, std::size_t subject, std::size_t channel,
                  std::span<const double> values);
 

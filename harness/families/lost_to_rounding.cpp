@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/theta/constant.h"
 #include "stats/basics/mean_rounding.h"
 
 namespace assay::harness {
@@ -34,6 +35,20 @@ double rounding_of_sum(double mean, double primaries) {
   const double sum = std::abs(mean) * primaries;
   const double spacing = std::nextafter(sum, std::numeric_limits<double>::infinity()) - sum;
   return spacing * std::sqrt(primaries / 36) / primaries;
+}
+
+std::string variance_without_spread(const Question& question, std::size_t channel,
+                                    std::span<const ChannelData> data) {
+  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
+    if (is_constant(question, subject, channel, data[subject].moments)) {
+      return fmt::format(
+          "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
+          "nothing of a variance, and a rare value may be unseen; take more observations{}",
+          question.subjects[subject].estimator->name, data[subject].moments.mean,
+          question.of_two() ? ", or compare the other with a number" : "");
+    }
+  }
+  return "";
 }
 
 }  // namespace
@@ -81,6 +96,16 @@ std::string variances_lost_to_rounding(const Subject& side, std::uint64_t primar
       "their variance is larger by a part of {:.2g} where its standard error is {:.2g}; take a "
       "constant near the mean off the observations",
       side.estimator->name, mean, averaged, added / total, std::sqrt(squared_error) / total);
+}
+
+std::string lack_of_variance(const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  std::string reason = variance_without_spread(question, channel, data);
+  for (std::size_t i = 0; i < question.compared() && reason.empty(); ++i) {
+    reason =
+        variances_lost_to_rounding(question.subjects[i], data[i].primaries, {&data[i].moments, 1});
+  }
+  return reason;
 }
 
 }  // namespace assay::harness

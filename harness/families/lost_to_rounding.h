@@ -18,4 +18,9 @@ std::string lost_to_rounding(const Question& question, std::size_t channel,
 std::string variances_lost_to_rounding(const Subject& side, std::uint64_t primaries,
                                        std::span<const stats::Moments> channels);
 
+/// Why a channel's variance cannot be tested: a sample without spread, or lost to rounding; "" if
+/// it can.
+std::string lack_of_variance(const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data);
+
 }  // namespace assay::harness

@@ -7,8 +7,9 @@
 #include <memory>
 #include <vector>
 
+#include "harness/question/declared_range.h"
 #include "harness/theta/inversion.h"
-#include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
 #include "stats/means/nonnegative_mean.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
@@ -147,20 +148,12 @@ Evidence ratio_of_means(bool closed_interval, const Question& question, const Mo
 
 }  // namespace
 
-stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
-                      const stats::Moments& moments) {
-  const Subject& side = question.subjects[subject];
-  if (side.setup->observations()) return {moments.minimum, moments.maximum};
-  const Channel declared = side.setup->channels()[side.channels[channel]];
-  return {declared.low, declared.high};
-}
-
 namespace {
 
 Evidence mean_against_number(const MeanTest& mean, const Question& question, std::size_t channel,
                              const stats::Moments& x) {
   const Constant& reference = question.references[channel];
-  const bool relative = is_relative(question, channel);
+  const bool relative = question.theta->is_relative(question, channel);
   const double unit = relative ? std::abs(reference.value) : 1;
   const double slope = relative ? std::copysign(1, reference.value) : 0;
   const double null = reference.value + question.offset;
@@ -193,7 +186,7 @@ Evidence mean_against_mean(const MeanTest& mean, const Question& question, std::
   const Moments& y = data[1].moments;
   const ContrastTest test =
       mean.of_two(x, y, range_of(question, 0, channel, x), range_of(question, 1, channel, y));
-  if (!is_relative(question, channel))
+  if (!question.theta->is_relative(question, channel))
     return difference_of_means(mean.closed_interval, question, x, y, test);
   return ratio_of_means(mean.closed_interval, question, x, y, test,
                         mean.of_one(y, range_of(question, 1, channel, y)));
@@ -232,7 +225,7 @@ Evidence mean_by_bets(const Method&, const Question& question, std::size_t chann
   const Moments& x = data[0].moments;
   const std::span<const double> values = data[0].values;
   const Constant& reference = question.references[channel];
-  const bool relative = is_relative(question, channel);
+  const bool relative = question.theta->is_relative(question, channel);
   const double unit = relative ? std::abs(reference.value) : 1;
   const double null = reference.value + question.offset;
   const double bound = range_of(question, 0, channel, x).low;

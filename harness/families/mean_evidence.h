@@ -29,8 +29,4 @@ Evidence mean_in_a_range(const Method&, const Question&, std::size_t channel,
 Evidence mean_by_bets(const Method&, const Question&, std::size_t channel,
                       std::span<const ChannelData>);
 
-/// A channel's declared range; for recorded data the range of their values.
-stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
-                      const stats::Moments& moments);
-
 }  // namespace assay::harness

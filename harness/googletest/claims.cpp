@@ -14,6 +14,7 @@
 #include "harness/run/pools.h"
 #include "harness/suite/claim_entry.h"
 #include "harness/suite/suite_keys.h"
+#include "harness/theta/ask.h"
 #include "reports/words/describe.h"
 #include "reports/words/evidence.h"
 #include "reports/words/number.h"

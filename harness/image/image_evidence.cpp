@@ -12,6 +12,7 @@
 #include "harness/sampling/picture_look.h"
 #include "harness/theta/inversion.h"
 #include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
 #include "stats/basics/errors.h"
 #include "stats/basics/moments.h"
 #include "stats/images/image_equivalence.h"
@@ -205,7 +206,7 @@ template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                              const ImagePair<Real>& pair, ImageOutcome& outcome) {
   stats::check::replicates("image", pair.fewest_replicates());
-  const bool relative = is_relative(question, 0);
+  const bool relative = question.theta->is_relative(question, 0);
   const auto errors =
       test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown;
   const stats::ImageDistance distance = distance_of(pair, relative, errors);
@@ -228,7 +229,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                              const PictureLook& look, ImageOutcome& outcome) {
   const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
-  const bool relative = is_relative(question, 0);
+  const bool relative = question.theta->is_relative(question, 0);
   const stats::ImageDistance distance = in_units_of_margin(look.distance, extent, relative);
   require_spread(question, look.family.tested > 0, distance);
   outcome.replicates = look.pictures;
@@ -283,7 +284,7 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
 
 ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
                                  std::span<const ChannelData> data) {
-  const bool relative = is_relative(question, 0);
+  const bool relative = question.theta->is_relative(question, 0);
   ImageEvidence result;
   const auto look = [&](const auto& images) {
     return look_at(question, test, images, result.outcome);

@@ -110,7 +110,7 @@ class Parser {
     if (name.text == "slope") return slope(name);
     const QuantityRow* const known = find_quantity(name.text);
     if (known == nullptr) no_quantity(name);
-    Quantity quantity{.name = known->name, .where = name.where};
+    Quantity quantity{.row = known, .where = name.where};
     expect("(", fmt::format("`(` after `{}`", name.text));
     quantity.source = source_of(expect_word("the name of an estimator"));
     while (lexer_.peek().is(",")) {

@@ -21,8 +21,6 @@
 
 namespace assay::harness {
 
-/// All names, in the order of the enumeration.
-/// The quantities that this version can test. Messages offer them; question.h refuses the others.
 /// An estimator of the suite (in `check` also a plugin's name), and a part of it. A part is a
 /// channel, a sampler, a marginal of the only sampler, or "sampler.marginal"; "" is the whole.
 struct Source {
@@ -35,9 +33,9 @@ struct Source {
 };
 
 struct Quantity {
-  QuantityName name = QuantityName::mean;
+  const QuantityRow* row = nullptr;  ///< Never null in a parsed claim.
   Source source = {};
-  std::vector<double> arguments = {};  ///< quantile: the probability
+  std::vector<double> arguments = {};  ///< The probability of a quantile.
   bool slope = false;                  ///< slope(quantity)
   Location where = {};
 };

@@ -10,21 +10,15 @@ namespace assay::harness {
 
 namespace {
 
-using enum QuantityName;
-
 [[noreturn]] void refuse(const Location& where, const std::string& why) {
   throw InputError(where, why);
 }
 
-bool of_a_sampler(QuantityName name) { return row_of(name).of_a_sampler; }
-
-bool never_negative(QuantityName name) { return row_of(name).never_negative; }
-
 void check_arguments(const Quantity& q) {
-  if (q.name != quantile) {
+  if (!q.row->of_a_probability) {
     if (q.arguments.empty()) return;
     refuse(q.where, fmt::format("`{}` takes an estimator alone; only `quantile` has a number",
-                                to_string(q.name)));
+                                q.row->word));
   }
   if (q.arguments.size() != 1) {
     refuse(q.where, "`quantile` takes an estimator and one probability: `quantile(x, 0.5)`");
@@ -37,16 +31,16 @@ void check_arguments(const Quantity& q) {
 
 void check_quantity(const Quantity& q) {
   check_arguments(q);
-  if (row_of(q.name).over_all_channels && !q.source.part.empty()) {
+  if (q.row->over_all_channels && !q.source.part.empty()) {
     refuse(q.source.where,
            fmt::format("`{}` is over all channels; name the estimator alone, or use "
                        "`variance`",
-                       to_string(q.name)));
+                       q.row->word));
   }
-  if (q.slope && of_a_sampler(q.name)) {
-    refuse(q.where, fmt::format("`{}` is about a sampler, which has no slope", to_string(q.name)));
+  if (q.slope && q.row->of_a_sampler) {
+    refuse(q.where, fmt::format("`{}` is about a sampler, which has no slope", q.row->word));
   }
-  if (q.slope && q.name == distribution) refuse(q.where, "a distribution has no slope");
+  if (q.slope && q.row->of_a_law) refuse(q.where, "a distribution has no slope");
 }
 
 void check_side(const Claim& claim, const ScaledQuantity& side) {
@@ -54,41 +48,41 @@ void check_side(const Claim& claim, const ScaledQuantity& side) {
   check_quantity(q);
   const Quantity& left = claim.left;
   if (left.slope || q.slope) refuse(q.where, "a slope is compared with a number");
-  if (of_a_sampler(left.name)) {
-    refuse(q.where, fmt::format("`{}` is compared with a number", to_string(left.name)));
+  if (left.row->of_a_sampler) {
+    refuse(q.where, fmt::format("`{}` is compared with a number", left.row->word));
   }
-  if (q.name != left.name) {
+  if (q.row != left.row) {
     refuse(q.where, fmt::format("`{}` on the left cannot be compared with `{}`; both sides must be "
                                 "the same quantity",
-                                to_string(left.name), to_string(q.name)));
+                                left.row->word, q.row->word));
   }
   if (side.factor == 1) return;
-  if (q.name == distribution) refuse(q.where, "a distribution cannot be multiplied");
+  if (q.row->of_a_law) refuse(q.where, "a distribution cannot be multiplied");
   if (side.factor == 0) refuse(q.where, "a factor of 0 leaves nothing to compare; give the number");
-  if (never_negative(q.name) && side.factor < 0) {
+  if (q.row->never_negative && side.factor < 0) {
     refuse(q.where,
-           fmt::format("`{}` is never negative; the factor must be above 0", to_string(q.name)));
+           fmt::format("`{}` is never negative; the factor must be above 0", q.row->word));
   }
 }
 
 void check_side(const Claim& claim, const Constant& side) {
   const Quantity& left = claim.left;
-  if (left.name == distribution) {
+  if (left.row->of_a_law) {
     refuse(left.where, "a distribution is compared with `density`, a law or another distribution");
   }
-  if (of_a_sampler(left.name) && side.standard_error > 0) {
+  if (left.row->of_a_sampler && side.standard_error > 0) {
     refuse(left.where, fmt::format("`{}` is held against an exact number: `+-` has no method here",
-                                   to_string(left.name)));
+                                   left.row->word));
   }
-  if (never_negative(left.name) && !left.slope && side.value < 0) {
+  if (left.row->never_negative && !left.slope && side.value < 0) {
     refuse(left.where, fmt::format("`{}` is never negative, but it is compared with {}",
-                                   to_string(left.name), side.value));
+                                   left.row->word, side.value));
   }
-  if (left.name == variance && !left.slope && side.value == 0) {
-    refuse(left.where, "`variance` is tested as a ratio: give a number above 0");
+  if (left.row->tested_as_a_ratio && !left.slope && side.value == 0) {
+    refuse(left.where,
+           fmt::format("`{}` is tested as a ratio: give a number above 0", left.row->word));
   }
-  // The margin of a bias is relative to its reference.
-  const bool has_unit = left.name == bias && !left.slope;
+  const bool has_unit = left.row->relative_to_0 && !left.slope;
   if (claim.relation == Relation::within && claim.margin.relative && side.value == 0 && !has_unit) {
     refuse(left.where, "a margin in per cent of 0 is no margin; give a number");
   }
@@ -96,16 +90,16 @@ void check_side(const Claim& claim, const Constant& side) {
 
 void check_side(const Claim& claim, const Analytic&) {
   const Quantity& left = claim.left;
-  if (left.slope || !row_of(left.name).may_be_analytic) {
+  if (left.slope || !left.row->may_be_analytic) {
     refuse(left.where,
            fmt::format("`analytic` is a mean or a variance; there is none of `{}`{}",
-                       left.slope ? "slope" : to_string(left.name),
-                       left.name == bias && !left.slope ? "; claim `bias(…) == 0`" : ""));
+                       left.slope ? "slope" : left.row->word.c_str(),
+                       left.row->relative_to_0 && !left.slope ? "; claim `bias(…) == 0`" : ""));
   }
 }
 
 void check_side(const Claim& claim, const Law& side) {
-  if (claim.left.name != distribution || claim.left.slope) {
+  if (!claim.left.row->of_a_law || claim.left.slope) {
     refuse(side.where,
            fmt::format("`{}` is a law, to which only `distribution(…)` can be equal", side.name));
   }
@@ -116,7 +110,7 @@ void check_side(const Claim& claim, const Law& side) {
 
 void check_claim(const Claim& claim) {
   check_quantity(claim.left);
-  if (claim.left.name == distribution && claim.relation != Relation::equal) {
+  if (claim.left.row->of_a_law && claim.relation != Relation::equal) {
     refuse(claim.left.where, fmt::format("laws are equal or not: `distribution(…)` goes with `==`, "
                                          "not with `{}`",
                                          to_string(claim.relation)));

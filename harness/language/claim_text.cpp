@@ -76,7 +76,7 @@ std::string to_string(const Source& source) {
 
 std::string to_string(const Quantity& quantity) {
   const std::string inner =
-      fmt::format("{}({}{})", to_string(quantity.name), to_string(quantity.source),
+      fmt::format("{}({}{})", quantity.row->word, to_string(quantity.source),
                   arguments_text(quantity.arguments));
   return quantity.slope ? fmt::format("slope({})", inner) : inner;
 }

@@ -1,44 +1,46 @@
 #pragma once
 
-// The table of quantities that a claim can be about.
+// The table of quantities that a claim can be about. Its rows are in families/quantities.cpp.
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace assay::harness {
 
-enum class QuantityName {
-  mean,
-  bias,
-  variance,
-  total_variance,
-  worst_variance,
-  quantile,
-  efficiency,
-  cost,
-  distribution,
-  integral,
-  inconsistency
-};
+struct PreparedEstimator;
+struct Question;
+struct TestEntry;
+class Theta;
+
+using Estimators = std::map<std::string, PreparedEstimator>;
 
 struct QuantityRow {
-  QuantityName name;
-  std::string word;     ///< as in claims
-  std::string example;  ///< a claim about it
+  std::string word;     ///< As in claims.
+  std::string example;  ///< A claim about it.
   std::string summary;
+  /// Binds a claim about it to a suite's estimators.
+  Question (*bind)(const TestEntry&, const Estimators&);
+  const Theta* theta;  ///< What a claim about numbers is about; its family has the methods.
+  /// What `slope(…)` of it is about; null if it has no slope.
+  const Theta* slope = nullptr;
   bool of_a_sampler = false;
+  bool of_a_law = false;          ///< It is compared with a law by `==`, not with a number.
+  bool of_a_probability = false;  ///< It takes a probability beside the estimator.
   bool never_negative = false;
+  bool tested_as_a_ratio = false;  ///< The claimed number is above 0 and exact.
   bool over_all_channels = false;
-  bool may_be_analytic = false;  ///< a plugin may know it
+  bool may_be_analytic = false;  ///< A plugin may know it.
+  bool relative_effect = false;  ///< A margin in per cent is one of the value, not of a ratio.
+  bool relative_to_0 = false;    ///< A margin in per cent is one of something else than the number.
+  bool told_by_moments = false;  ///< The moments of an earlier run are enough.
+  bool takes_reference = false;  ///< The test may have `reference`.
+  bool counts_cost = false;      ///< The test may have `cost`.
 };
 
-/// All of them, in the order of the enumeration.
 const std::vector<QuantityRow>& quantities();
-const QuantityRow& row_of(QuantityName);
-/// Null where there is none.
+/// Null if there is none.
 const QuantityRow* find_quantity(std::string_view word);
-
-const char* to_string(QuantityName);
 
 }  // namespace assay::harness

@@ -12,6 +12,7 @@
 #include "harness/ledger/ledger_reading.h"
 #include "harness/ledger/night_evidence.h"
 #include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
 
 namespace assay::harness {
 namespace {
@@ -124,7 +125,7 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
       .channel = series.channel,
       .series = series.hash,
       .quantity = of_moments ? test.channels.empty() ? "" : test.channels[0].effect.quantity : "",
-      .relative = is_relative(test.question, entry.channel),
+      .relative = test.question.theta->is_relative(test.question, entry.channel),
       .added = added.added,
       .note = added.note};
   if (const LedgerSeries* open = book.open_series(series)) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "harness/base/text_hash.h"
-#include "harness/families/theta_error.h"
+#include "harness/theta/theta.h"
 #include "harness/plan/forecast.h"
 #include "harness/plan/rows.h"
 #include "stats/tails/tails.h"
@@ -35,7 +35,7 @@ std::string obstacle(const TestWork& work, std::size_t channel) {
   if (std::all_of(sides.begin(), sides.end(), is_recorded)) {
     return "its data are recorded: the same in every run";
   }
-  const bool laws = !test.question.of_means() && !test.question.of_variances();
+  const bool laws = !test.question.is().of_moments;
   if (laws && std::any_of(sides.begin(), sides.end(), is_recorded)) {
     return "one side is recorded, the same in every run, and distances from it do not add up";
   }
@@ -58,7 +58,7 @@ std::optional<double> prior_effect(const TestOutcome& test, std::size_t channel,
                                    const Pilots& pilots) {
   const auto data = expected_data(test, channel, pilots, expected_secondaries(test, pilots));
   if (!data) return std::nullopt;
-  const std::optional<ThetaError> error = theta_error(test.question, channel, *data);
+  const std::optional<ThetaError> error = test.question.theta->error(test.question, channel, *data);
   if (!error || !(error->drawn > 0)) return std::nullopt;
   return std::sqrt(prior_variance) * error->drawn;
 }
@@ -68,7 +68,7 @@ NightEvidence of_score(const DrawnTest& drawn, std::size_t channel, const Pilots
   const std::optional<double> effect = prior_effect(test, channel, pilots);
   if (!effect) return {.missing = "its pilot has no spread to expect a night's error from"};
   const std::vector<ChannelData> data = data_of(drawn, channel);
-  const ThetaError error = theta_error(test.question, channel, data).value();
+  const ThetaError error = test.question.theta->error(test.question, channel, data).value();
   if (!(error.drawn > 0)) return {.missing = "its observations have no spread"};
   const double total = std::hypot(error.drawn, error.fixed);
   const double difference = z_of(outcome_of(test, channel)->at_null) * total;
@@ -98,7 +98,7 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
 }  // namespace
 
 EvidenceKind evidence_kind(const TestOutcome& test) {
-  const bool moments = test.question.of_means() || test.question.of_variances();
+  const bool moments = test.question.is().of_moments;
   return moments && test.plan.method.is.scores ? EvidenceKind::score : EvidenceKind::log_e;
 }
 

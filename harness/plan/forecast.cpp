@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/families/theta_error.h"
 #include "harness/plan/sample_size.h"
 #include "harness/theta/constant.h"
+#include "harness/theta/theta.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
@@ -26,7 +26,7 @@ std::optional<double> not_passed(const TestOutcome& test, std::size_t channel, s
   if (!margin) return std::nullopt;
   const auto data = expected_data(test, channel, pilots, test.plan.looks.sizes[k]);
   if (!data) return std::nullopt;
-  const std::optional<ThetaError> error = theta_error(test.question, channel, *data);
+  const std::optional<ThetaError> error = test.question.theta->error(test.question, channel, *data);
   if (!error) return std::nullopt;
   const double beta = test.place.share.beta * test.plan.looks.weights[k];
   const double z = stats::normal_quantile({stats::Tail::upper, std::log(beta)});
@@ -65,15 +65,15 @@ std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::siz
                                                const Pilots& pilots, std::uint64_t secondaries) {
   const Question& question = test.question;
   const Regions& regions = test.plan.regions[channel];
-  const bool of_moments = question.of_means() || question.of_variances();
-  if (!of_moments && !question.on_log_scale()) return PlannedChannel{.regions = regions};
+  if (!question.is().of_moments) {
+    return question.theta->planned(question, regions, pilots, test.plan);
+  }
   for (const Subject& side : question.subjects) {
     if (side.setup->observations()) return std::nullopt;
   }
-  if (!of_moments) return planned_log_channel(question, regions, pilots, test.plan);
   const auto data = expected_data(test, channel, pilots, secondaries);
   if (!data) return std::nullopt;
-  return observed_channel(question, regions, channel, *data);
+  return question.theta->observed(question, regions, channel, *data);
 }
 
 /// The least margin that a claim of that size proves with probability 1 - beta if theta is 0, by
@@ -156,7 +156,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
                                                       std::uint64_t secondaries) {
   const Question& question = test.question;
   // An estimator's pilot says nothing of a sampler's draws.
-  if (!question.of_means() && !question.of_variances()) return std::nullopt;
+  if (!question.is().of_moments) return std::nullopt;
   std::vector<ChannelData> data(question.subjects.size());
   std::optional<std::size_t> known;
   for (std::size_t i = 0; i < data.size(); ++i) {

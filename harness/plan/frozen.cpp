@@ -6,16 +6,15 @@
 #include <bit>
 #include <cmath>
 
-#include "harness/families/law_evidence.h"
-#include "harness/families/methods.h"
 #include "harness/plan/image_plan.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/rows.h"
+#include "harness/question/declared_range.h"
+#include "harness/theta/methods.h"
 
 namespace assay::harness {
 namespace {
 
-constexpr double least_share = 0.01;
 // 64 pilot points of both sides to a cell.
 constexpr stats::CellNumbers plane_cells{.bands = 16, .cuts = 16};
 constexpr stats::CellNumbers line_cells{.bands = 64, .cuts = 1};
@@ -49,13 +48,13 @@ void drop_rare(std::vector<double>& values, double least) {
 std::optional<Atom> most_frequent(std::vector<double> values) {
   std::erase_if(values, [](double v) { return !std::isfinite(v); });
   const auto total = static_cast<double>(values.size());
-  drop_rare(values, least_share * total);
+  drop_rare(values, least_atom * total);
   std::sort(values.begin(), values.end());
   std::optional<Atom> atom;
   for (auto begin = values.begin(); begin != values.end();) {
     const auto end = std::upper_bound(begin, values.end(), *begin);
     const double share = static_cast<double>(end - begin) / total;
-    const bool again = end - begin > 1 && share >= least_share;
+    const bool again = end - begin > 1 && share >= least_atom;
     if (again && (!atom || share > atom->share)) atom = Atom{.value = *begin, .share = share};
     begin = end;
   }
@@ -98,30 +97,13 @@ void freeze_cells(const Question& question, const Pilots& pilots, Plan& plan) {
       stats::sampled_cells(std::move(points), plane ? plane_cells : line_cells));
 }
 
-bool has_any(const std::vector<std::optional<Atom>>& atoms) {
-  return std::any_of(atoms.begin(), atoms.end(), [](const auto& atom) { return atom.has_value(); });
-}
-
-void note(const Question& question, const std::vector<std::optional<Atom>>& atoms, Plan& plan) {
-  for (std::size_t channel = 0; channel < atoms.size(); ++channel) {
-    if (!atoms[channel]) continue;
-    const std::string part =
-        atoms.size() > 1 ? " in channel " + question.channel_name(channel) : "";
-    plan.gates.push_back(gate_of(reports::Gate{
-        .name = fmt::format("share of {:.6g}{}, pilots of both", atoms[channel]->value, part),
-        .value = atoms[channel]->share,
-        .limit = least_share,
-        .state = "amber"}));
-  }
-}
-
 }  // namespace
 
 bool takes_from_pilot(const Method& method) { return method.is.from_pilot != FromPilot::nothing; }
 
 std::vector<const Subject*> piloted_draws(const Question& question) {
   std::vector<const Subject*> draws;
-  if (question.kind != QuestionKind::same_cells) return draws;
+  if (!question.is().pilots_draws) return draws;
   for (const Subject& side : question.subjects) {
     if (!side.purpose.empty()) draws.push_back(&side);
   }
@@ -143,6 +125,10 @@ std::vector<std::optional<Atom>> atoms_of(const Question& question, const Pilots
   return atoms;
 }
 
+bool has_atom(const std::vector<std::optional<Atom>>& atoms) {
+  return std::any_of(atoms.begin(), atoms.end(), [](const auto& atom) { return atom.has_value(); });
+}
+
 void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
   const FromPilot wanted = plan.method.is.from_pilot;
   if (wanted == FromPilot::cells) {
@@ -151,23 +137,12 @@ void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
     plan.method.frozen.weights = image_weights(question, pilots, plan);
   } else if (wanted == FromPilot::atoms) {
     plan.method.frozen.atoms = atoms_of(question, pilots, plan);
-    if (has_any(plan.method.frozen.atoms)) return;
+    if (has_atom(plan.method.frozen.atoms)) return;
     plan.invalid =
         "`two-part-ks` splits off a value that comes again and again, and the pilots show none "
         "that "
         "is one in a hundred; leave `test` out";
   }
-}
-
-void choose_for_laws(const Question& question, const Pilots& pilots, Plan& plan) {
-  if (question.kind == QuestionKind::same_law) {
-    const auto atoms = atoms_of(question, pilots, plan);
-    note(question, atoms, plan);
-    if (!question.test->method && has_any(atoms)) {
-      plan.method = find_method(question, "two-part-ks");
-    }
-  }
-  freeze(question, pilots, plan);
 }
 
 }  // namespace assay::harness

@@ -21,12 +21,14 @@ std::vector<const Subject*> piloted_draws(const Question& question);
 std::vector<std::optional<Atom>> atoms_of(const Question& question, const Pilots& pilots,
                                           const Plan& plan);
 
+// A value counts as an atom from this share of the pilots' values on.
+inline constexpr double least_atom = 0.01;
+
+/// True if a channel has an atom.
+bool has_atom(const std::vector<std::optional<Atom>>& atoms);
+
 /// Gives the plan's method what it takes from the pilots; sets `invalid` if they lack it. Rows of a
 /// file are their own pilot, both sides together; beside drawn values they are not used.
 void freeze(const Question& question, const Pilots& pilots, Plan& plan);
-
-/// Chooses `two-part-ks` for two samples whose pilots show an atom, unless the test forces a
-/// method; then freezes.
-void choose_for_laws(const Question& question, const Pilots& pilots, Plan& plan);
 
 }  // namespace assay::harness

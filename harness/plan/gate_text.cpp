@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "harness/plan/rows.h"
+#include "harness/theta/ask.h"
 #include "reports/words/number.h"
 
 namespace assay::harness {

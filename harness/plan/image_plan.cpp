@@ -6,16 +6,16 @@
 #include <cmath>
 
 #include "harness/base/parallel.h"
-#include "harness/families/methods.h"
 #include "harness/plan/frozen.h"
 #include "harness/plan/look_sizes.h"
-#include "harness/plan/planned_channel.h"
 #include "harness/plan/repeated_images.h"
 #include "harness/plan/rows.h"
 #include "harness/sampling/difference_skewness.h"
 #include "harness/sampling/image_views.h"
 #include "harness/theta/critical.h"
-#include "harness/theta/scale.h"
+#include "harness/theta/methods.h"
+#include "harness/theta/planned_channel.h"
+#include "harness/theta/theta.h"
 #include "stats/images/image_cell_skewness.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/pyramids/image_pyramid.h"
@@ -24,7 +24,6 @@
 namespace assay::harness {
 namespace {
 
-constexpr double level_factor = 1.25;
 // Limit for one replicate's pixels. A pilot's weights answer more skewness; else the test is
 // invalid.
 constexpr double most_skewed = 2;
@@ -44,7 +43,7 @@ const Pilot& pilot_at(const Question& question, std::size_t subject, const Pilot
   return pilots.at(question.subjects[subject].estimator->name);
 }
 
-bool all_piloted(const Question& question, const Pilots& pilots) {
+bool all_pictured(const Question& question, const Pilots& pilots) {
   return std::all_of(question.subjects.begin(), question.subjects.end(), [&](const Subject& side) {
     const Pilot* pilot = pilot_of(side, pilots);
     return pilot != nullptr && pilot->image_count() >= stats::least_replicates;
@@ -284,7 +283,7 @@ PilotImage pilot_image(const Subject& subject, const Pilot& pilot) {
 
 /// The square of the margins' unit.
 double squared_unit(const Question& question, const PilotImage& last) {
-  if (!is_relative(question, 0)) {
+  if (!question.theta->is_relative(question, 0)) {
     return static_cast<double>(question.subjects[0].channels.size());
   }
   if (question.of_two()) return question.factor * question.factor * last.squared_norm;
@@ -300,7 +299,7 @@ double squared_unit(const Question& question, const PilotImage& last) {
 
 std::vector<double> image_weights(const Question& question, const Pilots& pilots,
                                   const Plan& plan) {
-  if (has_rows(question) || !all_piloted(question, pilots)) return {};
+  if (has_rows(question) || !all_pictured(question, pilots)) return {};
   // Both sides have as many replicates: the number is a common factor.
   return stats::cell_weights(PilotSides(question, plan, pilots).sides());
 }
@@ -318,7 +317,7 @@ std::uint64_t usual_replicates(const Question& question, std::uint64_t most) {
 std::uint64_t choose_for_image(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, std::uint64_t most, Plan& plan) {
   if (const Pilot* const pilot = pilot_of(question.subjects[0], pilots)) plan.look = pilot->look;
-  if (!all_piloted(question, pilots)) return stats::least_replicates;
+  if (!all_pictured(question, pilots)) return stats::least_replicates;
   const std::uint64_t size = usual_replicates(question, most);
   freeze(question, pilots, plan);
   note_repeated_images(question, pilots, plan);
@@ -334,7 +333,7 @@ std::optional<std::uint64_t> image_secondaries(const Question& question, const E
                                                const Pilots& pilots, const Plan& plan) {
   const Regions& regions = plan.regions[0];
   const bool within = regions.relation == Relation::within;
-  if ((!within && !regions.detect) || !all_piloted(question, pilots)) return std::nullopt;
+  if ((!within && !regions.detect) || !all_pictured(question, pilots)) return std::nullopt;
   const double margin = within ? regions.within : *regions.detect;
   double noise = 0;
   PilotImage last;
@@ -358,7 +357,7 @@ std::optional<std::uint64_t> image_secondaries(const Question& question, const E
 
 std::string too_few_replicates(const Question& question, const Plan& plan) {
   const std::uint64_t fewest = fewest_secondaries(question, plan.most_secondaries());
-  if (question.kind != QuestionKind::image || fewest >= stats::least_replicates) return "";
+  if (fewest >= stats::least_replicates) return "";
   const std::string mend =
       question.test->budget
           ? "give a larger `budget`, of which every pixel and component takes its `primaries`, or "

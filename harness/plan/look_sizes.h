@@ -3,7 +3,7 @@
 // Secondaries of each subject in a look.
 
 #include "harness/plan/outcome.h"
-#include "harness/plan/planned_channel.h"
+#include "harness/theta/planned_channel.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {

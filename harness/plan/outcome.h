@@ -44,6 +44,12 @@ struct Plan {
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }
 };
 
+/// One channel's evidence; of images also their findings.
+struct ChannelEvidence {
+  Evidence evidence;
+  std::optional<ImageOutcome> image = {};
+};
+
 /// One channel's numbers.
 struct ChannelOutcome {
   std::size_t index = 0;  ///< Index in the question.

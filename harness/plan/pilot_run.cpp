@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "harness/families/methods.h"
 #include "harness/plan/frozen.h"
 #include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 
 namespace assay::harness {
 namespace {
@@ -27,7 +27,7 @@ constexpr std::uint64_t least_of_larger = 2048;
 std::map<std::string, std::uint64_t> on_tails(const std::vector<Question>& questions) {
   std::map<std::string, std::uint64_t> most;
   for (const Question& question : questions) {
-    if (!question.rests_on_tails()) continue;
+    if (!question.is().rests_on_tails) continue;
     for (std::size_t i = 0; i < question.compared(); ++i) {
       std::uint64_t& size = most[question.subjects[i].estimator->name];
       size =
@@ -46,7 +46,7 @@ PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!chosen[i]) continue;
     for (const Subject* subject : piloted_draws(questions[i])) run.draws.push_back(subject);
-    if (!questions[i].rests_on_tails()) continue;
+    if (!questions[i].is().rests_on_tails) continue;
     for (const Subject& subject : questions[i].subjects) {
       const auto found = most.find(subject.estimator->name);
       if (found != most.end()) run.on_tails.insert(*found);

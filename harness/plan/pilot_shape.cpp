@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "harness/families/mean_evidence.h"
 #include "harness/plan/look_sizes.h"
 #include "harness/plan/rows.h"
+#include "harness/question/declared_range.h"
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/critical.h"
@@ -111,7 +111,7 @@ std::optional<stats::Gate> tail_gate(const Question& question, const Known& know
 }  // namespace
 
 std::string unusable_pilot(const Question& question, const Pilots& pilots) {
-  if (question.of_laws()) return "";
+  if (question.is().of_single_values) return "";
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
     const Pilot* pilot = pilot_of(question, subject, pilots);
@@ -194,6 +194,17 @@ std::string too_heavy(const Question& question, const std::vector<Known>& channe
         mean ? ", declare its range" : "");
   }
   return reason;
+}
+
+std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) {
+  double needed = 2;
+  for (const Known& known : channels) {
+    const double skewness = stats::primary_shape(known.pilot.moments).skewness;
+    const double root = std::abs(skewness) * std::pow(critical, 3) / (3 * std::log(level_factor));
+    const double wanted = root * root / known.averaged / known.times;
+    needed = wanted <= needed ? needed : wanted;  // also if it is NaN
+  }
+  return whole_secondaries(needed);
 }
 
 }  // namespace assay::harness

@@ -9,6 +9,7 @@
 
 #include "harness/plan/outcome.h"
 #include "harness/question/pilot.h"
+#include "harness/theta/critical.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/gates/pareto_tail.h"
 
@@ -46,5 +47,12 @@ void note(Plan& plan, const Known& known, const stats::Gate& gate);
 /// Notes the tails' gates. Returns why the claim cannot be tested if a tail is too heavy, else "".
 std::string too_heavy(const Question& question, const std::vector<Known>& channels,
                       stats::TailClaim claim, Plan& plan);
+
+/// Secondaries, of the subject with fewest, that keep the worse tail of Student's t right within a
+/// quarter.
+std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical);
+
+// The most secondaries that a method of means may ask for; more cost more than they give.
+inline constexpr std::uint64_t most_for_a_mean = 64 * usual_secondaries;
 
 }  // namespace assay::harness

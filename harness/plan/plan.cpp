@@ -7,16 +7,18 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "harness/families/methods.h"
 #include "harness/plan/gate_text.h"
-#include "harness/plan/image_plan.h"
-#include "harness/plan/method_choice.h"
+#include "harness/plan/look_sizes.h"
+#include "harness/plan/pilot_shape.h"
 #include "harness/plan/rows.h"
 #include "harness/plan/sample_size.h"
 #include "harness/question/declared_range.h"
 #include "harness/sampling/pool.h"
+#include "harness/theta/ask.h"
 #include "harness/theta/critical.h"
+#include "harness/theta/methods.h"
 #include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
 
 namespace assay::harness {
 namespace {
@@ -62,22 +64,7 @@ void require_possible(const Question& question, const Plan& plan, std::uint64_t 
   const TestEntry& test = *question.test;
   const Location& where = test.place_of(test.detect ? "detect" : "claim");
   if (secondaries >= impossible_secondaries) {
-    if (question.kind == QuestionKind::integral) {
-      const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-      throw InputError(
-          where, fmt::format("no number of observations would decide this claim: the quadrature of "
-                             "the density is certain only to {:.1g}, too little for the margin; "
-                             "give a larger one, or let the sampler's panels() be finer",
-                             draws.density_cells().tolerance()));
-    }
-    const bool uncertain = std::ranges::any_of(
-        question.references, [](const Constant& each) { return each.standard_error > 0; });
-    throw InputError(where,
-                     uncertain ? "no number of observations would decide this claim: the "
-                                 "reference's own standard error is too large for the margin; give "
-                                 "a larger margin or a better reference"
-                               : "this claim would take more observations than can be counted; "
-                                 "give a larger margin");
+    throw InputError(where, question.theta->why_impossible(question));
   }
   const double total =
       static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(question, plan));
@@ -113,7 +100,7 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
           "a claim in seconds is timed on whole replicates: `secondaries` and "
           "`budget` cannot be chosen; leave them out");
     }
-    const auto planned = planned_secondaries(question, place.share, pilots, plan);
+    const auto planned = question.theta->secondaries(question, place.share, pilots, plan);
     if (planned) require_possible(question, plan, *planned);
     return timed_look(plan, std::max(first, planned.value_or(usual_secondaries)));
   }
@@ -124,9 +111,8 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   }
   if (has_rows(question)) return one_look(most);
   const std::optional<std::uint64_t> alone =
-      planned_secondaries(question, place.share, pilots, plan);
-  const std::uint64_t classical =
-      question.kind == QuestionKind::image ? classical_replicates : usual_secondaries;
+      question.theta->secondaries(question, place.share, pilots, plan);
+  const std::uint64_t classical = question.theta->usual_size();
   if (!alone) return one_look(std::min(std::max(first, classical), most));
   if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
   if (*alone <= first) return one_look(std::min(first, most));
@@ -134,8 +120,9 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   for (; count > 1; --count) {
     const double weight = 1 / static_cast<double>(count);
     const ErrorShare share{.alpha = place.share.alpha * weight, .beta = place.share.beta * weight};
-    const std::uint64_t last = std::min(
-        most, planned_secondaries(question, share, pilots, plan).value_or(impossible_secondaries));
+    const std::uint64_t last =
+        std::min(most, question.theta->secondaries(question, share, pilots, plan)
+                           .value_or(impossible_secondaries));
     // A reference's error may put smaller shares beyond any number: try fewer looks.
     if (last > dearest_looks * *alone) continue;
     if (last <= first) return one_look(last);
@@ -168,14 +155,6 @@ std::vector<Regions> regions_of(const Question& question) {
   return all;
 }
 
-/// Throws before any draw if the density that a claim is about cannot be had.
-void require_density(const Question& question) {
-  if (question.kind != QuestionKind::fit_to_density && question.kind != QuestionKind::integral) {
-    return;
-  }
-  dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
-}
-
 /// Names the estimator whose pilot gave a value that is not finite; "" if none did. Rows of files
 /// are the test's own.
 std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) {
@@ -204,30 +183,26 @@ std::string misdeclared(const Question& question, const Pilots& pilots) {
   return "";
 }
 
-/// Possible slip of the user: a `detect` by default, or a margin larger than the second of two
-/// means, which only the pilot knows.
+/// Possible slip of the user: a `detect` by default, or what the family sees in the pilots.
 std::string caution_of(const Question& question, const Pilots& pilots) {
-  if (question.test->detect_by_default) {
-    return fmt::format("`detect` is {}, the default of claims about laws",
-                       question.test->detect->value);
+  if (!question.test->detect_by_default) return question.theta->caution(question, pilots);
+  return fmt::format("`detect` is {}, the default of claims about laws",
+                     question.test->detect->value);
+}
+
+/// Chooses the method by the pilots' shapes, then judges the rows of files. Returns the fewest
+/// secondaries that the method takes.
+std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
+                            const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  const std::uint64_t used = largest_look(question, most);
+  if (has_rows(question)) require_independent_sides(question, pilots, used);
+  if (std::string reason = unusable_pilot(question, pilots); !reason.empty()) {
+    plan.invalid = std::move(reason);
+    return least_secondaries;
   }
-  if (question.kind != QuestionKind::mean_of_two) return "";
-  const Subject& second = question.subjects[1];
-  const Pilot* const pilot = pilot_of(second, pilots);
-  if (pilot == nullptr) return "";
-  double size = 0;
-  for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
-    const stats::Moments moments = pilot_channel(second, *pilot, channel).moments;
-    if (moments.count > 1 && exceeds_its_error(moments.mean, moments.standard_error())) {
-      size = std::max(size, std::abs(question.factor * moments.mean));
-    }
-  }
-  for (const Margin& margin : margins_of(*question.test)) {
-    if (std::string text = missing_per_cent(margin, size); !text.empty()) {
-      return "the margin " + text;
-    }
-  }
-  return "";
+  const std::uint64_t least = question.theta->choose(question, place, pilots, most, plan);
+  if (has_rows(question)) judge_independence(question, pilots, used, plan);
+  return least;
 }
 
 }  // namespace
@@ -258,7 +233,7 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
       .regions = regions_of(question),
       .gates_invalidate = !test.method};
   for (const Subject& subject : question.subjects) {
-    const bool single = question.of_laws() && !subject.estimator->primaries;
+    const bool single = question.is().of_single_values && !subject.estimator->primaries;
     plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
   }
   plan.pilot_error = not_finite_in_pilot(question, pilots);
@@ -269,13 +244,13 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     return plan;
   }
   try {
-    require_density(question);
+    question.theta->require_density(question);
     const std::uint64_t most = most_available(question, plan);
     const std::uint64_t least = choose_method(question, place, pilots, most, plan);
     plan.looks = plan_looks(question, place, pilots, plan, least);
-    if (plan.invalid.empty()) plan.invalid = too_few_replicates(question, plan);
+    if (plan.invalid.empty()) plan.invalid = question.theta->too_few(question, plan);
     if (!plan.invalid.empty()) plan.looks = look_for_its_picture(question, plan);
-    plan.hint += rows_beside_primaries(question);
+    plan.hint += question.theta->hint(question);
     plan.caution = caution_of(question, pilots);
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2);

@@ -32,7 +32,7 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
     const stats::PrimaryShape shape = stats::primary_shape(pilot);
     const stats::PlannedTest test{
         .secondaries = question.test->secondaries.value_or(usual_secondaries), .critical_value = x};
-    wanted = std::max(wanted, question.of_spread()
+    wanted = std::max(wanted, question.is().of_spread
                                   ? stats::primaries_for_variance(shape, shape_limits(x))
                                   : stats::primaries_for_mean(shape, test));
   }
@@ -46,7 +46,7 @@ Primaries choose_primaries(const std::vector<Question>& questions,
   Primaries chosen;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Question& question = questions[i];
-    if (question.of_laws()) continue;
+    if (question.is().of_single_values) continue;
     for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
       const Subject& side = question.subjects[subject];
       if (!chooses_primaries(side) || pilot_of(side, pilots) == nullptr) continue;

@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "estimators/ready_made.h"
-#include "harness/families/methods.h"
 #include "harness/theta/constant.h"
+#include "harness/theta/ask.h"
+#include "harness/theta/critical.h"
 #include "harness/theta/gate.h"
+#include "harness/theta/methods.h"
 #include "stats/basics/sorted.h"
 #include "stats/gates/dependence.h"
 #include "stats/gates/independence_gates.h"
@@ -73,7 +75,7 @@ bool enough_batches(std::span<const double> values) {
 /// Advice on the rows that suffice of a chain with this autocorrelation time.
 std::string enough_of_a_chain(const Question& question, double time) {
   const auto apart = static_cast<std::size_t>(std::ceil(10 * time));
-  if (!question.of_means()) {
+  if (!question.is().batches_serve) {
     return fmt::format("keep one row in {}, {} of them at least", apart, fewest_in_order_to_tell);
   }
   if (question.test->claim.relation == Relation::within) {
@@ -244,7 +246,7 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   std::string reason;
   if (plan.invalid.empty()) reason = too_few_to_tell(question, pilots, count, plan);
   const std::vector<Rows> all = rows_of(question, pilots, count);
-  const bool batches = question.of_means() && question.test->claim.relation != Relation::within &&
+  const bool batches = question.is().batches_serve && question.test->claim.relation != Relation::within &&
                        std::all_of(all.begin(), all.end(),
                                    [](const Rows& each) { return enough_batches(each.values); });
   bool answered = false;
@@ -284,13 +286,12 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     if (std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded)) {
       plan.invalid.clear();
     }
-  } else if (question.of_means() && !plan.method.is.exact) {
+  } else if (question.is().batches_serve && !plan.method.is.exact) {
     allow_for_dependence(all, plan);
   }
 }
 
 std::string rows_beside_primaries(const Question& question) {
-  if (question.kind != QuestionKind::variance_of_two) return "";
   for (std::size_t i = 0; i < 2; ++i) {
     const Subject& rows = question.subjects[i];
     const Subject& other = question.subjects[1 - i];
@@ -325,13 +326,6 @@ std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const C
   const MethodTraits& method = outcome.plan.method.is;
   std::vector<stats::Gate> gates;
   if (!has_rows(question)) return gates;
-  if (question.kind == QuestionKind::fit_to_law || question.kind == QuestionKind::fit_to_density) {
-    if (!method.of_distinct_values || data[0].values.size() < 2) return gates;
-    const std::vector<double> sorted =
-        stats::sorted({data[0].values.begin(), data[0].values.end()});
-    gates.push_back(stats::quantisation_gate(sorted, outcome.share().alpha));
-  }
-  if (!question.of_means() || method.exact) return gates;
   const bool batches = method.of_batches;
   const stats::Moments& first = data[0].moments;
   if (data.size() == 1) {

@@ -1,46 +1,44 @@
 #pragma once
 
+// Sizes of tests, and the effects that they find. Each family has its own formulas (Theta).
+
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "harness/plan/outcome.h"
-#include "harness/plan/planned_channel.h"
 #include "harness/question/pilot.h"
+#include "harness/theta/theta.h"
 
 namespace assay::harness {
 
-/// Secondaries of each subject that find `detect`, or prove `within`, with this share of errors in
-/// every channel. Returns nullopt without a margin or a pilot. Returns `impossible_secondaries` if
-/// no number does, the reference's own error being too large.
-std::optional<std::uint64_t> planned_secondaries(const Question& question, const ErrorShare& share,
-                                                 const Pilots& pilots, const Plan& plan);
+/// True if every subject has a pilot.
+bool all_piloted(const Question& question, const Pilots& pilots);
+
+/// The distance to find from the claimed region's edge; 0 if there is none.
+double distance_of(const Regions& regions);
+
+using SizeOfChannel = std::function<std::optional<std::uint64_t>(std::size_t channel)>;
+
+/// The most secondaries that a channel needs; nullopt if none says.
+std::optional<std::uint64_t> most_over_channels(const Question& question,
+                                                const SizeOfChannel& of_channel);
+/// The same, `least_secondaries` at least and `impossible_secondaries` at most.
+std::optional<std::uint64_t> most_of_channels(const Question& question,
+                                              const SizeOfChannel& of_channel);
 
 /// Secondaries that the test asks for or is worth; all rows of a file. `most` is how many there can
 /// be.
 std::uint64_t intended_secondaries(const Question& question, const FamilyPlace& place,
                                    const Pilots& pilots, std::uint64_t most, const Plan& plan);
 
-/// The worst channel of a claim on costs, efficiencies or total variances, by the pilots. In it 1 +
-/// the spread of each side's logarithm stands for a kurtosis. Returns nullopt for other claims,
-/// without a pilot, or without spread.
-std::optional<PlannedChannel> planned_log_channel(const Question& question, const Regions& regions,
-                                                  const Pilots& pilots, const Plan& plan);
-
-/// The least theta that a test of that size finds with probability 1 - beta.
+/// The least theta that a test of that size finds with probability 1 - beta. Nullopt if no formula
+/// tells, and `within`.
 std::optional<double> detectable_effect(const Question& question, const TestSize& size,
                                         const Plan& plan, const PlannedChannel& channel);
 
-/// True if no theta in the declared range is found with probability 1 - beta.
-bool finds_nothing(const Question& question, const TestSize& size, const Plan& plan,
-                   const PlannedChannel& channel);
-
-/// Probability of failing the claim if theta is `effect`. For `<` and `>` it is that of passing
-/// with this advantage, for `within` that of passing at theta = 0.
+/// Theta::power, or nullopt if the method has no formula.
 std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,
                                const PlannedChannel& channel, double effect);
-
-/// A channel from the test's own data, to report on its size.
-PlannedChannel observed_channel(const Question& question, const Regions& regions,
-                                std::size_t channel, std::span<const ChannelData> data);
 
 }  // namespace assay::harness

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "harness/draws/sampler_setup.h"
+
 namespace assay::harness {
 
 std::string outside_of_range(const Subject& subject, const Summary& drawn) {
@@ -27,6 +29,20 @@ std::string outside_of_range(const Subject& subject, const Summary& drawn) {
         above ? "above" : "below", above ? channel.high : channel.low, above ? "high" : "low");
   }
   return "";
+}
+
+stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
+                      const stats::Moments& moments) {
+  const Subject& side = question.subjects[subject];
+  if (side.setup->observations()) return {moments.minimum, moments.maximum};
+  const Channel declared = side.setup->channels()[side.channels[channel]];
+  return {declared.low, declared.high};
+}
+
+std::optional<double> no_point_of(const Subject& side) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
+  if (draws == nullptr) return std::nullopt;
+  return no_point(draws->marginals()[side.channels[0]]);
 }
 
 }  // namespace assay::harness

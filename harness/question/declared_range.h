@@ -12,4 +12,11 @@ namespace assay::harness {
 /// have their original's declaration), images and ready-made data are not checked.
 std::string outside_of_range(const Subject& subject, const Summary& drawn);
 
+/// A channel's declared range; for recorded data the range of their values.
+stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
+                      const stats::Moments& moments);
+
+/// The value of a subject's first channel that stands for "no point"; only samplers have one.
+std::optional<double> no_point_of(const Subject& side);
+
 }  // namespace assay::harness

@@ -181,7 +181,7 @@ std::string where_pilots_stopped(const Question& question, const Pilots& pilots)
   for (const Subject& subject : question.subjects) {
     const Fault* fault = pilots.fault(subject.estimator->name, subject.purpose);
     const Pilot* const pilot = pilot_of(subject, pilots);
-    if (fault == nullptr && pilot != nullptr && pilot->larger_fault && question.rests_on_tails()) {
+    if (fault == nullptr && pilot != nullptr && pilot->larger_fault && question.is().rests_on_tails) {
       fault = &*pilot->larger_fault;
     }
     if (fault == nullptr) continue;
@@ -203,7 +203,7 @@ PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size
 
 const Pilot* pilot_of(const Question& question, std::size_t subject, const Pilots& pilots) {
   const Pilot* const pilot = pilot_of(question.subjects[subject], pilots);
-  const bool larger = pilot != nullptr && pilot->larger && question.rests_on_tails();
+  const bool larger = pilot != nullptr && pilot->larger && question.is().rests_on_tails;
   return larger ? pilot->larger.get() : pilot;
 }
 

@@ -1,9 +1,11 @@
 #include "harness/question/question_sources.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "estimators/ready_made.h"
 #include "harness/draws/consistency_setup.h"
 #include "harness/sampling/recorded_run.h"
 
@@ -196,6 +198,10 @@ Constant analytic_variance(const Channel& channel, const Source& source) {
                                source.estimator, channel.name));
 }
 
+std::string image_name(const ImageShape& shape) {
+  return fmt::format("{} x {} {}", shape.width, shape.height, fmt::join(shape.components, ", "));
+}
+
 StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
   return subject.setup->data_stream().value_or(
       key_of(*subject.estimator, seed, subject.copy, subject.purpose));
@@ -208,9 +214,9 @@ void require_moments_suffice(const Question& question) {
     if (run == nullptr) continue;
     const std::string name = side.estimator->name;
     const bool reference = i >= question.compared();
-    const bool costs =
-        question.kind == QuestionKind::cost || question.kind == QuestionKind::efficiency;
-    if (!reference && !costs && !question.of_means() && !question.of_variances()) {
+    const Quantity& quantity = question.test->claim.left;
+    const bool costs = quantity.row->counts_cost && !quantity.slope;
+    if (!reference && !costs && !question.is().of_moments) {
       throw InputError(question.test->where,
                        fmt::format("`{}` has the moments of a run, not its observations: they tell "
                                    "of mean, bias, variance, cost and efficiency, not of this; "
@@ -230,6 +236,83 @@ void require_moments_suffice(const Question& question) {
                                    name, run->summary().count));
     }
   }
+}
+
+const ScaledQuantity* other_side(const Claim& claim) {
+  return std::get_if<ScaledQuantity>(&claim.right);
+}
+
+Constant exact_number(const Claim& claim) {
+  const Constant number = std::get<Constant>(claim.right);
+  const std::string& name = claim.left.row->word;
+  if (number.standard_error > 0) {
+    throw InputError(
+        claim.left.where,
+        fmt::format("`{}` is tested against an exact number: `+-` has no method here", name));
+  }
+  return number;
+}
+
+Question one_or_two(const TestEntry& test, const Theta& theta, const Estimators& estimators) {
+  const Claim& claim = test.claim;
+  Question question{
+      .test = &test, .theta = &theta, .subjects = {estimates(claim.left.source, estimators)}};
+  if (const ScaledQuantity* other = other_side(claim)) {
+    question.factor = other->factor;
+    question.subjects.push_back(estimates(other->quantity.source, estimators));
+  } else {
+    question.references.assign(question.channel_count(), exact_number(claim));
+  }
+  return question;
+}
+
+std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
+                                const Source& source) {
+  std::vector<Constant> truths;
+  const std::vector<Channel> channels = subject.setup->channels();
+  for (const std::size_t i : subject.channels) {
+    if (!test.reference_number && !channels[i].mean) {
+      throw InputError(
+          source.where,
+          fmt::format("the true mean of `{}` is not known to its plugin; give the test "
+                      "a `reference:`, a number or an estimator",
+                      to_string(source)));
+    }
+    truths.push_back(test.reference_number ? *test.reference_number
+                                           : analytic_mean(channels[i], source));
+  }
+  return truths;
+}
+
+void add_reference(Question& question, const Estimators& estimators) {
+  if (!question.test->reference) return;
+  question.subjects.push_back(estimates(*question.test->reference, estimators));
+  question.has_reference_subject = true;
+}
+
+void require_drawn(const Question& question) {
+  if (question.test->cost != CostKind::seconds) return;
+  for (const Subject& subject : question.subjects) {
+    if (subject.setup->observations()) {
+      throw InputError(question.test->place_of("cost"),
+                       fmt::format("`{}` is not drawn but read: its seconds say nothing",
+                                   subject.estimator->name));
+    }
+    if (recorded::keeps_files(*subject.setup)) {
+      throw InputError(question.test->place_of("cost"),
+                       fmt::format("`{}` keeps what it made: the seconds of a file that is there "
+                                   "say nothing; let `process` answer, or write the seconds as a "
+                                   "number of the observation",
+                                   subject.estimator->name));
+    }
+  }
+}
+
+void require_absolute(const Margin& margin, const char* reason) {
+  if (!margin.relative) return;
+  throw InputError(margin.where, fmt::format("a margin in per cent has no meaning here: {}; give "
+                                             "an absolute number",
+                                             reason));
 }
 
 }  // namespace assay::harness

@@ -1,5 +1,7 @@
 #pragma once
 
+// Parts of a claim, bound to a suite's estimators.
+
 #include <map>
 #include <string>
 #include <vector>
@@ -7,8 +9,6 @@
 #include "harness/question/question.h"
 
 namespace assay::harness {
-
-using Estimators = std::map<std::string, PreparedEstimator>;
 
 /// The source's estimator. InputError, with a near name, if the suite has none.
 const PreparedEstimator& estimator_of(const Source& source, const Estimators& estimators);
@@ -28,10 +28,36 @@ Subject values(const Source& source, const Estimators& estimators);
 Constant analytic_mean(const Channel& channel, const Source& source);
 Constant analytic_variance(const Channel& channel, const Source& source);
 
+/// "32 x 32 irradiance".
+std::string image_name(const ImageShape& shape);
+
 /// The stream of a subject's observations.
 StreamKey stream_of(const Subject& subject, std::uint64_t seed);
 
 /// InputError at the claim if it needs more of a recorded run than moments.
 void require_moments_suffice(const Question& question);
+
+/// The quantity on the right; null if there is another side.
+const ScaledQuantity* other_side(const Claim& claim);
+
+/// The number on the right. InputError if it has an error.
+Constant exact_number(const Claim& claim);
+
+/// One source against a number, or two against each other.
+Question one_or_two(const TestEntry& test, const Theta& theta, const Estimators& estimators);
+
+/// The true mean of each channel: the number of `reference:`, else the plugin's.
+std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
+                                const Source& source);
+
+/// Adds the drawn `reference` of the test, if it has one.
+void add_reference(Question& question, const Estimators& estimators);
+
+/// InputError for a claim in seconds on data that are read: seconds are measured over blocks of
+/// drawing.
+void require_drawn(const Question& question);
+
+/// InputError for a margin in per cent.
+void require_absolute(const Margin& margin, const char* reason);
 
 }  // namespace assay::harness

@@ -131,13 +131,13 @@ Cells cells_of(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;
   const Question& question = outcome.question;
   const std::vector<ChannelData> data = data_of(test, outcome.channels[0].index);
-  if (question.kind == QuestionKind::fit_to_density && outcome.plan.method.keeps == Keeps::cells) {
+  if (question.is().of_a_law && outcome.plan.method.keeps == Keeps::cells) {
     const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
     if (draws.sampler().domain() != Domain::interval) return of_density(draws, data[0]);
   }
   const auto& sampled = outcome.plan.method.frozen.cells;
   const bool plane = question.subjects[0].channels.size() > 1;
-  if (question.kind == QuestionKind::same_cells && plane && sampled && are_a_rectangle(*sampled)) {
+  if (plane && sampled && are_a_rectangle(*sampled)) {
     return of_two(question, *sampled, data);
   }
   return {};

@@ -12,7 +12,7 @@
 #include "harness/base/numbers.h"
 #include "harness/base/parallel.h"
 #include "harness/base/text_hash.h"
-#include "harness/question/question_image.h"
+#include "harness/question/question_sources.h"
 #include "harness/record/picture.h"
 #include "stats/tails/tails.h"
 

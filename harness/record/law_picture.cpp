@@ -53,10 +53,7 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
 }
 
 bool is_drawn(const TestOutcome& outcome) {
-  const QuestionKind kind = outcome.question.kind;
-  return outcome.plan.method.keeps == Keeps::values &&
-         (kind == QuestionKind::fit_to_density || kind == QuestionKind::fit_to_law ||
-          kind == QuestionKind::same_law);
+  return outcome.question.is().of_a_law && outcome.plan.method.keeps == Keeps::values;
 }
 
 }  // namespace

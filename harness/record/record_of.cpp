@@ -9,8 +9,8 @@
 #include "estimators/core/quoting.h"
 #include "harness/base/numbers.h"
 #include "harness/base/quantiles.h"
-#include "harness/families/methods.h"
-#include "harness/question/question_image.h"
+#include "harness/theta/methods.h"
+#include "harness/theta/ask.h"
 #include "harness/record/cell_record.h"
 #include "harness/record/environment.h"
 #include "harness/record/image_record.h"
@@ -184,8 +184,7 @@ std::string reference_text(const TestEntry& test) {
 }
 
 std::string cost_text(const TestEntry& test) {
-  const QuantityName name = test.claim.left.name;
-  if (name != QuantityName::cost && name != QuantityName::efficiency) return "";
+  if (!test.claim.left.row->counts_cost) return "";
   constexpr const char* kinds[] = {"rays", "samples", "seconds"};
   return kinds[static_cast<int>(test.cost)];
 }
@@ -257,7 +256,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   test.method = outcome.plan.method.name;
   const std::size_t worst = outcome.channels.empty() ? 0 : outcome.channels[0].index;
   test.forced = !outcome.plan.gates_invalidate;
-  test.null_hypothesis = null_hypothesis(outcome.plan.method, outcome.question, worst);
+  test.null_hypothesis = null_hypothesis(outcome.question, worst);
   const bool distance = !outcome.channels.empty() && outcome.channels[0].evidence.distance;
   test.tail = distance ? "upper" : tail(regions);
   test.alpha = outcome.place.share.alpha;

@@ -15,7 +15,8 @@
 #include "harness/base/record_file.h"
 #include "harness/draws/draw_text.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/families/methods.h"
+#include "harness/theta/ask.h"
+#include "harness/theta/methods.h"
 #include "harness/plan/frozen.h"
 #include "harness/plan/rows.h"
 #include "harness/record/record_of.h"
@@ -69,8 +70,7 @@ void read_keys(const reports::Test& recorded, TestEntry& test) {
 
 bool has_relative_effect(const Claim& claim) {
   if (claim.left.slope) return false;
-  return claim.left.name == QuantityName::mean || claim.left.name == QuantityName::bias ||
-         claim.left.name == QuantityName::quantile;
+  return claim.left.row->relative_effect;
 }
 
 /// The folder of the suite's file, relative to here or else to the record. It is absolute, so that

@@ -5,20 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/draws/sampler_setup.h"
-#include "harness/families/lost_to_rounding.h"
-#include "harness/families/methods.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/plan.h"
 #include "harness/plan/rows.h"
 #include "harness/run/activation.h"
-#include "harness/run/assumptions.h"
 #include "harness/run/found_effect.h"
 #include "harness/run/image_judge.h"
 #include "harness/run/narrate.h"
 #include "harness/run/observation_faults.h"
-#include "harness/sampling/beyond_doubles.h"
-#include "harness/theta/constant.h"
+#include "harness/theta/critical.h"
+#include "harness/theta/theta.h"
 
 namespace assay::harness {
 namespace {
@@ -30,21 +26,14 @@ void settle(TestOutcome& outcome, Verdict verdict, std::string message) {
   outcome.message = std::move(message);
 }
 
-/// False if the density's integral exceeds 1 or the density is negative somewhere.
-bool density_is_proper(TestOutcome& outcome) try {
-  if (outcome.question.kind != QuestionKind::fit_to_density) return true;
-  const auto& draws = dynamic_cast<const SamplerSetup&>(*outcome.question.subjects[0].setup);
-  const double total = draws.density_cells().mass.total;
-  const double excess = total - 1;
-  if (excess <= draws.density_cells().tolerance()) return true;
-  settle(outcome, Verdict::fail,
-         fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
-                     "{:.1g}): more than 1, so no sampler can follow it",
-                     total, draws.density_cells().tolerance()));
-  return false;
+/// Settles a test whose verdict needs no look at the data.
+bool is_settled_beforehand(TestOutcome& outcome) try {
+  const auto settled = outcome.question.theta->settled_beforehand(outcome.question);
+  if (settled) settle(outcome, settled->verdict, settled->message);
+  return settled.has_value();
 } catch (const std::domain_error& error) {
   settle(outcome, Verdict::invalid, in_words(error));
-  return false;
+  return true;
 }
 
 ChannelOutcome channel_outcome(const DrawnTest& test, std::size_t channel,
@@ -52,31 +41,17 @@ ChannelOutcome channel_outcome(const DrawnTest& test, std::size_t channel,
   const TestOutcome& outcome = test.outcome;
   const Question& question = outcome.question;
   const Regions& regions = outcome.plan.regions[channel];
-  std::optional<ImageOutcome> image;
-  Evidence evidence;
-  if (question.kind == QuestionKind::image) {
-    ImageEvidence found = evidence_of_images(question, image_test(test), data);
-    evidence = std::move(found.evidence);
-    image = std::move(found.outcome);
-  } else {
-    evidence = evidence_of(outcome.plan.method, question, channel, data);
-  }
-  const stats::TestResult at_null = evidence.at(0);
+  ChannelEvidence found = question.theta->evidence(test, channel, data);
+  const stats::TestResult at_null = found.evidence.at(0);
   ChannelOutcome result{.index = channel,
                         .name = question.channel_name(channel),
                         .regions = regions,
                         .at_null = at_null,
-                        .evidence = std::move(evidence)};
+                        .evidence = std::move(found.evidence)};
   result.decision = {.log_p_claimed = log_p_claimed(result.evidence, regions),
                      .log_p_forbidden = log_p_forbidden(result.evidence, regions)};
-  result.image = std::move(image);
-  if (question.kind == QuestionKind::mean_of_one) {
-    result.reference = question.references[channel].value + question.offset;
-  } else if (question.kind == QuestionKind::mean_of_two) {
-    result.reference = question.factor * data[1].moments.mean + question.offset;
-  } else if (question.kind == QuestionKind::quantile && !question.of_two()) {
-    result.reference = question.references[channel].value;
-  }
+  result.image = std::move(found.image);
+  result.reference = question.theta->marked(question, channel, data);
   return result;
 }
 
@@ -97,39 +72,12 @@ int badness(Verdict verdict) {
   return 0;
 }
 
-/// Why a channel's data cannot be tested; "" if they can.
-std::string lack_of_numbers(const TestOutcome& outcome, std::size_t channel,
-                            std::span<const ChannelData> data) {
-  const Question& question = outcome.question;
-  for (std::size_t i = 0; i < data.size() && !question.of_laws(); ++i) {
-    if (is_constant(question, i, channel, data[i].moments)) continue;
-    std::string reason = beyond_doubles(data[i].moments, question.subjects[i].estimator->name);
-    if (!reason.empty()) return reason;
-  }
-  return lack_of_spread(outcome, channel, data);
-}
-
-/// Checks the channels whose variances form a total.
-std::string total_lost_to_rounding(const DrawnTest& test) {
-  const Question& question = test.outcome.question;
-  std::string reason;
-  if (question.kind != QuestionKind::total_variance) return reason;
-  for (std::size_t i = 0; i < question.compared() && reason.empty(); ++i) {
-    std::vector<stats::Moments> channels;
-    for (const std::size_t channel : question.subjects[i].channels) {
-      channels.push_back(test.samples[i].summary().moments(channel));
-    }
-    reason =
-        variances_lost_to_rounding(question.subjects[i], test.outcome.plan.primaries[i], channels);
-  }
-  return reason;
-}
-
 /// Computes numbers and gates of every channel at the current look. Returns the verdicts of
 /// constant channels.
 std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const DrawnTest& test) {
   const Question& question = outcome.question;
   std::vector<ConstantVerdict> constants;
+  const double critical = critical_value(outcome.share().alpha, two_sided(question));
   const auto add = [&](std::size_t channel, ConstantVerdict constant) {
     if (question.channel_count() > 1) {
       constant.message = question.channel_name(channel) + ": " + constant.message;
@@ -138,23 +86,18 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
   };
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const std::vector<ChannelData> data = data_of(test, channel);
-    if (question.of_means() && all_constant(question, channel, data)) {
-      add(channel,
-          judge_constant(question, channel, data, outcome.plan.regions[channel], outcome.share()));
+    const Regions& regions = outcome.plan.regions[channel];
+    if (auto settled =
+            question.theta->settled(question, channel, data, regions, outcome.share())) {
+      add(channel, *std::move(settled));
       continue;
     }
-    if (auto bounded =
-            judge_constant_variance(question, channel, data[0], outcome.plan.regions[channel])) {
-      add(channel, *std::move(bounded));
-      continue;
-    }
-    std::string reason = lack_of_numbers(outcome, channel, data);
-    if (reason.empty()) reason = total_lost_to_rounding(test);
+    std::string reason = question.theta->lack_of_numbers(test, channel, data);
     if (!reason.empty()) {
-      add(channel, {Verdict::invalid, reason});
+      add(channel, {Verdict::invalid, std::move(reason)});
       continue;
     }
-    for (Gate& gate : data_gates(outcome, channel, data)) {
+    for (Gate& gate : question.theta->gates(outcome, channel, data, critical)) {
       outcome.gates.push_back(std::move(gate));
     }
     outcome.channels.push_back(channel_outcome(test, channel, data));
@@ -198,8 +141,8 @@ Verdict verdict_of_channels(const TestOutcome& outcome) {
 }
 
 /// Points on no power law reject every slope, which says nothing about any, whatever the method.
-bool shows_by_no_slope(const TestOutcome& outcome) {
-  return outcome.question.kind == QuestionKind::slope && outcome.verdict == Verdict::pass &&
+bool passes_without_fit(const TestOutcome& outcome) {
+  return outcome.question.is().fit_decides && outcome.verdict == Verdict::pass &&
          outcome.plan.regions[0].has_forbidden() && !red_gates(outcome.gates).empty();
 }
 
@@ -212,7 +155,7 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
     return;
   }
   settle(outcome, verdict_of_channels(outcome), "");
-  if (shows_by_no_slope(outcome)) settle(outcome, Verdict::invalid, red_gates(outcome.gates));
+  if (passes_without_fit(outcome)) settle(outcome, Verdict::invalid, red_gates(outcome.gates));
   for (const ConstantVerdict& constant : constants) {
     const bool says_all = outcome.channels.empty() && outcome.message.empty();
     if (says_all || badness(constant.verdict) > badness(outcome.verdict)) {
@@ -322,7 +265,7 @@ namespace {
 
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
-  if (!density_is_proper(outcome)) return;
+  if (is_settled_beforehand(outcome)) return;
   judge(outcome, test);
   const bool last = outcome.look + 1 == outcome.plan.looks.sizes.size();
   const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;
@@ -333,9 +276,9 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   if (!work.verdict_only) {
     note_sizes(outcome, test);
     if (outcome.message.empty()) {
-      outcome.message = narrate(outcome) + means_where_it_differs(test) + first_contradiction(test);
+      outcome.message = narrate(outcome) + outcome.question.theta->where_it_differs(test);
       if (outcome.verdict == Verdict::fail) {
-        outcome.message += outcome.plan.hint + taken_as_exact(outcome.question);
+        outcome.message += outcome.plan.hint + outcome.question.theta->taken_as_exact(outcome.question);
       }
     }
   }

@@ -8,6 +8,7 @@
 #include "harness/base/numbers.h"
 #include "harness/plan/sample_size.h"
 #include "harness/run/image_judge.h"
+#include "harness/theta/theta.h"
 
 namespace assay::harness {
 namespace {
@@ -81,7 +82,7 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
     }
     const std::vector<ChannelData> data = data_of(test, channel.index);
     PlannedChannel observed =
-        observed_channel(outcome.question, channel.regions, channel.index, data);
+        outcome.question.theta->observed(outcome.question, channel.regions, channel.index, data);
     if (outcome.plan.method.is.of_batches) {
       // The deviations of independent values whose means are as uncertain.
       const auto deviation = [&](std::size_t subject) {
@@ -97,7 +98,7 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
         detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
     channel.finds_nothing =
         !channel.detectable &&
-        finds_nothing(outcome.question, full_size(outcome), outcome.plan, observed);
+        outcome.question.theta->finds_nothing(outcome.question, full_size(outcome), outcome.plan, observed);
     const bool equivalence = channel.regions.relation == Relation::within;
     if (!equivalence && !channel.regions.detect) continue;
     const std::optional<double> power =

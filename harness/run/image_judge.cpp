@@ -84,18 +84,6 @@ std::string means_where_it_differs(const DrawnTest& test) {
   return fmt::format("; the mean at that place is {:.5g} against {:.5g}{}", mean, other, part);
 }
 
-std::string taken_as_exact(const Question& question) {
-  const auto* const other = std::get_if<ScaledQuantity>(&question.test->claim.right);
-  if (question.kind != QuestionKind::image || question.of_two() || other == nullptr) return "";
-  const bool exact = std::ranges::all_of(
-      question.references, [](const Constant& each) { return each.standard_error == 0; });
-  if (!exact) return "";
-  return fmt::format(
-      "; `{}` is one picture, taken as exact: noise of its own would count as a "
-      "difference",
-      other->quantity.source.estimator);
-}
-
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,
                                            const ChannelOutcome& channel) {
   if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return {};

@@ -22,9 +22,6 @@ Gate own_skewness_gate(const ImageOutcome& images);
 /// decided; else "".
 std::string means_where_it_differs(const DrawnTest& test);
 
-/// A warning for images against a picture without an error, which a fail must mention; else "".
-std::string taken_as_exact(const Question& question);
-
 /// The least detectable difference that is the same everywhere, by the sum over the whole image.
 /// nullopt if the claim allows a difference.
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,

@@ -9,6 +9,7 @@
 #include "harness/plan/gate_text.h"
 #include "harness/plan/plan.h"
 #include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
 #include "reports/words/effect.h"
 #include "reports/words/number.h"
 #include "stats/tails/tails.h"
@@ -83,30 +84,15 @@ double excluded_beyond(const ChannelOutcome& channel) {
   return farther(low, high, channel.evidence);
 }
 
-/// A channel's index among the references; nullopt except for a mean against a number.
+/// A channel's index among the references; nullopt if channels have none.
 std::optional<std::size_t> reference_index(const TestOutcome& outcome,
                                            const ChannelOutcome& channel) {
   const Question& question = outcome.question;
-  if (question.kind != QuestionKind::mean_of_one) return {};
+  if (question.references.size() != question.channel_count()) return {};
   for (std::size_t i = 0; i < question.channel_count(); ++i) {
     if (question.channel_name(i) == channel.name) return i;
   }
   return {};
-}
-
-/// The exponents or quantiles that speak against the claim if the interval excludes none of them;
-/// else "".
-std::string what_is_not_excluded(const Question& question, const ChannelOutcome& channel) {
-  const bool no_low = !channel.effect.low || !std::isfinite(*channel.effect.low);
-  const bool no_high = !channel.effect.high || !std::isfinite(*channel.effect.high);
-  if (question.kind == QuestionKind::slope) return no_low && no_high ? "exponent" : "";
-  if (question.kind != QuestionKind::quantile) return "";
-  // A lower limit alone refutes a claim `<=`.
-  const bool low_counts = channel.regions.relation != Relation::at_least;
-  const bool high_counts = channel.regions.relation != Relation::at_most;
-  if (low_counts && no_low && high_counts && no_high) return "quantile";
-  if (low_counts && no_low) return "smaller quantile";
-  return high_counts && no_high ? "larger quantile" : "";
 }
 
 /// A distance's interval reaches 0, unless even 0 is too large for these data.
@@ -147,18 +133,14 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
           "with probability {:g}",
           text, outcome.secondaries(), 1 - outcome.share().beta);
     }
-    if (const std::string all = what_is_not_excluded(outcome.question, channel); !all.empty()) {
+    if (const std::string all = outcome.question.theta->not_excluded(channel); !all.empty()) {
       return fmt::format(
           "{}; but these observations exclude no {} at all: take more of them, or say with "
           "`detect` how far off it must not be",
           text, all);
     }
     if (channel.detectable) {
-      // Other cells see the same sum of squares in a few pixels, or of both signs, from other sizes
-      // on.
-      const char* how = outcome.question.kind == QuestionKind::image
-                            ? " that is the same all over the image"
-                            : " or more";
+      const char* how = outcome.question.theta->detectable_text();
       text += fmt::format("; {}{} would have been found with probability {:g}",
                           reports::margin_text(*channel.detectable, channel.effect), how,
                           1 - outcome.share().beta);
@@ -234,7 +216,7 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   const auto index = reference_index(outcome, channel);
   if (!index) return 0;
   const Constant& reference = outcome.question.references[*index];
-  const bool relative = is_relative(outcome.question, *index);
+  const bool relative = outcome.question.theta->is_relative(outcome.question, *index);
   return reference.standard_error / (relative ? std::abs(reference.value) : 1);
 }
 

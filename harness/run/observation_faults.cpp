@@ -62,10 +62,7 @@ std::string unusable(const DrawnTest& test) {
 
 std::string first_contradiction(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;
-  if (outcome.question.kind != QuestionKind::inconsistency ||
-      outcome.verdict != reports::Verdict::fail) {
-    return "";
-  }
+  if (outcome.verdict != reports::Verdict::fail) return "";
   std::optional<std::uint64_t> first;
   try {
     first = first_inconsistent(test.samples[0].pool(), outcome.secondaries());

@@ -292,7 +292,7 @@ bool is_about(const Question& question, const Subject& side) {
 }  // namespace
 
 bool is_streamed(const Question& question) {
-  return question.kind == QuestionKind::image && question.of_two() && question.factor == 1 &&
+  return question.is().of_images && question.of_two() && question.factor == 1 &&
          question.offset == 0 && !plans_replicates(question) && !question.test->secondaries &&
          !question.test->budget &&
          question.subjects[0].estimator != question.subjects[1].estimator &&

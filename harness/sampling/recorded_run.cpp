@@ -28,25 +28,6 @@ struct Kept {
   }
 };
 
-bool is_of_moments(QuantityName name) {
-  switch (name) {
-    case QuantityName::mean:
-    case QuantityName::bias:
-    case QuantityName::variance:
-    case QuantityName::total_variance:
-    case QuantityName::worst_variance:
-    case QuantityName::efficiency:
-    case QuantityName::cost:
-      return true;
-    case QuantityName::quantile:
-    case QuantityName::distribution:
-    case QuantityName::integral:
-    case QuantityName::inconsistency:
-      break;
-  }
-  return false;
-}
-
 /// Keeps only these names of a list of canonical parameters.
 std::string only(const std::string& parameters, const std::vector<std::string>& names) {
   std::string kept;
@@ -77,7 +58,7 @@ std::optional<Kept> kept_in(const reports::Test& test, const std::string& estima
   const Claim claim = parse_claim(test.claim, {.file = test.file});
   const std::vector<Source> sources = sources_of(claim);
   const auto named = [&](const Source& source) { return source.estimator == estimator; };
-  if (!is_of_moments(claim.left.name) || claim.left.slope) return std::nullopt;
+  if (!claim.left.row->told_by_moments || claim.left.slope) return std::nullopt;
   if (std::count_if(sources.begin(), sources.end(), named) != 1) return std::nullopt;
   Kept kept;
   std::set<std::string> channels;

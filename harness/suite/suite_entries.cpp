@@ -1,6 +1,7 @@
 #include "harness/suite/suite_entries.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,8 +73,13 @@ void read_sampling(const Document& document, const Keys& keys, TestEntry& test) 
   if (const Value* v = keys.find("cost")) test.cost = read_cost(*v);
 }
 
-bool is_about(const Claim& claim, std::initializer_list<QuantityName> names) {
-  return std::ranges::find(names, claim.left.name) != names.end();
+/// The quantities that have a trait, as "`bias` and `efficiency`".
+std::string quantities_with(bool QuantityRow::*trait) {
+  std::vector<std::string> words;
+  for (const QuantityRow& row : quantities()) {
+    if (row.*trait) words.push_back("`" + row.word + "`");
+  }
+  return fmt::format("{}", fmt::join(words, " and "));
 }
 
 bool is_proof(Relation relation) {
@@ -304,13 +310,14 @@ void check_test(const TestEntry& test) {
     refuse("claim", "a slope needs `over`: `over: {primaries: [8, 16, 32]}`");
   }
   if (!claim.left.slope && test.over) refuse("over", "`over` has no meaning but for `slope(…)`");
-  using enum QuantityName;
-  if ((test.reference || test.reference_number) && !is_about(claim, {bias, efficiency})) {
-    refuse("reference", "`reference` has no meaning but for `bias` and `efficiency`");
+  const auto refuse_but_for = [&](const char* key, bool QuantityRow::*trait) {
+    if (claim.left.row->*trait) return;
+    refuse(key, fmt::format("`{}` has no meaning but for {}", key, quantities_with(trait)));
+  };
+  if (test.reference || test.reference_number) {
+    refuse_but_for("reference", &QuantityRow::takes_reference);
   }
-  if (test.cost != CostKind::rays && !is_about(claim, {cost, efficiency})) {
-    refuse("cost", "`cost` has no meaning but for `cost` and `efficiency`");
-  }
+  if (test.cost != CostKind::rays) refuse_but_for("cost", &QuantityRow::counts_cost);
 }
 
 }  // namespace assay::harness

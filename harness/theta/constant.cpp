@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "estimators/ready_made.h"
-#include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
@@ -61,7 +61,7 @@ Difference from_number(const Question& question, std::size_t channel, const Chan
   return {.value = mean.value - question.offset - reference.value,
           .below = mean.below + reach,
           .above = mean.above + reach,
-          .scale = is_relative(question, channel) ? std::abs(reference.value) : 1};
+          .scale = question.theta->is_relative(question, channel) ? std::abs(reference.value) : 1};
 }
 
 Difference from_other(const Question& question, std::size_t channel,
@@ -74,7 +74,9 @@ Difference from_other(const Question& question, std::size_t channel,
   return {.value = one.value - question.offset - reference,
           .below = one.below + factor * (same_sign ? two.above : two.below),
           .above = one.above + factor * (same_sign ? two.below : two.above),
-          .scale = is_relative(question, channel) && reference != 0 ? std::abs(reference) : 1};
+          .scale = question.theta->is_relative(question, channel) && reference != 0
+                       ? std::abs(reference)
+                       : 1};
 }
 
 Difference difference_of(const Question& question, std::size_t channel,
@@ -235,8 +237,8 @@ double hidden_deviation(const Question& question, std::size_t channel, const Cha
 std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
                                                        std::size_t channel, const ChannelData& data,
                                                        const Regions& regions) {
-  if (question.kind != QuestionKind::variance_of_one || regions.relation != Relation::at_most ||
-      regions.has_forbidden() || !is_constant(question, 0, channel, data.moments)) {
+  if (regions.relation != Relation::at_most || regions.has_forbidden() ||
+      !is_constant(question, 0, channel, data.moments)) {
     return {};
   }
   const double hidden = hidden_deviation(question, channel, data);

@@ -18,6 +18,9 @@ inline constexpr std::uint64_t least_secondaries = 100;
 // Size of a test without `detect`.
 inline constexpr std::uint64_t usual_secondaries = 1000;
 
+// A method is taken to keep its level up to this factor.
+inline constexpr double level_factor = 1.25;
+
 /// The smallest part of a share that a look of this test may have.
 double smallest_share(const Question& question, double share);
 

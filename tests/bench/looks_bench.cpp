@@ -16,6 +16,7 @@
 #include <ctime>
 
 #include "harness/draws/sampler_setup.h"
+#include "harness/families/families.h"
 #include "harness/families/law_evidence.h"
 #include "harness/record/record_of.h"
 #include "harness/run/planned_run.h"
@@ -62,7 +63,7 @@ class Phases final : public harness::Progress {
 void make_tables(const std::vector<harness::TestWork*>& tests) {
   for (const harness::TestWork* work : tests) {
     const harness::Question& question = work->outcome.question;
-    if (question.kind != harness::QuestionKind::fit_to_density) continue;
+    if (question.theta != &harness::theta_of_laws()) continue;
     dynamic_cast<const harness::SamplerSetup&>(*question.subjects[0].setup).density_cells();
     if (work->outcome.plan.method.keeps != harness::Keeps::values) continue;
     for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {

@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "harness/families/methods.h"
 #include "harness/plan/frozen.h"
 #include "harness/plan/pilot_run.h"
 #include "harness/plan/plan.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/pools.h"
 #include "harness/sampling/scheduler.h"
-#include "questions.h"
-#include "running.h"
+#include "harness/theta/methods.h"
+#include "tests/harness/questions.h"
+#include "tests/harness/running.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {

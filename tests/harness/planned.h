@@ -6,8 +6,8 @@
 
 #include "harness/plan/pilot_run.h"
 #include "harness/plan/plan.h"
-#include "questions.h"
-#include "running.h"
+#include "tests/harness/questions.h"
+#include "tests/harness/running.h"
 
 namespace assay::harness {
 

@@ -7,7 +7,8 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question.h"
-#include "running.h"
+#include "harness/theta/ask.h"
+#include "tests/harness/running.h"
 
 namespace assay::harness {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "running.h"
+#include "tests/harness/running.h"
 #include "tests/philox.h"
 
 namespace assay::harness {

@@ -1,0 +1,51 @@
+#pragma once
+
+// What the families offer to the table of quantities and to each other. One file a family.
+
+#include <string>
+
+#include "harness/theta/theta.h"
+
+namespace assay::harness {
+
+// Each binds a claim about its quantity. InputError at the claim's place if it cannot.
+Question bind_mean(const TestEntry&, const Estimators&);
+/// E x against reference + number. The reference is the analytic mean, or that of `reference:`.
+Question bind_bias(const TestEntry&, const Estimators&);
+Question bind_variance(const TestEntry&, const Estimators&);
+/// Allows "at most" and "below" for the largest variance of several channels: every channel's is
+/// bounded then.
+Question bind_worst_variance(const TestEntry&, const Estimators&);
+Question bind_total_variance(const TestEntry&, const Estimators&);
+/// 1 / (error x cost). The error is the variance, or the mean squared error if the estimator is
+/// biased by its class or the test names a `reference`.
+Question bind_efficiency(const TestEntry&, const Estimators&);
+/// Rays, samples or seconds (`cost:`), one number for all channels. They are those of a primary if
+/// the estimator averages, else those of a secondary.
+Question bind_cost(const TestEntry&, const Estimators&);
+Question bind_quantile(const TestEntry&, const Estimators&);
+Question bind_distribution(const TestEntry&, const Estimators&);
+Question bind_integral(const TestEntry&, const Estimators&);
+Question bind_inconsistency(const TestEntry&, const Estimators&);
+
+const Theta& theta_of_means();
+const Theta& theta_of_images();
+const Theta& theta_of_variances();
+const Theta& theta_of_costs();
+const Theta& theta_of_laws();
+const Theta& theta_of_quantiles();
+const Theta& theta_of_draws();
+const Theta& theta_of_slopes();
+const Theta& theta_of_variance_slopes();
+
+/// The known reference of a bias: ", reference 2.5"; "" if it is sampled.
+std::string reference_text(const Question& question);
+/// ", red" if the question has several channels.
+std::string channel_suffix(const Question& question, std::size_t channel);
+
+inline bool is_within(const Question& question) {
+  return question.test->claim.relation == Relation::within;
+}
+inline bool any_question(const Question&) { return true; }
+
+}  // namespace assay::harness

@@ -1,0 +1,890 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimators/ready_made.h"
+#include "harness/families/families.h"
+#include "harness/families/lost_to_rounding.h"
+#include "harness/families/mean_evidence.h"
+#include "harness/plan/look_sizes.h"
+#include "harness/plan/pilot_shape.h"
+#include "harness/plan/planned_rates.h"
+#include "harness/plan/rows.h"
+#include "harness/plan/sample_size.h"
+#include "harness/question/declared_range.h"
+#include "harness/question/question_sources.h"
+#include "harness/run/evaluate.h"
+#include "harness/theta/ask.h"
+#include "harness/theta/constant.h"
+#include "harness/theta/critical.h"
+#include "harness/theta/methods.h"
+#include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
+#include "reports/words/number.h"
+#include "stats/gates/assumption_gates.h"
+#include "stats/means/power_exact.h"
+#include "stats/means/skewness_corrected_t.h"
+#include "stats/planning/power.h"
+#include "stats/tails/tails.h"
+
+namespace assay::harness {
+namespace {
+
+using stats::GateState;
+
+// ---- Binding
+
+std::string size_of(const Subject& subject) {
+  if (subject.image) {
+    return fmt::format("{} x {} pixels of {}", subject.image->width, subject.image->height,
+                       fmt::join(subject.image->components, ", "));
+  }
+  return fmt::format("{} channels", subject.channels.size());
+}
+
+/// References from recorded means and their errors, channel by channel.
+std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
+  const Subject& subject = question.subjects[0];
+  const bool one_size = subject.channels.size() == reference.channels.size() &&
+                        (!subject.image || !reference.image ||
+                         (subject.image->width == reference.image->width &&
+                          subject.image->components.size() == reference.image->components.size()));
+  if (!one_size) {
+    throw InputError(
+        question.test->claim.left.where,
+        fmt::format("`{}` has {} and `{}` has {}: only what is of one size can be compared, "
+                    "element by element",
+                    subject.estimator->name, size_of(subject), reference.estimator->name,
+                    size_of(reference)));
+  }
+  std::vector<Constant> means;
+  const std::vector<Channel> channels = reference.setup->channels();
+  for (const std::size_t i : reference.channels) {
+    means.push_back({question.factor * channels[i].mean.value_or(0),
+                     std::abs(question.factor) * channels[i].mean_error});
+  }
+  return means;
+}
+
+std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
+  std::vector<Constant> numbers;
+  const std::vector<Channel> channels = subject.setup->channels();
+  for (const std::size_t i : subject.channels) {
+    const auto* const number = std::get_if<Constant>(&claim.right);
+    numbers.push_back(number != nullptr ? *number : analytic_mean(channels[i], claim.left.source));
+  }
+  return numbers;
+}
+
+// ---- Sizes
+
+// Normal quantile: one pilot in a thousand exceeds the upper limit of its variance.
+constexpr double pilot_quantile = 3.09;
+
+double upper_variance(const stats::Moments& pilot) {
+  const double n = static_cast<double>(pilot.count);
+  const double error = std::sqrt(std::max(0.0, pilot.kurtosis() - 1) / n);
+  return pilot.variance() * std::exp(pilot_quantile * error);
+}
+
+// Beyond this a constant's unseen values stay undecided: they may not exist.
+constexpr std::uint64_t most_for_the_unseen = 1024 * usual_secondaries;
+
+/// The largest deviation that a constant pilot leaves open for a mean in a declared range. It is
+/// the smaller of two: all values at the ends, with the claimed mean; or values that the pilot
+/// missed with probability .01.
+double unseen_deviation(const PlannedChannel& planned, const stats::Moments& pilot) {
+  const auto [low, high] = planned.range;
+  const double of_the_ends = (planned.null_value - low) * (high - planned.null_value);
+  const double reach = std::max(high - pilot.mean, pilot.mean - low);
+  const double unseen = std::log(100.0) / static_cast<double>(pilot.count) * reach * reach;
+  return std::sqrt(std::max(0.0, std::min(of_the_ends, unseen)));
+}
+
+/// True if both samples of a comparison spread; else it is planned as one mean against a number.
+bool both_spread(const Question& question, const PlannedChannel& channel) {
+  return question.of_two() && channel.standard_deviation > 0 && channel.other_deviation > 0;
+}
+
+/// Size of the sample that has a spread; of the first if both have.
+double size_of_the_spread(const stats::SampleSizes& sizes, const PlannedChannel& channel) {
+  return channel.standard_deviation > 0 ? sizes.x : sizes.y;
+}
+
+stats::MeanPlan mean_plan(const stats::ErrorRates& rates, double allow,
+                          const PlannedChannel& channel) {
+  return {.standard_deviation = std::hypot(channel.standard_deviation, channel.other_deviation),
+          .allow = allow * channel.unit,
+          .reference_standard_error = channel.reference_error,
+          .rates = rates};
+}
+
+stats::TwoMeansPlan means_plan(const stats::ErrorRates& rates, double allow,
+                               const PlannedChannel& channel, double allocation = 1) {
+  return {.standard_deviation_x = channel.standard_deviation,
+          .standard_deviation_y = channel.other_deviation,
+          .allocation = allocation,
+          .allow = allow * channel.unit,
+          .rates = rates};
+}
+
+std::optional<std::uint64_t> for_means(const Question& question, const stats::ErrorRates& rates,
+                                       const Regions& regions, const PlannedChannel& channel) {
+  const double detect = *regions.detect * channel.unit;
+  if (both_spread(question, channel)) {
+    return stats::welch_sample_size(means_plan(rates, regions.allow, channel), detect);
+  }
+  return stats::student_t_sample_size(mean_plan(rates, regions.allow, channel), detect);
+}
+
+/// Both one-sided tests at beta must reject when theta = 0, each missing with beta / 2.
+std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& channel) {
+  const double deviation = std::hypot(channel.standard_deviation, channel.other_deviation);
+  const double z = stats::normal_quantile({stats::Tail::upper, std::log(share.beta)}) +
+                   stats::normal_quantile({stats::Tail::upper, std::log(share.beta / 2)});
+  const double wanted = channel.regions.within * channel.unit / z;  // standard error of the mean
+  const double left = wanted * wanted - channel.reference_error * channel.reference_error;
+  if (!(left > 0)) return impossible_secondaries;
+  const double count = std::ceil(deviation * deviation / left) + 2;
+  return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
+}
+
+// ---- Exact methods
+
+// Barnard's maximum over the nuisance probability costs at most this (stats/means/two_valued.h).
+constexpr double two_sample_cost = 1.4;
+
+/// Sides of the reference where an effect is to be found.
+std::vector<int> sides_of(Relation relation) {
+  switch (relation) {
+    case Relation::at_most:
+    case Relation::greater:
+      return {1};
+    case Relation::at_least:
+    case Relation::less:
+      return {-1};
+    case Relation::equal:
+    case Relation::within:
+      break;
+  }
+  return {1, -1};
+}
+
+bool is_quoted(const Question& question, const Plan& plan, const PlannedChannel& channel) {
+  return plan.method.is.plans && !question.of_two() &&
+         channel.regions.relation != Relation::within && std::isfinite(channel.range.low) &&
+         std::isfinite(channel.range.high) && channel.range.low < channel.range.high;
+}
+
+stats::ExactMeanPlan plan_of(const PlannedChannel& channel, const stats::ErrorRates& rates) {
+  return {.range = channel.range,
+          .null_mean = channel.null_value,
+          .standard_deviation = channel.standard_deviation,
+          .allow = channel.regions.proof() ? 0 : channel.regions.allow * channel.unit,
+          .rates = rates};
+}
+
+std::optional<std::uint64_t> exact_secondaries(const Question& question, const Plan& plan,
+                                               const PlannedChannel& channel,
+                                               const stats::ErrorRates& rates) {
+  const double detect = channel.regions.detect.value_or(0) * channel.unit;
+  if (question.of_two()) {
+    const auto welch = stats::welch_sample_size({.standard_deviation_x = channel.standard_deviation,
+                                                 .standard_deviation_y = channel.other_deviation,
+                                                 .allow = channel.regions.allow * channel.unit,
+                                                 .rates = rates},
+                                                detect);
+    if (!welch) return std::nullopt;
+    return static_cast<std::uint64_t>(std::ceil(two_sample_cost * static_cast<double>(*welch)));
+  }
+  std::uint64_t most = 0;
+  for (const int side : sides_of(channel.regions.relation)) {
+    const auto count =
+        stats::exact_sample_size(*plan.method.is.plans, plan_of(channel, rates), side * detect);
+    if (!count) return std::nullopt;
+    most = std::max(most, *count);
+  }
+  return most;
+}
+
+std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& question,
+                                                           const Plan& plan,
+                                                           const PlannedChannel& channel,
+                                                           const ErrorShare& share) {
+  // At each margin theta = 0 is the effect to be found, with half of the misses.
+  const stats::ErrorRates rates = planned_rates(share, channel.regions);
+  PlannedChannel at_margin = channel;
+  at_margin.regions.detect = channel.regions.within;
+  at_margin.regions.allow = 0;
+  if (question.of_two()) return exact_secondaries(question, plan, at_margin, rates);
+  const double margin = channel.regions.within * channel.unit;
+  std::uint64_t most = 0;
+  for (const int side : {1, -1}) {
+    at_margin.null_value = channel.null_value + side * margin;
+    const auto count =
+        stats::exact_sample_size(*plan.method.is.plans, plan_of(at_margin, rates), -side * margin);
+    if (!count) return std::nullopt;
+    most = std::max(most, *count);
+  }
+  return most;
+}
+
+// ---- The choice of a method
+
+/// The same for the skewness-corrected t.
+std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double critical) {
+  std::uint64_t needed = least_secondaries;
+  for (const Known& known : channels) {
+    const stats::PrimaryShape primary = stats::primary_shape(known.pilot.moments);
+    const stats::PrimaryShape shape{.skewness = primary.skewness / std::sqrt(known.averaged),
+                                    .excess_kurtosis = primary.excess_kurtosis / known.averaged};
+    const auto factor = [&](std::uint64_t count) {
+      return stats::corrected_level_factor(shape, {.count = count, .critical_value = critical});
+    };
+    while (needed < impossible_secondaries && factor(needed) > level_factor)
+      needed += needed / 4 + 1;
+  }
+  return needed;
+}
+
+/// Secondaries from which unseen values of a declared range move the mean by a tenth of its
+/// standard error at most. An event that N primaries missed has probability ln(1 / alpha) / N at
+/// most.
+std::uint64_t enough_to_see(const Question& question, const std::vector<Known>& channels,
+                            double alpha) {
+  constexpr double share_of_error = 0.1;
+  double needed = 2;
+  for (const Known& known : channels) {
+    const stats::Moments& seen = known.pilot.moments;
+    const stats::Range range = range_of(question, known.subject, known.channel, seen);
+    const double beyond = std::max(range.high - seen.maximum, seen.minimum - range.low);
+    const double root =
+        std::log(1 / alpha) * beyond / (share_of_error * std::sqrt(seen.variance()));
+    needed = std::max(needed, root * root / known.averaged);
+  }
+  return whole_secondaries(needed);
+}
+
+/// True if every known value is one of the two ends of its range.
+bool are_two_valued(const Question& question, const std::vector<Known>& channels,
+                    const Plan& plan) {
+  if (question.of_two() && question.factor <= 0) return false;
+  const auto uncertain = [](const Constant& reference) { return reference.standard_error > 0; };
+  if (std::any_of(question.references.begin(), question.references.end(), uncertain)) return false;
+  return channels.size() == question.subjects.size() * question.channel_count() &&
+         std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
+           const stats::Range range =
+               range_of(question, known.subject, known.channel, known.pilot.moments);
+           // Rows declare no range: only 0 and 1 are surely a count of successes.
+           if (known.rows && (range.low != 0 || range.high != 1)) return false;
+           return plan.primaries[known.subject] == 1 && !known.pilot.values.empty() &&
+                  std::all_of(known.pilot.values.begin(), known.pilot.values.end(),
+                              [&](double v) { return v == range.low || v == range.high; });
+         });
+}
+
+/// True if the range is finite on both sides and the reference exact.
+bool in_known_bounds(const Question& question, std::size_t channel, const stats::Moments& seen) {
+  const stats::Range range = range_of(question, 0, channel, seen);
+  return std::isfinite(range.low) && std::isfinite(range.high) &&
+         question.references[channel].standard_error == 0;
+}
+
+bool are_bounded(const Question& question, const std::vector<Known>& channels) {
+  if (question.of_two()) return false;
+  return std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
+    return !known.rows && in_known_bounds(question, known.channel, known.pilot.moments);
+  });
+}
+
+/// True if "too much" has an exact test, which takes a declared lower bound and no other.
+bool can_be_bet_on(const Question& question, const std::vector<Known>& channels) {
+  if (question.of_two() || question.test->claim.relation != Relation::at_most) return false;
+  return !channels.empty() &&
+         std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
+           const stats::Range range = range_of(question, 0, known.channel, known.pilot.moments);
+           return !known.rows && std::isfinite(range.low) &&
+                  question.references[known.channel].standard_error == 0;
+         });
+}
+
+/// True if the pilot saw a single value of means in declared ranges: only unseen values are left to
+/// test.
+bool are_unseen_in_ranges(const Question& question, const Pilots& pilots) {
+  if (question.of_two()) return false;
+  const Pilot* const pilot = pilot_of(question, 0, pilots);
+  if (pilot == nullptr || has_rows(question)) return false;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    const stats::Moments& seen = pilot_channel(question, 0, channel, pilots).moments;
+    const stats::Range range = range_of(question, 0, channel, seen);
+    if (!is_constant(question, 0, channel, seen) || !(range.low < range.high) ||
+        !in_known_bounds(question, channel, seen)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
+                              const Pilots& pilots, std::uint64_t most, Plan& plan) {
+  if (!question.test->method && are_unseen_in_ranges(question, pilots)) {
+    plan.method = find_method(question, "bounded");
+    return least_secondaries;
+  }
+  const std::vector<Known> channels =
+      known_channels(question, pilots, largest_look(question, most), plan);
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  const std::string heavy = too_heavy(question, channels, stats::TailClaim::mean, plan);
+  const bool bounded = !channels.empty() && are_bounded(question, channels);
+  const std::uint64_t to_see =
+      bounded ? enough_to_see(question, channels, smallest_level(question, place)) : 2;
+  const std::uint64_t for_t = std::max(to_see, enough_for_t(channels, x));
+  const std::uint64_t for_corrected = std::max(to_see, enough_for_corrected(channels, x));
+  const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
+  const bool fixed = question.test->secondaries || size == most;
+  // If the size is open, validity may ask for more; the t test only if looks stay early.
+  const std::uint64_t affordable = fixed ? size : std::min(most, std::max(size, most_for_a_mean));
+  const std::uint64_t early = fixed || size <= usual_secondaries ? size : size / 4;
+  std::uint64_t least = std::max(least_secondaries, for_t);
+  if (question.test->method) {
+    least = least_secondaries;
+  } else if (are_two_valued(question, channels, plan)) {
+    plan.method = find_method(question, "binomial");
+    return least_secondaries;
+  } else if (has_rows(question)) {
+    // The data's own gates judge their shape further (rows.h).
+    if (for_t > fewest_secondaries(question, size))
+      plan.method = find_method(question, "skewness-corrected-t");
+    least = size;
+  } else if (for_t > std::max(least_secondaries, early) && for_corrected < for_t &&
+             for_corrected <= affordable) {
+    plan.method = find_method(question, "skewness-corrected-t");
+    least = for_corrected;
+  } else if (for_t > affordable && bounded) {
+    plan.method = find_method(question, "bounded");
+    answer_red_gates(plan);
+    return least_secondaries;
+  } else if ((for_t > affordable || !heavy.empty()) && can_be_bet_on(question, channels)) {
+    plan.method = find_method(question, "betting");
+    answer_red_gates(plan);
+    return least_secondaries;
+  }
+  for (const Known& known : channels) {
+    stats::Gate gate = stats::predicted_skewness_gate(
+        stats::primary_shape(known.pilot.moments), whole_secondaries(known.averaged),
+        {.secondaries = std::clamp(std::max(least, size), std::uint64_t{2}, affordable),
+         .critical_value = x});
+    // The chosen method answers it.
+    const bool answered = plan.method.is.corrects_skewness;
+    if (answered && gate.state == GateState::red) gate.state = GateState::amber;
+    note(plan, known, gate);
+  }
+  if (question.test->method) return least;
+  plan.invalid = heavy;
+  // Red: at this size the t test's worse tail is off by more than a factor of two.
+  const double red = std::pow(std::log(level_factor) / std::log(2.0), 2);
+  const bool t_is_red = red * static_cast<double>(for_t) > static_cast<double>(affordable);
+  if (fixed && !has_rows(question) && plan.invalid.empty() && t_is_red &&
+      for_corrected > affordable) {
+    note_too_few(plan, affordable, std::min(for_t, for_corrected));
+    plan.invalid = fmt::format(
+        "secondary estimates of this shape need about {} observations before any test of their "
+        "mean "
+        "keeps its level; a larger `primaries` brings them nearer to normal, or declare the range",
+        reports::human(static_cast<double>(std::min(for_t, for_corrected)), 2));
+  }
+  return std::min(least, affordable);
+}
+
+// ---- Data
+
+// A shift of a tenth of a standard error raises a tail of one per cent by a third.
+constexpr double tolerated_shift = 0.1;
+
+/// Why two means cannot be compared if one is constant and its unseen values could decide; "" if
+/// they can.
+std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
+                                std::span<const ChannelData> data) {
+  const Question& question = outcome.question;
+  for (std::size_t subject = 0; subject < data.size() && question.of_two(); ++subject) {
+    const ChannelData& mine = data[subject];
+    const ChannelData& other = data[1 - subject];
+    if (!is_constant(question, subject, channel, mine.moments)) continue;
+    // The second mean enters times the factor.
+    const double factor = std::abs(question.factor);
+    const double shift = (subject == 1 ? factor : 1) *
+                         unseen_shift(question, subject, channel, mine, outcome.share().alpha);
+    const double error = (subject == 0 ? factor : 1) * other.moments.standard_error();
+    if (shift <= tolerated_shift * error) continue;
+    return fmt::format(
+        "every observation of `{}` is {:.10g}, and values never seen could move its mean by {:.3g} "
+        "where the comparison's standard error is {:.3g}; {}",
+        question.subjects[subject].estimator->name, mine.moments.mean, shift, error,
+        std::isfinite(shift) ? "take more observations"
+                             : "declare the range, or take more observations");
+  }
+  return "";
+}
+
+stats::Gate skewness_gate(const Question& question, std::span<const ChannelData> data, double x) {
+  if (data.size() == 1) return stats::skewness_gate(data[0].moments, x);
+  return stats::skewness_gate(data[0].moments, data[1].moments, question.factor, x);
+}
+
+stats::Gate residual_gate(const Question& question, std::size_t channel,
+                          std::span<const ChannelData> data, double x) {
+  if (data.size() == 2) {
+    return stats::residual_skewness_gate(data[0].moments, data[1].moments, question.factor, x);
+  }
+  const Constant& reference = question.references[channel];
+  return stats::residual_skewness_gate(
+      data[0].moments, {reference.value + question.offset, reference.standard_error}, x);
+}
+
+/// theta = E x - r, or (E x - r) / |r| if margins are relative. For two estimators c E y replaces
+/// r. A claimed bias is subtracted from E x.
+class MeanTheta : public Theta {
+ public:
+  MeanTheta() : Theta({.of_moments = true, .batches_serve = true}) {}
+
+  const std::vector<MethodRow>& methods() const override { return rows(); }
+  const Theta* of_images() const override { return &theta_of_images(); }
+
+  std::optional<double> known_size(const Question& question) const override {
+    double largest = Theta::known_size(question).value_or(0);
+    if (question.of_two()) {
+      const std::vector<Channel> others = question.subjects[1].setup->channels();
+      for (const std::size_t channel : question.subjects[1].channels) {
+        const double mean = question.factor * others[channel].mean.value_or(0);
+        const double error = std::abs(question.factor) * others[channel].rounding;
+        if (exceeds_its_error(mean, error)) largest = std::max(largest, std::abs(mean));
+      }
+    }
+    return largest > 0 ? std::optional(largest) : std::nullopt;
+  }
+
+  bool is_relative(const Question& question, std::size_t channel) const override {
+    return !has_absolute_margin(*question.test) &&
+           (question.of_two() || question.references[channel].value != 0);
+  }
+
+  std::optional<ThetaError> error(const Question& question, std::size_t channel,
+                                  std::span<const ChannelData> data) const override {
+    const double unit =
+        unit_of_theta(question, channel, question.of_two() ? data[1].moments.mean : 0);
+    ThetaError error;
+    for (std::size_t i = 0; i < data.size(); ++i) {
+      const double factor = i == 0 ? 1 : std::abs(question.factor);
+      double& part = question.subjects[i].setup->observations() ? error.fixed : error.drawn;
+      part = std::hypot(part, factor * data[i].moments.standard_error() / unit);
+    }
+    if (!question.references.empty()) {
+      error.fixed = std::hypot(error.fixed, question.references[channel].standard_error / unit);
+    }
+    return error;
+  }
+
+  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                       std::uint64_t most, Plan& plan) const override {
+    return choose_for_mean(question, place, pilots, most, plan);
+  }
+
+  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
+                                           const Pilots& pilots, const Plan& plan) const override {
+    if (!all_piloted(question, pilots)) return std::nullopt;
+    return most_of_channels(question, [&](std::size_t channel) {
+      return of_channel(question, channel, share, pilots, plan);
+    });
+  }
+
+  std::string caution(const Question& question, const Pilots& pilots) const override {
+    if (!question.of_two()) return "";
+    const Subject& second = question.subjects[1];
+    const Pilot* const pilot = pilot_of(second, pilots);
+    if (pilot == nullptr) return "";
+    double size = 0;
+    for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
+      const stats::Moments moments = pilot_channel(second, *pilot, channel).moments;
+      if (moments.count > 1 && exceeds_its_error(moments.mean, moments.standard_error())) {
+        size = std::max(size, std::abs(question.factor * moments.mean));
+      }
+    }
+    for (const Margin& margin : margins_of(*question.test)) {
+      if (std::string text = missing_per_cent(margin, size); !text.empty()) {
+        return "the margin " + text;
+      }
+    }
+    return "";
+  }
+
+  PlannedChannel observed(const Question& question, const Regions& regions, std::size_t channel,
+                          std::span<const ChannelData> data) const override {
+    PlannedChannel observed{.regions = regions};
+    observed.standard_deviation = data[0].moments.standard_deviation();
+    double other_mean = 0;
+    if (question.of_two()) {
+      other_mean = data[1].moments.mean;
+      observed.other_deviation = std::abs(question.factor) * data[1].moments.standard_deviation();
+    } else {
+      observed.reference_error = question.references[channel].standard_error;
+    }
+    note_range(question, channel, data[0].moments, observed);
+    observed.unit = unit_of_theta(question, channel, other_mean);
+    return observed;
+  }
+
+  std::optional<double> detectable(const Question& question, const TestSize& size, const Plan& plan,
+                                   const PlannedChannel& channel) const override {
+    const stats::ErrorRates rates = planned_rates(size.share, channel.regions);
+    if (plan.method.is.exact) return exact_detectable(question, size, plan, channel, rates);
+    const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
+    const double allow = channel.regions.allow;
+    if (both_spread(question, channel)) {
+      return stats::welch_detectable(means_plan(rates, allow, channel, sizes.y / sizes.x),
+                                     sizes.x) /
+             channel.unit;
+    }
+    return stats::student_t_detectable(mean_plan(rates, allow, channel),
+                                       size_of_the_spread(sizes, channel)) /
+           channel.unit;
+  }
+
+  bool finds_nothing(const Question& question, const TestSize& size, const Plan& plan,
+                     const PlannedChannel& channel) const override {
+    if (!is_quoted(question, plan, channel)) return false;
+    const stats::ErrorRates rates = planned_rates(size.share, channel.regions);
+    return std::ranges::none_of(sides_of(channel.regions.relation), [&](int side) {
+      return stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates),
+                                     size.secondaries, side)
+          .has_value();
+    });
+  }
+
+  std::optional<double> power(const Question& question, const TestSize& size, const Plan& plan,
+                              const PlannedChannel& channel, double effect) const override {
+    const stats::ErrorRates rates = planned_rates(size.share, channel.regions);
+    if (plan.method.is.exact) return exact_power(question, size, plan, channel, rates, effect);
+    const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
+    if (channel.regions.relation == Relation::within) {
+      return equivalence_power(sizes, size.share, channel);
+    }
+    const double allow = channel.regions.allow;
+    if (both_spread(question, channel)) {
+      return stats::welch_power(means_plan(rates, allow, channel, sizes.y / sizes.x), sizes.x,
+                                effect * channel.unit);
+    }
+    return stats::student_t_power(mean_plan(rates, allow, channel),
+                                  size_of_the_spread(sizes, channel), effect * channel.unit);
+  }
+
+  std::optional<ConstantVerdict> settled(const Question& question, std::size_t channel,
+                                         std::span<const ChannelData> data, const Regions& regions,
+                                         const ErrorShare& share) const override {
+    if (!all_constant(question, channel, data)) return std::nullopt;
+    return judge_constant(question, channel, data, regions, share);
+  }
+
+  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
+                              std::span<const ChannelData> data) const override {
+    std::string reason = Theta::lack_of_numbers(test, channel, data);
+    if (!reason.empty()) return reason;
+    if (!test.outcome.plan.method.is.exact) {
+      reason = lost_to_rounding(test.outcome.question, channel, data);
+    }
+    return reason.empty() ? unseen_could_decide(test.outcome, channel, data) : reason;
+  }
+
+  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
+                          std::span<const ChannelData> data, double x) const override {
+    std::vector<Gate> gates;
+    const Question& question = outcome.question;
+    const MethodTraits& method = outcome.plan.method.is;
+    const std::string name = channel_suffix(question, channel);
+    if (method.exact) return gates;
+    for (const stats::Gate& gate : row_gates(outcome, data, x)) {
+      gates.push_back(gate_of(gate, name));
+    }
+    if (method.of_batches) return gates;
+    gates.push_back(gate_of(method.corrects_skewness ? residual_gate(question, channel, data, x)
+                                                     : skewness_gate(question, data, x),
+                            name));
+    for (std::size_t subject = 0; subject < data.size(); ++subject) {
+      const stats::Moments& moments = data[subject].moments;
+      // Two values cannot show an outlier.
+      if (!(moments.m2 > 0) || moments.count <= 2) continue;
+      gates.push_back(gate_of(stats::dominance_gate(moments),
+                              name + " of " + question.subjects[subject].estimator->name));
+    }
+    return gates;
+  }
+
+  std::optional<double> marked(const Question& question, std::size_t channel,
+                               std::span<const ChannelData> data) const override {
+    if (question.of_two()) return question.factor * data[1].moments.mean + question.offset;
+    return question.references[channel].value + question.offset;
+  }
+
+ private:
+  static const std::vector<MethodRow>& rows();
+
+  static void note_range(const Question& question, std::size_t channel,
+                         const stats::Moments& moments, PlannedChannel& planned) {
+    if (question.of_two()) return;
+    planned.range = range_of(question, 0, channel, moments);
+    planned.null_value = question.references[channel].value + question.offset;
+  }
+
+  /// The channel as the pilot shows it. Returns nullopt if it has no spread and no range bounds
+  /// what it missed.
+  static std::optional<PlannedChannel> from_pilots(const Question& question, std::size_t channel,
+                                                   const Pilots& pilots, const Plan& plan) {
+    const stats::Moments& first = pilot_channel(question, 0, channel, pilots).moments;
+    PlannedChannel planned{.regions = plan.regions[channel]};
+    const bool constant = is_constant(question, 0, channel, first);
+    note_range(question, channel, first, planned);
+    if (constant && plan.method.is.plans == stats::ExactMethod::bounded) {
+      planned.standard_deviation = unseen_deviation(planned, first) /
+                                   std::sqrt(question.subjects[0].averaged(plan.primaries[0]));
+      planned.unseen = true;
+      planned.unit = unit_of_theta(question, channel, 0);
+      return planned;
+    }
+    // A mean without spread may be compared with one that has some; nothing else can be planned.
+    if (constant && !question.of_two()) return std::nullopt;
+    if (!constant) {
+      planned.standard_deviation =
+          std::sqrt(upper_variance(first) / question.subjects[0].averaged(plan.primaries[0]));
+    }
+    double other_mean = 0;
+    if (question.of_two()) {
+      const stats::Moments& second = pilot_channel(question, 1, channel, pilots).moments;
+      other_mean = second.mean;
+      if (is_constant(question, 1, channel, second)) {
+        if (constant) return std::nullopt;
+      } else {
+        planned.other_deviation =
+            std::abs(question.factor) *
+            std::sqrt(upper_variance(second) / question.subjects[1].averaged(plan.primaries[1]));
+      }
+    } else if (!question.references.empty()) {
+      planned.reference_error = question.references[channel].standard_error;
+    }
+    planned.unit = unit_of_theta(question, channel, other_mean);
+    if (planned.unit == 0) {
+      if (!planned.regions.has_margin()) return std::nullopt;
+      throw std::domain_error(
+          "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give "
+          "the "
+          "margin as a number");
+    }
+    return planned;
+  }
+
+  static std::optional<std::uint64_t> of_channel(const Question& question, std::size_t index,
+                                                 const ErrorShare& share, const Pilots& pilots,
+                                                 const Plan& plan) {
+    const Regions& regions = plan.regions[index];
+    const bool equivalence = regions.relation == Relation::within;
+    const std::optional<PlannedChannel> channel = from_pilots(question, index, pilots, plan);
+    if (!channel || (!equivalence && !regions.detect)) return std::nullopt;
+    std::optional<std::uint64_t> count;
+    if (plan.method.is.plans) {
+      count = equivalence
+                  ? exact_equivalence_secondaries(question, plan, *channel, share)
+                  : exact_secondaries(question, plan, *channel, planned_rates(share, regions));
+    } else if (equivalence) {
+      count = for_equivalence(share, *channel);
+    } else {
+      count = for_means(question, planned_rates(share, regions), regions, *channel);
+    }
+    if (channel->unseen && count.value_or(impossible_secondaries) > most_for_the_unseen) return {};
+    return count.value_or(impossible_secondaries);
+  }
+
+  /// The probability of showing `within` where theta is 0.
+  static double equivalence_power(const stats::SampleSizes& sizes, const ErrorShare& share,
+                                  const PlannedChannel& channel) {
+    // Two samples count as one of the smaller size with as uncertain a mean. The reference's error
+    // does not shrink with n: as a deviation of the observations it grows.
+    const double n = std::min(sizes.x, sizes.y);
+    const double spread = std::hypot(channel.standard_deviation * std::sqrt(n / sizes.x),
+                                     channel.other_deviation * std::sqrt(n / sizes.y),
+                                     channel.reference_error * std::sqrt(n));
+    return stats::equivalence_power({.standard_deviation = spread,
+                                     .margin = channel.regions.within * channel.unit,
+                                     .alpha = share.beta,
+                                     .beta = share.beta},
+                                    n, 0);
+  }
+
+  static std::optional<double> exact_detectable(const Question& question, const TestSize& size,
+                                                const Plan& plan, const PlannedChannel& channel,
+                                                const stats::ErrorRates& rates) {
+    if (!is_quoted(question, plan, channel)) return std::nullopt;
+    double most = 0;
+    for (const int side : sides_of(channel.regions.relation)) {
+      const auto found = stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates),
+                                                 size.secondaries, side);
+      // The range ends before any such effect on this side.
+      if (!found) return std::nullopt;
+      most = std::max(most, *found);
+    }
+    return most / channel.unit;
+  }
+
+  static std::optional<double> exact_power(const Question& question, const TestSize& size,
+                                           const Plan& plan, const PlannedChannel& channel,
+                                           const stats::ErrorRates& rates, double effect) {
+    if (!is_quoted(question, plan, channel) || effect == 0) return std::nullopt;
+    const stats::ExactMeanPlan exact = plan_of(channel, rates);
+    double least = 1;
+    for (const int side : sides_of(channel.regions.relation)) {
+      const double theta = side * effect * channel.unit;
+      const double power = *plan.method.is.plans == stats::ExactMethod::binomial
+                               ? stats::binomial_power(exact, size.secondaries, theta)
+                               : stats::bounded_power(exact, size.secondaries, theta);
+      least = std::min(least, power);
+    }
+    return least;
+  }
+};
+
+const std::vector<MethodRow>& MeanTheta::rows() {
+  static const std::vector<MethodRow> table{
+      {"t",
+       "Student's t: a mean against a number",
+       [](const Question& q) { return !q.of_two() && !is_within(q); },
+       Keeps::moments,
+       mean_by_t,
+       {.scores = true}},
+      {"welch",
+       "Welch's t: two means, whatever their variances",
+       [](const Question& q) { return q.of_two() && !is_within(q); },
+       Keeps::moments,
+       mean_by_t,
+       {.scores = true}},
+      {"tost",
+       "two one-sided t tests: a mean lies within a margin",
+       [](const Question& q) { return is_within(q); },
+       Keeps::moments,
+       mean_by_t,
+       {.scores = true}},
+      {"skewness-corrected-t",
+       "t or Welch with Hall's correction for the skewness of the values",
+       any_question,
+       Keeps::moments,
+       mean_by_corrected_t,
+       {.corrects_skewness = true}},
+      {"binomial",
+       "exact: a mean of values that are the two ends of a range",
+       any_question,
+       Keeps::moments,
+       mean_of_two_values,
+       {.exact = true, .of_observations = true, .plans = stats::ExactMethod::binomial}},
+      {"bounded",
+       "exact: a mean of values in a declared range",
+       [](const Question& q) { return !q.of_two(); },
+       Keeps::moments,
+       mean_in_a_range,
+       {.exact = true,
+        .in_range = true,
+        .of_observations = true,
+        .plans = stats::ExactMethod::bounded}},
+      {"batch-means",
+       "t of batch means: a mean of observations that depend on their neighbours",
+       [](const Question& q) { return !is_within(q); },
+       Keeps::values,
+       mean_by_t,
+       {.of_observations = true, .of_batches = true}},
+      {"betting",
+       "exact: a mean of values with a declared lower bound is not larger",
+       [](const Question& q) { return !q.of_two() && !is_within(q); },
+       Keeps::values,
+       mean_by_bets,
+       {.exact = true, .in_range = true, .of_observations = true, .excludes_larger = false}}};
+  return table;
+}
+
+/// The mean less the truth. Its margins are numbers unless one is in per cent.
+class BiasTheta final : public MeanTheta {
+ public:
+  bool is_relative(const Question& question, std::size_t) const override {
+    return has_relative_margin(*question.test);
+  }
+  std::string claimed_value(const Question& question, std::size_t) const override {
+    return fmt::format("{}", question.offset);
+  }
+  std::string circumstances(const Question& question) const override {
+    return reference_text(question);
+  }
+};
+
+const MeanTheta mean_theta;
+const BiasTheta bias_theta;
+
+}  // namespace
+
+std::string reference_text(const Question& question) {
+  if (question.test->reference || question.of_two() || question.references.empty()) return "";
+  return fmt::format(", reference {}", question.references[0].value);
+}
+
+std::string channel_suffix(const Question& question, std::size_t channel) {
+  return question.channel_count() > 1 ? ", " + question.channel_name(channel) : "";
+}
+
+Question bind_mean(const TestEntry& test, const Estimators& estimators) {
+  const Claim& claim = test.claim;
+  Question question{
+      .test = &test, .theta = &mean_theta, .subjects = {estimates(claim.left.source, estimators)}};
+  const ScaledQuantity* const other = other_side(claim);
+  if (other == nullptr) {
+    question.references = references_of(claim, question.subjects[0]);
+    return question;
+  }
+  question.factor = other->factor;
+  Subject second = estimates(other->quantity.source, estimators);
+  if (recorded::is_reference(*second.setup)) {
+    question.references = recorded_means(question, second);
+    question.factor = 1;
+    return question;
+  }
+  question.subjects.push_back(std::move(second));
+  return question;
+}
+
+Question bind_bias(const TestEntry& test, const Estimators& estimators) {
+  const Claim& claim = test.claim;
+  if (other_side(claim) != nullptr) {
+    throw InputError(claim.left.where,
+                     "a bias is compared with a number; to compare two estimators, claim their "
+                     "means");
+  }
+  const Constant number = std::get<Constant>(claim.right);
+  if (claim.relation == Relation::within && claim.margin.relative && number.value != 0) {
+    throw InputError(claim.left.where,
+                     "per cent of what? a margin on a bias other than 0 is a number");
+  }
+  Question question{.test = &test,
+                    .theta = &bias_theta,
+                    .subjects = {estimates(claim.left.source, estimators)},
+                    .offset = number.value};
+  if (!test.reference) {
+    question.references = truths_of(test, question.subjects[0], claim.left.source);
+    for (Constant& truth : question.references) {
+      truth.standard_error = std::hypot(truth.standard_error, number.standard_error);
+    }
+    return question;
+  }
+  if (number.standard_error > 0) {
+    throw InputError(claim.left.where, "with a `reference` that is sampled, `+-` has no method");
+  }
+  question.subjects.push_back(estimates(*test.reference, estimators));
+  return question;
+}
+
+const Theta& theta_of_means() { return mean_theta; }
+
+}  // namespace assay::harness

@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "harness/families/evidence_quantile.h"
+#include "harness/families/families.h"
+#include "harness/plan/frozen.h"
+#include "harness/plan/planned_rates.h"
+#include "harness/plan/sample_size.h"
+#include "harness/question/question_sources.h"
+#include "harness/run/evaluate.h"
+#include "harness/theta/critical.h"
+#include "harness/theta/scale.h"
+#include "harness/theta/theta.h"
+#include "stats/basics/sorted.h"
+#include "stats/laws/quantile_test.h"
+#include "stats/tails/tails.h"
+
+namespace assay::harness {
+namespace {
+
+double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi); }
+
+/// Least slope of the distribution function beside a quantile, from sorted distances, less two
+/// standard errors of a count. It reaches to `distance`, or as far as 64 values do. Returns 0 if
+/// there are fewer.
+double slope_beside(std::span<const double> distances, double distance, double total) {
+  constexpr std::size_t fewest = 64;
+  if (distances.size() < fewest) return 0;
+  const auto beyond = std::upper_bound(distances.begin(), distances.end(), distance);
+  const auto within = static_cast<std::size_t>(beyond - distances.begin());
+  const double count = static_cast<double>(std::max(within, fewest));
+  const double reach = std::max(distance, distances[fewest - 1]);
+  return (count - 2 * std::sqrt(count)) / total / reach;
+}
+
+/// quantile_standard_deviation with the density that the pilot shows over this distance, on the
+/// quantile's sparser side. Returns nullopt if the pilot does not show it.
+std::optional<double> observed_deviation(std::span<const double> pilot, double probability,
+                                         double distance) {
+  std::vector<double> values(pilot.begin(), pilot.end());
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) return std::nullopt;
+  values = stats::sorted(std::move(values));
+  const double total = static_cast<double>(values.size());
+  const std::size_t rank = stats::sample_quantile_rank(values.size(), probability);
+  const double middle = values[rank];
+  std::vector<double> below;
+  for (std::size_t i = rank; i-- > 0;) below.push_back(middle - values[i]);
+  std::vector<double> above;
+  for (std::size_t i = rank + 1; i < values.size(); ++i) above.push_back(values[i] - middle);
+  const double slope =
+      std::min(slope_beside(below, distance, total), slope_beside(above, distance, total));
+  if (!(slope > 0) || !std::isfinite(slope)) return std::nullopt;
+  return stats::quantile_standard_deviation(probability, slope);
+}
+
+/// Deviation of one secondary; means of several primaries count as normal.
+double quantile_deviation(const Question& question, std::size_t subject, std::size_t channel,
+                          double distance, const Pilots& pilots, const Plan& plan) {
+  const double probability = question.test->claim.left.arguments[0];
+  const PilotChannel pilot = pilot_channel(question, subject, channel, pilots);
+  if (question.subjects[subject].averaged(plan.primaries[subject]) == 1) {
+    const auto observed = observed_deviation(pilot.values, probability, distance);
+    if (observed) return *observed;
+  }
+  const double z = stats::normal_quantile({stats::Tail::lower, std::log(probability)});
+  return stats::quantile_standard_deviation(probability, normal_density(z)) *
+         std::sqrt(pilot.moments.variance() /
+                   question.subjects[subject].averaged(plan.primaries[subject]));
+}
+
+Evidence one_or_two_quantiles(const Method&, const Question& question, std::size_t channel,
+                              std::span<const ChannelData> data) {
+  return evidence_of_quantile(question, channel, data);
+}
+
+/// theta = v - r of the values' quantile v, over |r| if a margin is relative; of two, v - c w.
+class QuantileTheta final : public Theta {
+ public:
+  QuantileTheta() : Theta({.of_single_values = true}) {}
+
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{
+        {"binomial",
+         "exact: a quantile against a number",
+         [](const Question& q) { return !q.of_two(); },
+         Keeps::values,
+         one_or_two_quantiles,
+         {.exact = true}},
+        {"quantile", "exact: two quantiles, by the counts on both sides",
+         [](const Question& q) { return q.of_two(); }, Keeps::values, one_or_two_quantiles}};
+    return table;
+  }
+
+  void check_margin(const Question& question, const Margin& margin) const override {
+    Theta::check_margin(question, margin);
+    if (question.of_two()) require_absolute(margin, "two quantiles differ by a number");
+  }
+
+  bool is_relative(const Question& question, std::size_t) const override {
+    return !question.of_two() && has_relative_margin(*question.test);
+  }
+
+  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots& pilots,
+                       std::uint64_t, Plan& plan) const override {
+    freeze(question, pilots, plan);
+    return least_secondaries;
+  }
+
+  /// Planned by the pilot's counts over the distance to be found; means of several primaries count
+  /// as normal. If the density at the quantile differs, the size is off by its ratio and the
+  /// verdict may be inconclusive. The test itself is exact for every law.
+  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
+                                           const Pilots& pilots, const Plan& plan) const override {
+    if (!all_piloted(question, pilots)) return std::nullopt;
+    return most_over_channels(question, [&](std::size_t channel) -> std::optional<std::uint64_t> {
+      const double unit = question.theta->is_relative(question, channel)
+                              ? std::abs(question.references[channel].value)
+                              : 1;
+      const double distance = distance_of(plan.regions[channel]) * unit;
+      if (!(distance > 0)) return std::nullopt;
+      double sd = quantile_deviation(question, 0, channel, distance, pilots, plan);
+      if (question.of_two()) {
+        const double factor = std::abs(question.factor);
+        const double other =
+            quantile_deviation(question, 1, channel, distance / factor, pilots, plan);
+        sd = std::hypot(sd, factor * other);
+      }
+      if (!(sd > 0)) return std::nullopt;
+      const double count = std::ceil(stats::normal_sample_size(
+          sd, {.allow = 0, .detect = distance}, planned_rates(share, plan.regions[channel])));
+      return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
+    });
+  }
+
+  std::optional<double> marked(const Question& question, std::size_t channel,
+                               std::span<const ChannelData>) const override {
+    if (question.of_two()) return std::nullopt;
+    return question.references[channel].value;
+  }
+
+  std::string not_excluded(const ChannelOutcome& channel) const override {
+    const bool no_low = !channel.effect.low || !std::isfinite(*channel.effect.low);
+    const bool no_high = !channel.effect.high || !std::isfinite(*channel.effect.high);
+    // A lower limit alone refutes a claim `<=`.
+    const bool low_counts = channel.regions.relation != Relation::at_least;
+    const bool high_counts = channel.regions.relation != Relation::at_most;
+    if (low_counts && no_low && high_counts && no_high) return "quantile";
+    if (low_counts && no_low) return "smaller quantile";
+    return high_counts && no_high ? "larger quantile" : "";
+  }
+};
+
+const QuantileTheta quantile_theta;
+
+}  // namespace
+
+Question bind_quantile(const TestEntry& test, const Estimators& estimators) {
+  const Claim& claim = test.claim;
+  Question question{.test = &test,
+                    .theta = &quantile_theta,
+                    .subjects = {estimates(claim.left.source, estimators)}};
+  const ScaledQuantity* other = other_side(claim);
+  if (other == nullptr) {
+    const Constant number = std::get<Constant>(claim.right);
+    if (number.standard_error > 0) {
+      throw InputError(claim.left.where,
+                       "`quantile` is tested against an exact number: `+-` has no method here");
+    }
+    question.references.assign(question.channel_count(), number);
+    return question;
+  }
+  if (other->quantity.arguments != claim.left.arguments) {
+    throw InputError(other->quantity.where, "both quantiles must be of the same probability");
+  }
+  if (other->factor < 0) {
+    throw InputError(other->quantity.where, "the factor of a quantile must be above 0");
+  }
+  question.factor = other->factor;
+  question.subjects.push_back(estimates(other->quantity.source, estimators));
+  return question;
+}
+
+const Theta& theta_of_quantiles() { return quantile_theta; }
+
+}  // namespace assay::harness

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include "harness/question/question_sources.h"
+#include "harness/run/evaluate.h"
+#include "harness/sampling/beyond_doubles.h"
+#include "harness/theta/ask.h"
+#include "harness/theta/critical.h"
+#include "harness/theta/theta.h"
+
+namespace assay::harness {
+
+const ThetaTraits& Question::is() const { return theta->is; }
+
+std::string Question::channel_name(std::size_t channel) const {
+  return theta->channel_name(*this, channel);
+}
+
+std::string Theta::channel_name(const Question& question, std::size_t channel) const {
+  const Subject& first = question.subjects[0];
+  return first.setup->channels()[first.channels[channel]].name;
+}
+
+std::string Theta::claimed_value(const Question& question, std::size_t channel) const {
+  const Claim& claim = question.test->claim;
+  if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
+    return (other->factor == 1 ? "" : fmt::format("{} * ", other->factor)) +
+           to_string(other->quantity);
+  }
+  return fmt::format("{}", question.references[channel].value);
+}
+
+void Theta::check_margin(const Question& question, const Margin& margin) const {
+  for (const Constant& reference : question.references) {
+    if (reference.value == 0) require_absolute(margin, "the reference is zero");
+  }
+}
+
+std::optional<double> Theta::known_size(const Question& question) const {
+  double largest = 0;
+  if (question.references.empty()) return std::nullopt;
+  const std::vector<std::size_t>& first = question.subjects[0].channels;
+  const std::vector<Channel> channels = question.subjects[0].setup->channels();
+  for (std::size_t i = 0; i < question.references.size(); ++i) {
+    const Constant& reference = question.references[i];
+    const double rounding = channels[first[is.joins_channels ? 0 : i]].rounding;
+    if (exceeds_its_error(reference.value, std::max(reference.standard_error, rounding))) {
+      largest = std::max(largest, std::abs(reference.value));
+    }
+  }
+  return largest > 0 ? std::optional(largest) : std::nullopt;
+}
+
+std::uint64_t Theta::usual_size() const { return usual_secondaries; }
+
+std::string Theta::why_impossible(const Question& question) const {
+  const bool uncertain = std::ranges::any_of(
+      question.references, [](const Constant& each) { return each.standard_error > 0; });
+  return uncertain ? "no number of observations would decide this claim: the reference's own "
+                     "standard error is too large for the margin; give a larger margin or a "
+                     "better reference"
+                   : "this claim would take more observations than can be counted; give a larger "
+                     "margin";
+}
+
+std::string Theta::lack_of_numbers(const DrawnTest& test, std::size_t channel,
+                                   std::span<const ChannelData> data) const {
+  const Question& question = test.outcome.question;
+  for (std::size_t i = 0; i < data.size() && !is.of_single_values; ++i) {
+    if (is_constant(question, i, channel, data[i].moments)) continue;
+    std::string reason = beyond_doubles(data[i].moments, question.subjects[i].estimator->name);
+    if (!reason.empty()) return reason;
+  }
+  return "";
+}
+
+ChannelEvidence Theta::evidence(const DrawnTest& test, std::size_t channel,
+                                std::span<const ChannelData> data) const {
+  return {.evidence = evidence_of(test.outcome.plan.method, test.outcome.question, channel, data)};
+}
+
+}  // namespace assay::harness

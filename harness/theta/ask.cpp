@@ -1,0 +1,204 @@
+#include "harness/theta/ask.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "estimators/ready_made.h"
+#include "harness/question/question_sources.h"
+#include "harness/sampling/recorded_run.h"
+#include "harness/theta/theta.h"
+
+namespace assay::harness {
+namespace {
+
+void require_pairs(const Question& question, const Claim& claim) {
+  if (question.is().joins_channels) return;
+  const std::size_t first = question.subjects[0].channels.size();
+  for (const Subject& other : question.subjects) {
+    if (other.channels.size() == first) continue;
+    throw InputError(claim.left.where,
+                     fmt::format("the two sides have {} and {} channels; name one of each, as in "
+                                 "`{}.channel`",
+                                 first, other.channels.size(), claim.left.source.estimator));
+  }
+}
+
+/// Columns of one file are dependent samples.
+void require_different_data(const Question& question, const Claim& claim) {
+  // Two estimators of one run have their own streams (`separate_pair`).
+  if (as_recorded_run(*question.subjects[0].setup) != nullptr) return;
+  const std::string first = question.subjects[0].setup->data_file();
+  const auto same = [&](const Subject& other) { return other.setup->data_file() == first; };
+  if (first.empty() ||
+      std::count_if(question.subjects.begin(), question.subjects.end(), same) < 2) {
+    return;
+  }
+  if (question.subjects[0].setup->image()) {
+    throw InputError(claim.left.where,
+                     fmt::format("both sides are the pictures `{}`; give one of them pictures of "
+                                 "seeds of their own",
+                                 first));
+  }
+  throw InputError(claim.left.where,
+                   fmt::format("both sides are read from `{}`: its rows belong together and are no "
+                               "independent samples; record the difference as a column of its own "
+                               "and claim that its mean is 0",
+                               first));
+}
+
+/// Gives the second of two sources with one key a stream of its own, if it is drawn.
+bool separate_pair(Subject& first, Subject& second, const Claim& claim, std::uint64_t seed) {
+  if (!(stream_of(first, seed) == stream_of(second, seed))) return false;
+  if (first.setup->data_stream() && second.setup->data_stream()) {
+    throw InputError(claim.left.where,
+                     "both sides say that they were drawn from the same stream: they are not "
+                     "independent; draw one of them with another `--seed`");
+  }
+  ++(second.setup->data_stream() ? first : second).copy;
+  return true;
+}
+
+/// Sources with one key would draw the same numbers: all but one get streams of their own.
+void separate_streams(Question& question, const Claim& claim, std::uint64_t seed) {
+  std::vector<Subject>& subjects = question.subjects;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+      for (std::size_t j = i + 1; j < subjects.size(); ++j) {
+        moved = separate_pair(subjects[i], subjects[j], claim, seed) || moved;
+      }
+    }
+  }
+}
+
+void refuse_missing_per_cent(const Question& question) {
+  const QuantityRow& quantity = *question.test->claim.left.row;
+  const double size = question.theta->known_size(question).value_or(0);
+  for (const Margin& margin : margins_of(*question.test)) {
+    if ((quantity.of_a_law || quantity.of_a_sampler) && margin.value > 1) {
+      throw InputError(margin.where,
+                       fmt::format("the margin {:g} is more than any difference of probabilities; "
+                                   "here {:g} per cent is written `{:g}`",
+                                   margin.value, margin.value, margin.value / 100));
+    }
+    const std::string per_cent = missing_per_cent(margin, size);
+    if (!per_cent.empty()) throw InputError(margin.where, "the margin " + per_cent);
+  }
+}
+
+void check_sizes(const Question& question) {
+  const TestEntry& test = *question.test;
+  const std::optional<std::uint64_t> most = question.most_rows();
+  if (!most || test.secondaries.value_or(0) <= *most) return;
+  const auto longest = std::ranges::find_if(question.subjects, [&](const Subject& subject) {
+    return subject.setup->observations() == most;
+  });
+  throw InputError(test.place_of("secondaries"),
+                   fmt::format("`secondaries: {}` is more than the {} observations that `{}` has",
+                               *test.secondaries, *most, longest->estimator->name));
+}
+
+/// A mean with its error has no observations, so nothing else can be tested.
+void require_observations(const Question& question) {
+  for (const Subject& subject : question.subjects) {
+    if (!recorded::is_reference(*subject.setup)) continue;
+    throw InputError(question.test->claim.left.where,
+                     fmt::format("`{0}` is a reference, a mean without observations: it can stand "
+                                 "on the right of a mean, as in `mean(x) == mean({0})`",
+                                 subject.estimator->name));
+  }
+}
+
+void ask_of_images(Question& question) {
+  if (const Theta* const theta = question.theta->of_images()) {
+    question.theta = theta;
+    return;
+  }
+  const Subject& image =
+      question.subjects[0].image ? question.subjects[0] : question.subjects.back();
+  throw InputError(
+      question.test->claim.left.where,
+      fmt::format("`{}` has no method for an image; there is mean, bias, total_variance and cost; "
+                  "or name one pixel, as in `{}.{}`",
+                  question.test->claim.left.row->word, image.estimator->name,
+                  element_name(*image.image, 0)));
+}
+
+}  // namespace
+
+bool has_image(const Question& question) {
+  return std::ranges::any_of(question.subjects,
+                             [](const Subject& subject) { return subject.image.has_value(); });
+}
+
+std::optional<std::uint64_t> Question::most_rows() const {
+  std::optional<std::uint64_t> most;
+  for (const Subject& subject : subjects) most = std::max(most, subject.setup->observations());
+  return most;
+}
+
+Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
+  const Quantity& left = test.claim.left;
+  Question question = left.slope ? bind_slope(test, estimators) : left.row->bind(test, estimators);
+  require_observations(question);
+  if (has_image(question)) ask_of_images(question);
+  question.theta->check(question);
+  if (question.subjects.size() > 1) {
+    require_pairs(question, test.claim);
+    require_different_data(question, test.claim);
+    separate_streams(question, test.claim, seed);
+  }
+  require_moments_suffice(question);
+  for (const Margin& margin : margins_of(test)) question.theta->check_margin(question, margin);
+  check_sizes(question);
+  return question;
+}
+
+std::string written_key(const TestEntry& test, const std::string& key, const std::string& value) {
+  const bool of_command_line = test.where.file == "claim";
+  return of_command_line ? fmt::format("`--{} {}`", key, value)
+                         : fmt::format("`{}: {}`", key, value);
+}
+
+std::vector<Margin> margins_of(const TestEntry& test) {
+  std::vector<Margin> margins;
+  if (test.detect) margins.push_back(*test.detect);
+  if (test.allow) margins.push_back(*test.allow);
+  if (test.claim.relation == Relation::within) margins.push_back(test.claim.margin);
+  return margins;
+}
+
+std::string missing_per_cent(const Margin& margin, double size) {
+  if (margin.relative || !(size > 0) || margin.value <= size) return "";
+  return fmt::format(
+      "{0:g} is larger than the reference, {1:.3g}: for {0:g} per cent write `{0:g}%`; if so much "
+      "is "
+      "meant, `{2:.0f}%`",
+      margin.value, size, std::ceil(100 * margin.value / size));
+}
+
+Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
+  if (test.claim.left.row->of_a_law && !test.detect && !test.secondaries) {
+    const std::vector<Source> sources = sources_of(test.claim);
+    const bool given = std::ranges::any_of(sources, [&](const Source& source) {
+      return estimator_of(source, estimators).setup->observations().has_value();
+    });
+    test.detect_by_default = !given;
+  }
+  if (test.detect_by_default) {
+    test.detect = Margin{.value = default_law_effect};
+    if (test.allow && test.allow->value >= default_law_effect) {
+      throw InputError(test.allow->where,
+                       fmt::format("`allow` ({}) is not below `detect`, which is {} by default; "
+                                   "give a larger `detect`",
+                                   to_string(*test.allow), default_law_effect));
+    }
+  }
+  Question question = ask(test, estimators, seed);
+  refuse_missing_per_cent(question);
+  return question;
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,47 @@
+#pragma once
+
+// Binds claims to the estimators of a suite, and checks what they ask for.
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/question/question.h"
+
+namespace assay::harness {
+
+/// Binds the claim. Sources that would share a stream under this seed get separate ones. InputError
+/// at the claim's place for a part that does not exist, an unknown analytic reference, or channels
+/// that do not pair. InputError also for a relative margin without a reference size, and for a
+/// swept value that the plugin refuses.
+Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed);
+
+/// True if a subject is an image.
+bool has_image(const Question& question);
+
+/// The default `detect` of a claim about laws.
+inline constexpr double default_law_effect = 0.05;
+
+/// ask() for a test as its user wrote it. A claim about laws gets the default `detect`, unless the
+/// test has `detect` or `secondaries` or its rows are given. InputError if a margin is larger than
+/// its reference or than any probability: the per cent sign is probably missing.
+Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint64_t seed);
+
+/// A key of the test as its user writes it: "`test: t`", or "`--test t`" of the command line.
+std::string written_key(const TestEntry& test, const std::string& key, const std::string& value);
+
+/// The margins of a test: `detect`, `allow` and that of `within`.
+std::vector<Margin> margins_of(const TestEntry& test);
+
+/// True if the number is at least 8 standard errors from 0. Margins cannot be relative to a mean
+/// near 0.
+inline bool exceeds_its_error(double value, double standard_error) {
+  return std::abs(value) > 8 * standard_error;
+}
+
+/// Suggests the per cent spelling of an absolute margin larger than its reference `size`; "" for
+/// other margins.
+std::string missing_per_cent(const Margin& margin, double size);
+
+}  // namespace assay::harness

@@ -1,0 +1,159 @@
+#include "harness/theta/methods.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "harness/language/method_names.h"
+#include "harness/sampling/recorded_run.h"
+#include "harness/theta/theta.h"
+
+namespace assay::harness {
+namespace {
+
+std::string relation_text(const TestEntry& test) {
+  switch (test.claim.relation) {
+    case Relation::equal:
+      return "=";
+    case Relation::less:
+      return "<=";
+    case Relation::greater:
+      return ">=";
+    case Relation::at_most:
+    case Relation::at_least:
+      return to_string(test.claim.relation);
+    case Relation::within:
+      break;
+  }
+  return fmt::format("within {} of", to_string(test.claim.margin));
+}
+
+[[noreturn]] void refuse(const Question& question, const std::string& method,
+                         const std::string& why) {
+  const Location& where = question.test->place_of("test");
+  // The place of an option names the method itself.
+  if (where.line == 0) throw InputError(where, why);
+  throw InputError(where, fmt::format("`test: {}` {}", method, why));
+}
+
+/// Throws InputError if the data do not suit the method.
+void require_data(const Method& method, const Question& question) {
+  for (const Constant& reference : question.references) {
+    if (!method.is.exact || reference.standard_error == 0) continue;
+    refuse(question, method.name,
+           "takes the reference for exact, but it has a standard error; leave `test` out");
+  }
+  for (const Subject& subject : question.subjects) {
+    if (method.is.of_observations && as_recorded_run(*subject.setup) != nullptr) {
+      refuse(question, method.name,
+             fmt::format("needs observations, and `{}` has the moments of a run",
+                         subject.estimator->name));
+    }
+    if (!method.is.in_range || !subject.setup->observations()) continue;
+    refuse(question, method.name,
+           fmt::format("needs a range that is declared, and the rows of `{}` declare none; leave "
+                       "`test` out",
+                       subject.estimator->name));
+  }
+}
+
+/// Throws InputError if the method cannot test the claim's `allow`.
+void require_margins(const Method& method, const Question& question) {
+  const TestEntry& test = *question.test;
+  if (method.is.allows_distance || !test.allow || test.allow->value == 0) return;
+  throw InputError(test.place_of("allow"),
+                   fmt::format("`{}` tests that two laws are the same and knows no distance to "
+                               "`allow` between them; leave `allow` out, or test by `ks`",
+                               method.name));
+}
+
+/// The rows of the families that claims about the quantities may belong to, each family once.
+std::vector<MethodRow> rows_of_families() {
+  std::vector<const std::vector<MethodRow>*> families;
+  for (const QuantityRow& row : quantities()) {
+    for (const Theta* theta : {row.theta, row.theta->of_images(), row.slope}) {
+      if (theta == nullptr || std::ranges::count(families, &theta->methods()) > 0) continue;
+      families.push_back(&theta->methods());
+    }
+  }
+  std::vector<MethodRow> rows;
+  for (const std::vector<MethodRow>* each : families) {
+    rows.insert(rows.end(), each->begin(), each->end());
+  }
+  return rows;
+}
+
+}  // namespace
+
+stats::ExcessKurtoses Frozen::largest_excess_kurtosis() const {
+  stats::ExcessKurtoses largest;
+  for (const stats::ExcessKurtoses& each : excess_kurtoses) {
+    largest = {.x = std::max(largest.x, each.x), .y = std::max(largest.y, each.y)};
+  }
+  return largest;
+}
+
+const std::vector<MethodRow>& method_table() {
+  static const std::vector<MethodRow> table = rows_of_families();
+  return table;
+}
+
+const std::vector<std::string>& method_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> each;
+    for (const MethodRow& row : method_table()) {
+      if (std::ranges::find(each, row.name) == each.end()) each.push_back(row.name);
+    }
+    return each;
+  }();
+  return names;
+}
+
+bool joins_channels(const std::string& method) {
+  return std::ranges::any_of(method_table(), [&](const MethodRow& row) {
+    return row.name == method && row.is.joins_channels;
+  });
+}
+
+std::vector<Method> methods_for(const Question& question) {
+  std::vector<Method> methods;
+  for (const MethodRow& row : question.theta->methods()) {
+    if (row.answers(question)) methods.push_back({row});
+  }
+  return methods;
+}
+
+Method find_method(const Question& question, const std::string& name) {
+  std::string known;
+  for (const Method& method : methods_for(question)) {
+    if (method.name == name) {
+      require_data(method, question);
+      require_margins(method, question);
+      return method;
+    }
+    known += (known.empty() ? "`" : ", `") + method.name + "`";
+  }
+  refuse(question, name, "does not answer this claim; there is " + known);
+}
+
+std::string null_hypothesis(const Question& question, std::size_t channel) {
+  const TestEntry& test = *question.test;
+  std::string text = fmt::format("{} {} {}", to_string(test.claim.left), relation_text(test),
+                                 question.theta->claimed_value(question, channel));
+  if (test.reference) text += fmt::format(", reference mean({})", to_string(*test.reference));
+  text += question.theta->circumstances(question);
+  if (test.claim.left.row->counts_cost) {
+    constexpr const char* kinds[] = {"rays", "samples", "seconds"};
+    text += fmt::format(", cost in {}", kinds[static_cast<int>(test.cost)]);
+  }
+  if (test.over) text += fmt::format(" over {}", test.over->parameter);
+  if (question.channel_count() > 1) {
+    text += fmt::format(" in channel {}", question.channel_name(channel));
+  }
+  if (test.allow && test.allow->value > 0) {
+    text += fmt::format(", up to {}", to_string(*test.allow));
+  }
+  return text;
+}
+
+}  // namespace assay::harness

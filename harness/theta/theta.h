@@ -1,0 +1,167 @@
+#pragma once
+
+// What a claim is about: a number theta with a claimed and a forbidden region. A family of claims
+// derives from Theta and answers all that others ask of it. families/ holds one file a family.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/theta/constant.h"
+#include "harness/theta/decision.h"
+#include "harness/theta/family.h"
+#include "harness/theta/gate.h"
+#include "harness/theta/method.h"
+#include "harness/theta/planned_channel.h"
+
+namespace assay::harness {
+
+class Pilots;
+struct ChannelEvidence;
+struct ChannelOutcome;
+struct DrawnTest;
+struct Plan;
+struct TestOutcome;
+
+/// Standard errors of theta's estimate where theta = 0. The error `drawn` is new in every run. The
+/// error `fixed` is the same in all: a reference's own error, recorded data.
+struct ThetaError {
+  double drawn = 0;
+  double fixed = 0;
+};
+
+/// An object has no data of a claim: every function takes the question. `""` and nullopt stand for
+/// "nothing to say".
+class Theta {
+ public:
+  explicit Theta(const ThetaTraits& traits) : is(traits) {}
+  virtual ~Theta() = default;
+  Theta(const Theta&) = delete;
+  Theta& operator=(const Theta&) = delete;
+
+  const ThetaTraits is;
+
+  // ---- The claim
+
+  /// The methods of the family, the default first.
+  virtual const std::vector<MethodRow>& methods() const = 0;
+  virtual std::string channel_name(const Question&, std::size_t channel) const;
+  /// The right side of the null hypothesis in words.
+  virtual std::string claimed_value(const Question&, std::size_t channel) const;
+  /// Parts of the null hypothesis that the claim leaves unsaid.
+  virtual std::string circumstances(const Question&) const { return ""; }
+  /// The family for images; null if there is no method for them.
+  virtual const Theta* of_images() const { return nullptr; }
+  /// Throws InputError for a claim without a method.
+  virtual void check(const Question&) const {}
+  /// Throws InputError if the margin has no meaning here.
+  virtual void check_margin(const Question&, const Margin&) const;
+  /// The largest size that margins may be relative to and that is known before drawing.
+  virtual std::optional<double> known_size(const Question&) const;
+
+  // ---- The scale
+
+  /// True if theta is in units of the reference.
+  virtual bool is_relative(const Question&, std::size_t) const { return false; }
+  virtual std::optional<ThetaError> error(const Question&, std::size_t,
+                                          std::span<const ChannelData>) const {
+    return std::nullopt;
+  }
+
+  // ---- The plan
+
+  /// Throws NoDensity before any draw if a density that the claim needs cannot be had.
+  virtual void require_density(const Question&) const {}
+  /// Chooses among the methods by the pilots, and notes their gates. Returns the fewest secondaries
+  /// that the method takes.
+  virtual std::uint64_t choose(const Question&, const FamilyPlace&, const Pilots&,
+                               std::uint64_t most, Plan&) const = 0;
+  /// Secondaries of each subject that find `detect`, or prove `within`, with this share of errors
+  /// in every channel. `impossible_secondaries` if no number does.
+  virtual std::optional<std::uint64_t> secondaries(const Question&, const ErrorShare&,
+                                                   const Pilots&, const Plan&) const = 0;
+  /// Secondaries of a claim without a margin.
+  virtual std::uint64_t usual_size() const;
+  /// Why no number of secondaries is enough.
+  virtual std::string why_impossible(const Question&) const;
+  /// Why the planned secondaries are too few.
+  virtual std::string too_few(const Question&, const Plan&) const { return ""; }
+  /// A possible slip of the user that the pilots show.
+  virtual std::string caution(const Question&, const Pilots&) const { return ""; }
+  /// A reason for a fail that the subjects show.
+  virtual std::string hint(const Question&) const { return ""; }
+
+  // ---- Power. `channel` is from pilots or from the test's own data.
+
+  virtual std::optional<PlannedChannel> planned(const Question&, const Regions& regions,
+                                                const Pilots&, const Plan&) const {
+    return PlannedChannel{.regions = regions};
+  }
+  virtual PlannedChannel observed(const Question&, const Regions& regions, std::size_t,
+                                  std::span<const ChannelData>) const {
+    return {.regions = regions};
+  }
+  /// The least theta that a test of that size finds with probability 1 - beta.
+  virtual std::optional<double> detectable(const Question&, const TestSize&, const Plan&,
+                                           const PlannedChannel&) const {
+    return std::nullopt;
+  }
+  /// True if no theta in the declared range is found with probability 1 - beta.
+  virtual bool finds_nothing(const Question&, const TestSize&, const Plan&,
+                             const PlannedChannel&) const {
+    return false;
+  }
+  /// Probability of failing the claim if theta is `effect`. For `<` and `>` it is that of passing
+  /// with this advantage, for `within` that of passing at theta = 0.
+  virtual std::optional<double> power(const Question&, const TestSize&, const Plan&,
+                                      const PlannedChannel&, double) const {
+    return std::nullopt;
+  }
+
+  // ---- The test's own data
+
+  /// The verdict that needs no look at the data.
+  virtual std::optional<ConstantVerdict> settled_beforehand(const Question&) const {
+    return std::nullopt;
+  }
+  /// The verdict on a channel without spread.
+  virtual std::optional<ConstantVerdict> settled(const Question&, std::size_t,
+                                                 std::span<const ChannelData>, const Regions&,
+                                                 const ErrorShare&) const {
+    return std::nullopt;
+  }
+  /// Why a channel's data cannot be tested.
+  virtual std::string lack_of_numbers(const DrawnTest&, std::size_t channel,
+                                      std::span<const ChannelData>) const;
+  /// Gates on one channel's data, beyond which tests at this critical value reject.
+  virtual std::vector<Gate> gates(const TestOutcome&, std::size_t, std::span<const ChannelData>,
+                                  double) const {
+    return {};
+  }
+  virtual ChannelEvidence evidence(const DrawnTest&, std::size_t channel,
+                                   std::span<const ChannelData>) const;
+  /// A number to mark among the observations.
+  virtual std::optional<double> marked(const Question&, std::size_t,
+                                       std::span<const ChannelData>) const {
+    return std::nullopt;
+  }
+
+  // ---- Words
+
+  /// What the interval does not exclude although it speaks against the claim: "exponent".
+  virtual std::string not_excluded(const ChannelOutcome&) const { return ""; }
+  /// How far a detectable theta reaches.
+  virtual const char* detectable_text() const { return " or more"; }
+  /// Where the data of a failed claim differ.
+  virtual std::string where_it_differs(const DrawnTest&) const { return ""; }
+  /// What a failed claim takes for exact.
+  virtual std::string taken_as_exact(const Question&) const { return ""; }
+};
+
+/// Binds `slope(…)`, the exponent s of a quantity that goes like (swept parameter)^s. Each subject
+/// is a point.
+Question bind_slope(const TestEntry&, const Estimators&);
+
+}  // namespace assay::harness

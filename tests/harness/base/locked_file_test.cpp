@@ -1,0 +1,51 @@
+#include "harness/base/locked_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "harness/base/text_file.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+TEST(LockedFile, MakesTheFileAndReplacesItWhole) {
+  const Workplace place;
+  const std::string path = place.file("n.ledger");
+  {
+    const LockedFile lock(path);
+    EXPECT_EQ(read_text_file(path), "");
+    lock.replace("one");
+    lock.replace("two");
+  }
+  EXPECT_EQ(read_text_file(path), "two");
+}
+
+TEST(LockedFile, NamesAPathThatCannotBeOpened) {
+  const Workplace place;
+  try {
+    const LockedFile lock(place.file("missing/n.ledger"));
+    FAIL() << "it was locked";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("missing/n.ledger"));
+  }
+}
+
+// Read, add one, write: without turns some of the 400 would be lost almost surely.
+TEST(LockedFile, ConcurrentThreadsTakeTurns) {
+  const Workplace place;
+  const std::string path = place.file("n.ledger");
+  const auto add_hundred = [&] {
+    for (int i = 0; i < 100; ++i) {
+      const LockedFile lock(path);
+      lock.replace(read_text_file(path) + "x");
+    }
+  };
+  { const std::jthread a(add_hundred), b(add_hundred), c(add_hundred), d(add_hundred); }
+  EXPECT_EQ(read_text_file(path).size(), 400U);
+}
+
+}  // namespace
+}  // namespace assay::harness

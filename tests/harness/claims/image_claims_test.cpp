@@ -1,0 +1,287 @@
+// Claims about images, from YAML to verdict, record and maps.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/command/commands.h"
+#include "harness/record/image_record.h"
+#include "harness/record/replay.h"
+#include "reports/formats/json.h"
+#include "reports/formats/read_json.h"
+#include "tests/estimators/exr.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+constexpr const char* floor_16 = "luminaire/floor, width: 16, height: 16";
+
+std::string floor_suite(const std::string& estimator, const std::string& test) {
+  return fmt::format(
+      "suite: s\nestimators:\n  a: {{plugin: {}}}\n  b: {{plugin: {}}}\ntests:\n  - {{{}}}\n",
+      estimator, std::string(floor_16) + ", primaries: 32", test);
+}
+
+reports::Test floor_test(const std::string& estimator, const std::string& test,
+                         const RunOptions& options = {}) {
+  return run_text(floor_suite(estimator, test), options).suites[0].tests[0];
+}
+
+std::string mutant(const std::string& name) {
+  return "mutants/floor_" + name + ", width: 16, height: 16, primaries: 64";
+}
+
+const reports::Map& map_named(const reports::Test& test, const std::string& name) {
+  const auto found = std::find_if(test.maps.begin(), test.maps.end(),
+                                  [&](const reports::Map& map) { return map.name == name; });
+  if (found == test.maps.end()) throw std::out_of_range("no map " + name);
+  return *found;
+}
+
+// False alarm 0.01 at seed 1.
+TEST(ImageClaims, AnImageThatIsRightPassesAndStatesWhatItExcluded) {
+  const reports::Test test = floor_test(std::string(floor_16) + ", primaries: 32",
+                                        "claim: mean(a) == analytic, detect: 2%");
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_EQ(test.method, "image");
+  ASSERT_EQ(test.channels.size(), 1u);
+  EXPECT_EQ(test.channels[0].name, "16 x 16 irradiance");
+  EXPECT_LT(*test.channels[0].effect.high, 0.02);
+  EXPECT_TRUE(test.channels[0].effect.relative);
+  ASSERT_TRUE(test.image);
+  EXPECT_EQ(test.image->tested, 256u);
+  EXPECT_GE(test.image->replicates, 16u);
+  ASSERT_EQ(test.samples.size(), 1u);
+}
+
+struct Defect {
+  const char* name;
+  const char* statistic;
+};
+
+// Each defect is found and located with probability above 0.99.
+TEST(ImageClaims, MutantsAreCaughtByTheSumThatFitsThem) {
+  for (const Defect& defect :
+       {Defect{"tile", "window"}, Defect{"hot_pixels", "window"}, Defect{"last_column", "window"},
+        Defect{"interlaced", "alternating"}, Defect{"global", "window"}}) {
+    const reports::Test test = floor_test(
+        mutant(defect.name), "claim: mean(a) == analytic, secondaries: 256, expect: fail");
+    EXPECT_EQ(test.verdict, Verdict::fail) << defect.name << ": " << test.message;
+    EXPECT_TRUE(test.ok);
+    EXPECT_EQ(test.image->winner.statistic, defect.statistic) << defect.name;
+  }
+}
+
+TEST(ImageClaims, TheTileIsLocated) {
+  const reports::Test test =
+      floor_test(mutant("tile"), "claim: mean(a) == analytic, secondaries: 256, expect: fail");
+  const reports::ImageFinding& winner = test.image->winner;
+  EXPECT_EQ(winner.x, 8u);
+  EXPECT_EQ(winner.y, 8u);
+  EXPECT_EQ(winner.width, 4u);
+  EXPECT_EQ(winner.height, 4u);
+  EXPECT_EQ(winner.component, "irradiance");
+  EXPECT_GT(*winner.z, 6);
+  EXPECT_NE(test.message.find("columns 8-11, rows 8-11 (4 x 4 pixels)"), std::string::npos)
+      << test.message;
+}
+
+TEST(ImageClaims, MapsHoldZMeanVarianceAdjustedPAndReference) {
+  const reports::Test test =
+      floor_test(mutant("tile"), "claim: mean(a) == analytic, secondaries: 64, expect: fail");
+  std::vector<std::string> names;
+  for (const reports::Map& map : test.maps) {
+    names.push_back(map.name);
+    EXPECT_EQ(map.texels.values.size(), 256u);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"z", "p_adjusted", "mean", "variance", "reference"}));
+  const auto& z = map_named(test, "z").texels.values;
+  const auto& p = map_named(test, "p_adjusted").texels.values;
+  const auto& mean = map_named(test, "mean").texels.values;
+  const auto& variance = map_named(test, "variance").texels.values;
+  const auto& reference = map_named(test, "reference").texels.values;
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    // Student's t of 63 degrees is larger than its z.
+    const double t = (mean[i] - reference[i]) / std::sqrt(variance[i] / 64.0);
+    EXPECT_LE(std::abs(z[i]), std::abs(t) * 1.0001 + 1e-4) << i;
+    EXPECT_GE(std::abs(z[i]), std::abs(t) * 0.85 - 1e-4) << i;
+    EXPECT_EQ(std::signbit(z[i]), std::signbit(t)) << i;
+    const double alone = std::erfc(std::abs(z[i]) / std::sqrt(2.0));
+    EXPECT_NEAR(p[i], -std::expm1(256 * std::log1p(-alone)), 1e-5) << i;
+  }
+}
+
+TEST(ImageClaims, ThreadsChangeNoBit) {
+  const std::string text = floor_suite(std::string(floor_16) + ", shared: true, primaries: 32",
+                                       "claim: mean(a) == mean(b), detect: 3%");
+  const auto without_times = [](reports::Record record) {
+    return reports::json(reports::without_times(std::move(record)));
+  };
+  const Workplace place;
+  const std::string file = place.write("suite.yaml", text);
+  const std::string one = without_times(run_files({file}, {.threads = 1}));
+  EXPECT_EQ(one, without_times(run_files({file}, {.threads = 3})));
+}
+
+TEST(ImageClaims, AComponentOrAPixelCanBeNamed) {
+  const std::string text =
+      "suite: s\nestimators:\n  a: {plugin: analytic/ramp, colour: true, primaries: 16}\ntests:\n"
+      "  - claim: mean(a.green) within 5% of analytic\n"
+      "  - {claim: mean(a.x3y5.blue) == analytic, secondaries: 200}\n"
+      "  - {claim: bias(a) == 0, secondaries: 32}\n";
+  const reports::Record record = run_text(text);
+  const std::vector<reports::Test>& tests = record.suites[0].tests;
+  EXPECT_EQ(tests[0].image->components, std::vector<std::string>{"green"});
+  EXPECT_EQ(tests[0].image->tested, 256u);
+  EXPECT_EQ(tests[0].verdict, Verdict::pass) << tests[0].message;
+  EXPECT_FALSE(tests[1].image);
+  EXPECT_EQ(tests[1].samples[0].channel, "x3y5.blue");
+  EXPECT_EQ(tests[2].image->tested, 768u);
+  EXPECT_EQ(tests[2].verdict, Verdict::pass) << tests[2].message;
+}
+
+TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
+  const reports::Test test = floor_test(std::string(floor_16) + ", primaries: 32",
+                                        "claim: mean(a) == analytic, secondaries: 15");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_EQ(test.message.find("15 images are too few"), 0u) << test.message;
+  EXPECT_NE(test.message.find("take 16 `secondaries` or more"), std::string::npos);
+  // 32 primaries of 16 x 16 pixels and 15 images.
+  const reports::Test paid = floor_test(std::string(floor_16) + ", primaries: 32",
+                                        "claim: mean(a) == analytic, budget: 122880");
+  EXPECT_EQ(paid.message.find("15 images are too few"), 0u) << paid.message;
+  EXPECT_NE(paid.message.find("give a larger `budget`"), std::string::npos);
+}
+
+// One exponential value a pixel has skewness 2: single pixels take no part. False alarm .01.
+TEST(ImageClaims, PixelsThatAreSkewedAreJudgedInLargerCells) {
+  const std::string text =
+      "suite: s\nestimators:\n  a: {plugin: analytic/ramp, law: exponential(1), primaries: "
+      "1}\ntests:\n"
+      "  - {claim: mean(a) == analytic, secondaries: 32}\n";
+  const reports::Test test = run_text(text).suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_GT(test.image->smallest_cell, 1u);
+}
+
+TEST(ImageClaims, MapsReadBackEqualToTheRecord) {
+  const Workplace place;
+  const std::string suite = place.write(
+      "s.yaml", floor_suite(mutant("tile"), "claim: mean(a) == mean(b), secondaries: 16"));
+  reports::Record record = run_files({suite});
+  write_maps(record, place.file("run.json"));
+  const reports::Record saved = reports::read_json(reports::json(record), "run.json");
+  const reports::Test& test = saved.suites[0].tests[0];
+  EXPECT_EQ(test, record.suites[0].tests[0]);
+  ASSERT_EQ(test.maps.size(), 6u);
+  for (const reports::Map& map : test.maps) {
+    EXPECT_EQ(map.file.find("run.maps/s_mean_a_mean_b"), 0u) << map.file;
+    EXPECT_EQ(draws::read_exr_channel(place.file(map.file), map.name + ".irradiance"),
+              map.texels.values)
+        << map.name;
+  }
+  EXPECT_EQ(map_named(test, "other_mean").source, "b");
+}
+
+TEST(ImageClaims, TheRecordedMethodIsDrawnAgainToTheBit) {
+  const Workplace place;
+  const std::string suite =
+      place.write("s.yaml", floor_suite(std::string(floor_16) + ", shared: true, primaries: 8",
+                                        "claim: mean(a) == mean(b), detect: 5%"));
+  const std::string json = place.write("run.json", reports::json(run_files({suite})));
+  testing::internal::CaptureStdout();
+  const int code = replay({.record = json, .test = "s/mean(a) == mean(b)"});
+  const std::string printed = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(code, 0) << printed;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    run_text(text);
+  } catch (const InputError& error) {
+    return error.message();
+  }
+  return "";
+}
+
+TEST(ImageClaims, WhatHasNoMethodIsRefusedBeforeSampling) {
+  const auto of = [](const std::string& claim) {
+    return refusal(
+        "suite: s\nestimators:\n  a: {plugin: analytic/ramp}\n"
+        "  small: {plugin: analytic/ramp, width: 8}\n"
+        "  n: {plugin: analytic/normal}\ntests:\n  - claim: " +
+        claim + "\n");
+  };
+  EXPECT_EQ(of("mean(a) == mean(small)"),
+            "`a` has 16 x 16 pixels of value, and `small` has 8 x 16 pixels of value: only images "
+            "of one size and as many channels can be compared, element by element");
+  EXPECT_NE(of("mean(a) == mean(n)").find("`n` is no image"), std::string::npos);
+  EXPECT_NE(of("mean(a) <= analytic").find("images are claimed to be equal"), std::string::npos);
+  EXPECT_NE(of("mean(a) == 2 +- 0.1").find("common to all pixels"), std::string::npos);
+  EXPECT_NE(of("variance(a) <= 3").find("`variance` has no method for an image"),
+            std::string::npos);
+  EXPECT_NE(of("mean(a.red) == analytic").find("no part `red`"), std::string::npos);
+  EXPECT_NE(of("mean(a) == 0\n    detect: 1%").find("zero in every pixel"), std::string::npos);
+}
+
+// Pixels are independent: the variance of their mean is the mean of theirs over their number. The
+// quantile of nearly as many degrees of freedom as the image has numbers is the normal's.
+TEST(ImageClaims, TheMeanOfAnImageHasAnIntervalInTheSuitesPicture) {
+  const reports::Record record = run_text(floor_suite(
+      std::string(floor_16) + ", primaries: 32", "claim: mean(a) == analytic, secondaries: 32"));
+  const reports::EstimatorSummary& summary = record.suites[0].estimators[0];
+  const reports::Estimate& mean = summary.channels[0].mean;
+  ASSERT_TRUE(mean.low && mean.high);
+  EXPECT_NEAR(*mean.low + *mean.high, 2 * *mean.value, 1e-12);
+  const double per_pixel = *summary.channels[0].variance.value / 32;  // of one observation
+  const double error = std::sqrt(per_pixel / (256.0 * static_cast<double>(summary.secondaries)));
+  EXPECT_NEAR((*mean.high - *mean.low) / 2 / error, 2.576, 0.02);
+  EXPECT_EQ(summary.variance_of, "primary");
+}
+
+// Against a constant that is wrong nearly everywhere, and against another image at twice the scale.
+TEST(ImageClaims, ConstantsAndFactorsAreMetPixelByPixel) {
+  const std::string text =
+      "suite: s\nestimators:\n  a: {plugin: analytic/ramp, primaries: 16}\ntests:\n"
+      "  - {claim: mean(a) == 5, secondaries: 32, expect: fail}\n"
+      "  - {claim: mean(a) == 2 * mean(a), secondaries: 32, expect: fail}\n"
+      "  - {claim: mean(a) == mean(a), secondaries: 32}\n";
+  const reports::Record record = run_text(text);
+  for (const reports::Test& test : record.suites[0].tests) EXPECT_TRUE(test.ok) << test.message;
+  EXPECT_NEAR(*record.suites[0].tests[1].channels[0].effect.estimate, 0.5, 0.01);
+}
+
+reports::Test chains_test(const std::string& plugin) {
+  const std::string text = fmt::format(
+      "suite: s\nestimators:\n  a: {{plugin: {}, pixels: 4, primaries: 100}}\n"
+      "tests:\n  - {{claim: mean(a) == analytic, secondaries: 100}}\n",
+      plugin);
+  return run_text(text).suites[0].tests[0];
+}
+
+bool has_energy(const reports::Image& image) {
+  return std::any_of(image.groups.begin(), image.groups.end(),
+                     [](const auto& group) { return group.statistic == "energy"; });
+}
+
+// No share of sign vectors is as small as the p-value of a chain that is far off. False alarm 0.01
+// at seed 1.
+TEST(ImageClaims, SignsOfDependentPixelsAreFlippedWhereThatCanTellMore) {
+  const reports::Test sound = chains_test("metropolis/mean_value");
+  EXPECT_EQ(sound.verdict, Verdict::pass) << sound.message;
+  EXPECT_TRUE(sound.image->sign_flips);
+  EXPECT_TRUE(has_energy(*sound.image));
+  const reports::Test broken = chains_test("mutants/metropolis_inverted_ratio");
+  EXPECT_EQ(broken.verdict, Verdict::fail) << broken.message;
+  EXPECT_LT(*broken.image->winner.log10_p_adjusted, -6);
+  EXPECT_FALSE(broken.image->sign_flips);
+  EXPECT_FALSE(has_energy(*broken.image));
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,114 @@
+#include "harness/command/commands.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "harness/base/record_file.h"
+#include "harness/record/replay.h"
+#include "reports/formats/json.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr const char* suite = R"(suite: commands
+estimators:
+  normal: {plugin: analytic/normal, mean: 2}
+tests:
+  - {claim: mean(normal) == 2, secondaries: 100}
+  - {claim: mean(normal) <= 3, secondaries: 100}
+)";
+
+struct Said {
+  int code;
+  std::string out;
+  std::string err;
+};
+
+template <class Act>
+Said said(Act act) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int code = act();
+  std::fflush(stdout);
+  std::fflush(stderr);
+  Said result{.code = code, .out = {}, .err = {}};
+  result.out = testing::internal::GetCapturedStdout();
+  result.err = testing::internal::GetCapturedStderr();
+  return result;
+}
+
+Said ran(const Workplace& place, const std::vector<ReportRequest>& reports) {
+  const Suite loaded = load_suite(place.write("suite.yaml", suite));
+  return said([&] {
+    return run_suites({loaded}, {}, {.reports = reports, .colour = Colour::never, .quiet = true});
+  });
+}
+
+TEST(Commands, RunNothingWhenAFilterMatchesNone) {
+  const Workplace place;
+  const Suite loaded = load_suite(place.write("suite.yaml", suite));
+  const Said run = said([&] {
+    return run_suites({loaded}, {.selection = {.filters = {"zzz"}}},
+                      {.reports = {{"json", place.file("run.json")}}, .quiet = true});
+  });
+  EXPECT_EQ(run.code, 4);
+  EXPECT_EQ(run.out, "");
+  EXPECT_TRUE(run.err.starts_with("assay: --filter zzz matches no test\n")) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(place.file("run.json")));
+}
+
+TEST(Commands, ConsoleEndsWithTheTally) {
+  const Workplace place;
+  const Said run = ran(place, {});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_TRUE(run.out.ends_with("2 passed, 0 failed, 0 skipped\n")) << run.out;
+  EXPECT_EQ(run.err, "");
+}
+
+TEST(Commands, ReportOnStandardOutputSendsTheConsoleToStandardError) {
+  const Workplace place;
+  const Said run = ran(place, {{"json", "-"}});
+  EXPECT_TRUE(run.out.starts_with("{")) << run.out;
+  EXPECT_TRUE(run.err.ends_with("2 passed, 0 failed, 0 skipped\n")) << run.err;
+}
+
+TEST(Commands, SavedRunGivesTheReportsOfTheRun) {
+  const Workplace place;
+  const std::string json = place.file("run.json");
+  const std::string junit = place.file("run.xml");
+  ASSERT_EQ(ran(place, {{"json", json}, {"junit", junit}}).code, 0);
+  const std::string later = place.file("later.xml");
+  const Said report = said([&] {
+    return report_saved_run(json, {.reports = {{"junit", later}}, .colour = Colour::never});
+  });
+  EXPECT_EQ(report.code, 0);
+  const auto text = [](const std::string& file) {
+    std::ostringstream all;
+    all << std::ifstream(file).rdbuf();
+    return all.str();
+  };
+  EXPECT_FALSE(text(junit).empty());
+  EXPECT_EQ(text(later), text(junit));
+}
+
+TEST(Commands, RecordSurvivesItsFile) {
+  const Workplace place;
+  const std::string json = place.file("run.json");
+  ASSERT_EQ(ran(place, {{"json", json}}).code, 0);
+  const reports::Record record = read_record(json);
+  EXPECT_EQ(reports::json(read_record(place.write("again.json", reports::json(record)))),
+            reports::json(record));
+}
+
+TEST(Commands, EveryTestHasALineThatReplaysIt) {
+  const Workplace place;
+  const reports::Record record =
+      run_files({place.write("suite.yaml", suite)}, {.seed = 9, .command = "assay run suite.yaml"});
+  EXPECT_EQ(record.suites[0].tests[1].replay,
+            "assay run suite.yaml --seed 9 --filter 'suite/mean(normal) <= 3'");
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,140 @@
+#include "harness/command/describe.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "estimators/catalogue.h"
+#include "harness/command/commands.h"
+#include "harness/draws/sampler_setup.h"
+#include "tests/harness/refusal.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string manual_of(const std::string& plugin) {
+  return manual(find_plugin(plugin, {}), catalogue());
+}
+
+TEST(Describe, TellsWhatIsKnownExactly) {
+  const std::string text = manual_of("analytic/dart_throwing");
+  EXPECT_THAT(text, testing::StartsWith("analytic/dart_throwing\n"));
+  EXPECT_THAT(text, HasSubstr("area: mean 3.14159265359, variance of a primary 2.69676621"));
+  EXPECT_THAT(text, HasSubstr("values in [0, 4]"));
+  EXPECT_THAT(text, HasSubstr("bias        unbiased"));
+}
+
+TEST(Describe, ListsParametersSamplersAndMutants) {
+  const std::string text = manual_of("luminaire/area");
+  EXPECT_THAT(text, HasSubstr("scene: structure"));
+  EXPECT_THAT(text, HasSubstr("samplers\n"));
+  for (const Entry& entry : catalogue()) {
+    const bool listed = entry.information.original == "luminaire/area";
+    const std::string line = "  " + entry.information.name + ":";
+    EXPECT_THAT(text, listed ? testing::Matcher<std::string>(HasSubstr(line))
+                             : testing::Matcher<std::string>(Not(HasSubstr(line))));
+  }
+}
+
+TEST(Describe, NamesTheOriginalAndTheDefectOfAMutant) {
+  const auto mutant = std::ranges::find_if(
+      catalogue(), [](const Entry& e) { return !e.information.original.empty(); });
+  ASSERT_NE(mutant, catalogue().end());
+  const std::string text = manual(*mutant, catalogue());
+  EXPECT_THAT(text, HasSubstr("mutant of   " + mutant->information.original + "\n"));
+  EXPECT_THAT(text, HasSubstr("defect      "));
+}
+
+TEST(Describe, CallsNoMutantUnbiased) {
+  for (const Entry& entry : catalogue()) {
+    if (entry.information.original.empty()) continue;
+    EXPECT_THAT(manual(entry, catalogue()), HasSubstr("bias        that of its defect\n"));
+  }
+}
+
+TEST(Describe, SaysOfRecordedRowsThatTheirBiasIsUnknown) {
+  EXPECT_THAT(manual_of("recorded"), HasSubstr("bias        unknown"));
+}
+
+TEST(Describe, SaysOfRecordedRowsThatTheyAreOne) {
+  EXPECT_THAT(manual_of("recorded"), HasSubstr("primaries   not averaged; 1 unless given\n"));
+}
+
+// Every sampler and marginal that a manual offers can be named in a claim, and no other is offered.
+TEST(Describe, OffersThePartsThatClaimsCanName) {
+  EXPECT_THAT(manual_of("luminaire/area"),
+              HasSubstr("point: triangle (barycentric); marginals u v\n"));
+  EXPECT_THAT(manual_of("luminaire/solid_angle"),
+              HasSubstr("square: unit square; marginals u v\n"));
+  EXPECT_THAT(manual_of("luminaire/cosine"),
+              HasSubstr("direction: hemisphere (solid angle); marginals theta phi\n"));
+  for (const Entry& entry : catalogue()) {
+    const std::vector<ParameterInformation>& declared = entry.information.parameters;
+    const auto required = [](const ParameterInformation& p) { return p.fallback.empty(); };
+    if (std::ranges::any_of(declared, required)) continue;
+    Parameters parameters(entry.information.name, declared, Value{}, ".");
+    const std::string text = manual(entry, catalogue());
+    std::shared_ptr<const assay::Setup> setup;
+    const std::string refused = refusal([&] { setup = entry.prepare(parameters); });
+    if (setup == nullptr) {
+      // Some mutants cannot live in the scene that their original has by default; data need a file.
+      EXPECT_THAT(refused, AnyOf(HasSubstr("never end"), HasSubstr("focal plane"),
+                                 HasSubstr("give it, or `run`")))
+          << entry.information.name;
+      continue;
+    }
+    for (const NamedSampler& named : setup->samplers()) {
+      const std::size_t samplers = text.find("\nsamplers\n");
+      ASSERT_NE(samplers, text.npos) << entry.information.name;
+      const std::string line = text.substr(text.find("\n  " + named.name + ": ", samplers));
+      const bool offered = line.substr(0, line.find('\n', 1)).find("marginals") != line.npos;
+      EXPECT_EQ(offered, refusal([&] { sampler_setup(named, {}); }) == "(nothing was refused)")
+          << entry.information.name << "." << named.name;
+    }
+  }
+}
+
+TEST(Describe, SaysWhyChannelsAreNotKnownYet) {
+  Entry entry{.information = {.name = "a/b",
+                              .summary = "Needs a number.",
+                              .parameters = {{.name = "n",
+                                              .summary = "how many",
+                                              .unit = "m",
+                                              .low = 0,
+                                              .low_excluded = true}}},
+              .prepare = [](Parameters&) { return std::shared_ptr<const assay::Setup>{}; }};
+  const std::string text = manual(entry, {});
+  EXPECT_THAT(text, HasSubstr("n: number, (0, inf), m, required"));
+  EXPECT_THAT(text, HasSubstr("channels: known once its parameters are given"));
+}
+
+TEST(Describe, KeepsEveryManualWithinAHundredColumns) {
+  for (const Entry& entry : catalogue()) {
+    std::istringstream lines(manual(entry, catalogue()));
+    for (std::string line; std::getline(lines, line);) {
+      const auto columns = std::ranges::count_if(
+          line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; });
+      EXPECT_LE(columns, 100) << line;
+    }
+  }
+}
+
+TEST(Describe, SuggestsTheNearestPlugin) {
+  EXPECT_EQ(refusal([] { describe("hemisphere"); }),
+            "there is no plugin `hemisphere`; did you mean `luminaire/hemisphere`?");
+}
+
+TEST(Wrapped, BreaksAtBlanksAndKeepsLineEnds) {
+  EXPECT_EQ(wrapped("one two three\nfour", 9, 1), " one two\n three\n four\n");
+  EXPECT_EQ(wrapped("unbreakable", 5, 0), "unbreakable\n");
+  EXPECT_EQ(wrapped("", 5, 0), "");
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,272 @@
+#include "harness/command/plan_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "harness/command/run.h"
+#include "harness/plan/forecast.h"
+#include "harness/run/looks.h"
+#include "reports/words/columns.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* suite = R"(suite: planned
+estimators:
+  uniform: {plugin: analytic/exponential_uniform}
+  normal: {plugin: analytic/normal, mean: 2, primaries: 4}
+  area: {plugin: luminaire/area, scene: triangle}
+tests:
+  - {claim: mean(area) == analytic, detect: 0.5%}
+  - {claim: mean(area) == analytic, name: coarser, detect: 2%}
+  - {claim: mean(uniform) == analytic}
+  - {claim: mean(normal) == 2, secondaries: 500}
+  - {claim: variance(normal) == analytic, detect: 10%}
+  - {claim: 'distribution(normal) == normal(2, 0.5)', detect: 0.05}
+  - {claim: distribution(area.point.v) == density, detect: 0.05}
+)";
+
+std::vector<Suite> suites_of(const Workplace& place) {
+  return {load_suite(place.write("planned.yaml", suite))};
+}
+
+PlannedRun planned_of(const std::vector<Suite>& suites, const RunOptions& options = {}) {
+  Silence silence;
+  return plan_run(suites, options, silence);
+}
+
+UnitCosts costs_of(const PlannedRun& planned) {
+  Silence silence;
+  return measure_costs(planned, 1, silence);
+}
+
+TEST(PlanTable, PlansWhatARunThenDoes) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites);
+  Silence silence;
+  const reports::Record record = run(suites, {}, silence);
+  ASSERT_EQ(planned.suites[0]->tests.size(), record.suites[0].tests.size());
+  for (std::size_t i = 0; i < record.suites[0].tests.size(); ++i) {
+    const reports::Test& test = record.suites[0].tests[i];
+    const Plan& plan = planned.suites[0]->tests[i].outcome.plan;
+    EXPECT_EQ(plan.method.name, test.method) << test.name;
+    EXPECT_EQ(plan.primaries[0], test.samples[0].primaries) << test.name;
+    ASSERT_LE(test.looks.size(), plan.looks.sizes.size()) << test.name;
+    for (std::size_t k = 0; k < test.looks.size(); ++k) {
+      EXPECT_EQ(plan.looks.sizes[k], test.looks[k].secondaries) << test.name;
+      EXPECT_EQ(plan.looks.weights[k], test.looks[k].weight) << test.name;
+    }
+  }
+}
+
+TEST(PlanTable, DrawsNoObservationOfATest) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites);
+  const UnitCosts costs = costs_of(planned);
+  EXPECT_FALSE(plan_text(planned, costs).empty());
+  for (const auto& pool : planned.pools.all()) {
+    EXPECT_EQ(pool->drawn(), 0U);
+    EXPECT_TRUE(costs.contains(pool.get()));
+  }
+}
+
+// Counted rays do not depend on the machine: one shadow ray a primary.
+TEST(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites);
+  const Pool& area = *planned.suites[0]->tests[0].pools[0];
+  const UnitCost cost = std::get<UnitCost>(costs_of(planned).at(&area));
+  EXPECT_EQ(cost.rays, static_cast<double>(area.primaries()));
+  EXPECT_EQ(cost.samples, static_cast<double>(area.primaries()));
+  EXPECT_GT(cost.seconds, 0);
+}
+
+// A plan foretells the effect that a fixed number of observations finds, and the run finds it in
+// its data. Pilots of 8192 primaries give the spreads of logarithms, so both agree to a tenth. A
+// forgotten second source would make them differ by the square root of two.
+TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
+  const Workplace place;
+  const std::string text =
+      "suite: ratios\nestimators:\n  a: {plugin: luminaire/area, scene: triangle}\n"
+      "  h: {plugin: luminaire/hemisphere, scene: triangle}\ntests:\n"
+      "  - {claim: efficiency(a) > efficiency(h), secondaries: 4000}\n"
+      "  - {claim: efficiency(a) == 14, secondaries: 4000}\n"
+      "  - {claim: total_variance(a) <= total_variance(h), secondaries: 4000}\n"
+      "  - {claim: variance(a) <= variance(h), secondaries: 4000}\n"
+      "  - {claim: cost(a) == cost(h), secondaries: 4000}\n";
+  const std::vector<Suite> suites = {load_suite(place.write("ratios.yaml", text))};
+  const PlannedRun planned = planned_of(suites);
+  Silence silence;
+  const reports::Record record = run(suites, {}, silence);
+  for (std::size_t i = 0; i < record.suites[0].tests.size(); ++i) {
+    const reports::Test& test = record.suites[0].tests[i];
+    const TestOutcome& outcome = planned.suites[0]->tests[i].outcome;
+    const auto foretold = forecast(outcome, planned.suites[0]->pilots).detectable;
+    ASSERT_EQ(foretold.has_value(), test.detectable.has_value()) << test.name;
+    if (!foretold) continue;
+    EXPECT_NEAR(*foretold / *test.detectable, 1, 0.1) << test.name;
+  }
+}
+
+// 500 means of four normal values of deviation 1, with alpha and beta .05. Both one-sided tests
+// reject where the margin is (1.645 + 1.960) .5 / sqrt 500. A pilot of 2048 gives the deviation.
+TEST(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
+  const Workplace place;
+  const std::string text =
+      "suite: margins\nalpha: 0.05\nbeta: 0.05\nestimators:\n"
+      "  normal: {plugin: analytic/normal, mean: 2, primaries: 4}\n"
+      "  wide: {plugin: analytic/dart_throwing}\ntests:\n"
+      "  - {claim: mean(normal) within 0.001 of 2, secondaries: 500}\n"
+      "  - {claim: mean(normal) within 50% of 2, name: beyond, secondaries: 500}\n"
+      "  - {claim: mean(wide) within 1% of analytic, test: bounded, secondaries: 500}\n";
+  const PlannedRun planned = planned_of({load_suite(place.write("margins.yaml", text))});
+  const auto shown = [&](std::size_t i) {
+    return forecast(planned.suites[0]->tests[i].outcome, planned.suites[0]->pilots).detectable;
+  };
+  EXPECT_NEAR(shown(0).value(), 3.605 * .5 / std::sqrt(500), .004);
+  EXPECT_NEAR(shown(1).value(), shown(0).value() / 2, 1e-4) << "of 2";
+  EXPECT_FALSE(shown(2).has_value()) << "bounded, of which no formula tells";
+}
+
+// Three observations in [0, 4] find no difference that the range allows: `detect` is no answer to
+// what the last look finds.
+TEST(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
+  const Workplace place;
+  const std::vector<Suite> suites = {load_suite(
+      place.write("poor.yaml",
+                  "suite: poor\nestimators:\n  d: {plugin: analytic/dart_throwing}\n"
+                  "tests:\n  - {claim: mean(d) == analytic, detect: 1%, budget: 200}\n"))};
+  const PlannedRun planned = planned_of(suites);
+  const std::string text = plan_text(planned, costs_of(planned));
+  const std::size_t row = text.find("bounded");
+  ASSERT_NE(row, std::string::npos) << text;
+  EXPECT_EQ(text.substr(row, text.find('\n', row) - row).find('%'), std::string::npos) << text;
+}
+
+// One may take minutes: no more are drawn.
+TEST(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
+  const Workplace place;
+  const std::string text =
+      "suite: ratio\nestimators:\n  ratio: {plugin: analytic/ratio, primaries: 8}\n"
+      "tests:\n  - {claim: mean(ratio) == analytic, secondaries: 2000}\n";
+  const PlannedRun planned = planned_of({load_suite(place.write("ratio.yaml", text))});
+  const SuiteRun& run = *planned.suites[0];
+  ASSERT_FALSE(run.estimators.at("ratio").nature().averages);
+  const Summary& pilot = *run.pilots.at("ratio").sums;
+  const UnitCost cost = std::get<UnitCost>(costs_of(planned).at(run.tests[0].pools[0].get()));
+  EXPECT_EQ(cost.seconds, pilot.seconds / static_cast<double>(pilot.count));
+}
+
+TEST(PlanTable, ShowsEveryTestInAHundredColumns) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites);
+  const std::string text = plan_text(planned, costs_of(planned));
+  for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
+  for (const char* heading : {"method", "primaries", "looks", "CPU time", "effect", "if true"}) {
+    EXPECT_THAT(text, HasSubstr(heading));
+  }
+  EXPECT_THAT(text, HasSubstr("0.5 %"));
+  EXPECT_THAT(text, HasSubstr("green"));
+  EXPECT_THAT(text, HasSubstr("share observations"));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(reports::columns(line), 100) << line;
+  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 0);
+}
+
+TEST(PlanTable, AFilterPlansTheSameTestTheSameWay) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun whole = planned_of(suites);
+  const PlannedRun alone = planned_of(suites, {.selection = {.filters = {"*/coarser"}}});
+  ASSERT_EQ(alone.suites[0]->tests.size(), 1U);
+  EXPECT_EQ(alone.suites[0]->tests[0].outcome.plan.looks.sizes,
+            whole.suites[0]->tests[1].outcome.plan.looks.sizes);
+}
+
+TEST(PlanTable, APlanWithoutAValidMethodIsNotOk) {
+  const Workplace place;
+  const std::vector<Suite> suites = {load_suite(place.write("heavy.yaml", R"(suite: heavy
+estimators:
+  heavy: {plugin: analytic/heavy_tail, index: 3, primaries: 1}
+tests:
+  - {claim: variance(heavy) <= 1, detect: 50%}
+)"))};
+  const PlannedRun planned = planned_of(suites);
+  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 1);
+  EXPECT_THAT(plan_text(planned, costs_of(planned)), HasSubstr("invalid: "));
+}
+
+TEST(PlanTable, NothingSelectedIsNothingPlanned) {
+  const Workplace place;
+  const std::vector<Suite> suites = suites_of(place);
+  const PlannedRun planned = planned_of(suites, {.selection = {.filters = {"planned/none"}}});
+  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 4);
+}
+
+// The bound on the share must hold for the mean of 40 seeds; data are normal and theta = 0. A share
+// lies in (0, 1], so its mean has a standard error below 0.05. It exceeds the bound by 0.2, four
+// errors, with probability 3e-5 at most.
+TEST(Forecast, BoundsTheMeanShareOfALastLook) {
+  const Workplace place;
+  const std::vector<Suite> suites = {load_suite(place.write("share.yaml", R"(suite: share
+estimators:
+  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+tests:
+  - {claim: mean(normal) == 2, detect: 2%}
+)"))};
+  double bound = 0;
+  double share = 0;
+  constexpr int seeds = 40;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    PlannedRun planned = planned_of(suites, {.seed = seed});
+    TestWork& work = planned.suites[0]->tests[0];
+    bound += forecast(work.outcome, planned.suites[0]->pilots).share.value() / seeds;
+    Silence silence;
+    sample_in_looks({&work}, planned.pools.all(), 1, silence);
+    share += static_cast<double>(work.outcome.secondaries()) /
+             static_cast<double>(work.outcome.plan.most_secondaries()) / seeds;
+  }
+  EXPECT_LT(share, bound + 0.2);
+  EXPECT_GT(bound, share / 2);
+  EXPECT_LT(bound, 0.9);
+}
+
+TEST(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
+  const Workplace place;
+  const std::vector<Suite> suites{load_suite(place.write("law.yaml", R"(suite: law
+estimators: {normal: {plugin: analytic/normal, mean: 2}}
+tests:
+  - {claim: 'distribution(normal) == normal(2, 1)'}
+)"))};
+  const auto text = [&](const RunOptions& options) {
+    const PlannedRun planned = planned_of(suites, options);
+    return plan_text(planned, costs_of(planned));
+  };
+  EXPECT_THAT(text({}), HasSubstr("      `detect` is 0.05, the default of claims about laws\n"));
+  EXPECT_THAT(text({.coarsen = 2}), HasSubstr("`detect` is 0.1, the default"));
+}
+
+// Coarsened, a margin may be larger than its reference: nobody wrote it so.
+TEST(PlanTable, TakesACoarsenedMarginBeyondItsReference) {
+  const Workplace place;
+  const std::vector<Suite> suites{load_suite(place.write("coarse.yaml", R"(suite: coarse
+estimators: {normal: {plugin: analytic/normal, mean: 2}}
+tests:
+  - {claim: mean(normal) == 2, detect: 1.5}
+)"))};
+  EXPECT_EQ(planned_of(suites, {.coarsen = 4}).suites[0]->tests[0].outcome.plan.regions[0].detect,
+            6);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "harness/command/commands.h"
+#include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+std::string sampled(const SampleArguments& arguments) {
+  testing::internal::CaptureStdout();
+  const int code = sample(arguments);
+  std::fflush(stdout);
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(code, 0);
+  return text;
+}
+
+std::vector<std::string> rows(const std::string& text) {
+  std::vector<std::string> found;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.starts_with("#")) found.push_back(line);
+  }
+  return found;
+}
+
+TEST(Sample, PrintsOneObservationALine) {
+  EXPECT_EQ(rows(sampled({.source = "analytic/normal", .secondaries = 7})).size(), 7);
+}
+
+TEST(Sample, IsAPrefixOfALongerOne) {
+  const std::vector<std::string> few = rows(sampled({.source = "analytic/normal"}));
+  const std::vector<std::string> many =
+      rows(sampled({.source = "analytic/normal", .secondaries = 50}));
+  EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
+}
+
+TEST(Sample, DependsOnTheSeed) {
+  EXPECT_NE(sampled({.source = "analytic/normal", .seed = 1}),
+            sampled({.source = "analytic/normal", .seed = 2}));
+}
+
+TEST(Sample, OfASamplerHasItsMarginals) {
+  const std::string text = sampled({.source = "luminaire/hemisphere.direction"});
+  EXPECT_NE(text.find("# columns: theta phi\n"), std::string::npos) << text;
+}
+
+TEST(Sample, OfTheOnlySamplerNeedsAMarginalsNameAlone) {
+  const std::string named = sampled({.source = "luminaire/hemisphere.direction.theta"});
+  EXPECT_NE(named.find("# columns: theta\n"), std::string::npos) << named;
+  EXPECT_EQ(sampled({.source = "luminaire/hemisphere.theta"}), named);
+}
+
+TEST(Sample, RefusesAMisspeltMarginalOfASamplerWithoutATest) {
+  const std::string text = refusal([] { sample({.source = "luminaire/area.w"}); });
+  EXPECT_NE(text.find("no part `w`"), std::string::npos) << text;
+}
+
+TEST(Sample, RefusesAPartThatIsNotThere) {
+  const std::string text = refusal([] { sample({.source = "luminaire/hemisphere.directions"}); });
+  EXPECT_NE(text.find("no part `directions`"), std::string::npos) << text;
+}
+
+TEST(Sample, RefusesMoreRowsThanThereAre) {
+  const Workplace place;
+  const std::string option = "data=recorded,file=" + place.write("data.txt", "1\n2\n3\n");
+  const std::string text =
+      refusal([&] { sample({.source = "data", .estimators = {option}, .secondaries = 4}); });
+  EXPECT_NE(text.find("has 3 rows"), std::string::npos) << text;
+}
+
+TEST(Sample, QuotesNamesThatWouldBeSeveral) {
+  const Workplace place;
+  const auto again = [&](const std::string& file, const std::string& text) {
+    return sampled(
+        {.source = "data", .estimators = {"data=recorded,file=" + place.write(file, text)}});
+  };
+  const std::string header = "# columns: \"x, mean\" y \"a \"\"b\"\"\"\n1 2 3\n4 5 6\n";
+  const std::string text = again("data.csv", "\"x, mean\",y,\"a \"\"b\"\"\"\n1,2,3\n4,5,6\n");
+  EXPECT_NE(text.find(header), std::string::npos) << text;
+  EXPECT_NE(again("data.txt", text).find(header), std::string::npos);
+}
+
+// The file says which stream it was drawn from, and the estimator steps aside.
+TEST(Sample, IsComparedWithItsOwnEstimatorOnAnotherCopyOfTheStream) {
+  const Workplace place;
+  place.write("data.txt", sampled({.source = "analytic/normal", .secondaries = 300}));
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: copies
+estimators:
+  direct: {plugin: analytic/normal, primaries: 1}
+  data: {plugin: recorded, file: data.txt}
+tests:
+  - {name: first, claim: mean(direct) == mean(data)}
+  - {name: second, claim: mean(data) == mean(direct)}
+  - {name: laws, claim: distribution(data) == distribution(direct)}
+  - {name: alone, claim: mean(direct) == 0, secondaries: 300}
+)")});
+  const reports::Number of_stream = test_named(record, "alone").samples[0].mean;
+  EXPECT_EQ(test_named(record, "first").samples[1].mean, of_stream);
+  EXPECT_NE(test_named(record, "first").samples[0].mean, of_stream);
+  EXPECT_EQ(test_named(record, "second").samples[0].mean, of_stream);
+  EXPECT_NE(test_named(record, "second").samples[1].mean, of_stream);
+  EXPECT_NE(test_named(record, "laws").channels[0].statistic, 0);
+}
+
+TEST(Sample, TwiceOfOneStreamIsNotIndependent) {
+  const Workplace place;
+  place.write("few.txt", sampled({.source = "analytic/normal", .secondaries = 30}));
+  place.write("many.txt", sampled({.source = "analytic/normal", .secondaries = 50}));
+  place.write("seed2.txt", sampled({.source = "analytic/normal", .secondaries = 50, .seed = 2}));
+  const auto refused = [&](const std::string& other) {
+    return refusal([&] {
+      run_files({place.write("suite.yaml", R"(suite: copies
+estimators:
+  few: {plugin: recorded, file: few.txt}
+  many: {plugin: recorded, file: )" + other + R"(}
+tests:
+  - {claim: mean(few) == mean(many)}
+)")});
+    });
+  };
+  EXPECT_NE(refused("many.txt").find("drawn from the same stream"), std::string::npos);
+  EXPECT_EQ(refused("seed2.txt"), "(nothing was refused)");
+}
+
+// `recorded` reads the output of `sample`; its moments are those of the estimator.
+TEST(Sample, IsWhatRecordedReads) {
+  const Workplace place;
+  place.write("data.txt",
+              sampled({.source = "analytic/normal", .secondaries = 300, .primaries = 4}));
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: round trip
+estimators:
+  direct: {plugin: analytic/normal, primaries: 4}
+  data: {plugin: recorded, file: data.txt}
+tests:
+  - {name: direct, claim: mean(direct) == 0.5, secondaries: 300}
+  - {name: data, claim: mean(data) == 0.5}
+)")});
+  const reports::Sample& direct = test_named(record, "direct").samples[0];
+  const reports::Sample& data = test_named(record, "data").samples[0];
+  EXPECT_EQ(data.secondaries, 300);
+  EXPECT_EQ(data.mean, direct.mean);
+  EXPECT_EQ(data.variance, direct.variance);
+}
+
+}  // namespace
+}  // namespace assay::harness

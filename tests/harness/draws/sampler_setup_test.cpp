@@ -1,0 +1,253 @@
+#include "harness/draws/sampler_setup.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/harness/questions.h"
+#include "tests/harness/refusal.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+constexpr double pi = std::numbers::pi;
+
+std::shared_ptr<const SamplerSetup> setup_around(const Sampler& sampler) {
+  return std::make_shared<const SamplerSetup>(
+      NamedSampler{"test", std::shared_ptr<const Sampler>(std::shared_ptr<void>(), &sampler)});
+}
+
+// The incident direction is the normal, so the half vector's angle is theta / 2. P(theta <= t) = 1
+// - exp(-tan^2(t / 2) / alpha^2), over its value at the horizon (Walter 2005).
+TEST(SamplerSetup, PolarAngleOfANarrowLobeFollowsItsClosedForm) {
+  for (const double alpha : {0.02, 0.05, 0.4}) {
+    const std::string a = std::to_string(alpha);
+    const auto setup = setup_of(
+        "{plugin: brdf/ward, alpha_x: " + a + ", alpha_y: " + a + ", theta_i: 0}", "direction");
+    const stats::TabulatedLaw& law = setup->marginal_law("theta");
+    const auto below = [&](double t) { return -std::expm1(-std::pow(std::tan(t / 2) / alpha, 2)); };
+    double distance = 0;
+    for (int k = 0; k <= 4000; ++k) {
+      const double t = pi / 2 * k / 4000;
+      distance = std::max(distance, std::abs(law(t) - below(t) / below(pi / 2)));
+    }
+    EXPECT_LE(distance, law.error) << alpha;
+    EXPECT_LT(law.error, 2e-5) << alpha;
+    EXPECT_NEAR(law.total(), below(pi / 2), 1e-6) << alpha;
+  }
+}
+
+TEST(SamplerSetup, AzimuthOfANarrowLobeOffTheNormalIsTabulated) {
+  const auto setup = setup_of(
+      "{plugin: brdf/ward, alpha_x: 0.02, alpha_y: 0.02, theta_i: 0.8, phi_i: 0.5}", "direction");
+  const stats::TabulatedLaw& law = setup->marginal_law("phi");
+  // The mirrored direction's azimuth is phi_i + pi, about which the lobe is symmetric.
+  EXPECT_NEAR(law(0.5 + pi), 0.5, 1e-5);
+  EXPECT_LT(law.error, 2e-5);
+  EXPECT_NEAR(law.total(), setup->density_cells().mass.total, 1e-5);
+}
+
+TEST(SamplerSetup, ADensityThatJumpsIsTabulatedInBoundedWork) {
+  const auto setup = setup_of("{plugin: luminaire/solid_angle, scene: triangle}", "direction");
+  for (const char* marginal : {"theta", "phi"}) {
+    const stats::TabulatedLaw& law = setup->marginal_law(marginal);
+    EXPECT_LT(law.error, 1e-4) << marginal;
+    EXPECT_NEAR(law.total(), 1, 1e-5) << marginal;
+  }
+  EXPECT_LT(setup->density_cells().tolerance(), 1e-4);
+  EXPECT_EQ(setup->density_cells().missing(), 0)
+      << "what the quadrature's error explains is not missing";
+}
+
+TEST(SamplerSetup, ReflectanceBelowTheHorizonIsMissing) {
+  const auto setup = setup_of("{plugin: brdf/ward}", "direction");
+  EXPECT_NEAR(setup->density_cells().missing(), 1 - 0.980181, 1e-6);
+}
+
+TEST(SamplerSetup, IsOneForOneSampler) {
+  const auto asked = ask_text(
+      "suite: two\nestimators: {e: {plugin: brdf/ward}}\ntests:\n"
+      "  - {name: a, claim: distribution(e.direction) == density}\n"
+      "  - {name: b, claim: distribution(e.direction.theta) == density}\n");
+  EXPECT_EQ(asked->question("a").subjects[0].setup, asked->question("b").subjects[0].setup);
+}
+
+// One of the grid's cells has a fifth of the lobe.
+TEST(SamplerSetup, ANarrowLobeIsCountedInCellsOfItsOwn) {
+  const auto setup = setup_of(
+      "{plugin: brdf/ward, alpha_x: 0.02, alpha_y: 0.02, theta_i: 0.8, phi_i: 0}", "direction");
+  const DensityCells& density = setup->density_cells();
+  EXPECT_GT(density.cells.size(), 512u + 32);
+  double heaviest = 0;
+  for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
+    heaviest = std::max(heaviest, density.mass.probability[i]);
+    EXPECT_LT(density.cells.grid_cell(i), 512u);
+  }
+  EXPECT_LE(heaviest, 1.0 / 40);
+  const auto mirrored = [](double theta) {
+    return SamplerDraw{.point = {-std::sin(theta), 0, std::cos(theta)}};
+  };
+  EXPECT_NE(density.cells.index(mirrored(.77)), density.cells.index(mirrored(.81)));
+  const DrawCells grid(setup->sampler());
+  EXPECT_EQ(grid.index(mirrored(.77)), grid.index(mirrored(.81)));
+}
+
+TEST(SamplerSetup, DrawsAreCountedInCellsOnceTheyAreAskedFor) {
+  const auto setup = setup_of("{plugin: brdf/ward}", "direction");
+  const auto cell_drawn = [&] {
+    const std::unique_ptr<Estimator> estimator = setup->make();
+    Stream random({.bits = 7}, 0);
+    std::vector<double> out(setup->channels().size());
+    Cost cost;
+    estimator->secondary(random, 1, out, cost);
+    return out.back();
+  };
+  EXPECT_EQ(setup->cells_asked_for(), nullptr);
+  EXPECT_EQ(cell_drawn(), no_cell);
+  const DensityCells& cells = setup->density_cells();
+  EXPECT_EQ(&cells, setup->cells_asked_for().get());
+  EXPECT_GT(cell_drawn(), 0);
+}
+
+/// Uniform on its domain.
+class Uniform : public Sampler {
+ public:
+  explicit Uniform(Domain domain) : domain_(domain) {}
+  Domain domain() const override { return domain_; }
+  SamplerDraw sample(Stream&) const override { return {}; }
+  double density(const Point&) const override {
+    switch (domain_) {
+      case Domain::triangle:
+        return 2;
+      case Domain::hemisphere:
+        return 1 / (2 * pi);
+      case Domain::sphere:
+        return 1 / (4 * pi);
+      default:
+        return 1;
+    }
+  }
+  double evaluate(const Point&) const override { return 0; }
+
+ private:
+  Domain domain_;
+};
+
+class FarAway final : public Uniform {
+ public:
+  FarAway() : Uniform(Domain::interval) {}
+  std::array<double, 2> bounds() const override { return {1000, 1000.5}; }
+};
+
+TEST(SamplerSetup, EndsOfACellAreToldApart) {
+  const FarAway sampler;
+  const DrawCells grid(sampler);
+  EXPECT_EQ(grid.describe(0), "x 1000 to 1000.008");
+  EXPECT_EQ(grid.describe(64), "the draws without a point");
+}
+
+TEST(SamplerSetup, CellsOfEveryDomainHaveEqualMeasure) {
+  for (const Domain domain :
+       {Domain::interval, Domain::square, Domain::triangle, Domain::hemisphere, Domain::sphere}) {
+    const Uniform uniform(domain);
+    const auto setup = setup_around(uniform);
+    const stats::CellProbabilities& cells = setup->density_cells().mass;
+    for (const double p : cells.probability) {
+      ASSERT_NEAR(p * static_cast<double>(cells.probability.size()), 1, 1e-9);
+    }
+    EXPECT_EQ(setup->density_cells().missing(), 0);
+  }
+}
+
+// In a triangle of area 1/2 both barycentric coordinates have P(u <= x) = 1 - (1 - x)^2.
+TEST(SamplerSetup, MarginalsOfATriangleAreThoseOfItsCoordinates) {
+  const Uniform uniform(Domain::triangle);
+  const auto setup = setup_around(uniform);
+  for (const char* marginal : {"u", "v"}) {
+    const stats::TabulatedLaw& law = setup->marginal_law(marginal);
+    for (const double x : {.01, .3, .77, .999}) {
+      EXPECT_NEAR(law(x), 1 - (1 - x) * (1 - x), law.error) << marginal;
+    }
+  }
+}
+
+TEST(SamplerSetup, MarginalsOfASphereAreItsAngles) {
+  const Uniform uniform(Domain::sphere);
+  const auto setup = setup_around(uniform);
+  EXPECT_NEAR(setup->marginal_law("theta")(2), (1 - std::cos(2.0)) / 2, 1e-5);
+  EXPECT_NEAR(setup->marginal_law("phi")(2), 1 / pi, 1e-5);
+}
+
+/// Three parts in ten from a mirror, one in ten nowhere, the rest uniform in two halves.
+class Lobes final : public Uniform {
+ public:
+  Lobes() : Uniform(Domain::square) {}
+  double density(const Point& p) const override { return lobe_density(0, p) + lobe_density(1, p); }
+  int lobes() const override { return 3; }
+  double lobe_density(int lobe, const Point& p) const override {
+    if (lobe == 0) return p[0] < .5 ? .8 : 0;
+    return lobe == 1 && p[0] >= .5 ? .4 : 0;
+  }
+  double point_mass(int lobe) const override { return lobe == 2 ? .3 : 0; }
+};
+
+TEST(SamplerSetup, LobesAndPointMassesAreCellsOfTheirOwn) {
+  const Lobes sampler;
+  const auto setup = setup_around(sampler);
+  const auto p = [&](const SamplerDraw& draw) {
+    return setup->density_cells().mass.probability[setup->density_cells().cells.index(draw)];
+  };
+  EXPECT_NEAR(p({.point = {.1, .1, 0}, .lobe = 0}), .8 / 512, 1e-9);
+  EXPECT_NEAR(p({.point = {.1, .1, 0}, .lobe = 1}), 0, 1e-9);
+  EXPECT_NEAR(p({.point = {.9, .1, 0}, .lobe = 1}), .4 / 512, 1e-9);
+  EXPECT_NEAR(p({.point = {.9, .1, 0}, .lobe = 2}), .3, 1e-9);
+  EXPECT_EQ(setup->density_cells().cells.index({.valid = false}),
+            setup->density_cells().cells.size() - 1);
+  EXPECT_NEAR(setup->density_cells().missing(), .1, 1e-9);
+  EXPECT_NEAR(setup->density_cells().without_density(), .4, 1e-9);
+}
+
+constexpr const char* estimators = R"(suite: samplers
+estimators:
+  narrow: {plugin: brdf/ward, alpha_x: 0.02, alpha_y: 0.02, theta_i: 0}
+  ward: {plugin: brdf/ward}
+  narrow_azimuth: {plugin: mutants/ward_uniform_azimuth, alpha_x: 0.02, alpha_y: 0.03}
+  redrawn: {plugin: mutants/ward_redrawn}
+  area: {plugin: luminaire/area, scene: triangle}
+  uneven: {plugin: mutants/nonuniform_triangle, scene: triangle}
+  solid_angle: {plugin: luminaire/solid_angle, scene: rectangle}
+tests:
+)";
+
+// The suite's alpha of 1e-4 is the false-alarm rate of all passes together.
+TEST(SamplerSetup, SoundSamplersPassAndBrokenOnesFail) {
+  const reports::Record record = run_text(
+      std::string(estimators) +
+          "  - {claim: distribution(narrow.direction.theta) == density, secondaries: 200000}\n"
+          "  - {name: narrow azimuth, claim: distribution(narrow_azimuth.direction) == density,"
+          " secondaries: 2000, expect: fail}\n"
+          "  - {claim: distribution(solid_angle.direction) == density, secondaries: 200000}\n"
+          "  - {claim: distribution(solid_angle.direction.theta) == density, detect: 0.02}\n"
+          "  - {claim: distribution(solid_angle.direction.phi) == density, detect: 0.02}\n"
+          "  - {claim: distribution(area.point) == density, secondaries: 100000}\n"
+          "  - {claim: distribution(area.point.v) == density, detect: 0.02}\n"
+          "  - {claim: distribution(ward.direction.theta) == density, detect: 0.02}\n"
+          "  - {name: redrawn theta, claim: distribution(redrawn.direction.theta) == density,"
+          " secondaries: 20000, expect: fail}\n"
+          "  - {name: redrawn beside, claim: distribution(redrawn.direction) =="
+          " distribution(ward.direction), secondaries: 20000, expect: fail}\n"
+          "  - {name: uneven, claim: distribution(uneven.point) == density, secondaries: 20000,"
+          " expect: fail}\n"
+          "  - {name: uneven u, claim: distribution(uneven.point.u) == density, secondaries: 20000,"
+          " expect: fail}\n",
+      {.alpha = 1e-4});
+  for (const reports::Test& test : record.suites[0].tests) {
+    EXPECT_TRUE(test.ok) << test.name << ": " << test.message;
+  }
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,251 @@
+#include "harness/ledger/ledger.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "estimators/stream.h"
+#include "harness/base/text_file.h"
+#include "harness/ledger/ledger_book.h"
+#include "harness/record/output.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* estimators = R"(suite: nights
+estimators:
+  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+  other: {plugin: analytic/normal, mean: 2.5, primaries: 1}
+  broken: {plugin: mutants/no_cosine, scene: triangle, primaries: 64}
+tests:
+)";
+constexpr const char* two_tests = R"(  - {name: one, claim: mean(normal) == 2, secondaries: 100}
+  - {name: two, claim: mean(other) == 2.5, secondaries: 100}
+  - {name: broken, claim: mean(broken) == analytic, detect: 20%, expect: fail}
+)";
+
+class Ledger : public testing::Test {
+ protected:
+  reports::Record night(const std::string& tests, std::uint64_t seed,
+                        const std::vector<std::string>& filters = {}) {
+    const std::string suite = place_.write("nights.yaml", estimators + tests);
+    return run_files({suite}, {.seed = seed, .selection = {.filters = filters}, .ledger = file()});
+  }
+  std::string file() const { return place_.file("n.ledger"); }
+  LedgerBook book() const { return LedgerBook::parse(read_text_file(file()), file()); }
+
+  const Workplace place_;
+};
+
+const reports::LedgerSeries& series_of(const reports::Record& record, const std::string& test) {
+  for (const reports::LedgerSeries& series : record.ledger.series) {
+    if (series.test == test) return series;
+  }
+  throw std::out_of_range("no series of " + test);
+}
+
+TEST_F(Ledger, AddsANightOfEachTestInsideTheFamily) {
+  const reports::Record record = night(two_tests, 11);
+  EXPECT_EQ(book().nights().size(), 2U);
+  EXPECT_EQ(record.ledger.file, file());
+  EXPECT_EQ(record.ledger.budget, default_ledger_budget);
+  ASSERT_EQ(record.ledger.series.size(), 2U);  // the mutant stands outside
+  const reports::LedgerSeries& one = series_of(record, "nights/one");
+  EXPECT_TRUE(one.added);
+  EXPECT_EQ(one.nights, 1U);
+  EXPECT_EQ(one.first, record.started);
+  EXPECT_NEAR(one.limit.value(), -std::log(default_ledger_budget / 2 / 1.2020569), 1e-6);
+  EXPECT_EQ(book().nights()[0].seed, 11U);
+  EXPECT_EQ(book().nights()[0].commit, record.tool.commit);
+}
+
+// The limit is what it was on the first night, whatever else the suite claims later.
+TEST_F(Ledger, LimitsDoNotMoveWithTheSuite) {
+  night(two_tests, 11);
+  const std::string more = std::string(two_tests) + "  - {name: late, claim: mean(normal) <= 3}\n";
+  const reports::Record record = night(more, 12);
+  EXPECT_NEAR(series_of(record, "nights/one").limit.value(),
+              -std::log(default_ledger_budget / 2 / 1.2020569), 1e-6);
+  EXPECT_NE(record.note.find("outside the ledger"), std::string::npos) << record.note;
+}
+
+TEST_F(Ledger, ScoresAddUpOverNights) {
+  night(two_tests, 11);
+  night(two_tests, 12);
+  const reports::Record record = night(two_tests, 13);
+  const reports::LedgerSeries& one = series_of(record, "nights/one");
+  EXPECT_EQ(one.nights, 3U);
+  double score = 0;
+  for (const LedgerNight& each : book().nights_of(0)) score += each.evidence.score;
+  EXPECT_EQ(one.score.value(), score);
+}
+
+TEST_F(Ledger, ASeedSeenBeforeAddsNothingAndSaysSo) {
+  night(two_tests, 11);
+  const std::string before = read_text_file(file());
+  const reports::Record record = night(two_tests, 11);
+  EXPECT_EQ(read_text_file(file()), before);
+  EXPECT_FALSE(series_of(record, "nights/one").added);
+  EXPECT_THAT(series_of(record, "nights/one").note, HasSubstr("seed 11 is in the ledger"));
+  EXPECT_EQ(series_of(record, "nights/one").nights, 1U);
+}
+
+TEST_F(Ledger, AFilterAddsItsTestsAlone) {
+  const reports::Record record = night(two_tests, 11, {"*/two"});
+  EXPECT_EQ(record.ledger.series.size(), 1U);
+  EXPECT_EQ(book().nights().size(), 1U);
+  // The share of the budget is that of the whole suite.
+  EXPECT_NEAR(record.ledger.series[0].limit.value(),
+              -std::log(default_ledger_budget / 2 / 1.2020569), 1e-6);
+  night(two_tests, 11);
+  EXPECT_EQ(book().nights().size(), 2U);
+}
+
+TEST_F(Ledger, AChangedClaimStartsANewSeriesAndKeepsTheOldLines) {
+  night("  - {name: one, claim: mean(normal) == 2, secondaries: 100}\n", 11);
+  const std::string before = read_text_file(file());
+  const reports::Record record =
+      night("  - {name: one, claim: mean(normal) == 2.001, secondaries: 100}\n", 12);
+  EXPECT_EQ(record.ledger.series[0].nights, 1U);
+  EXPECT_THAT(record.ledger.series[0].note, HasSubstr("new series"));
+  EXPECT_GT(record.ledger.series[0].limit.value(), -std::log(default_ledger_budget / 1.3));
+  EXPECT_THAT(read_text_file(file()), HasSubstr(before.substr(0, before.find("end "))));
+  // Back to the first claim: its series goes on.
+  EXPECT_EQ(night("  - {name: one, claim: mean(normal) == 2, secondaries: 100}\n", 13)
+                .ledger.series[0]
+                .nights,
+            2U);
+  // A seed is news once, whatever was claimed when it was seen.
+  EXPECT_FALSE(night("  - {name: one, claim: mean(normal) == 2.002, secondaries: 100}\n", 12)
+                   .ledger.series[0]
+                   .added);
+}
+
+TEST_F(Ledger, AlarmsFailTheRunAndSaySinceWhen) {
+  // Twenty standard errors: every night alarms, from the first on.
+  const std::string wrong = "  - {name: one, claim: mean(normal) == 4, secondaries: 100}\n";
+  const reports::Record first = night(wrong, 11);
+  const reports::Record second = night(wrong, 12);
+  const reports::LedgerSeries& one = second.ledger.series[0];
+  EXPECT_TRUE(one.alarm);
+  EXPECT_EQ(one.since, first.started);
+  EXPECT_FALSE(one.moved.empty());
+  reports::Record passed = second;
+  for (reports::Test& test : passed.suites[0].tests) {
+    test.verdict = reports::Verdict::pass;
+    test.ok = true;
+  }
+  EXPECT_EQ(exit_code(passed, InconclusivePolicy::report), 1);
+  passed.ledger.series[0].alarm = false;
+  EXPECT_EQ(exit_code(passed, InconclusivePolicy::report), 0);
+}
+
+TEST_F(Ledger, AnAlarmStaysUntilTheTestIsBegunAnew) {
+  const auto claim = [](const char* number) {
+    return std::string("  - {name: one, claim: mean(normal) == ") + number +
+           ", detect: 20%, secondaries: 100}\n";
+  };
+  EXPECT_TRUE(night(claim("4"), 11).ledger.series[0].alarm);
+  EXPECT_TRUE(night(claim("4"), 11).ledger.series[0].alarm);
+  std::ofstream(file(), std::ios::app) << "begin \"nights/one\"  # mended\n";
+  EXPECT_THROW(book(), InputError);  // nothing but the id stands there
+  std::string text = read_text_file(file());
+  text.erase(text.find("  # mended"));
+  std::ofstream(file()) << text << "\n# mended in 4f1c2ab\n";
+  const reports::Record record = night(claim("4"), 11);
+  EXPECT_FALSE(record.ledger.series[0].alarm);
+  EXPECT_EQ(record.ledger.series[0].nights, 0U);
+  EXPECT_EQ(night(claim("4"), 12).ledger.series[0].nights, 1U);
+}
+
+TEST_F(Ledger, IsReadBeforeAnythingIsSampled) {
+  night(two_tests, 11);
+  std::string text = read_text_file(file());
+  text[text.find("seed 11") + 5] = '2';
+  std::ofstream(file()) << text;
+  EXPECT_THROW(night(two_tests, 12), InputError);
+  EXPECT_EQ(read_text_file(file()), text);
+  const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
+  EXPECT_THROW(run_files({suite}, {.ledger = place_.file("missing/n.ledger")}), InputError);
+}
+
+TEST_F(Ledger, TwoSuitesOfOneNameCannotShareALedger) {
+  const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
+  EXPECT_THROW(run_files({suite, suite}, {.ledger = file()}), InputError);
+}
+
+TEST_F(Ledger, ConcurrentRunsLoseNoLine) {
+  const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
+  const auto nights_from = [&](std::uint64_t first) {
+    for (std::uint64_t seed = first; seed < first + 5; ++seed) {
+      run_files({suite}, {.seed = seed, .threads = 1, .ledger = file()});
+    }
+  };
+  { const std::jthread a(nights_from, 10), b(nights_from, 20), c(nights_from, 30); }
+  EXPECT_EQ(book().nights().size(), 30U);
+}
+
+TEST_F(Ledger, IsNotTouchedByARunWithoutIt) {
+  const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
+  const reports::Record record = run_files({suite});
+  EXPECT_TRUE(record.ledger.file.empty());
+  EXPECT_FALSE(std::filesystem::exists(file()));
+}
+
+/// Ledgers of one test each. Suites of estimators with different means have streams of their own.
+/// `shift` is theta, and `spread` the standard deviation of the reference's error. Both are in
+/// standard errors of a night of 100 secondaries of standard deviation 1.
+struct Series {
+  std::uint64_t count;
+  std::uint64_t nights;
+  double shift;
+  double spread;
+};
+
+/// How many of them alarmed by the last night. Seeds are 1, 2, … .
+std::uint64_t alarmed(const Series& series) {
+  const Workplace place;
+  std::vector<std::string> files;
+  for (std::uint64_t i = 0; i < series.count; ++i) {
+    const double mean = 1 + 1e-6 * static_cast<double>(i);
+    Stream random(stream_key(1, "tests/ledger", "", 0), i);
+    const double u = std::sqrt(-2 * std::log(1 - random.uniform()));
+    const double error = u * std::cos(2 * std::acos(-1.0) * random.uniform());
+    const double reference = mean + 0.1 * (series.spread * error - series.shift);
+    char text[400];
+    std::snprintf(text, sizeof text,
+                  "suite: s\nestimators:\n  x: {plugin: analytic/normal, mean: %.17g, primaries: "
+                  "1}\ntests:\n  - {claim: mean(x) == %.17g +- %.17g, secondaries: 100}\n",
+                  mean, reference, 0.1 * series.spread);
+    files.push_back(place.write("s" + std::to_string(i) + ".yaml", text));
+  }
+  reports::Record record;
+  for (std::uint64_t night = 1; night <= series.nights; ++night) {
+    record = run_files(files, {.seed = night, .threads = 1, .ledger = place.file("n.ledger")});
+  }
+  return static_cast<std::uint64_t>(reports::alarms(record.ledger));
+}
+
+// A bias of one standard error a night is found within 30 nights with probability >= 0.9. Of 40
+// ledgers fewer than 26 find it with probability 4e-6 at 0.9, and less at what
+// tests/ledger_study.py measures.
+TEST(LedgerPower, FindsOneStandardErrorANightWithinThirtyNights) {
+  EXPECT_GE(alarmed({.count = 40, .nights = 30, .shift = 1, .spread = 0}), 26U);
+}
+
+// Budget 3e-3, the reference off by 0.2 of a night's standard error: of 40 ledgers four or more
+// alarm with probability at most 7e-6.
+TEST(LedgerLevel, KeepsItsBudgetWithAReferenceThatIsOff) {
+  EXPECT_LT(alarmed({.count = 40, .nights = 30, .shift = 0, .spread = 0.2}), 4U);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,60 @@
+#include "harness/plan/gate_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/harness/questions.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// The advice for a mean of 1000 observations whose gate of this name is red.
+std::string help_for(const std::string& kind, const std::string& where = "") {
+  const auto asked = ask_text(R"(suite: gates
+estimators:
+  it: {plugin: analytic/normal}
+tests:
+  - {name: test, claim: mean(it) == 0}
+)");
+  TestOutcome outcome{.question = asked->questions[0]};
+  outcome.plan.looks = {{1000}, {1}};
+  outcome.gates = {
+      gate_of(reports::Gate{.name = kind, .value = 4, .limit = 2, .state = "red"}, where)};
+  return what_would_help(outcome);
+}
+
+TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
+  for (const char* gate : {"excess kurtosis", "largest deviation"}) {
+    EXPECT_THAT(help_for(gate, " of it"), HasSubstr("heavy-tailed"));
+    EXPECT_THAT(help_for(gate, " of it"), HasSubstr("a quantile"));
+    EXPECT_THAT(help_for(gate, " of it"), Not(HasSubstr("secondaries")));
+  }
+}
+
+// The logarithm of the factor falls like 1 / sqrt(n): (ln 4 / ln 1.25)^2 x 1000 = 38596.
+TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
+  const std::string help = help_for("level factor by skewness");
+  EXPECT_THAT(help, HasSubstr("`secondaries` would help"));
+  EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
+}
+
+TEST(GateText, NamesFewOfManyRedGates) {
+  std::vector<Gate> gates;
+  for (int i = 0; i < 1000; ++i) {
+    gates.push_back(
+        gate_of(reports::Gate{.name = "largest deviation", .value = 4, .limit = 2, .state = "red"},
+                ", value" + std::to_string(i)));
+  }
+  const std::string all = red_gates(gates);
+  EXPECT_THAT(all, HasSubstr("value3)"));
+  EXPECT_THAT(all, Not(HasSubstr("value4)")));
+  EXPECT_THAT(all, HasSubstr("1000 gates are red in all"));
+  gates.resize(4);
+  EXPECT_THAT(red_gates(gates), Not(HasSubstr("in all")));
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,301 @@
+#include "harness/plan/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/run/planned_run.h"
+#include "harness/theta/critical.h"
+#include "stats/planning/power.h"
+#include "stats/tails/tails.h"
+#include "tests/harness/planned.h"
+#include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+TEST(Plan, WithoutDetectIsClassical) {
+  const Planned planned = plan_text("  - {claim: mean(normal) == 2}\n");
+  EXPECT_EQ(planned.plans[0].most_secondaries(), 1000);
+  EXPECT_EQ(planned.plans[0].method.name, "t");
+}
+
+// Values lie in [0.4, 10.6]. The empirical bound is at least 7 ln(2 / .01) 10.2 / (3 (n - 1)) wide
+// (Maurer and Pontil 2009). It is below 0.5 from n = 253 on.
+TEST(Plan, AMarginIsPlannedByTheMethodThatDecides) {
+  const Planned planned = plan_text("  - {claim: mean(spike) within 0.5 of analytic}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "bounded");
+  EXPECT_GE(planned.plans[0].most_secondaries(), 253);
+  EXPECT_LT(planned.plans[0].most_secondaries(), 2530);
+}
+
+TEST(Plan, ObeysFixedSecondaries) {
+  const Planned planned = plan_text("  - {claim: mean(normal) == 2, secondaries: 123}\n");
+  EXPECT_EQ(planned.plans[0].most_secondaries(), 123);
+}
+
+// A pilot of 8192 knows the variance 1 up to exp(3.09 sqrt(2 / 8192)) - 1 = 4.9 %. Its own error
+// is as much. So n lies between that of variance 1 and that of 1.12.
+TEST(Plan, FindsDetectWithTheSuitesErrorRates) {
+  const Planned planned = plan_text("  - {claim: mean(single) == 2, detect: 2%}\n");
+  // Doubling from 100 to some 15,000 takes nine looks, each with a ninth of the errors.
+  const stats::LookSchedule& looks = planned.plans[0].looks;
+  ASSERT_EQ(looks.sizes.size(), 9);
+  const stats::ErrorRates rates{.alpha = 0.01 / 9, .beta = 0.01 / 9, .two_sided = true};
+  for (std::size_t k = 1; k < 9; ++k) {
+    const double growth =
+        static_cast<double>(looks.sizes[k]) / static_cast<double>(looks.sizes[k - 1]);
+    EXPECT_NEAR(growth, 2, 0.01);
+    EXPECT_DOUBLE_EQ(looks.weights[k], 1.0 / 9);
+  }
+  EXPECT_GE(looks.sizes.front(), 100U);
+  const auto exact = [&](double variance) {
+    return static_cast<double>(*stats::student_t_sample_size(
+        {.standard_deviation = std::sqrt(variance), .rates = rates}, 0.04));
+  };
+  EXPECT_GE(static_cast<double>(planned.plans[0].most_secondaries()), exact(1));
+  EXPECT_LE(static_cast<double>(planned.plans[0].most_secondaries()), exact(1.12));
+}
+
+// Two one-sided tests share the last look's beta, each with half of it: SE = margin / (z_b +
+// z_b/2). The variance of ln s2 is (kurtosis - 1) / n. A pilot of 8192 has a kurtosis of 3 +- .054;
+// four of these are 11 % of n, 1e-4.
+TEST(Plan, OfWithinGivesBothMarginsTheirShareOfBeta) {
+  const Planned planned = plan_text("  - {claim: variance(single) within 25% of 1}\n");
+  const stats::LookSchedule& looks = planned.plans[0].looks;
+  const double share = 0.01 * looks.weights.back();
+  const auto z = [](double p) { return stats::normal_quantile({stats::Tail::upper, std::log(p)}); };
+  const double wanted = std::log(1.25) / (z(share) + z(share / 2));
+  const auto n = static_cast<double>(planned.plans[0].most_secondaries());
+  EXPECT_NEAR(n * wanted * wanted / 2, 1, 0.11);
+}
+
+// SE^2 = (.05 / (z_.005 + z_.01))^2 of a median whose spread is sqrt(1 / 4) over the density. The
+// density is 1 on the unit interval; a normal law of that deviation has 1.38. The pilot counts 410
+// within .05, less two errors: 11 %, and 1.23 of n.
+TEST(Plan, OfAQuantileCountsThePilotsValues) {
+  const Planned planned = plan_text("  - {claim: \"quantile(flat, 0.5) == 0.5\", detect: 0.05}\n");
+  const double share = 0.01 * planned.plans[0].looks.weights.back();
+  const auto z = [](double p) { return stats::normal_quantile({stats::Tail::upper, std::log(p)}); };
+  const double wanted = 0.05 / (z(share / 2) + z(share));
+  const auto n = static_cast<double>(planned.plans[0].most_secondaries());
+  EXPECT_GE(n * wanted * wanted * 4, 1);
+  EXPECT_LE(n * wanted * wanted * 4, 1.7);
+}
+
+// The reference's error leaves the samples less of the margin: SE^2 = (margin / z)^2 - u^2.
+TEST(Plan, OfWithinLeavesRoomForTheReferencesError) {
+  const auto secondaries = [](const std::string& reference) {
+    const Planned planned =
+        plan_text("  - {claim: mean(single) within 0.2 of " + reference + "}\n");
+    const double share = 0.01 * planned.plans[0].looks.weights.back();
+    const auto z = [](double p) {
+      return stats::normal_quantile({stats::Tail::upper, std::log(p)});
+    };
+    return std::pair(static_cast<double>(planned.plans[0].most_secondaries()),
+                     0.2 / (z(share) + z(share / 2)));
+  };
+  const auto [exact, wanted] = secondaries("2");
+  EXPECT_GE(exact, 1 / (wanted * wanted));
+  EXPECT_LE(exact, 1.12 / (wanted * wanted) + 3);
+  const auto [uncertain, of_both] = secondaries("2 +- 0.025");
+  const double left = of_both * of_both - 0.025 * 0.025;
+  EXPECT_GE(uncertain, 1 / left);
+  EXPECT_LE(uncertain, 1.12 / left + 3);
+  EXPECT_NE(refusal([] {
+              plan_text("  - {claim: mean(single) within 0.2 of 2 +- 0.1}\n");
+            }).find("no number of observations would decide"),
+            std::string::npos);
+}
+
+TEST(Plan, AsksForMoreAtASmallerShare) {
+  const Planned alone = plan_text("  - {claim: mean(single) == 2, detect: 2%}\n");
+  const Planned among = plan_text(
+      "  - {claim: mean(single) == 2, detect: 2%, weight: 1}\n"
+      "  - {name: heavier, claim: mean(single) <= 3, weight: 99}\n");
+  EXPECT_GT(among.plans[0].most_secondaries(), alone.plans[0].most_secondaries());
+}
+
+TEST(Plan, ChoosesPrimariesAsAPowerOfTwoThatTamesTheTail) {
+  const Planned planned = plan_text(
+      "  - {name: a, claim: variance(uniform) <= 100}\n"
+      "  - {name: b, claim: variance(normal) <= 100}\n");
+  const std::uint64_t skewed = planned.plans[0].primaries[0];
+  EXPECT_EQ(skewed & (skewed - 1), 0);
+  EXPECT_GE(skewed, 64);
+  EXPECT_EQ(planned.plans[1].primaries[0], 64) << "a normal primary needs no averaging";
+}
+
+TEST(Plan, ObeysFixedPrimaries) {
+  const Planned planned = plan_text("  - {claim: mean(single) == 2}\n");
+  EXPECT_EQ(planned.plans[0].primaries[0], 1);
+}
+
+TEST(Plan, OfADistributionTakesSinglePrimaries) {
+  const Planned planned = plan_text(
+      "  - {name: a, claim: \"distribution(normal) == normal(2, 1)\"}\n"
+      "  - {name: b, claim: mean(normal) == 2}\n");
+  EXPECT_EQ(planned.plans[0].primaries[0], 1);
+  EXPECT_EQ(planned.plans[1].primaries[0], 64);
+}
+
+TEST(Plan, MovesToLogVarianceWhereSecondariesAreNotNormal) {
+  const Planned planned = plan_text("  - {claim: variance(uniform) <= 100}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "chi-square") << "primaries are chosen so";
+  const Planned skewed = plan_text("  - {claim: variance(heavier-single) <= 100}\n");
+  EXPECT_EQ(skewed.plans[0].method.name, "log-variance");
+  EXPECT_FALSE(skewed.plans[0].invalid.empty())
+      << "a Pareto law of index 2.2 has no kurtosis at all";
+  EXPECT_NE(skewed.plans[0].invalid.find("tail is too heavy"), std::string::npos);
+}
+
+// 8192 primaries miss a spike of probability 1e-9. The plan takes as many as bound its contribution
+// if that is within reach, else the default number.
+TEST(Plan, OfAConstantInADeclaredRangeBoundsWhatWasNotSeen) {
+  const Planned planned = plan_text(
+      "  - {claim: mean(unseen) == 0.5, detect: 1%}\n"
+      "  - {name: classical, claim: mean(unseen) == 0.5}\n"
+      "  - {claim: mean(far) == 0.5, detect: 1%}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "bounded");
+  EXPECT_GT(planned.plans[0].most_secondaries(), usual_secondaries);
+  // To exclude a mean of .505 by values that are .5 but for 1.5 takes ln(1 / .01) / .005 at least.
+  EXPECT_LT(planned.plans[0].most_secondaries(), 10 * 921);
+  EXPECT_EQ(planned.plans[1].most_secondaries(), usual_secondaries);
+  EXPECT_EQ(planned.plans[2].most_secondaries(), usual_secondaries);
+}
+
+// A Pareto law of index 3 has a skewness of some 5 in its pilot. The t test is right within a
+// quarter from some 10,000 values on, the corrected test from some 1000.
+TEST(Plan, CorrectsForSkewnessWhereTheTTestWouldNeedMore) {
+  const Planned heavy = plan_text("  - {claim: mean(heavy-single) == 1.5, secondaries: 3000}\n");
+  EXPECT_EQ(heavy.plans[0].method.name, "skewness-corrected-t");
+  const Planned normal = plan_text("  - {claim: mean(normal) == 2, secondaries: 300}\n");
+  EXPECT_EQ(normal.plans[0].method.name, "t");
+}
+
+// One look decides at z = 5.0 errors of the reference, ten looks would take 6.9 of them.
+TEST(Plan, TakesFewerLooksWhereTheReferencesErrorAllowsNoMore) {
+  const Planned planned = plan_text("  - {claim: mean(single) == 2 +- 0.001, detect: 0.0055}\n");
+  EXPECT_LT(planned.plans[0].most_secondaries(), 1e8);
+  EXPECT_LT(planned.plans[0].looks.sizes.size(), 10);
+}
+
+TEST(Plan, IsInvalidWhereAFixedSizeIsTooSmallForAnyMethod) {
+  const Planned planned = plan_text("  - {claim: mean(heavy-single) == 1.5, secondaries: 30}\n");
+  EXPECT_NE(planned.plans[0].invalid.find("keeps its level"), std::string::npos);
+}
+
+TEST(Plan, CountsValuesOfWhichThereAreTwo) {
+  const Planned planned = plan_text("  - {claim: mean(dart) == 3.14159, secondaries: 300}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "binomial");
+}
+
+TEST(Plan, ForcedMethodStandsWithItsGatesShown) {
+  const Planned planned =
+      plan_text("  - {claim: variance(heavy-single) <= 100, test: chi-square}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "chi-square");
+  EXPECT_TRUE(planned.plans[0].invalid.empty());
+  const std::vector<Gate>& gates = planned.plans[0].gates;
+  EXPECT_TRUE(std::any_of(gates.begin(), gates.end(), [](const reports::Gate& gate) {
+    return gate.name.starts_with("excess kurtosis") && gate.state == "red";
+  }));
+}
+
+// A logarithm asks for no normal values, but for more of them than a thousand where they are
+// skewed.
+TEST(Plan, AForcedLogarithmShowsThatItHasTooFewValues) {
+  const auto too_few = [](const std::string& test) {
+    const Planned planned = plan_text("  - {" + test + ", secondaries: 1000}\n");
+    EXPECT_EQ(planned.plans[0].invalid, "") << test;
+    EXPECT_EQ(planned.plans[0].most_secondaries(), 1000) << test;
+    return std::any_of(planned.plans[0].gates.begin(), planned.plans[0].gates.end(),
+                       [](const reports::Gate& gate) {
+                         return gate.name.starts_with("number of observations") &&
+                                gate.state == "red";
+                       });
+  };
+  EXPECT_TRUE(too_few("claim: variance(heavy-single) <= 100, test: log-variance"));
+  EXPECT_TRUE(too_few("claim: total_variance(heavy-single) <= 100, test: log-total-variance"));
+  EXPECT_TRUE(too_few("claim: cost(multi) <= 2, test: log-cost"));
+  EXPECT_FALSE(too_few("claim: variance(normal) <= 100, test: log-variance"));
+  EXPECT_FALSE(too_few("claim: cost(hemisphere) <= 2, test: log-cost"));
+}
+
+// The pilot has 512 values for the mean of `corners`. It has 8192 for its variance, the same 512
+// among them. The law of `ratio` is near normal; a test of 600 observations needs no more.
+TEST(Plan, OfAVarianceFarFromNormalThePilotIsLarger) {
+  const Workplace place;
+  const auto piloted = [&](const std::string& tests, RunOptions options = {}) {
+    Silence silence;
+    return plan_run({load_suite(place.write("pilots.yaml", R"(suite: pilots
+estimators:
+  corners: {plugin: virtual_lights/weighted, primaries: 2}
+  fewer: {plugin: virtual_lights/weighted, primaries: 2}
+  ratio: {plugin: analytic/ratio, primaries: 1024}
+tests:
+  - {name: mean, claim: mean(corners) == analytic}
+)" + tests))},
+                    options, silence);
+  };
+  const std::string variances = R"(  - {name: corners, claim: variance(corners) <= 100}
+  - {name: fewer, claim: variance(fewer) <= 100, secondaries: 600}
+  - {name: ratio, claim: variance(ratio) <= 100}
+)";
+  const PlannedRun planned = piloted(variances, {.threads = 1});
+  const SuiteRun& run = *planned.suites[0];
+  const Pilot& corners = run.pilots.at("corners");
+  ASSERT_NE(corners.larger, nullptr);
+  EXPECT_EQ(corners.values[0].size(), 512);
+  ASSERT_EQ(corners.larger->values[0].size(), 8192);
+  EXPECT_TRUE(std::equal(corners.values[0].begin(), corners.values[0].end(),
+                         corners.larger->values[0].begin()));
+  EXPECT_EQ(pilot_of(run.tests[0].outcome.question, 0, run.pilots), &corners);
+  EXPECT_EQ(pilot_of(run.tests[1].outcome.question, 0, run.pilots), corners.larger.get());
+  ASSERT_NE(run.pilots.at("fewer").larger, nullptr);
+  EXPECT_EQ(run.pilots.at("fewer").larger->values[0].size(), 2048) << "the least that tells";
+  EXPECT_EQ(run.pilots.at("ratio").larger, nullptr);
+
+  const PlannedRun again =
+      piloted(variances, {.threads = 4, .selection = {.filters = {"pilots/corners"}}});
+  const Pilot& alone = again.suites[0]->pilots.at("corners");
+  ASSERT_NE(alone.larger, nullptr);
+  EXPECT_EQ(alone.larger->values, corners.larger->values);
+  EXPECT_EQ(alone.larger->moments(0).m4, corners.larger->moments(0).m4);
+
+  const PlannedRun means = piloted(variances, {.selection = {.filters = {"pilots/mean"}}});
+  EXPECT_EQ(means.suites[0]->pilots.at("corners").larger, nullptr) << "no such test is chosen";
+}
+
+TEST(Plan, StaysWithinABudgetOfPrimaries) {
+  const Planned planned = plan_text("  - {claim: mean(single) == 2, detect: 0.1%, budget: 5000}\n");
+  EXPECT_EQ(planned.plans[0].most_secondaries(), 5000);
+}
+
+TEST(Plan, DoesNotDependOnWhichOtherTestsAreThere) {
+  const Planned one = plan_text(
+      "  - {claim: mean(single) == 2, detect: 2%, weight: 1}\n"
+      "  - {name: b, claim: mean(uniform) <= 7}\n");
+  const Planned other = plan_text(
+      "  - {claim: mean(single) == 2, detect: 2%, weight: 1}\n"
+      "  - {name: b, claim: variance(hemisphere) <= 7}\n");
+  EXPECT_EQ(one.plans[0].most_secondaries(), other.plans[0].most_secondaries());
+}
+
+TEST(Plan, PilotIsOfTheSeedAlone) {
+  const std::string test = "  - {claim: mean(single) == 2}\n";
+  const stats::Moments one = plan_text(test).pilots.at("single").moments(0);
+  EXPECT_EQ(plan_text(test).pilots.at("single").moments(0), one);
+  EXPECT_NE(plan_text(test, 2).pilots.at("single").moments(0).mean, one.mean);
+  EXPECT_EQ(plan_text(test).pilots.at("single").moments(0).mean,
+            plan_text(test).pilots.at("normal").moments(0).mean)
+      << "the same plugin and parameters at one primary";
+}
+
+TEST(Plan, CriticalValueIsTheNormalQuantile) {
+  EXPECT_NEAR(critical_value(0.05, true), 1.959964, 1e-6);
+  EXPECT_NEAR(critical_value(0.05, false), 1.644854, 1e-6);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,221 @@
+#include "harness/record/cell_record.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "tests/harness/questions.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr const char* suite = R"(suite: s
+estimators:
+  ward: {plugin: brdf/ward}
+  quadrant: {plugin: mutants/ashikhmin_shirley_single_quadrant}
+  disk: {plugin: luminaire/area, scene: triangle}
+  normal: {plugin: analytic/exponential_importance}
+  narrow: {plugin: mutants/ward_uniform_azimuth, alpha_x: 0.02, alpha_y: 0.03}
+tests:
+  - {claim: )";
+
+reports::Test tested(const std::string& claim) {
+  return run_test(suite + claim + ", secondaries: 20000}\n");
+}
+
+double sum(const reports::Map& map) {
+  return std::accumulate(map.texels.values.begin(), map.texels.values.end(), 0.0);
+}
+
+TEST(CellRecord, HasWhatWasDrawnExpectedAndTheDifferenceInEveryCell) {
+  const reports::Test test = tested("distribution(ward.direction) == density");
+  ASSERT_EQ(test.maps.size(), 3u);
+  for (const reports::Map& map : test.maps) {
+    EXPECT_EQ(map.width, 32u);
+    EXPECT_EQ(map.height, 16u);
+    EXPECT_EQ(map.source, "theta 0 to 1.571 from top to bottom, phi 0 to 6.283 from left to right");
+    EXPECT_EQ(map.texels.values.size(), 512u);
+  }
+  // Draws without a point have no cell; five standard errors of how many there are.
+  EXPECT_LE(sum(test.maps[0]), 20000);
+  EXPECT_NEAR(sum(test.maps[0]), sum(test.maps[1]), 5 * std::sqrt(20000 * 0.25));
+  for (std::size_t i = 0; i < 512; ++i) {
+    const double expected = test.maps[1].texels.values[i];
+    if (!(expected > 0)) continue;
+    EXPECT_NEAR(test.maps[2].texels.values[i],
+                (test.maps[0].texels.values[i] - expected) / std::sqrt(expected),
+                1e-4 * (1 + std::abs(test.maps[2].texels.values[i])));
+  }
+}
+
+double density_of(const Sampler& ward, double theta, double phi) {
+  return ward.density(
+      {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+}
+
+// The reference is the midpoint rule over 64 x 400 points, within 1e-3 of the integral here. Counts
+// are binomial: 32 columns within 5.5 standard deviations, false alarm 2e-6.
+TEST(CellRecord, HasAzimuthsFromLeftToRight) {
+  const reports::Test test = tested("distribution(ward.direction) == density");
+  ASSERT_EQ(test.maps.size(), 3u);
+  const auto setup = setup_of("{plugin: brdf/ward}", "direction");
+  const Sampler& ward = setup->sampler();
+  double least = 1;
+  double most = 0;
+  for (std::size_t column = 0; column < 32; ++column) {
+    double share = 0;
+    for (int i = 0; i < 64 * 400; ++i) {
+      const double theta = (i % 400 + 0.5) / 400 * std::numbers::pi / 2;
+      const double phi =
+          (static_cast<double>(column) + (i / 400 + 0.5) / 64) / 32 * 2 * std::numbers::pi;
+      share += density_of(ward, theta, phi) * std::sin(theta) * std::numbers::pi / 800 *
+               std::numbers::pi / 1024;
+    }
+    least = std::min(least, share);
+    most = std::max(most, share);
+    double drawn = 0;
+    double expected = 0;
+    for (std::size_t row = 0; row < 16; ++row) {
+      drawn += test.maps[0].texels.values[row * 32 + column];
+      expected += test.maps[1].texels.values[row * 32 + column];
+    }
+    EXPECT_NEAR(expected, 20000 * share, 20 * share) << column;
+    EXPECT_NEAR(drawn, 20000 * share, 5.5 * std::sqrt(20000 * share)) << column;
+  }
+  EXPECT_GT(most, 5 * least);  // else a map turned round would pass
+}
+
+// Half vectors of one quadrant are drawn, of all four declared.
+TEST(CellRecord, ShowsWhereASamplerIsWrong) {
+  const reports::Test test = tested("distribution(quadrant.direction) == density");
+  EXPECT_EQ(test.verdict, reports::Verdict::fail);
+  ASSERT_EQ(test.maps.size(), 3u);
+  const std::vector<float>& z = test.maps[2].texels.values;
+  EXPECT_GT(*std::max_element(z.begin(), z.end()), 15);
+  EXPECT_LT(*std::min_element(z.begin(), z.end()), -5);
+}
+
+TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
+  const reports::Test test = tested("distribution(disk.point) == density");
+  ASSERT_EQ(test.maps.size(), 3u) << test.message;
+  EXPECT_EQ(test.maps[0].source,
+            "u 0 to 1 from top to bottom, v / (1 - u) 0 to 1 from left to right");
+}
+
+// The lobe is halved within few cells of the picture, whose sums show nothing of a wrong azimuth.
+TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
+  const reports::Test test = tested("distribution(narrow.direction) == density");
+  ASSERT_EQ(test.maps.size(), 4u) << test.message;
+  EXPECT_NE(test.maps[2].source.find("farthest off"), std::string::npos) << test.maps[2].source;
+  double of_sums = 0;
+  double shown = 0;
+  for (std::size_t i = 0; i < 512; ++i) {
+    const double expected = test.maps[1].texels.values[i];
+    if (expected < 20) continue;
+    of_sums =
+        std::max(of_sums, std::abs(test.maps[0].texels.values[i] - expected) / std::sqrt(expected));
+    shown = std::max(shown, std::abs(double{test.maps[2].texels.values[i]}));
+  }
+  EXPECT_LT(of_sums, 5);
+  EXPECT_GT(shown, 10);
+}
+
+TEST(CellRecord, ShowsTheCellsOfANarrowLobeAsLargeAsTheyAre) {
+  const reports::Test test = tested("distribution(narrow.direction) == density");
+  ASSERT_EQ(test.maps.size(), 4u);
+  const reports::Map& grid = test.maps[2];
+  const reports::Map& close = test.maps[3];
+  EXPECT_EQ(close.name, "cells_z_close");
+  EXPECT_EQ(close.width, 64u);
+  EXPECT_EQ(close.height, 64u);
+  double theta[2];
+  double phi[2];
+  ASSERT_EQ(std::sscanf(close.source.c_str(), "theta %lf to %lf from top to bottom, phi %lf to %lf",
+                        &theta[0], &theta[1], &phi[0], &phi[1]),
+            4);
+  // The mirrored direction of theta .8 and phi .5, and three roughnesses of .03 to either side.
+  EXPECT_LT(theta[0], .8);
+  EXPECT_GT(theta[1], .8);
+  EXPECT_LT(phi[0], .5 + std::numbers::pi);
+  EXPECT_GT(phi[1], .5 + std::numbers::pi);
+  EXPECT_LT(theta[1] - theta[0], .3);
+  EXPECT_LT(phi[1] - phi[0], .3);
+  // The grid shows the same cells' farthest. Many cells are seen; a wrong azimuth gives some too
+  // many draws and others too few.
+  const auto far = [](const reports::Map& map) {
+    return std::ranges::max(map.texels.values, {}, [](float z) { return std::abs(z); });
+  };
+  EXPECT_EQ(far(close), far(grid));
+  const std::set<float> seen(close.texels.values.begin(), close.texels.values.end());
+  EXPECT_GT(seen.size(), 20u);
+  EXPECT_LT(*seen.begin(), -5);
+  EXPECT_GT(*seen.rbegin(), 5);
+}
+
+// Both samples together give each cell its part, so the expected counts of the first sum to its
+// count. Under the null hypothesis the differences have unit variance. The mean square over 256
+// cells is 1 within five of its standard deviations, sqrt(2 / 256).
+TEST(CellRecord, ShowsALobeAcrossTheStartOfTheAzimuthInOnePiece) {
+  const auto close = [](const std::string& azimuth, const char* draws) {
+    return run_test(
+        "suite: s\nestimators:\n  narrow: {plugin: brdf/ward, alpha_x: 0.03, alpha_y: "
+        "0.06, phi_i: " +
+        azimuth + "}\ntests:\n  - {claim: distribution(narrow.direction) == density, " +
+        "secondaries: " + draws + "}\n");
+  };
+  const reports::Test across = close("3.141592653589793", "20000");
+  ASSERT_EQ(across.maps.size(), 4u);
+  double theta[2];
+  double phi[2];
+  ASSERT_EQ(std::sscanf(across.maps[3].source.c_str(),
+                        "theta %lf to %lf from top to bottom, phi %lf to %lf", &theta[0], &theta[1],
+                        &phi[0], &phi[1]),
+            4);
+  EXPECT_LT(phi[0], 2 * std::numbers::pi);
+  EXPECT_GT(phi[1], 2 * std::numbers::pi);
+  EXPECT_LT(phi[1] - phi[0], 1);
+  // A sound sampler has standard normal values here, in some dozens of cells.
+  const auto& z = across.maps[3].texels.values;
+  EXPECT_LT(*std::ranges::max_element(z), 5);
+  EXPECT_GT(*std::ranges::min_element(z), -5);
+  // The usual 1000 draws show most of it; 100 show nothing.
+  const reports::Test few = close("0.5", "1000");
+  ASSERT_EQ(few.maps.size(), 4u);
+  EXPECT_LT(std::ranges::count(few.maps[3].texels.values, 0.f), 64 * 64 / 2);
+  EXPECT_EQ(close("0.5", "100").maps.size(), 3u);
+}
+
+TEST(CellRecord, OfTwoSamplesTheFirstIsHeldAgainstBothTogether) {
+  const reports::Test test = tested(
+      "distribution(ward.direction) == distribution(ward.direction), test: "
+      "chi-square-two-sample");
+  ASSERT_EQ(test.maps.size(), 3u) << test.message;
+  EXPECT_NE(test.maps[0].source.find("of theta from top to bottom"), std::string::npos);
+  EXPECT_EQ(test.maps[0].width * test.maps[0].height, 256u);
+  EXPECT_NEAR(sum(test.maps[0]), sum(test.maps[1]), 5 * std::sqrt(20000 * 0.25));
+  double square = 0;
+  for (const float z : test.maps[2].texels.values) square += z * z / 256.0;
+  EXPECT_NEAR(square, 1, 5 * std::sqrt(2 / 256.0));
+}
+
+TEST(CellRecord, OfAnIntervalOrAMarginalThereIsNone) {
+  EXPECT_TRUE(tested("distribution(normal.x) == density").maps.empty());
+  EXPECT_TRUE(tested("distribution(ward.direction.theta) == density").maps.empty());
+}
+
+TEST(CellRecord, TheNumberOfACellHasNoMoments) {
+  const reports::Test test = tested("distribution(ward.direction) == density");
+  ASSERT_EQ(test.samples.size(), 1u);
+  EXPECT_FALSE(test.samples[0].mean || test.samples[0].variance || test.samples[0].maximum);
+  EXPECT_TRUE(test.samples[0].histogram.counts.empty());
+  EXPECT_EQ(test.samples[0].cost.samples, 20000u);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,82 @@
+#include "harness/record/github.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "reports/formats/markdown.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string contents(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+Environment of(const std::string& actions, const std::string& summary) {
+  return [=](const std::string& name) {
+    if (name == "GITHUB_ACTIONS") return actions;
+    return name == "GITHUB_STEP_SUMMARY" ? summary : std::string();
+  };
+}
+
+reports::Record failing() {
+  reports::Record record;
+  record.suites.resize(1);
+  record.suites[0].name = "suite";
+  record.suites[0].tests.resize(1);
+  reports::Test& test = record.suites[0].tests[0];
+  test.id = "suite/bad";
+  test.name = "bad";
+  test.file = "suites/suite.yaml";
+  test.line = 7;
+  test.verdict = reports::Verdict::fail;
+  return record;
+}
+
+TEST(Github, IsToldNothingElsewhere) {
+  const Workplace place;
+  EXPECT_EQ(tell_github(failing(), of("", place.file("summary"))), "");
+  EXPECT_EQ(tell_github(failing(), of("false", place.file("summary"))), "");
+  EXPECT_FALSE(std::filesystem::exists(place.file("summary")));
+}
+
+TEST(Github, AppendsToTheSummaryOfTheStep) {
+  const Workplace place;
+  const std::string file = place.write("summary", "written before\n");
+  const std::string annotations = tell_github(failing(), of("true", file));
+  EXPECT_THAT(annotations, StartsWith("::error file=suites/suite.yaml,line=7,"));
+  EXPECT_EQ(contents(file), "written before\n" + reports::markdown(failing()) + "\n");
+}
+
+TEST(Github, KeepsTheWholeSummaryBelowTheLimit) {
+  const Workplace place;
+  reports::Record record = failing();
+  record.suites[0].tests.resize(2000, record.suites[0].tests[0]);
+  const std::string file = place.write("summary", std::string(reports::markdown_limit - 9000, 'x'));
+  tell_github(record, of("true", file));
+  EXPECT_LE(std::filesystem::file_size(file), reports::markdown_limit);
+  EXPECT_THAT(contents(file), EndsWith("the JSON record has them all.\n\n"));
+}
+
+TEST(Github, LeavesAFullSummaryAndSaysSo) {
+  const Workplace place;
+  const std::string full(reports::markdown_limit - 100, 'x');
+  const std::string file = place.write("summary", full);
+  EXPECT_THAT(tell_github(failing(), of("true", file)), HasSubstr("summary is full"));
+  EXPECT_EQ(contents(file), full);
+  EXPECT_THAT(tell_github(failing(), of("true", place.file("no/folder"))),
+              HasSubstr("summary cannot be written"));
+}
+
+}  // namespace
+}  // namespace assay::harness

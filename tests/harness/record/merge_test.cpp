@@ -1,0 +1,229 @@
+#include "harness/record/merge.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/suite/run_options.h"
+#include "reports/formats/json.h"
+#include "reports/formats/read_json.h"
+#include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+using testing::HasSubstr;
+
+// Statements have tests of several shards. The estimators include one without a test, two of one
+// plugin, a mutant, an image, one of several channels and a law. One estimator has only its draws
+// tested, so that a test's own observations do not show it.
+constexpr const char* suite = R"(suite: good
+estimators:
+  uniform: {plugin: analytic/exponential_uniform, primaries: 64}
+  idle: {plugin: analytic/exponential_uniform, primaries: 16}
+  again: {plugin: analytic/exponential_uniform, primaries: 64}
+  importance: {plugin: analytic/exponential_importance, primaries: 64}
+  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+  area: {plugin: luminaire/area, scene: triangle}
+  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
+  floor: {plugin: luminaire/floor, width: 8, height: 8, primaries: 4}
+  no_cosine: {plugin: mutants/no_cosine, scene: triangle}
+statements:
+  - {text: Areas are right., source: a talk, holds: ["mean(area) == *"]}
+  - {text: So is the last of all., source: a talk, holds: [no cosine]}
+  - {text: Importance has less variance., source: a talk, holds: ["variance(imp*"]}
+tests:
+  - {claim: mean(uniform) == analytic, detect: 2%}
+  - {claim: mean(uniform) == mean(importance), detect: 2%, weight: 3}
+  - {claim: variance(importance) < variance(uniform)}
+  - {claim: mean(again) == analytic}
+  - {claim: variance(normal) == analytic, detect: 30%}
+  - {claim: mean(area) == analytic, detect: 5%}
+  - {claim: mean(area) == mean(hemisphere), detect: 10%}
+  - {claim: mean(floor) == analytic}
+  - {name: off, claim: mean(hemisphere) == 0.1}
+  - {claim: 'distribution(normal) == normal(2, 1)', detect: 0.1}
+  - {claim: distribution(importance.x) == density}
+  - {name: no cosine, claim: mean(no_cosine) == analytic, detect: 5%, expect: fail}
+)";
+
+/// The record, written and read again.
+reports::Record saved(const reports::Record& record) {
+  return reports::read_json(reports::json(record), "record");
+}
+
+std::vector<ShardFile> shards_of(const std::vector<std::string>& files, unsigned count,
+                                 RunOptions options = {}) {
+  std::vector<ShardFile> shards;
+  for (unsigned i = 1; i <= count; ++i) {
+    options.shard = {i, count};
+    options.threads = i;
+    shards.push_back({std::to_string(i) + ".json", saved(run_files(files, options))});
+  }
+  return shards;
+}
+
+TEST(Merge, OfShardsInAnyOrderIsOneRunByteForByteApartFromTimes) {
+  const Workplace place;
+  const std::vector<std::string> files{
+      place.write("good.yaml", suite),
+      place.write("other.yaml", std::string(suite) + "  - {claim: mean(idle) <= 7}\n")};
+  const std::string whole = numbers_of(run_files(files, {.seed = 3}));
+  for (const unsigned count : {1U, 2U, 4U, 13U}) {
+    std::vector<ShardFile> shards = shards_of(files, count, {.seed = 3});
+    EXPECT_EQ(numbers_of(merge(shards)), whole) << count;
+    std::reverse(shards.begin(), shards.end());
+    std::rotate(shards.begin(), shards.begin() + 1, shards.end());
+    EXPECT_EQ(numbers_of(merge(shards)), whole) << count;
+  }
+}
+
+TEST(Merge, OfFilteredShardsIsOneFilteredRun) {
+  const Workplace place;
+  const std::string file = place.write("good.yaml", suite);
+  const RunOptions options{.selection = {.filters = {"*mean(*"}}};
+  const reports::Record whole = run_files({file}, options);
+  EXPECT_NE(whole.note, "");
+  EXPECT_EQ(numbers_of(merge(shards_of({file}, 3, options))), numbers_of(whole));
+}
+
+// The claim `close` is off by 2.7 standard errors of its 1000 observations, p = .007. That is above
+// its share .005 of alpha .01. Once `far` is refuted, it is below the .01 that Holm leaves.
+TEST(Merge, RefutesWhatHolmOverTheWholeSuiteRefutes) {
+  const std::string head =
+      "suite: two\nestimators:\n  normal: {plugin: analytic/normal, mean: 2, primaries: 1}\n"
+      "tests:\n  - {name: far, claim: mean(normal) == 3}\n";
+  const auto with = [&](double value) {
+    return head + "  - {name: close, claim: mean(normal) == " + std::to_string(value) + "}\n";
+  };
+  const reports::Sample sample = run_text(with(2)).suites[0].tests[1].samples[0];
+  const double error = std::sqrt(*sample.variance / static_cast<double>(sample.secondaries));
+  const Workplace place;
+  const std::string file = place.write("two.yaml", with(*sample.mean - 2.7 * error));
+  const reports::Record whole = run_files({file});
+  const std::vector<ShardFile> shards = shards_of({file}, 2);
+  EXPECT_EQ(shards[1].record.suites[0].tests[0].verdict, Verdict::pass);
+  const reports::Record merged = merge(shards);
+  const reports::Test& test = merged.suites[0].tests[1];
+  EXPECT_EQ(test.verdict, Verdict::fail);
+  EXPECT_FALSE(test.ok);
+  EXPECT_THAT(test.message, HasSubstr("after Holm"));
+  EXPECT_EQ(numbers_of(merged), numbers_of(whole));
+}
+
+TEST(Merge, KeepsTheLongestTimesAndTheirSum) {
+  const Workplace place;
+  std::vector<ShardFile> shards = shards_of({place.write("good.yaml", suite)}, 2);
+  shards[0].record.started = "2026-01-02T00:00:00Z";
+  shards[1].record.started = "2026-01-01T00:00:00Z";
+  shards[0].record.seconds = 2;
+  shards[1].record.seconds = 3;
+  const reports::Record merged = merge(shards);
+  EXPECT_EQ(merged.started, "2026-01-01T00:00:00Z");
+  EXPECT_EQ(merged.seconds, 5);
+}
+
+class Refusing : public testing::Test {
+ protected:
+  Refusing() : file_(place_.write("good.yaml", suite)), shards_(shards_of({file_}, 2)) {}
+
+  std::string refused(const std::vector<ShardFile>& shards) {
+    return refusal([&] { merge(shards); });
+  }
+  /// The refusal of a second shard that was run again with these options.
+  std::string refused_with(RunOptions options) {
+    options.shard = {2U, 2U};
+    return refused({shards_[0], {"b.json", run_files({file_}, options)}});
+  }
+
+  Workplace place_;
+  std::string file_;
+  std::vector<ShardFile> shards_;
+};
+
+TEST_F(Refusing, AMissingShardIsNamed) {
+  EXPECT_THAT(refused({shards_[1]}), HasSubstr("of 2 shards these are missing: 1;"));
+}
+
+TEST_F(Refusing, ADoubledShardIsNamedWithBothFiles) {
+  const ShardFile copy{"copy.json", shards_[0].record};
+  EXPECT_THAT(refused({shards_[0], shards_[1], copy}),
+              HasSubstr("is shard 1 of 2, and so is `1.json`"));
+}
+
+TEST_F(Refusing, AWholeRunIsNoShard) {
+  EXPECT_THAT(refused({shards_[0], {"whole.json", run_files({file_})}}),
+              HasSubstr("is a whole run, not a shard"));
+}
+
+TEST_F(Refusing, AnotherSeedIsAnotherRun) {
+  EXPECT_THAT(refused_with({.seed = 2}), HasSubstr("the seed is `2` here and `1` there"));
+}
+
+TEST_F(Refusing, OtherOptionsAreAnotherRun) {
+  EXPECT_THAT(refused_with({.selection = {.filters = {"*"}}}), HasSubstr("the options"));
+  EXPECT_THAT(refused_with({.command = "assay run --set normal.mean=3"}), HasSubstr("the options"));
+  EXPECT_THAT(refused_with({.alpha = 0.02}), HasSubstr("alpha and beta"));
+}
+
+TEST_F(Refusing, AnotherNumberOfShardsIsAnotherRun) {
+  const ShardFile other{"b.json", run_files({file_}, {.shard = std::pair(2U, 3U)})};
+  EXPECT_THAT(refused({shards_[0], other}),
+              HasSubstr("the number of shards is `3` here and `2` there"));
+}
+
+TEST_F(Refusing, AnotherSuiteIsAnotherRun) {
+  place_.write("good.yaml", std::string(suite) + "# a remark\n");
+  EXPECT_THAT(refused_with({}), HasSubstr("the digest of the suites"));
+}
+
+TEST_F(Refusing, OtherDataAreAnotherRun) {
+  const std::string text =
+      "suite: data\nestimators:\n  data: {plugin: recorded, file: data.txt}\n"
+      "tests:\n  - {claim: mean(data) == 2}\n  - {claim: mean(data) <= 9}\n";
+  file_ = place_.write("data.yaml", text);
+  place_.write("data.txt", "1\n2\n3\n");
+  shards_ = shards_of({file_}, 2);
+  place_.write("data.txt", "1\n2\n4\n");
+  EXPECT_THAT(refused_with({}), HasSubstr("the digest of the suites"));
+}
+
+TEST_F(Refusing, AnotherVersionOrMachineIsAnotherRun) {
+  std::vector<ShardFile> shards = shards_;
+  shards[1].record.tool.commit = "0123456789ab";
+  EXPECT_THAT(refused(shards), HasSubstr("the program's version"));
+  shards = shards_;
+  shards[1].record.environment.isa = "sse4.2";
+  EXPECT_THAT(refused(shards), HasSubstr("the instruction set"));
+}
+
+TEST_F(Refusing, AnEditedRecordIsRefused) {
+  for (const auto& edit : std::vector<void (*)(reports::Record&)>{
+           [](reports::Record& r) { r.shard->suites.clear(); },
+           [](reports::Record& r) { r.shard->suites[0].results.pop_back(); },
+           [](reports::Record& r) { r.shard->suites[0].results[0].log_p.clear(); },
+           [](reports::Record& r) { r.shard->suites[0].results[0].weight = 0; },
+           [](reports::Record& r) { r.shard->suites[0].pictures.clear(); },
+           [](reports::Record& r) { r.shard->index = 3; },
+           [](reports::Record& r) { r.shard->suites[0].results[0].weight = 5; }}) {
+    std::vector<ShardFile> shards = shards_;
+    edit(shards[0].record);
+    EXPECT_THAT(refused(shards), HasSubstr("edited?"));
+  }
+}
+
+TEST(Shards, DoNotAddToALedger) {
+  const Workplace place;
+  const std::string file = place.write("good.yaml", suite);
+  EXPECT_THAT(refusal([&] {
+                run_files({file}, {.shard = std::pair(1U, 2U), .ledger = place.file("nights")});
+              }),
+              HasSubstr("--ledger takes whole runs"));
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,312 @@
+#include "harness/record/replay.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/base/record_file.h"
+#include "harness/command/commands.h"
+#include "harness/sampling/pool.h"
+#include "harness/sampling/prepare.h"
+#include "reports/formats/json.h"
+#include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+struct Said {
+  int code;
+  std::string text;
+};
+
+Said said(const ReplayArguments& arguments) {
+  testing::internal::CaptureStdout();
+  int code = 2;
+  std::string trouble;
+  try {
+    code = replay(arguments);
+  } catch (const std::exception& error) {
+    trouble = error.what();
+  }
+  std::fflush(stdout);
+  return {code, testing::internal::GetCapturedStdout() + trouble};
+}
+
+constexpr const char* suite = R"(suite: replayed
+estimators:
+  uniform: {plugin: analytic/exponential_uniform}
+  again: {plugin: analytic/exponential_uniform}
+  normal: {plugin: analytic/normal, mean: 2}
+  area: {plugin: luminaire/area, scene: {
+    receiver: {position: [0, 0, 0], normal: [0, 0, 1]},
+    light: {polygon: [[0, 0, 1], [0, 1, 1], [1, 0, 1]], radiance: 2}}}
+  hemisphere: {plugin: luminaire/hemisphere, scene: cornell_triangle}
+  no_cosine: {plugin: mutants/no_cosine, scene: triangle}
+  ratio: {plugin: analytic/ratio, primaries: 16}
+  spoilt: {plugin: mutants/rare_nan, probability: 0.05, primaries: 1}
+  zero: {plugin: analytic/zero_variance}
+tests:
+  - {name: mean, claim: mean(uniform) == analytic, detect: 2%}
+  - {name: absolute, claim: mean(uniform) == analytic, detect: 0.2}
+  - {name: allowed, claim: mean(uniform) <= 6.3, allow: 1%, detect: 3%}
+  - {name: means, claim: mean(area) == mean(uniform), detect: 5%, expect: fail}
+  - {name: one stream, claim: mean(uniform) == mean(again), detect: 5%}
+  - {name: variance, claim: variance(normal) == analytic, detect: 40%}
+  - {name: variances, claim: variance(uniform) == variance(again), detect: 50%}
+  - {name: of a ratio, claim: mean(ratio) >= 6}
+  - {name: within, claim: mean(area) within 5% of analytic}
+  - {name: law, claim: 'distribution(normal) == normal(2, 1)', detect: 0.1}
+  - {name: cells, claim: distribution(hemisphere.direction) == density}
+  - {name: mutant, claim: mean(no_cosine) == analytic, detect: 5%, expect: fail}
+  - {name: spoilt, claim: mean(spoilt) == 0}
+  - {name: zero, claim: mean(zero) == analytic}
+)";
+
+/// The suite's record, as a file.
+std::string recorded(const Workplace& place, const RunOptions& options = {}) {
+  const reports::Record record = run_files({place.write("suite.yaml", suite)}, options);
+  return place.write("run.json", reports::json(record));
+}
+
+void expect_same_numbers(const std::string& file, const std::string& test) {
+  const Said now = said({.record = file, .test = test});
+  EXPECT_EQ(now.code, 0) << now.text;
+  EXPECT_NE(now.text.find("the same numbers as recorded"), std::string::npos) << now.text;
+}
+
+TEST(Replay, GivesTheSameNumbersForEveryKindOfClaim) {
+  const Workplace place;
+  const std::string file = recorded(place, {.seed = 5});
+  const reports::Record record = read_record(file);
+  for (const reports::Test& test : record.suites[0].tests) expect_same_numbers(file, test.id);
+}
+
+// Its own data's gate makes every look count for nothing, in the run as in the replay.
+TEST(Replay, OfASlopeThatLiesOnNoPowerLawIsTheSame) {
+  const Workplace place;
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: bent
+estimators:
+  ratio: {plugin: analytic/ratio}
+tests:
+  - {name: bent, claim: slope(bias(ratio)) within 0.1 of -1, over: {primaries: [1, 2, 4, 8]}, secondaries: 20000}
+  - {name: forced, claim: slope(bias(ratio)) == -1, test: slope, over: {primaries: [1, 2, 4, 8]}, secondaries: 20000}
+)")});
+  EXPECT_EQ(record.suites[0].tests[0].verdict, reports::Verdict::invalid);
+  EXPECT_THAT(record.suites[0].tests[0].message, testing::HasSubstr("lie on no power law"));
+  EXPECT_EQ(record.suites[0].tests[1].verdict, reports::Verdict::fail);
+  const std::string file = place.write("run.json", reports::json(record));
+  for (const char* test : {"bent", "forced"}) expect_same_numbers(file, test);
+}
+
+TEST(Replay, OfSecondsComparesWhatRepeats) {
+  const Workplace place;
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: timed
+estimators:
+  one: {plugin: analytic/exponential_uniform}
+tests:
+  - {name: cost, claim: cost(one) <= 1, cost: seconds}
+)")});
+  const std::string file = place.write("run.json", reports::json(record));
+  const Said now = said({.record = file, .test = "cost"});
+  EXPECT_EQ(now.code, 0) << now.text;
+  EXPECT_NE(now.text.find("seconds do not repeat"), std::string::npos) << now.text;
+}
+
+TEST(Replay, FindsATestByItsName) {
+  const Workplace place;
+  EXPECT_EQ(said({.record = recorded(place), .test = "mean"}).code, 0);
+}
+
+TEST(Replay, UsesTheSeedOfTheTestsOwnSuite) {
+  const Workplace place;
+  const std::string one = place.write("one.yaml", "seed: 3\n" + std::string(suite));
+  const std::string two = place.write("two.yaml", "seed: 4\n" + std::string(suite));
+  const std::string file = place.write("run.json", reports::json(run_files({one, two})));
+  EXPECT_EQ(said({.record = file, .test = "two/mean"}).code, 0);
+}
+
+TEST(Replay, PrintsTheValueThatWasDrawn) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const PreparedEstimator uniform =
+      prepare({.name = "uniform", .plugin = "analytic/exponential_uniform"}, ".");
+  const std::uint64_t primaries = test_named(read_record(file), "mean").samples[0].primaries;
+  const std::vector<double> value =
+      draw_observation(*uniform.setup, key_of(uniform, 1, 0, ""), primaries, 17);
+  const Said now = said({.record = file, .test = "mean", .observation = 17});
+  EXPECT_NE(now.text.find(fmt::format("observation 17: {}\n", value[0])), std::string::npos)
+      << now.text;
+}
+
+TEST(Replay, OfADrawShowsItsPoint) {
+  const Workplace place;
+  const Said now = said({.record = recorded(place), .test = "cells", .observation = 5});
+  EXPECT_NE(now.text.find("\n  draw of `direction`: point ("), std::string::npos) << now.text;
+  EXPECT_EQ(now.code, 0) << now.text;
+}
+
+TEST(Replay, DrawsTheVeryObservationThatIsNotANumber) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const std::string message = test_named(read_record(file), "spoilt").message;
+  const std::string before = "the first is observation ";
+  const std::size_t at = message.find(before);
+  ASSERT_NE(at, std::string::npos) << message;
+  const std::uint64_t index = std::stoull(message.substr(at + before.size()));
+  const Said now = said({.record = file, .test = "spoilt", .observation = index});
+  EXPECT_NE(now.text.find(": nan"), std::string::npos) << now.text;
+  EXPECT_NE(now.text.find("  not finite, as "), std::string::npos) << now.text;
+  EXPECT_EQ(now.code, 0);
+}
+
+TEST(Replay, SaysHowManyObservationsAreNotFinite) {
+  const Workplace place;
+  reports::Record record = read_record(recorded(place));
+  const reports::Test test = test_named(record, "spoilt");
+  const std::string line = fmt::format("{:<27} {};", "not finite", test.samples[0].nonfinite);
+  const std::string file = place.write("run.json", reports::json(record));
+  const Said now = said({.record = file, .test = "spoilt"});
+  EXPECT_EQ(now.code, 0) << now.text;
+  EXPECT_NE(now.text.find("error, so the numbers below decide nothing"), std::string::npos);
+  EXPECT_NE(now.text.find(line), std::string::npos) << now.text;
+  for (reports::Test& each : record.suites[0].tests) {
+    if (each.name == "spoilt") each.samples[0].nonfinite = 1;
+  }
+  const std::string tampered = place.write("tampered.json", reports::json(record));
+  const Said then = said({.record = tampered, .test = "spoilt"});
+  EXPECT_EQ(then.code, 1);
+  EXPECT_NE(then.text.find("(recorded: 1)"), std::string::npos) << then.text;
+}
+
+TEST(Replay, HoldsOneObservationAgainstTheRecordedRange) {
+  const Workplace place;
+  reports::Record record = read_record(recorded(place));
+  const std::string file = place.write("run.json", reports::json(record));
+  const Said now = said({.record = file, .test = "mean", .observation = 17});
+  EXPECT_EQ(now.code, 0);
+  EXPECT_NE(now.text.find("  lies in ["), std::string::npos) << now.text;
+  record.suites[0].tests[0].samples[0].minimum = 1e6;
+  record.suites[0].tests[0].samples[0].maximum = 2e6;
+  const std::string tampered = place.write("tampered.json", reports::json(record));
+  const Said then = said({.record = tampered, .test = "mean", .observation = 17});
+  EXPECT_EQ(then.code, 1);
+  EXPECT_NE(then.text.find("NOT as recorded: lies outside [1"), std::string::npos) << then.text;
+}
+
+TEST(Replay, OfOneObservationKnowsTheTwoSidesOfOneEstimatorApart) {
+  const Workplace place;
+  const std::string twice = place.write("twice.yaml", R"(suite: twice
+estimators:
+  one: {plugin: analytic/normal, primaries: 1}
+tests:
+  - {name: same, claim: mean(one) == mean(one), secondaries: 2}
+)");
+  const std::string file = place.write("run.json", reports::json(run_files({twice})));
+  for (const std::uint64_t index : {0U, 1U}) {
+    const Said now = said({.record = file, .test = "same", .observation = index});
+    EXPECT_EQ(now.code, 0) << now.text;
+  }
+}
+
+TEST(Replay, NoticesARecordThatWasTamperedWith) {
+  const Workplace place;
+  reports::Record record = read_record(recorded(place));
+  record.suites[0].tests[0].samples[0].mean = 6.5;
+  const std::string file = place.write("tampered.json", reports::json(record));
+  const Said now = said({.record = file, .test = "mean"});
+  EXPECT_EQ(now.code, 1);
+  EXPECT_NE(now.text.find("(recorded: 6.5)"), std::string::npos) << now.text;
+}
+
+TEST(Replay, SuggestsTheTestThatWasMeant) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const std::string text = refusal([&] { replay({.record = file, .test = "suite/meen"}); });
+  EXPECT_NE(text.find("did you mean `suite/mean`?"), std::string::npos) << text;
+}
+
+TEST(Replay, SaysThatARunIsNotThere) {
+  EXPECT_EQ(refusal([] { replay({.record = "none.json", .test = "suite/mean"}); }),
+            "there is no such file; `--report json=FILE` saves a run that can be read");
+}
+
+TEST(Replay, NamesTestsWhereNoneIsNear) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const auto refused = [&](const std::string& test) {
+    return refusal([&] { replay({.record = file, .test = test}); });
+  };
+  EXPECT_EQ(refused("stream"), "no test `stream` in this run; did you mean `suite/one stream`?");
+  EXPECT_EQ(refused("one straem"),
+            "no test `one straem` in this run; did you mean `suite/one stream`?");
+  EXPECT_EQ(refused("XX"),
+            "no test `XX` in this run; there is: `suite/mean`, `suite/absolute`, `suite/allowed`, "
+            "`suite/means`, `suite/one stream`, …");
+}
+
+TEST(Replay, AsksWhichOfTwoTestsOfOneNameIsMeant) {
+  const Workplace place;
+  const std::string one = place.write("one.yaml", suite);
+  const std::string two = place.write("two.yaml", suite);
+  const std::string file = place.write("run.json", reports::json(run_files({one, two})));
+  EXPECT_EQ(refusal([&] { replay({.record = file, .test = "mean"}); }),
+            "2 tests have the name `mean`; give the id of one: `one/mean`, `two/mean`");
+}
+
+TEST(Replay, RefusesAnObservationThatWasNotDrawn) {
+  const Workplace place;
+  const std::string file = recorded(place);
+  const std::string text =
+      refusal([&] { replay({.record = file, .test = "zero", .observation = 1000}); });
+  EXPECT_NE(text.find("the test used 0 to 999"), std::string::npos) << text;
+}
+
+TEST(Replay, FindsRecordedDataFromTheSuitesFolder) {
+  const Workplace place;
+  place.write("data.txt", "# columns: a b\n1 2\n3 4\n5 7\n");
+  const std::string file =
+      place.write("run.json", reports::json(run_files({place.write("data.yaml", R"(suite: data
+estimators:
+  all: {plugin: recorded, file: data.txt}
+  one: {plugin: recorded, file: data.txt, column: b}
+tests:
+  - {name: all, claim: mean(all) == 3, test: t}
+  - {name: one, claim: mean(one) == 3, test: t}
+)")})));
+  EXPECT_EQ(said({.record = file, .test = "all"}).code, 0);
+  EXPECT_EQ(said({.record = file, .test = "one"}).code, 0);
+  place.write("data.txt", "# columns: a b\n1 2\n3 4\n");
+  for (const std::optional<std::uint64_t> observation : {std::optional<std::uint64_t>(), {2}}) {
+    const Said shorter = said({.record = file, .test = "all", .observation = observation});
+    EXPECT_EQ(shorter.code, 2);
+    EXPECT_NE(shorter.text.find("the test took 3 observations of `all`, of which there are now 2"),
+              std::string::npos)
+        << shorter.text;
+  }
+}
+
+TEST(Replay, SaysThatTheNumbersOfAnInvalidTestDecideNothing) {
+  const Workplace place;
+  std::string rows;
+  for (int i = 0; i < 200; ++i) rows += fmt::format("{}\n", (i * 37 % 101) * (i * 53 % 103) % 211);
+  place.write("rows.txt", rows);
+  const std::string file = place.write("few.yaml", R"(suite: few
+estimators:
+  rows: {plugin: recorded, file: rows.txt}
+tests:
+  - {name: few, claim: variance(rows) == 1, detect: 5%}
+)");
+  const reports::Record record = run_files({file}, {});
+  const reports::Test& test = record.suites[0].tests[0];
+  ASSERT_EQ(test.verdict, reports::Verdict::invalid) << test.message;
+  const Said now =
+      said({.record = place.write("run.json", reports::json(record)), .test = test.id});
+  EXPECT_NE(now.text.find("invalid, so the numbers below decide nothing: " + test.message),
+            std::string::npos)
+      << now.text;
+  EXPECT_NE(now.text.find("variance of an observation"), std::string::npos) << now.text;
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,303 @@
+#include "harness/run/evaluate.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/families/families.h"
+#include "harness/run/holm_verdict.h"
+#include "tests/harness/normal_evidence.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+constexpr double alpha = 0.05;
+
+/// A judged test of one channel with this p-value.
+TestWork judged(double p, double weight, Verdict verdict, const TestEntry& test) {
+  TestWork work;
+  TestOutcome& outcome = work.outcome;
+  outcome.question.test = &test;
+  outcome.question.theta = &theta_of_means();
+  outcome.question.subjects = {Subject{.channels = {0}}};
+  outcome.place = {.inside = true, .weight = weight, .share = {alpha * weight, 0.01}};
+  outcome.plan.regions = {Regions{.relation = Relation::equal}};
+  outcome.plan.looks = {{1000}, {1}};
+  outcome.verdict = verdict;
+  ChannelOutcome& channel = outcome.channels.emplace_back();
+  channel.name = "value";
+  channel.evidence = normal_evidence(2, 1);
+  channel.decision.log_p_claimed = std::log(p);
+  outcome.history = {{.log_p_claimed = {std::log(p)}, .log_p_forbidden = {0}}};
+  return work;
+}
+
+std::vector<Verdict> after_holm(std::vector<TestWork> tests) {
+  std::vector<TestWork*> pointers;
+  for (TestWork& work : tests) pointers.push_back(&work);
+  apply_holm(pointers, alpha);
+  std::vector<Verdict> verdicts;
+  for (const TestWork& work : tests) verdicts.push_back(work.outcome.verdict);
+  return verdicts;
+}
+
+TEST(Evaluate, HolmTurnsAPassIntoAFail) {
+  const TestEntry test;
+  // 0.03 is above its share of 0.025; once the first is rejected all of 0.05 is its.
+  EXPECT_EQ(
+      after_holm({judged(1e-9, 0.5, Verdict::fail, test), judged(0.03, 0.5, Verdict::pass, test)}),
+      (std::vector{Verdict::fail, Verdict::fail}));
+  EXPECT_EQ(after_holm({judged(1e-9, 0.5, Verdict::fail, test),
+                        judged(0.03, 0.5, Verdict::inconclusive, test)}),
+            (std::vector{Verdict::fail, Verdict::fail}));
+}
+
+TEST(Evaluate, HolmSaysThatItAloneRefutesAndMarksEveryChannel) {
+  const TestEntry test;
+  TestWork second = judged(0.03, 0.25, Verdict::pass, test);
+  second.outcome.question.subjects = {Subject{.channels = {0, 1}}};
+  second.outcome.channels.push_back(second.outcome.channels.front());
+  second.outcome.channels[1].decision.log_p_claimed = std::log(0.01);
+  second.outcome.channels[0].decision.log_p_claimed = std::log(0.01);
+  TestWork first = judged(1e-9, 0.5, Verdict::fail, test);
+  apply_holm({&first, &second}, alpha);
+  EXPECT_EQ(second.outcome.verdict, Verdict::fail);
+  EXPECT_NE(second.outcome.message.find("after Holm"), std::string::npos) << second.outcome.message;
+  for (const ChannelOutcome& channel : second.outcome.channels) {
+    EXPECT_TRUE(channel.decision.rejected);
+  }
+}
+
+TEST(Evaluate, HolmLeavesWhatNothingBeforeItFreed) {
+  const TestEntry test;
+  EXPECT_EQ(
+      after_holm({judged(0.04, 0.5, Verdict::pass, test), judged(0.03, 0.5, Verdict::pass, test)}),
+      (std::vector{Verdict::pass, Verdict::pass}));
+}
+
+TEST(Evaluate, HolmCountsInvalidAndErrorAsNotRejected) {
+  const TestEntry test;
+  for (const Verdict verdict : {Verdict::invalid, Verdict::error}) {
+    EXPECT_EQ(
+        after_holm({judged(1e-9, 0.5, verdict, test), judged(0.03, 0.5, Verdict::pass, test)}),
+        (std::vector{verdict, Verdict::pass}));
+  }
+}
+
+TEST(Evaluate, HolmCountsATestWithoutNumbersAsNotRejected) {
+  const TestEntry test;
+  TestWork without = judged(1e-9, 0.5, Verdict::error, test);
+  without.outcome.channels.clear();
+  EXPECT_EQ(after_holm({without, judged(0.03, 0.5, Verdict::pass, test)}),
+            (std::vector{Verdict::error, Verdict::pass}));
+}
+
+TEST(Evaluate, HolmIsNotForTestsOutsideTheFamily) {
+  const TestEntry test;
+  TestWork outside = judged(0.03, 0.5, Verdict::pass, test);
+  outside.outcome.place.inside = false;
+  EXPECT_EQ(after_holm({judged(1e-9, 1, Verdict::fail, test), outside}),
+            (std::vector{Verdict::fail, Verdict::pass}));
+}
+
+// Its per cent is of no use to a claim that names none.
+TEST(Evaluate, AnotherMeanOfZeroIsInvalidForItsMarginOnlyWhereThereIsOne) {
+  const auto said = [](const std::string& more) {
+    return run_test(R"(suite: nil
+estimators:
+  it: {plugin: analytic/normal}
+  nil: {plugin: analytic/normal, deviation: 0}
+tests: [{claim: mean(it) == mean(nil))" +
+                    more + "}]\n")
+        .message;
+  };
+  EXPECT_NE(said(", detect: 1%").find("a margin in per cent"), std::string::npos);
+  EXPECT_EQ(said("").find("margin"), std::string::npos) << said("");
+}
+
+std::string one_test(const std::string& estimator, const std::string& test) {
+  return "suite: one\nestimators:\n  it: " + estimator +
+         "\n  uniform: {plugin: analytic/exponential_uniform, primaries: 64}\ntests:\n  - {name: "
+         "test, " +
+         test + "}\n";
+}
+
+reports::Test judged_text(const std::string& estimator, const std::string& test) {
+  return test_named(run_text(one_test(estimator, test)), "test");
+}
+
+TEST(Evaluate, HeavyTailIsInvalidAndSaysWhatWouldHelp) {
+  const reports::Test test = judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
+                                         "claim: mean(it) == analytic, secondaries: 100");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_NE(test.message.find("a larger `primaries`"), std::string::npos) << test.message;
+}
+
+// A Pareto law of index 1.5 has no variance, but a lower bound: too much can be shown, too little
+// cannot.
+TEST(Evaluate, TooMuchAboveALowerBoundIsBetOn) {
+  const std::string heavy = "{plugin: analytic/heavy_tail, index: 1.5}";
+  const reports::Test wrong = judged_text(heavy, "claim: mean(it) <= 2");
+  EXPECT_EQ(wrong.method, "betting");
+  EXPECT_EQ(wrong.verdict, Verdict::fail);
+  EXPECT_EQ(judged_text(heavy, "claim: mean(it) <= 4").verdict, Verdict::pass);
+  EXPECT_EQ(judged_text(heavy, "claim: mean(it) >= 2").verdict, Verdict::invalid);
+  const reports::Test open = judged_text(heavy, "claim: mean(it) <= 4, detect: 50%, budget: 1e5");
+  EXPECT_EQ(open.verdict, Verdict::inconclusive);
+  EXPECT_NE(open.message.find("declare the range"), std::string::npos) << open.message;
+}
+
+TEST(Evaluate, BinomialTestsQuoteTheirOwnPower) {
+  const reports::Test test = judged_text("{plugin: analytic/dart_throwing, primaries: 1}",
+                                         "claim: mean(it) == analytic, detect: 2%");
+  EXPECT_EQ(test.method, "binomial");
+  EXPECT_EQ(test.verdict, Verdict::pass);
+  ASSERT_TRUE(test.power && test.detectable);
+  EXPECT_GE(*test.power, 0.99);
+  EXPECT_LE(*test.detectable, 0.02);
+}
+
+TEST(Evaluate, TwoObservationsAreJudgedInWords) {
+  const reports::Test test = judged_text("{plugin: analytic/normal, primaries: 1}",
+                                         "claim: mean(it) == 0, secondaries: 2");
+  EXPECT_EQ(test.message.find("_gate"), std::string::npos) << test.message;
+  EXPECT_NE(test.verdict, Verdict::error);
+}
+
+TEST(Evaluate, ForcedMethodIsNotInvalidatedByItsGates) {
+  const reports::Test test = judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
+                                         "claim: mean(it) == analytic, secondaries: 100, test: t");
+  EXPECT_NE(test.verdict, Verdict::invalid);
+  EXPECT_TRUE(std::any_of(test.gates.begin(), test.gates.end(),
+                          [](const reports::Gate& gate) { return gate.state == "red"; }));
+}
+
+// Its range is that number but for rounding: nothing unseen can move its mean.
+TEST(Evaluate, ZeroVarianceInADeclaredRangePassesAtItsFirstLook) {
+  const reports::Test test =
+      judged_text("{plugin: analytic/zero_variance}", "claim: mean(it) == analytic, detect: 0.5%");
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_LE(test.samples[0].secondaries, 1000);
+}
+
+// Squares and fourth powers beyond doubles, above and below: a verdict on the test, not the end of
+// the run.
+TEST(Evaluate, SpreadsBeyondDoublesAreInvalid) {
+  for (const char* scale : {"1e76", "1e140", "1e-80", "1e-170"}) {
+    const std::string suite = fmt::format(
+        "suite: s\nestimators:\n"
+        "  x: {{plugin: analytic/law, law: exponential(1), scale: {0}}}\n"
+        "  y: {{plugin: analytic/law, law: exponential(1), scale: {0}}}\n"
+        "tests:\n"
+        "  - {{claim: mean(x) == mean(y)}}\n"
+        "  - {{claim: variance(x) == variance(y)}}\n"
+        "  - {{claim: 'efficiency(x) == efficiency(y)', cost: samples}}\n",
+        scale);
+    const reports::Record record = run_text(suite);
+    for (const reports::Test& test : record.suites[0].tests) {
+      EXPECT_EQ(test.verdict, Verdict::invalid) << scale << " " << test.claim << test.message;
+      EXPECT_EQ(test.message.find("internal"), std::string::npos) << test.message;
+    }
+  }
+}
+
+TEST(Evaluate, ConstantHasNoVarianceToTest) {
+  for (const char* claim : {"variance(it) == 3", "variance(it) < variance(uniform)",
+                            "variance(uniform) > variance(it)"}) {
+    const reports::Test test =
+        judged_text("{plugin: analytic/zero_variance}", std::string("claim: ") + claim);
+    EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
+    EXPECT_NE(test.message.find("without spread"), std::string::npos) << test.message;
+  }
+}
+
+// 1000 secondaries of 64 see a spike of probability 1e-9 with probability 6e-5.
+TEST(Evaluate, UnseenSpikeIsNoPassWhenSomethingMustBeExcluded) {
+  EXPECT_EQ(judged_text("{plugin: analytic/rare_spike, probability: 1e-9}",
+                        "claim: mean(it) == 0.5, detect: 1%")
+                .verdict,
+            Verdict::inconclusive);
+  const reports::Test missed =
+      judged_text("{plugin: analytic/rare_spike, probability: 1e-9}", "claim: mean(it) == 0.51");
+  EXPECT_EQ(missed.verdict, Verdict::invalid);
+  EXPECT_NE(missed.message.find("unseen"), std::string::npos);
+}
+
+TEST(Evaluate, ConstantIsComparedWithSpreadWhereItsRangeIsClosed) {
+  const reports::Test test = judged_text("{plugin: analytic/zero_variance}",
+                                         "claim: mean(uniform) == mean(it), detect: 5%");
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_EQ(judged_text("{plugin: analytic/zero_variance}",
+                        "claim: mean(it) == 1.2 * mean(uniform), detect: 5%")
+                .verdict,
+            Verdict::fail);
+}
+
+TEST(Evaluate, ConstantIsNotComparedWithSpreadWhereTheUnseenCouldDecide) {
+  for (const char* claim : {"mean(it) == mean(uniform)", "mean(uniform) == mean(it)"}) {
+    const reports::Test test = judged_text("{plugin: analytic/rare_spike, probability: 1e-9}",
+                                           std::string("claim: ") + claim);
+    EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
+    EXPECT_NE(test.message.find("never seen could move"), std::string::npos) << test.message;
+  }
+}
+
+TEST(Evaluate, NotANumberIsAnErrorWithItsPlace) {
+  const reports::Test test = judged_text(
+      "{plugin: mutants/rare_nan, probability: 0.05, primaries: 1}", "claim: mean(it) == 0");
+  EXPECT_EQ(test.verdict, Verdict::error);
+  EXPECT_NE(test.message.find("not finite, the first is observation"), std::string::npos)
+      << test.message;
+  EXPECT_GT(test.samples[0].nonfinite, 0);
+  EXPECT_FALSE(test.ok);
+}
+
+// The plan rests on sixth powers of what the pilot saw, values that are not numbers apart.
+TEST(Evaluate, NotANumberInThePilotIsAnErrorToo) {
+  const reports::Test test =
+      judged_text("{plugin: mutants/rare_nan, probability: 0.05, primaries: 1}",
+                  "claim: efficiency(it) >= 0.1, cost: samples");
+  EXPECT_EQ(test.verdict, Verdict::error) << test.message;
+  EXPECT_NE(test.message.find("not finite, the first is observation"), std::string::npos)
+      << test.message;
+}
+
+TEST(Evaluate, MutantThatIsCaughtIsOk) {
+  const reports::Test test = judged_text("{plugin: mutants/scaled, factor: 1.1}",
+                                         "claim: mean(it) == analytic, detect: 5%, expect: fail");
+  EXPECT_EQ(test.verdict, Verdict::fail);
+  EXPECT_TRUE(test.ok);
+}
+
+TEST(Evaluate, MutantThatCannotActIsNeverActivatedAndNotOk) {
+  for (const char* estimator :
+       {"{plugin: mutants/scaled, factor: 1}",
+        "{plugin: mutants/absolute_cosine, scene: triangle, primaries: 16}"}) {
+    const reports::Test test =
+        judged_text(estimator, "claim: mean(it) == 0.1, secondaries: 50, expect: fail, test: t");
+    EXPECT_FALSE(test.ok) << estimator;
+    EXPECT_EQ(test.message.rfind("never activated", 0), 0) << test.message;
+  }
+}
+
+TEST(Evaluate, ExpectedInvalidIsOk) {
+  const reports::Test test =
+      judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
+                  "claim: mean(it) == analytic, secondaries: 100, expect: invalid");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_TRUE(test.ok);
+}
+
+TEST(Evaluate, PassThatWasNotExpectedIsNotOk) {
+  const reports::Test test = judged_text("{plugin: analytic/normal, mean: 2}",
+                                         "claim: mean(it) == 2, expect: fail, secondaries: 50");
+  EXPECT_EQ(test.verdict, Verdict::pass);
+  EXPECT_FALSE(test.ok);
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,200 @@
+#include "harness/suite/suite.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/harness/refusal.h"
+
+namespace assay::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path bad_suites = fs::path(ASSAY_SOURCE_DIR) / "tests/suites";
+
+/// A folder of this test alone, removed at its end.
+class Folder {
+ public:
+  Folder() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    path_ = fs::temp_directory_path() /
+            fmt::format("assay_{}_{}_{}", info->test_suite_name(), info->name(), getpid());
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return (path_ / name).string();
+  }
+  std::string path() const { return path_.string(); }
+
+ private:
+  fs::path path_;
+};
+
+constexpr const char* small = R"(suite: small
+estimators:
+  darts: {plugin: analytic/dart_throwing}
+tests:
+  - claim: mean(darts) == analytic
+)";
+
+TEST(Suite, ReadsEveryKeyItDocuments) {
+  const Folder folder;
+  const Suite suite = load_suite(folder.write("every.yaml", R"(suite: every key
+about: |
+  Two lines
+  of text.
+alpha: 0.02
+beta: 0.03
+seed: 1e3
+scenes:
+  lamp:
+    light: {polygon: [[0, 0, 1], [1, 0, 1], [0, 1, 1]]}
+estimators:
+  area: {plugin: luminaire/area, scene: lamp, primaries: 1e2}
+  hemi-2/x: {plugin: luminaire/hemisphere, scene: triangle, primaries: auto}
+tests:
+  - name: all of it
+    claim: mean(area) == 2 * mean(hemi-2/x)
+    detect: 0.5%
+    allow: 1e-3%
+    weight: 2.5
+    test: welch
+    secondaries: 1e4
+    budget: {primaries: 1e7, seconds: 2.5}
+    expect: fail
+    tags: [slow, lamp]
+  - claim: slope(bias(area)) within 0.1 of -1
+    over: {primaries: [8, 16, 32]}
+    reference: hemi-2/x.irradiance
+    budget: 30s
+  - claim: efficiency(area) > 1.1 * efficiency(hemi-2/x)
+    cost: seconds
+    budget: 1e6
+)"));
+  EXPECT_EQ(suite.name, "every key");
+  EXPECT_EQ(suite.about, "Two lines\nof text.\n");
+  EXPECT_EQ(suite.stem, "every");
+  EXPECT_EQ(suite.folder, folder.path());
+  EXPECT_EQ(suite.alpha, 0.02);
+  EXPECT_EQ(suite.beta, 0.03);
+  EXPECT_EQ(suite.seed, 1000U);
+  ASSERT_EQ(suite.estimators.size(), 2U);
+  EXPECT_EQ(suite.estimators[0].name, "area");
+  EXPECT_EQ(suite.estimators[0].plugin, "luminaire/area");
+  EXPECT_EQ(suite.estimators[0].primaries, 100U);
+  ASSERT_NE(suite.estimators[0].parameters.find("scene"), nullptr);
+  EXPECT_NE(suite.estimators[0].parameters.find("scene")->find("light"), nullptr);
+  EXPECT_EQ(suite.estimators[0].parameters.members().size(), 1U);
+  EXPECT_EQ(suite.estimators[1].parameters.find("scene")->text(), "triangle");
+  EXPECT_EQ(suite.estimators[1].primaries, std::nullopt);
+  ASSERT_EQ(suite.tests.size(), 3U);
+  const TestEntry& first = suite.tests[0];
+  EXPECT_EQ(first.id, "every/all of it");
+  EXPECT_EQ(to_string(*first.detect), "0.5%");
+  EXPECT_EQ(first.allow->value, 1e-5);
+  EXPECT_EQ(first.weight, 2.5);
+  EXPECT_EQ(first.method, "welch");
+  EXPECT_EQ(first.secondaries, 10000U);
+  EXPECT_EQ(first.budget->primaries, 10000000U);
+  EXPECT_EQ(first.budget->seconds, 2.5);
+  EXPECT_EQ(first.expect, Expectation::fail);
+  EXPECT_EQ(first.tags, (std::vector<std::string>{"slow", "lamp"}));
+  EXPECT_EQ(first.where.line, 15);
+  const TestEntry& second = suite.tests[1];
+  EXPECT_EQ(second.name, "slope(bias(area)) within 0.1 of -1");
+  EXPECT_EQ(second.over->parameter, "primaries");
+  EXPECT_EQ(second.over->values.size(), 3U);
+  EXPECT_EQ(to_string(*second.reference), "hemi-2/x.irradiance");
+  EXPECT_EQ(second.budget->seconds, 30);
+  EXPECT_EQ(suite.tests[2].cost, CostKind::seconds);
+  EXPECT_EQ(suite.tests[2].budget->primaries, 1000000U);
+}
+
+TEST(Suite, HasTheDocumentedDefaults) {
+  const Folder folder;
+  const Suite suite = load_suite(folder.write("small.yaml", small));
+  EXPECT_EQ(suite.alpha, 0.01);
+  EXPECT_EQ(suite.beta, 0.01);
+  EXPECT_EQ(suite.seed, std::nullopt);
+  const TestEntry& test = suite.tests.at(0);
+  EXPECT_EQ(test.name, "mean(darts) == analytic");
+  EXPECT_EQ(test.id, "small/mean(darts) == analytic");
+  EXPECT_EQ(test.weight, 1);
+  EXPECT_EQ(test.expect, Expectation::pass);
+  EXPECT_EQ(test.cost, CostKind::rays);
+  EXPECT_FALSE(test.detect || test.allow || test.method || test.secondaries || test.budget ||
+               test.over || test.reference);
+}
+
+TEST(Suite, ReadsJsonAsWell) {
+  const Folder folder;
+  const Suite suite = load_suite(folder.write("s.json", R"({"suite": "json", "alpha": 0.05,
+  "estimators": {"darts": {"plugin": "analytic/dart_throwing"}},
+  "tests": [{"claim": "mean(darts) == analytic", "detect": "0.5%"}]})"));
+  EXPECT_EQ(suite.alpha, 0.05);
+  EXPECT_EQ(suite.tests.at(0).claim.text, "mean(darts) == analytic");
+}
+
+TEST(Suite, TakesAClaimFoldedOverLines) {
+  const Folder folder;
+  const Suite suite = load_suite(
+      folder.write("s.yaml", std::string(small) + "  - claim: >\n      mean(darts)\n      <= 4\n"));
+  EXPECT_EQ(suite.tests.at(1).name, "mean(darts) <= 4");
+}
+
+TEST(Suite, RefusesWhatIsNotAFile) {
+  EXPECT_EQ(refusal([] { load_suite("/nowhere/at/all.yaml"); }),
+            "cannot read `/nowhere/at/all.yaml`: there is no such file");
+  const Folder folder;
+  EXPECT_EQ(refusal([&] { load_suite(folder.path()); }),
+            "cannot read `" + folder.path() + "`: it is a folder; name the files in it");
+  EXPECT_EQ(refusal([&] { load_suite(folder.write("raw.yaml", "suite: \xff\xfe\n")); }),
+            "1:8: the byte 0xff is not UTF-8; save the file as UTF-8 text");
+}
+
+TEST(Suite, LoadsWithoutANameOfItsFolder) {
+  const Folder folder;
+  const fs::path before = fs::current_path();
+  folder.write("small.yaml", small);
+  fs::current_path(folder.path());
+  const Suite suite = load_suite("small.yaml");
+  fs::current_path(before);
+  EXPECT_EQ(suite.folder, ".");
+}
+
+/// Each file of tests/suites breaks one rule; its first line is `# expect: ` and the refusal.
+class BadSuite : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadSuite, IsRefusedWhereItIsWrong) {
+  const std::string file = (bad_suites / ("bad_" + GetParam() + ".yaml")).string();
+  std::ifstream in(file);
+  std::string expected;
+  std::getline(in, expected);
+  EXPECT_EQ("# expect: " + refusal([&] { load_suite(file); }), expected);
+}
+
+std::vector<std::string> names_of_bad_suites() {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(bad_suites)) {
+    const std::string stem = entry.path().stem().string();
+    if (stem.starts_with("bad_")) names.push_back(stem.substr(4));
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Suites, BadSuite, testing::ValuesIn(names_of_bad_suites()),
+                         [](const auto& bad) { return bad.param; });
+
+}  // namespace
+}  // namespace assay::harness

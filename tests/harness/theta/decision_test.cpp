@@ -1,0 +1,232 @@
+#include "harness/theta/decision.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "stats/means/binomial.h"
+#include "tests/harness/normal_evidence.h"
+#include "tests/philox.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+
+/// P(Z >= z) and P(Z <= z) by the complementary error function alone.
+double above(double z) { return std::erfc(z / std::sqrt(2.0)) / 2; }
+double below(double z) { return above(-z); }
+
+constexpr double estimate = 1.7;
+constexpr double standard_error = 0.8;
+
+double p_claimed(const Regions& regions) {
+  return std::exp(log_p_claimed(normal_evidence(estimate, standard_error), regions));
+}
+double p_forbidden(const Regions& regions) {
+  return std::exp(log_p_forbidden(normal_evidence(estimate, standard_error), regions));
+}
+double at(double theta) { return (estimate - theta) / standard_error; }
+
+TEST(Decision, OfEqualityDoublesTheNearerTailAndExcludesBothSides) {
+  const Regions regions{.relation = Relation::equal, .allow = 0.3, .detect = 2.5};
+  EXPECT_NEAR(p_claimed(regions), 2 * above(at(0.3)), 1e-14);
+  EXPECT_NEAR(p_forbidden(regions), std::max(below(at(2.5)), above(at(-2.5))), 1e-14);
+}
+
+TEST(Decision, OfEqualityIsTheSameSeenFromBelow) {
+  const Regions regions{.relation = Relation::equal, .allow = 0.3, .detect = 2.5};
+  EXPECT_NEAR(std::exp(log_p_claimed(normal_evidence(-estimate, standard_error), regions)),
+              p_claimed(regions), 1e-14);
+  EXPECT_NEAR(std::exp(log_p_forbidden(normal_evidence(-estimate, standard_error), regions)),
+              p_forbidden(regions), 1e-14);
+}
+
+TEST(Decision, OfEqualityNeverExceedsOne) {
+  EXPECT_EQ(log_p_claimed(normal_evidence(0, 1), {.relation = Relation::equal}), 0);
+}
+
+TEST(Decision, OfUpperBoundUsesOneTailEach) {
+  const Regions regions{.relation = Relation::at_most, .allow = 0.3, .detect = 2.5};
+  EXPECT_NEAR(p_claimed(regions), above(at(0.3)), 1e-14);
+  EXPECT_NEAR(p_forbidden(regions), below(at(2.5)), 1e-14);
+}
+
+TEST(Decision, OfLowerBoundIsTheMirrorImage) {
+  const Regions regions{.relation = Relation::at_least, .allow = 0.3, .detect = 2.5};
+  EXPECT_NEAR(p_claimed(regions), below(at(-0.3)), 1e-14);
+  EXPECT_NEAR(p_forbidden(regions), above(at(-2.5)), 1e-14);
+}
+
+TEST(Decision, OfProofsSplitsAtZero) {
+  const Regions less{.relation = Relation::less, .detect = 2.5};
+  EXPECT_NEAR(p_claimed(less), above(at(0)), 1e-14);
+  EXPECT_NEAR(p_forbidden(less), below(at(0)), 1e-14);
+  const Regions greater{.relation = Relation::greater, .detect = 2.5};
+  EXPECT_NEAR(p_claimed(greater), below(at(0)), 1e-14);
+  EXPECT_NEAR(p_forbidden(greater), above(at(0)), 1e-14);
+}
+
+TEST(Decision, OfWithinMakesTwoOneSidedTestsAtTheMargin) {
+  const Regions regions{.relation = Relation::within, .within = 0.9};
+  EXPECT_NEAR(p_claimed(regions), std::min(1.0, 2 * above(at(0.9))), 1e-14);
+  EXPECT_NEAR(p_forbidden(regions), std::max(below(at(0.9)), above(at(-0.9))), 1e-14);
+}
+
+TEST(Decision, OfADistanceHasOneDirection) {
+  Evidence evidence = normal_evidence(estimate, standard_error);
+  evidence.distance = true;
+  const Regions regions{.relation = Relation::equal, .allow = 0.3, .detect = 2.5};
+  EXPECT_NEAR(std::exp(log_p_claimed(evidence, regions)), above(at(0.3)), 1e-14);
+  EXPECT_NEAR(std::exp(log_p_forbidden(evidence, regions)), below(at(2.5)), 1e-14);
+}
+
+TEST(Decision, WithoutDetectAnAlarmHasNothingToExclude) {
+  for (const Relation relation : {Relation::equal, Relation::at_most, Relation::at_least}) {
+    EXPECT_FALSE(Regions{.relation = relation}.has_forbidden());
+    EXPECT_EQ(p_forbidden({.relation = relation}), 1);
+    EXPECT_EQ(decide({{.log_p_forbidden = 0}}, {.relation = relation}, 0.01), Verdict::pass);
+  }
+  for (const Relation relation : {Relation::less, Relation::greater, Relation::within}) {
+    EXPECT_TRUE(Regions{.relation = relation}.has_forbidden());
+  }
+}
+
+TEST(Decision, PassesOnlyWhenEveryChannelIsExcluded) {
+  const Regions regions{.relation = Relation::equal, .detect = 1};
+  const ChannelDecision excluded{.log_p_forbidden = std::log(0.009)};
+  const ChannelDecision open{.log_p_forbidden = std::log(0.011)};
+  const ChannelDecision rejected{.log_p_forbidden = std::log(0.009), .rejected = true};
+  EXPECT_EQ(decide({excluded, excluded}, regions, 0.01), Verdict::pass);
+  EXPECT_EQ(decide({excluded, open}, regions, 0.01), Verdict::inconclusive);
+  EXPECT_EQ(decide({excluded, open, rejected}, regions, 0.01), Verdict::fail);
+}
+
+// A simulation checks the levels of p-values. For theta in C, "theta in C" is rejected at most as
+// often as the level; the same holds for F. Where a region ends at one point, it is rejected
+// exactly that often. An exact binomial test at 1e-7 judges each rate. Fewer than 100 rates give a
+// false alarm below 1e-5.
+
+using LogP = std::function<double(const Evidence&, const Regions&)>;
+struct Decider {
+  LogP claimed = log_p_claimed;
+  LogP forbidden = log_p_forbidden;
+};
+
+struct Case {
+  Regions regions;
+  std::vector<double> in_claimed;
+  std::vector<double> in_forbidden;
+  bool sharp_claimed;    ///< the first of in_claimed is all that C's boundary is
+  bool sharp_forbidden;  ///< the first of in_forbidden likewise
+};
+
+std::vector<Case> cases() {
+  return {
+      {{.relation = Relation::equal, .detect = 6}, {0}, {6, -6, 7}, true, true},
+      {{.relation = Relation::equal, .allow = 0.5, .detect = 1},
+       {0.5, -0.5, 0},
+       {1, -1, 2},
+       false,
+       false},
+      {{.relation = Relation::at_most, .allow = 0.5, .detect = 1},
+       {0.5, 0, -3},
+       {1, 2},
+       true,
+       true},
+      {{.relation = Relation::at_least, .allow = 0.5, .detect = 1},
+       {-0.5, 0, 3},
+       {-1, -2},
+       true,
+       true},
+      {{.relation = Relation::less}, {0, -1}, {0, 1}, true, true},
+      {{.relation = Relation::greater}, {0, 1}, {0, -1}, true, true},
+      {{.relation = Relation::within, .within = 6}, {5.999, -5.999, 0}, {6, -6, 7}, false, true}};
+}
+
+constexpr double level = 0.05;
+constexpr std::uint64_t repetitions = 20000;
+
+/// True if `log_p` is at most the level no more often than it may; when sharp, just as often.
+bool keeps_level(const LogP& log_p, const Regions& regions, double theta, bool sharp,
+                 tests::Philox& random) {
+  std::uint64_t rejected = 0;
+  for (std::uint64_t i = 0; i < repetitions; ++i) {
+    const Evidence evidence = normal_evidence(theta + random.normal(), 1);
+    rejected += log_p(evidence, regions) <= std::log(level);
+  }
+  const stats::TestResult test = stats::binomial({rejected, repetitions}, level);
+  return test.log_p_upper > std::log(1e-7) && (!sharp || test.log_p_lower > std::log(1e-7));
+}
+
+bool keeps_promises(const Decider& decider) {
+  tests::Philox random(901);
+  bool kept = true;
+  for (const Case& each : cases()) {
+    for (std::size_t i = 0; i < each.in_claimed.size(); ++i) {
+      kept &= keeps_level(decider.claimed, each.regions, each.in_claimed[i],
+                          each.sharp_claimed && i == 0, random);
+    }
+    for (std::size_t i = 0; i < each.in_forbidden.size(); ++i) {
+      kept &= keeps_level(decider.forbidden, each.regions, each.in_forbidden[i],
+                          each.sharp_forbidden && i == 0, random);
+    }
+  }
+  return kept;
+}
+
+TEST(Decision, ErrsNoMoreOftenThanItsLevels) { EXPECT_TRUE(keeps_promises({})); }
+
+TEST(Decision, ThatForgetsToDoubleIsCaught) {
+  const auto undoubled = [](const Evidence& evidence, const Regions& regions) {
+    const double p = log_p_claimed(evidence, regions);
+    return regions.relation == Relation::equal ? p - std::log(2.0) : p;
+  };
+  EXPECT_FALSE(keeps_promises({.claimed = undoubled}));
+}
+
+TEST(Decision, ThatExcludesOneSideOnlyIsCaught) {
+  const auto one_side = [](const Evidence& evidence, const Regions& regions) {
+    if (regions.relation != Relation::within) return log_p_forbidden(evidence, regions);
+    return evidence.at(regions.within).log_p_lower;
+  };
+  EXPECT_FALSE(keeps_promises({.forbidden = one_side}));
+}
+
+TEST(Decision, ThatTestsDetectAtHalfItsLevelIsCaught) {
+  const auto timid = [](const Evidence& evidence, const Regions& regions) {
+    return log_p_forbidden(evidence, regions) + std::log(2.0);
+  };
+  EXPECT_FALSE(keeps_promises({.forbidden = timid}));
+}
+
+TEST(Decision, ThatForgetsTheAllowanceIsCaught) {
+  const auto strict = [](const Evidence& evidence, Regions regions) {
+    regions.allow = 0;
+    return log_p_claimed(evidence, regions);
+  };
+  EXPECT_FALSE(keeps_promises({.claimed = strict}));
+}
+
+TEST(Decision, ThatSwapsTheDirectionsIsCaught) {
+  const auto swapped = [](const Evidence& evidence, Regions regions) {
+    if (regions.relation == Relation::at_most) regions.relation = Relation::at_least;
+    return log_p_claimed(evidence, regions);
+  };
+  EXPECT_FALSE(keeps_promises({.claimed = swapped}));
+}
+
+TEST(Decision, NamesTheTailThatSpeaksAgainstTheClaim) {
+  EXPECT_EQ(tail({.relation = Relation::at_most}), "upper");
+  EXPECT_EQ(tail({.relation = Relation::less}), "upper");
+  EXPECT_EQ(tail({.relation = Relation::at_least}), "lower");
+  EXPECT_EQ(tail({.relation = Relation::greater}), "lower");
+  EXPECT_EQ(tail({.relation = Relation::equal}), "two-sided");
+  EXPECT_EQ(tail({.relation = Relation::within}), "two-sided");
+}
+
+}  // namespace
+}  // namespace assay::harness
