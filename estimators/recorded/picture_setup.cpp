@@ -87,7 +87,7 @@ class StackRows final : public PictureRows {
   }
 
  private:
-  // Limit of one stack. A process may have a thousand descriptors, and each picture takes two.
+  // Limit of one stack. A process may have a thousand descriptors, and each picture takes one.
   static constexpr std::size_t most_open = 128;
 
   struct Reading {

@@ -7,6 +7,7 @@
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
+#include <ImfTestFile.h>
 
 #include <algorithm>
 #include <cstring>
@@ -17,7 +18,6 @@
 
 #include "estimators/core/value.h"
 #include "render/exr/exr_header.h"
-#include "render/exr/exr_scan_lines.h"
 
 namespace assay {
 
@@ -95,7 +95,6 @@ std::string listed(const std::vector<ExrChannel>& channels) {
 
 struct ExrFile::Parts {
   std::string name;
-  std::shared_ptr<render::CoreFile> core;
   std::unique_ptr<Imf::MultiPartInputFile> input;
   std::vector<ExrChannel> channels;
   std::optional<std::uint64_t> samples;
@@ -108,7 +107,7 @@ struct ExrFile::Parts {
 
   void open();
   void add_part(int part, double bytes);
-  void read_part(const render::ScanLineTexels& to) const;
+  void require_whole(const ExrChannel& channel) const;
 };
 
 void ExrFile::Parts::open() {
@@ -139,23 +138,10 @@ void ExrFile::Parts::add_part(int part, double bytes) {
   }
 }
 
-void ExrFile::Parts::read_part(const render::ScanLineTexels& to) const {
-  if (render::read_scan_lines(*core, to)) return;
-  Imf::InputPart input_part(*input, to.part);
-  Imath::Box2i box = input_part.header().dataWindow();
-  box.max.y = box.min.y + static_cast<int>(to.last) - 1;
-  box.min.y += static_cast<int>(to.first);
-  const std::size_t stride = to.apart * sizeof(float);
-  Imf::FrameBuffer buffer;
-  for (const auto& [channel, first] : to.channels) {
-    const Imf::Channel& described = input_part.header().channels()[channel.c_str()];
-    if (described.xSampling != 1 || described.ySampling != 1) {
-      refuse(name, "channel `" + channel + "` is sub-sampled; store it at full resolution");
-    }
-    buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, first, box, stride, stride * to.width));
-  }
-  input_part.setFrameBuffer(buffer);
-  input_part.readPixels(box.min.y, box.max.y);
+void ExrFile::Parts::require_whole(const ExrChannel& channel) const {
+  const Imf::Channel& described = input->header(channel.part).channels()[channel.in_part.c_str()];
+  if (described.xSampling == 1 && described.ySampling == 1) return;
+  refuse(name, "channel `" + channel.in_part + "` is sub-sampled; store it at full resolution");
 }
 
 namespace {
@@ -187,7 +173,7 @@ ExrFile::ExrFile(const std::string& file) : parts_(std::make_unique<Parts>()) {
   if (std::filesystem::is_directory(file, ignored)) refuse(file, "it is a folder, not a picture");
   if (!std::ifstream(file)) refuse(file, std::string("it does not open: ") + std::strerror(errno));
   if (!is_exr(file)) refuse(file, "it is no OpenEXR picture; convert it to OpenEXR");
-  parts_->core = render::open_sound_file(file);
+  render::require_sound_headers(file);
   in_our_words(file, [&] { parts_->open(); });
 }
 
@@ -216,29 +202,30 @@ void ExrFile::read(std::span<const std::string> names, std::span<float> texels,
     throw std::invalid_argument("ExrFile::read: there is room for " +
                                 std::to_string(texels.size()) + " texels");
   }
-  std::map<int, render::ScanLineTexels> wanted;
+  const auto row_at = [&](std::size_t y) {
+    return static_cast<int>(whole.top) + static_cast<int>(y);
+  };
+  const auto left = static_cast<int>(whole.left);
+  const Imath::Box2i box({left, row_at(first)},
+                         {left + static_cast<int>(whole.width) - 1, row_at(last) - 1});
+  const std::size_t texel = names.size() * sizeof(float);
+  std::map<int, Imf::FrameBuffer> buffers;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const ExrChannel& channel = parts_->find(names[i]);
-    render::ScanLineTexels& to = wanted[channel.part];
-    to.channels.emplace(channel.in_part, texels.data() + i);
-    to.part = channel.part;
-    to.width = whole.width;
-    to.height = whole.height;
-    to.first = first;
-    to.last = last;
-    to.apart = names.size();
+    parts_->require_whole(channel);
+    buffers[channel.part].insert(
+        channel.in_part,
+        Imf::Slice::Make(Imf::FLOAT, texels.data() + i, box, texel, row * sizeof(float)));
   }
   in_our_words(parts_->name, [&] {
-    for (const auto& [part, to] : wanted) parts_->read_part(to);
+    for (const auto& [part, buffer] : buffers) {
+      Imf::InputPart input(*parts_->input, part);
+      input.setFrameBuffer(buffer);
+      input.readPixels(box.min.y, box.max.y);
+    }
   });
 }
 
-bool is_exr(const std::string& file) {
-  constexpr unsigned char magic[] = {0x76, 0x2f, 0x31, 0x01};
-  char begin[sizeof magic] = {};
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(begin, sizeof begin);
-  return stream && std::memcmp(begin, magic, sizeof magic) == 0;
-}
+bool is_exr(const std::string& file) { return Imf::isOpenExrFile(file.c_str()); }
 
 }  // namespace assay

@@ -1,7 +1,8 @@
 #include "render/exr/exr_header.h"
 
+#include <openexr.h>
+
 #include "estimators/core/value.h"
-#include "render/exr/core_file.h"
 
 namespace assay::render {
 
@@ -17,26 +18,16 @@ void keep_message(exr_const_context_t context, exr_result_t, const char* message
 
 }  // namespace
 
-CoreFile::CoreFile(const std::string& file) {
+void require_sound_headers(const std::string& file) {
+  std::string trouble;
   exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  settings.user_data = &message_;
+  settings.user_data = &trouble;
   settings.error_handler_fn = keep_message;
-  result_ = exr_start_read(&context_, file.c_str(), &settings);
-}
-
-CoreFile::~CoreFile() {
-  if (result_ == EXR_ERR_SUCCESS) exr_finish(&context_);
-}
-
-std::string CoreFile::trouble() const {
-  if (!message_.empty() || result_ == EXR_ERR_SUCCESS) return message_;
-  return exr_get_default_error_message(result_);
-}
-
-std::shared_ptr<CoreFile> open_sound_file(const std::string& file) {
-  auto opened = std::make_shared<CoreFile>(file);
-  const std::string trouble = opened->trouble();
-  if (trouble.empty()) return opened;
+  exr_context_t context = nullptr;
+  const exr_result_t result = exr_start_read(&context, file.c_str(), &settings);
+  if (result == EXR_ERR_SUCCESS) exr_finish(&context);
+  if (trouble.empty() && result == EXR_ERR_SUCCESS) return;
+  if (trouble.empty()) trouble = exr_get_default_error_message(result);
   throw InputError({.file = file},
                    "it cannot be read as OpenEXR, damaged or cut short: " + trouble);
 }

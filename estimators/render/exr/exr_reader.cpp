@@ -80,7 +80,7 @@ void check(const std::vector<Rgb>& texels, std::size_t width, const std::string&
 }
 
 EnvironmentMap read(const std::string& file) {
-  open_sound_file(file);
+  require_sound_headers(file);
   Imf::InputFile input(file.c_str());
   const Resolution size = resolution(input.header(), file);
   const std::array<std::string, 3> names = channel_names(input.header().channels(), file);

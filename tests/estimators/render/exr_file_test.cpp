@@ -10,8 +10,6 @@
 #include <span>
 
 #include "estimators/core/value.h"
-#include "estimators/render/exr/exr_header.h"
-#include "estimators/render/exr/exr_scan_lines.h"
 #include "tests/estimators/exr_kinds.h"
 
 namespace assay {
@@ -20,10 +18,6 @@ namespace {
 using namespace assay::draws;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-bool by_core(const std::string& file, const render::ScanLineTexels& to) {
-  return render::read_scan_lines(*render::open_sound_file(file), to);
-}
 
 class ExrFiles : public ::testing::Test {
  protected:
@@ -147,42 +141,7 @@ TEST_F(ExrFiles, ReadsChunksThatDoNotCompress) {
     output.setFrameBuffer(buffer);
     output.writePixels(32);
   }
-  std::vector<float> read(texels.size());
-  EXPECT_TRUE(
-      by_core(file_, {.channels = {{"R", read.data()}}, .width = 5, .height = 32, .last = 32}));
-  EXPECT_EQ(read, texels);
-  const auto rows = [&](std::size_t first, std::size_t last) {
-    std::vector<float> some(5 * (last - first));
-    EXPECT_EQ(by_core(file_, {.channels = {{"R", some.data()}},
-                              .width = 5,
-                              .height = 32,
-                              .first = first,
-                              .last = last}),
-              first % 16 == 0 && last % 16 == 0);
-    return some;
-  };
-  EXPECT_EQ(rows(16, 32), std::vector<float>(texels.begin() + 5 * 16, texels.end()));
-  rows(8, 16);
-  rows(16, 31);
-}
-
-TEST_F(ExrFiles, OfPlainFloatsAreReadByTheCore) {
-  const auto is_read = [&](const Part& part) {
-    write_scan_lines(file_, part);
-    std::vector<float> texels(12);
-    const bool read =
-        by_core(file_, {.channels = {{"R", texels.data()}}, .width = 4, .height = 3, .last = 3});
-    EXPECT_EQ(texels[6], read ? expected_texel(2, 1, 0) : 0);
-    return read;
-  };
-  EXPECT_TRUE(is_read({.channels = {"R"}}));
-  EXPECT_TRUE(is_read({.channels = {"R"}, .compression = Imf::ZIPS_COMPRESSION}));
-  EXPECT_FALSE(is_read({.channels = {"R"}, .compression = Imf::RLE_COMPRESSION}));
-  EXPECT_FALSE(is_read({.channels = {"R"}, .type = Imf::HALF}));
-  EXPECT_FALSE(is_read({.channels = {"R"}, .compression = Imf::PIZ_COMPRESSION}));
-  EXPECT_FALSE(is_read({.channels = {"G"}}));
-  EXPECT_FALSE(is_read({.width = 5, .channels = {"R"}}));
-  EXPECT_FALSE(is_read({.height = 4, .channels = {"R"}}));
+  EXPECT_EQ(read({"R"}), texels);
 }
 
 TEST_F(ExrFiles, ReadsTilesThatDoNotDivideThePicture) {
