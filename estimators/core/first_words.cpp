@@ -10,10 +10,9 @@ PhiloxLanes streams_from(std::uint64_t first) {
   PhiloxLanes all;
   for (std::size_t r = 0; r < PhiloxLanes::registers; ++r) {
     const std::uint64_t observation = first + PhiloxLanes::lanes * r;
-    all.x0[r] = all.x1[r] = _mm_setzero_si128();
-    all.x2[r] = _mm_set_epi64x(static_cast<long long>(observation + 1),
-                               static_cast<long long>(observation));
-    all.x3[r] = _mm_srli_epi64(all.x2[r], 32);
+    all.x0[r] = all.x1[r] = PhiloxLanes::everywhere(0);
+    all.x2[r] = PhiloxLanes::Register{observation, observation + 1};
+    all.x3[r] = all.x2[r] >> 32;
   }
   return all;
 }

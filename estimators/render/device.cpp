@@ -10,7 +10,19 @@ void embree_failed(const char* message) {
   throw std::runtime_error(std::string("Embree: ") + message);
 }
 
-Device::Device() : isa_(__builtin_cpu_supports("avx2") ? "avx2" : "sse4.2") {
+namespace {
+
+std::string best_isa() {
+#ifdef __x86_64__
+  return __builtin_cpu_supports("avx2") ? "avx2" : "sse4.2";
+#else
+  return "sse2";  // Embree's word for the four lanes that every processor has
+#endif
+}
+
+}  // namespace
+
+Device::Device() : isa_(best_isa()) {
   const std::string settings = "isa=" + isa_ + ",set_affinity=0";
   handle_ = rtcNewDevice(settings.c_str());
   if (!handle_) embree_failed("no device could be made");

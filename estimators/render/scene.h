@@ -87,8 +87,9 @@ class Scene {
   std::shared_ptr<RTCSceneTy> scene_;
 };
 
-/// The instruction set that all scenes use: "avx2", or "sse4.2" on older processors. Hits at edges
-/// may differ in the last bit between the two, so a record of a run names it.
+/// The instruction set that all scenes use: "avx2", "sse4.2" on older x86 processors, or "sse2" on
+/// others, where Embree translates it. Hits at edges may differ in the last bit between them, so a
+/// record of a run names it.
 std::string isa();
 
 }  // namespace assay::render
