@@ -11,10 +11,7 @@ compile() {
 
 # verdicts RUN.json: a line of name and verdict for each test.
 verdicts() {
-  python3 -c '
-import json, sys
-for test in json.load(open(sys.argv[1]))["suites"][0]["tests"]:
-    print(test["name"], test["verdict"])' "$1"
+  jq -r '.suites[0].tests[] | "\(.name) \(.verdict)"' "$1"
 }
 # verdict_is RUN.json NAME VERDICT
 verdict_is() {
@@ -22,10 +19,7 @@ verdict_is() {
   grep -qxF -- "$2 $3" verdicts.txt || fail "the verdict of $2 is not $3"
 }
 message() {
-  python3 -c '
-import json, sys
-for test in json.load(open(sys.argv[1]))["suites"][0]["tests"]:
-    if test["name"] == sys.argv[2]: print(test["message"])' "$1" "$2" >err
+  jq -r --arg name "$2" '.suites[0].tests[] | select(.name == $name) | .message' "$1" >err
 }
 
 none_left() {
