@@ -43,10 +43,7 @@ class Reader {
 
   template <class T>
   void operator()(const char* key, T& value) {
-    const auto found = object_.find(key);
-    if (found == object_.end()) fail(place_, fmt::format("the key \"{}\" is missing", key));
-    known_.insert(key);
-    read(*found, place_.empty() ? key : place_ + "." + key, value);
+    read(member(key), place_.empty() ? key : place_ + "." + key, value);
   }
 
   template <class T>
@@ -63,6 +60,13 @@ class Reader {
   }
 
  private:
+  [[gnu::noinline]] const Json& member(const char* key) {
+    const auto found = object_.find(key);
+    if (found == object_.end()) fail(place_, fmt::format("the key \"{}\" is missing", key));
+    known_.insert(key);
+    return *found;
+  }
+
   const Json& object_;
   std::string place_;
   std::set<std::string> known_;

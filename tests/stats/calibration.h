@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,6 +12,14 @@
 #include "tests/philox.h"
 
 namespace assay::tests {
+
+// True if long calibrations take all their repetitions: with ASSAY_LONG in the environment, as
+// `bash tests/run.sh --all` sets it.
+inline bool is_long() { return std::getenv("ASSAY_LONG") != nullptr; }
+
+// The repetitions of a long calibration: all, or a quarter in its short form. Bounds follow from the
+// number.
+inline std::size_t repetitions(std::size_t all) { return is_long() ? all : (all + 3) / 4; }
 
 // The calibration of a p-value under its null hypothesis. Elementary probability bounds judge it,
 // which share nothing with the code under test. All three together raise a false alarm with

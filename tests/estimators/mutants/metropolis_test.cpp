@@ -8,6 +8,7 @@
 
 #include "tests/estimators/draws.h"
 #include "tests/estimators/table.h"
+#include "tests/stats/calibration.h"
 
 namespace assay {
 namespace {
@@ -69,7 +70,7 @@ TEST(MetropolisMutants, HaveTheImagesOfASecondProgram) {
     if (scene[0] == "sound_multiple") name = "metropolis/multiple_importance";
     const auto samples = observe(prepare(name, "{target: " + scene[1] + ", pixels: " + scene[2] +
                                                    ", p_large: " + scene[3] + ", bootstrap: 64}"),
-                                 10000, 200);
+                                 tests::repetitions(10000), 200);
     for (std::size_t i = 0; i < image.size(); ++i) {
       const auto& [mean, error] = image[i];
       EXPECT_NEAR(samples[i].mean(), mean, five * std::hypot(samples[i].mean_error(), error))

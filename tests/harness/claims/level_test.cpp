@@ -48,7 +48,7 @@ std::string suite_of(const std::vector<TrueClaim>& claims) {
 /// Levels of tests of one look.
 void expect_level(std::uint64_t seeds, const std::vector<TrueClaim>& claims) {
   const std::string text = suite_of(claims);
-  const auto outcomes = first_looks(seeds, text);
+  const auto outcomes = first_looks(tests::repetitions(seeds), text);
   for (std::size_t i = 0; i < claims.size(); ++i) {
     expect_p_value(claims[i].test, outcomes.at(std::to_string(i)).log_p, claims[i].shape);
   }
@@ -57,7 +57,8 @@ void expect_level(std::uint64_t seeds, const std::vector<TrueClaim>& claims) {
 
 /// Levels of tests in looks, over whole runs.
 void expect_level_in_looks(std::uint64_t runs, const TrueClaim& claim) {
-  const auto outcomes = over_seeds(runs, [&](std::uint64_t) { return suite_of({claim}); });
+  const auto outcomes =
+      over_seeds(tests::repetitions(runs), [&](std::uint64_t) { return suite_of({claim}); });
   expect_p_value(claim.test, outcomes.at("0").log_p, Shape::at_most_uniform);
 }
 
@@ -164,7 +165,7 @@ tests:
   - {name: equal, claim: mean(x) == mean(y), allow: 50%, secondaries: 100}
   - {name: at most, claim: mean(x) <= mean(y), allow: 50%, secondaries: 100}
 )";
-  const auto outcomes = first_looks(2000, text);
+  const auto outcomes = first_looks(tests::repetitions(2000), text);
   expect_as_in_runs(text);
   expect_p_value("==", outcomes.at("equal").log_p, Shape::at_most_uniform);
   expect_p_value("<=", outcomes.at("at most").log_p, Shape::at_most_uniform);
@@ -228,7 +229,7 @@ TEST(Level, OfAWholeSuiteIsAtMostAlpha) {
                               {"claim: 'distribution(normal) == normal(2, 1)', secondaries: 50"},
                               {"claim: mean(wide) <= 4, secondaries: 20"}}));
   std::vector<double> smallest;
-  for (std::uint64_t seed = 1; seed <= 250; ++seed) {
+  for (std::uint64_t seed = 1; seed <= tests::repetitions(250); ++seed) {
     const reports::Record record = run_files({file}, {.seed = seed, .threads = 1});
     double least = 0;
     bool failed = false;
@@ -244,9 +245,11 @@ TEST(Level, OfAWholeSuiteIsAtMostAlpha) {
 
 // 2.075 is three quarters of a standard error of 100 away: so little must already show.
 TEST(Level, OfAClaimThatIsALittleWrongIsSeenToBeMore) {
+  const std::size_t runs = tests::repetitions(2000);
   const auto outcomes =
-      first_looks(2000, suite_of({{"claim: mean(normal) == 2.075, secondaries: 100"}}));
-  EXPECT_TRUE(tests::too_many(rate_at(outcomes.at("0").log_p, 0.1), 0.1, 2000));
+      first_looks(runs, suite_of({{"claim: mean(normal) == 2.075, secondaries: 100"}}));
+  EXPECT_TRUE(
+      tests::too_many(rate_at(outcomes.at("0").log_p, 0.1), 0.1, static_cast<double>(runs)));
 }
 
 }  // namespace

@@ -65,13 +65,15 @@ void expect_passes_at_beta(const std::string& name, const Outcomes& outcomes, do
 // Wrong alarms: 1.3e-5 for each claim.
 void expect_misses(const std::vector<AtTheEdge>& claims, double level = 1e-6) {
   const std::string text = suite_of(claims, level, true);
-  const auto outcomes = first_looks(2000, text);
+  const std::size_t runs = tests::repetitions(2000);
+  const auto outcomes = first_looks(runs, text);
   const auto whole = over_seeds(3, [&](std::uint64_t) { return text; });
   for (std::size_t i = 0; i < claims.size(); ++i) {
     const std::string name = std::to_string(i);
     expect_p_value(claims[i].test, outcomes.at(name).log_p_pass, claims[i].shape);
     const double passed = outcomes.at(name).share(Verdict::pass);
-    EXPECT_FALSE(tests::too_many(passed, beta, 2000)) << claims[i].test << ": passed " << passed;
+    EXPECT_FALSE(tests::too_many(passed, beta, static_cast<double>(runs)))
+        << claims[i].test << ": passed " << passed;
     expect_passes_at_beta(claims[i].test, whole.at(name),
                           level / static_cast<double>(claims.size()));
   }
@@ -181,7 +183,7 @@ struct Planned {
   std::string in_claim;
 };
 
-constexpr std::uint64_t planned_runs = 200;
+const std::uint64_t planned_runs = tests::repetitions(200);
 
 void expect_planned(const std::vector<Planned>& claims) {
   for (const Planned& claim : claims) {

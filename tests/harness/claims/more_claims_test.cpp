@@ -12,6 +12,7 @@
 #include "tests/harness/questions.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/stats/calibration.h"
 
 namespace assay::harness {
 namespace {
@@ -332,10 +333,10 @@ TEST(WorstVarianceClaim, IsAboutEveryChannel) {
   EXPECT_EQ(verdict_of("{claim: worst_variance(normal) <= 0.7, detect: 20%}"), Verdict::fail);
 }
 
-/// True if so many alarms in 200 runs of true claims are likelier than 1e-5 at alpha = 0.1, the
+/// True if so many alarms in the runs of true claims are likelier than 1e-5 at alpha = 0.1, the
 /// suite's. The seeds are 1, 2, 3, ….
 bool keeps_alpha(const std::string& test) {
-  constexpr std::uint64_t runs = 200;
+  const std::uint64_t runs = tests::repetitions(200);
   std::string text = estimators + test + "\n";
   text.replace(text.find("0.0001"), 6, "0.1");
   const Workplace place;

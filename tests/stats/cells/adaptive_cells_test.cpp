@@ -151,10 +151,10 @@ TEST(AdaptiveCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
       return chi_square_fit(counts, {.probability_tolerance = 1e-6}).test.log_p_upper;
     };
   };
-  const auto right = calibrate(Experiment{381, 3000}, fit(fine, 1));
+  const auto right = calibrate(Experiment{381, tests::repetitions(3000)}, fit(fine, 1));
   EXPECT_TRUE(right.ok) << right.text();
-  std::cout << "  3000 repetitions: " << right.text() << "\n";
-  const auto wrong = calibrate(Experiment{382, 1000}, fit(fine, 1.2));
+  std::cout << "  " << tests::repetitions(3000) << " repetitions: " << right.text() << "\n";
+  const auto wrong = calibrate(Experiment{382, tests::repetitions(1000)}, fit(fine, 1.2));
   EXPECT_FALSE(wrong.ok) << wrong.text();
   std::cout << "  a fifth too wide: " << wrong.text() << "\n";
   Philox random(383);

@@ -10,6 +10,7 @@
 #include "stats/variances/cost_ratio.h"
 #include "stats/variances/log_variance.h"
 #include "tests/philox.h"
+#include "tests/stats/calibration.h"
 
 namespace assay::stats {
 namespace {
@@ -82,23 +83,23 @@ TEST(LogVarianceLevel, OfUnequalSizesIsThatOfTheSamplesExchanged) {
 }
 
 // Exponential values at the count it asks for. The lower tail's rate at .01 is at most 1.25 times
-// nominal. At a twentieth of that count it is beyond. In 8000 repetitions a rate of 1.25 shows as
-// more than 1.8 with probability 1e-5 (binomial). One of 2.2 shows as less than 1.5 with 1e-5.
+// nominal. At a twentieth of that count it is beyond: at 2.2 times, 8000 repetitions show it.
 TEST(LogVarianceLevel, KeepsTheLevelWhereItSays) {
   const double z = normal_quantile({Tail::upper, std::log(0.01)});
   const std::uint64_t enough = values_for_log_variance(exponential, z);
   tests::Philox random(7001);
-  const auto rate = [&](std::uint64_t count) {
-    int rejected = 0;
-    for (int run = 0; run < 8000; ++run) {
+  const auto is_off = [&](std::uint64_t count, std::size_t runs) {
+    double rejected = 0;
+    for (std::size_t run = 0; run < runs; ++run) {
       Moments x;
       for (std::uint64_t i = 0; i < count; ++i) x.add(random.exponential());
       if (log_variance(x, 1).statistic < -z) ++rejected;
     }
-    return rejected / 8000.0 / 0.01;
+    const auto all = static_cast<double>(runs);
+    return tests::too_many(rejected / all, 0.0125, all);
   };
-  EXPECT_LE(rate(enough), 1.8);
-  EXPECT_GE(rate(enough / 20), 1.5);
+  EXPECT_FALSE(is_off(enough, tests::repetitions(8000)));
+  EXPECT_TRUE(is_off(enough / 20, 8000));
 }
 
 // A cost of 1 and, with probability .1, exponential ones more, 10 on average. At the count found

@@ -152,11 +152,12 @@ struct Levels {
 };
 
 template <class Test>
-Levels levels(const Law& law, std::size_t n, std::uint32_t test_case, const Test& test) {
+Levels levels(const Law& law, std::size_t n, std::uint32_t test_case, const Test& test,
+              std::size_t most = 40000) {
   Philox random(test_case);
   Levels result;
-  const std::size_t repetitions = std::min<std::size_t>(40000, 10000000 / n);
-  for (std::size_t i = 0; i < repetitions; ++i) {
+  const std::size_t runs = std::min(most, 10000000 / n);
+  for (std::size_t i = 0; i < runs; ++i) {
     result.add(test(draw_moments(law, n, random), law.mean));
   }
   return result;
@@ -194,7 +195,7 @@ TEST(SkewnessCorrectedT, KeepsItsLevelWhereTheFactorSaysSo) {
       const bool at_001 = corrected_level_factor(each.shape, PlannedMean{n, 3.090}) <= 1.25;
       ++test_case;
       if (!at_01) continue;
-      const Levels seen = levels(each.law, n, test_case, corrected);
+      const Levels seen = levels(each.law, n, test_case, corrected, tests::repetitions(40000));
       seen.print(each.law.name, n);
       EXPECT_TRUE(seen.kept_01()) << each.law.name << " " << n;
       EXPECT_TRUE(!at_001 || seen.kept_001()) << each.law.name << " " << n;
