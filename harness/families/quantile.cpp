@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
-#include "harness/families/evidence_quantile.h"
 #include "harness/families/families.h"
 #include "harness/plan/frozen.h"
 #include "harness/plan/planned_rates.h"
@@ -19,6 +19,63 @@
 
 namespace assay::harness {
 namespace {
+
+// ---- Evidence
+
+std::vector<double> sorted(std::span<const double> values, double factor) {
+  std::vector<double> copy(values.begin(), values.end());
+  for (double& value : copy) value *= factor;
+  return stats::sorted(std::move(copy));
+}
+
+/// The sample quantile.
+double middle(const std::vector<double>& sorted, double probability) {
+  return sorted[stats::sample_quantile_rank(sorted.size(), probability)];
+}
+
+Evidence against_number(const Question& question, std::size_t channel, std::vector<double> values) {
+  const double probability = question.test->claim.left.arguments[0];
+  const double null = question.references[channel].value;
+  const bool relative = question.theta->is_relative(question, channel);
+  const double unit = relative ? std::abs(null) : 1;
+  const double estimate = middle(values, probability);
+  const auto at = [values, probability, null, unit](double theta) {
+    return stats::quantile_test(stats::count_around(values, null + theta * unit), probability);
+  };
+  const auto interval = [values, probability, null, unit](double confidence) {
+    stats::Interval found = stats::quantile_interval(values, probability, confidence);
+    found.low = (found.low - null) / unit;
+    found.high = (found.high - null) / unit;
+    return found;
+  };
+  return {.estimate = (estimate - null) / unit,
+          .at = at,
+          .interval = interval,
+          .quantity = relative ? "relative difference of the quantile from the reference"
+                               : "difference of the quantile from the reference",
+          .relative = relative};
+}
+
+/// Exact for every law.
+Evidence quantile(const Method&, const Question& question, std::size_t channel,
+                  std::span<const ChannelData> data) {
+  std::vector<double> x = sorted(data[0].values, 1);
+  if (!question.of_two()) return against_number(question, channel, std::move(x));
+  // The quantile of c y is c times that of y, c > 0.
+  const std::vector<double> y = sorted(data[1].values, question.factor);
+  const double probability = question.test->claim.left.arguments[0];
+  const double estimate = middle(x, probability) - middle(y, probability);
+  const auto at = [x, y, probability](double theta) {
+    return stats::quantile_compare(x, y, {.probability = probability, .offset = theta});
+  };
+  const auto interval = [x, y, probability](double confidence) {
+    return stats::quantile_difference_interval(x, y, probability, confidence);
+  };
+  return {
+      .estimate = estimate, .at = at, .interval = interval, .quantity = "difference of quantiles"};
+}
+
+// ---- Sizes
 
 double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi); }
 
@@ -71,11 +128,6 @@ double quantile_deviation(const Question& question, std::size_t subject, std::si
                    question.subjects[subject].averaged(plan.primaries[subject]));
 }
 
-Evidence one_or_two_quantiles(const Method&, const Question& question, std::size_t channel,
-                              std::span<const ChannelData> data) {
-  return evidence_of_quantile(question, channel, data);
-}
-
 /// theta = v - r of the values' quantile v, over |r| if a margin is relative; of two, v - c w.
 class QuantileTheta final : public Theta {
  public:
@@ -87,10 +139,10 @@ class QuantileTheta final : public Theta {
          "exact: a quantile against a number",
          [](const Question& q) { return !q.of_two(); },
          Keeps::values,
-         one_or_two_quantiles,
+         quantile,
          {.exact = true}},
         {"quantile", "exact: two quantiles, by the counts on both sides",
-         [](const Question& q) { return q.of_two(); }, Keeps::values, one_or_two_quantiles}};
+         [](const Question& q) { return q.of_two(); }, Keeps::values, quantile}};
     return table;
   }
 
