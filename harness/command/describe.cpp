@@ -9,6 +9,7 @@
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
 #include "harness/command/tables.h"
+#include "reports/words/columns.h"
 
 namespace assay::harness {
 
@@ -16,32 +17,9 @@ namespace {
 
 constexpr std::size_t page_width = 100;
 
-/// Columns of the text on a terminal: its code points.
-std::size_t columns(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; }));
-}
-
 /// The first line begins at `indent`, the others at `hanging`.
 std::string hanging(const std::string& text, std::size_t indent, std::size_t hanging) {
   return std::string(indent, ' ') + wrapped(text, page_width, hanging).substr(hanging);
-}
-
-std::string wrapped_line(std::string_view text, std::size_t width, std::size_t indent) {
-  const std::string margin(indent, ' ');
-  std::string out;
-  std::string line;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
-    const std::string word(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (!line.empty() && indent + columns(line) + 1 + columns(word) > width) {
-      out += margin + line + "\n";
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  return out + (line.empty() ? "" : margin) + line + "\n";
 }
 
 const char* type_name(ParameterType type) {
@@ -211,12 +189,9 @@ std::string mutants_text(const Information& information, const std::vector<Entry
 
 std::string wrapped(const std::string& text, std::size_t width, std::size_t indent) {
   std::string out;
-  std::string_view rest = text;
-  while (rest.ends_with('\n')) rest.remove_suffix(1);
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    out += wrapped_line(rest.substr(0, end), width, indent);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+  const std::string all = text.substr(0, text.find_last_not_of('\n') + 1);
+  for (const std::string& line : reports::wrap(all, static_cast<int>(width - indent))) {
+    out += (line.empty() ? "" : std::string(indent, ' ')) + line + "\n";
   }
   return out;
 }
