@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <memory>
 
-#include "estimators/core/quoting.h"
-#include "harness/base/version.h"
-#include "harness/command/cli_options.h"
-#include "harness/command/cli_values.h"
+#include "harness/command/option_values.h"
+#include "harness/command/options.h"
 #include "harness/command/tables.h"
-#include "harness/record/recorded_test.h"
-#include "harness/suite/suite_entries.h"
+#include "harness/language/method_names.h"
 #include "harness/suite/suite_keys.h"
 #include "reports/report_formats.h"
 
@@ -19,274 +16,434 @@ namespace assay::harness {
 
 namespace {
 
-void require(const std::string& value, const char* what, const std::string& name) {
-  if (value.empty()) {
-    usage_error(fmt::format("`assay {}` needs {}; see `assay {} --help`", name, what, name));
-  }
+constexpr const char* general_help =
+    R"(Assay tests whether Monte Carlo estimators do what their authors claim.
+
+Examples:
+  assay run suites/luminaire.yaml
+  assay check 'mean(luminaire/area) == analytic' --detect 0.5%
+  assay describe luminaire/area
+
+Commands (each has its own --help, with examples and defaults):
+  run       test the claims of suite files
+  plan      what a run would do and cost; only the pilots are drawn
+  check     test one claim
+  images    hold rendered pictures against each other, without a suite
+  calibrate how often the methods err, and how much they find, on known laws
+  sample    print observations of an estimator
+  list      list plugins, tests of suites, methods, quantities, laws, gates, reports
+  describe  print the manual of a plugin, a method, a quantity or a law
+  replay    draw the numbers of a recorded test again
+  merge     join the records of shards to that of one run
+  report    make reports from a saved run
+  help      this text, or that of a command: `assay help run`
+
+Options:
+  -h, --help   this text
+  --version    version and commit
+
+Exit codes:
+  0    every test came out as expected
+  1    at least one did not: it failed, was invalid or could not be tested; or the ledger alarms
+  2    a mistake in what was asked for, or trouble
+  3    none of these, but at least one is inconclusive
+  4    no test ran: --filter, --tag or --shard selected none (0 where the environment asked for a shard)
+  77   all tests were skipped
+  130  interrupted
+)";
+
+std::string read_suite(const std::string& text, const std::string& /*option*/) {
+  if (!text.ends_with(".json")) return text;
+  usage_error("a suite is a YAML file; a saved run is shown by `assay report " + text + "`");
 }
 
-std::optional<std::string> if_given(const std::string& text) {
-  return text.empty() ? std::nullopt : std::optional(text);
+std::string read_claim(const std::string& text, const std::string& /*option*/) {
+  if (!text.ends_with(".yaml")) return text;
+  usage_error("`assay check` tests one claim; a suite is run by `assay run " + text + "`");
 }
 
-std::optional<std::uint64_t> count_if_given(const std::string& text, const char* option,
-                                            std::uint64_t least) {
-  return text.empty() ? std::nullopt : std::optional(parse_count(text, option, least));
-}
-
-void refuse_same_path(const std::vector<ReportRequest>& reports) {
-  std::set<std::string> paths;
-  for (const ReportRequest& report : reports) {
-    if (paths.insert(report.path).second) continue;
+/// Reads a report that goes to another place than those before it.
+auto report_beside(const std::vector<ReportRequest>& others) {
+  return [&others](const std::string& text, const std::string& option) {
+    ReportRequest report = read_report(text, option);
+    if (std::ranges::find(others, report.path, &ReportRequest::path) == others.end()) return report;
     usage_error(report.path == "-" ? "two reports to standard output"
                                    : fmt::format("two reports to `{}`", report.path));
-  }
+  };
 }
 
-Output output(const Given& given) {
-  Output output{.quiet = given.quiet};
-  for (const std::string& report : given.reports) output.reports.push_back(parse_report(report));
-  refuse_same_path(output.reports);
-  if (!given.github.empty()) output.github = parse_github(given.github);
-  if (!given.colour.empty()) output.colour = parse_colour(given.colour);
-  if (!given.inconclusive.empty()) output.inconclusive = parse_inconclusive(given.inconclusive);
-  return output;
+// Rows of several commands.
+
+void add_report(Options& options, Output& output, const std::string& kinds) {
+  options.add({"--report", "KIND=PATH", Replay::nowhere}, output.reports,
+              report_beside(output.reports),
+              kinds +
+                  " to a file, - is standard output; one or more; default console=-, which goes "
+                  "to standard error where another report has standard output; console=/dev/null "
+                  "silences it");
 }
 
-Selection selection(const Given& given) { return {.filters = given.filters, .tags = given.tags}; }
-
-RunOptions options(const Given& given) {
-  constexpr std::uint64_t most_threads = 4096;
-  RunOptions options;
-  if (!given.seed.empty()) options.seed = parse_seed(given.seed);
-  if (!given.threads.empty()) {
-    options.threads =
-        static_cast<unsigned>(std::min(parse_count(given.threads, "--threads", 1), most_threads));
-  }
-  if (!given.alpha.empty()) options.alpha = parse_rate(given.alpha, "--alpha");
-  if (!given.coarsen.empty()) options.coarsen = parse_positive(given.coarsen, "--coarsen");
-  if (!given.shard.empty()) options.shard = parse_shard(given.shard);
-  options.selection = selection(given);
-  return options;
+void add_output(Options& options, Output& output) {
+  add_report(options, output, "console, json, junit, markdown, html or metrics (OpenMetrics)");
+  options.add(
+      {"--color", "WHEN", Replay::nowhere}, output.colour,
+      one_of<Colour>(
+          {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}),
+      "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
 }
 
-/// The command with the options that change sampling and verdicts. The record adds the seed and a
-/// filter.
-class Replayable {
- public:
-  explicit Replayable(const std::string& command) : text_("assay " + command) {}
+void add_inconclusive(Options& options, Output& output) {
+  options.add({"--inconclusive", "fail|pass", Replay::nowhere}, output.inconclusive,
+              one_of<InconclusivePolicy>(
+                  {{"fail", InconclusivePolicy::fail}, {"pass", InconclusivePolicy::pass}}),
+              "count undecided tests as failed or as passed; default neither: exit code 3");
+  options.add({"--github", "auto|never", Replay::nowhere}, output.github,
+              one_of<bool>({{"auto", true}, {"never", false}}),
+              "annotations and the step's summary for a job of GitHub Actions; default auto: where "
+              "GITHUB_ACTIONS is true");
+}
 
-  void add(const std::string& argument) { text_ += " " + shell_quoted(argument); }
-  void add(const char* option, const std::string& value) {
-    if (!value.empty()) text_ += fmt::format(" {} {}", option, shell_quoted(value));
-  }
-  void add(const char* option, const Texts& values) {
-    for (const std::string& value : values) add(option, value);
-  }
-  const std::string& text() const { return text_; }
+void add_threads(Options& options, unsigned& threads) {
+  options.add({"--threads", "N", Replay::nowhere}, threads, read_threads,
+              "worker threads; default one for each core");
+}
 
- private:
-  std::string text_;
+void add_quiet(Options& options, Output& output) {
+  options.flag("--quiet", "no progress on standard error; default shown", output.quiet);
+}
+
+/// Texts that differ between the commands that sample and judge.
+struct Running {
+  const char* seed;
+  const char* alpha;
 };
 
-std::string replayable_run(const Given& given) {
-  Replayable line("run");
-  for (const std::string& suite : given.suites) line.add(suite);
-  line.add("--set", given.sets);
-  line.add("--alpha", given.alpha);
-  line.add("--coarsen", given.coarsen);
-  return line.text();
+void add_sampling(Options& options, RunOptions& run, Output& output, const Running& about) {
+  options.add({"--seed", "N|random", Replay::nowhere}, run.seed, read_seed, about.seed);
+  add_threads(options, run.threads);
+  options.add({"--alpha", "A"}, run.alpha, read_error_rate, about.alpha);
+  add_quiet(options, output);
 }
 
-std::string replayable_check(const Given& given) {
-  Replayable line("check");
-  line.add(given.claim);
-  line.add("--estimator", given.estimators);
-  line.add("--detect", given.detect);
-  line.add("--allow", given.allow);
-  line.add("--test", given.method);
-  line.add("--over", given.over);
-  line.add("--reference", given.reference);
-  line.add("--cost", given.cost);
-  line.add("--budget", given.budget);
-  line.add("--primaries", given.primaries);
-  line.add("--secondaries", given.secondaries);
-  line.add("--alpha", given.alpha);
-  return line.text();
+void add_running(Options& options, RunOptions& run, Output& output, const Running& about) {
+  add_sampling(options, run, output, about);
+  add_inconclusive(options, output);
+  add_output(options, output);
+  options.repeat_by(run.command);
 }
 
-std::string replayable_images(const Given& given) {
-  Replayable line("images");
-  line.add("--candidate", given.candidate);
-  line.add("--reference", given.pictures);
-  line.add("--channels", given.channels);
-  line.add("--pixels", given.pixels);
-  line.add("--samples", given.picture_samples);
-  line.add("--detect", given.detect);
-  line.add("--allow", given.allow);
-  line.add("--within", given.within);
-  line.add("--alpha", given.alpha);
-  return line.text();
+void add_estimators(Options& options, Texts& estimators) {
+  options.add({"--estimator", "NAME=PLUGIN[,key=value]...", Replay::first}, estimators,
+              "an estimator with parameters; repeatable; default the plugin of that name");
 }
 
-void require_suites(const Given& given, const std::string& name) {
-  require(given.suites.empty() ? "" : given.suites[0], "a suite file", name);
-  for (const std::string& suite : given.suites) {
-    if (suite.ends_with(".json"))
-      usage_error("a suite is a YAML file; a saved run is shown by `assay report " + suite + "`");
-  }
+void add_selection(Options& options, Selection& selection) {
+  options.add({"--filter", "GLOB", Replay::nowhere}, selection.filters,
+              "only tests whose id, suite/name, matches, or with '-GLOB' all but these; * and ? "
+              "are wild; repeatable; default all");
+  options.add({"--tag", "TAG", Replay::nowhere}, selection.tags,
+              "only tests that have this tag; repeatable, any of them; default all");
 }
 
-Command run_command(const Given& given, const std::string& name) {
-  require_suites(given, name);
-  RunCommand command{given.suites, given.sets, options(given), output(given)};
-  command.options.ledger = given.ledger;
-  command.options.command = replayable_run(given);
-  return command;
+void add_suites(Options& options, SuitesCommand& command) {
+  options.add({.name = "SUITE", .needed = "a suite file"}, command.suites, read_suite,
+              "suite files");
+  add_selection(options, command.options.selection);
+  options.add({"--coarsen", "F", Replay::last}, command.options.coarsen, read_positive,
+              "multiply every `detect` by F, above 0; default 1");
+  options.add({"--set", "estimator.key=value", Replay::first}, command.assignments,
+              "set a parameter; repeatable; default as in the suite");
 }
 
-Command plan_command(const Given& given, const std::string& name) {
-  require_suites(given, name);
-  return PlanCommand{given.suites, given.sets, options(given), given.quiet};
+constexpr Running of_suites{
+    .seed = "seed of all streams, or a fresh one; default the suite's, else 1",
+    .alpha =
+        "probability that a suite whose claims hold fails, in [1e-9, 0.5]; default the suite's, "
+        "else 0.01"};
+
+// The commands.
+
+void define_run(Options& options, RunCommand& command) {
+  options.about(R"(Tests the claims of suite files.
+
+Examples:
+  assay run suites/luminaire.yaml
+  assay run suites/*.yaml --filter '*/variance*' --threads 4
+  assay run suites/*.yaml --tag bias --filter '-*slope*'      tests with a tag, but for some
+  assay run suites/luminaire.yaml --report json=run.json html=run.html
+  assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
+  assay run suites/luminaire.yaml --coarsen 4      a quick look: four times coarser effects
+  assay run suites/luminaire.yaml --seed random --ledger nightly.ledger      every night
+  assay run suites/luminaire.yaml --shard 2/4 --report json=2.json      a part, for `assay merge`
+)");
+  add_suites(options, command);
+  options.add({"--shard", "I/N", Replay::nowhere}, command.options.shard, read_shard,
+              "only the I-th of N parts of the tests, each on its fixed share of alpha, for `assay "
+              "merge`; default all, or what GTEST_TOTAL_SHARDS or TEST_TOTAL_SHARDS says");
+  options.add({"--ledger", "FILE", Replay::nowhere}, command.options.ledger,
+              "add the run's evidence to a file of nights with fresh seeds and alarm at what they "
+              "say together; default none");
+  add_running(options, command.options, command.output, of_suites);
 }
 
-Command check_command(const Given& given, const std::string& name) {
-  require(given.claim, "a claim", name);
-  if (given.claim.ends_with(".yaml"))
-    usage_error("`assay check` tests one claim; a suite is run by `assay run " + given.claim + "`");
-  // Assigned, not initialised in one expression: GCC 12 destroys the members of a nested aggregate
-  // twice when a later one throws. options() throws at a wrong value.
-  CheckCommand command;
-  command.options = options(given);
-  command.output = output(given);
-  command.arguments.claim = given.claim;
-  command.arguments.estimators = given.estimators;
-  command.arguments.detect = if_given(given.detect);
-  command.arguments.allow = if_given(given.allow);
-  command.arguments.method = if_given(given.method);
-  command.arguments.over = if_given(given.over);
-  command.arguments.reference = if_given(given.reference);
-  command.arguments.cost = if_given(given.cost);
-  command.arguments.budget = if_given(given.budget);
-  command.arguments.primaries = count_if_given(given.primaries, "--primaries", 1);
-  command.arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 2);
-  if (command.options.alpha) command.arguments.alpha = *command.options.alpha;
-  command.options.command = replayable_check(given);
-  return command;
+void define_plan(Options& options, PlanCommand& command) {
+  options.about(
+      R"(Prints what a run of suites would do: of each test its method, sample sizes, expected cost and the
+effect it finds. Runs the pilots only.
+
+Examples:
+  assay plan suites/luminaire.yaml
+  assay plan suites/*.yaml --filter '*/variance*' --coarsen 4
+)");
+  add_suites(options, command);
+  add_sampling(options, command.options, command.output, of_suites);
 }
 
-Command images_command(const Given& given, const std::string& name) {
-  require(given.candidate, "--candidate, a pattern of OpenEXR files", name);
-  require(given.pictures, "--reference, a pattern of OpenEXR files or one file", name);
-  ImagesCommand command;
-  command.options = options(given);
-  command.output = output(given);
-  ImagesArguments& arguments = command.arguments;
-  arguments.candidate = given.candidate;
-  arguments.reference = given.pictures;
-  if (!given.channels.empty()) arguments.channels = given.channels;
-  if (!given.pixels.empty()) {
-    arguments.independent_pixels =
-        choice(Value::scalar(given.pixels), "--pixels", {"dependent", "independent"}) == 1;
-  }
-  arguments.samples = if_given(given.picture_samples);
-  arguments.detect = if_given(given.detect);
-  arguments.allow = if_given(given.allow);
-  arguments.within = if_given(given.within);
-  command.options.command = replayable_images(given);
-  return command;
+void define_check(Options& options, CheckCommand& command) {
+  options.about(R"(Tests one claim. The names in it are plugins, or names given with --estimator.
+
+Examples:
+  assay check 'mean(luminaire/area) == analytic' --detect 0.5%
+  assay check 'mean(luminaire/area) == 0.481046907316 +- 1e-12'
+  assay check 'variance(a) < variance(h)' --estimator a=luminaire/area \
+      --estimator 'h=luminaire/hemisphere,scene=rectangle'
+)");
+  CheckArguments& given = command.arguments;
+  options.add({.name = "CLAIM", .needed = "a claim"}, given.claim, read_claim,
+              "the claim, in quotes");
+  options.add({"--detect", "X"}, given.detect,
+              "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations; "
+              "of laws 0.05");
+  options.add({"--allow", "X"}, given.allow,
+              "the effect that may be there, as 0.5% or 0.002; default 0");
+  options.add(
+      {"--test", "METHOD"}, given.method,
+      "force a method, one of " + listed(method_names()) + "; default chosen from the pilot");
+  options.add(
+      {"--over", "SWEEP"}, given.over,
+      "of a slope: a parameter and its values, as '{primaries: [8, 16, 32]}'; default none");
+  options.add({"--reference", "R"}, given.reference,
+              "of a bias or an efficiency: the truth, as 6.36, '6.36 +- 0.01' or an estimator; "
+              "default what the plugin knows");
+  options.add({"--cost", "KIND"}, given.cost, "rays, samples or seconds; default rays");
+  options.add({"--budget", "B"}, given.budget,
+              "the most it may cost, as 1e7 primaries or 30s of CPU time; default none");
+  add_estimators(options, given.estimators);
+  options.add({"--primaries", "N"}, given.primaries, at_least(1),
+              "primary estimates of an observation; default chosen from the pilot");
+  options.add({"--secondaries", "M"}, given.secondaries, at_least(2),
+              "number of observations, 2 or more; default what --detect needs");
+  add_running(options, command.options, command.output,
+              {.seed = "seed of all streams, or a fresh one; default 1",
+               .alpha = "probability that a claim that holds fails, in [1e-9, 0.5]; default 0.01"});
 }
 
-Command calibrate_command(const Given& given) {
-  CalibrateCommand command;
-  command.output = output(given);
-  for (const ReportRequest& report : command.output.reports) {
-    if (reports::report_format(report.kind).of_calibration == nullptr) {
+void define_images(Options& options, ImagesCommand& command) {
+  options.about(
+      R"(Holds pictures of one scene against each other, pixel by pixel and on every larger scale: are their
+means equal, and if not, where? Every file is one observation and needs a seed of its own.
+
+Examples:
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --report html=difference.html
+  assay images --candidate 'new/*.exr' --reference converged.exr --detect 1%
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --channels 'ViewLayer.DiffInd.*'
+  assay images --candidate 'half/*.exr' --reference 'float/*.exr' --within 0.5% --report json=run.json
+)");
+  ImagesArguments& given = command.arguments;
+  options.add(
+      {.name = "--candidate", .value = "GLOB", .needed = "--candidate, a pattern of OpenEXR files"},
+      given.candidate,
+      "the pictures in question, OpenEXR, 16 or more, each rendered with a seed of its own");
+  options.add({.name = "--reference",
+               .value = "GLOB",
+               .needed = "--reference, a pattern of OpenEXR files or one file"},
+              given.reference,
+              "what they are held against: as many again, or one picture, with its variance "
+              "(channels `Variance.*` or `m2_*`) or exact");
+  options.add({"--channels", "GLOB"}, given.channels,
+              "the channels to test, as 'ViewLayer.DiffInd.*'; commas between several; default R, "
+              "G and B, or what stands for them");
+  options.add({"--pixels", "KIND"}, given.independent_pixels,
+              one_of<bool>({{"dependent", false}, {"independent", true}}),
+              "independent, as under a box filter one pixel wide, or dependent; default dependent");
+  options.add({"--samples", "N"}, given.samples,
+              "of how many samples the means of one picture with its variance are, or the channel "
+              "that counts them; default its own word");
+  options.add({"--detect", "X"}, given.detect,
+              "the difference over the whole picture that must not pass, as 0.5% or 0.002; default "
+              "none");
+  options.add({"--allow", "X"}, given.allow,
+              "the difference that may be there, as 0.5% or 0.002; default 0");
+  options.add({"--within", "X"}, given.within,
+              "prove that the pictures differ by less, as 1% or 0.002; default test that they are "
+              "equal");
+  add_running(options, command.options, command.output,
+              {.seed = "seed of the signs that are flipped where pixels depend on each other; "
+                       "default 1",
+               .alpha = "probability that equal pictures fail, in [1e-9, 0.5]; default 0.01"});
+}
+
+void define_sample(Options& options, SampleArguments& given) {
+  options.about(R"(Prints observations of an estimator or a sampler as text that `recorded` reads.
+
+Examples:
+  assay sample luminaire/area --secondaries 1000 > area.txt
+  assay sample a --estimator 'a=luminaire/area,scene=rectangle' --primaries 64
+)");
+  options.add({.name = "SOURCE", .needed = "an estimator"}, given.source,
+              "an estimator, or a part of it");
+  add_estimators(options, given.estimators);
+  options.add({"--primaries", "N"}, given.primaries, at_least(1),
+              "primary estimates of an observation; default 1");
+  options.add({"--secondaries", "M"}, given.secondaries, at_least(1),
+              "number of observations; default 10");
+  options.add({"--seed", "N|random"}, given.seed, read_seed,
+              "seed of the stream, or a fresh one; default 1");
+}
+
+void define_calibrate(Options& options, CalibrateCommand& command) {
+  options.about(
+      R"(Measures how often each method errs on laws whose truth is known, and how often it finds an effect:
+the whole procedure with its pilot, gates and looks, and beside it the method alone. Exit code 1
+where a cell errs too often.
+
+Examples:
+  assay calibrate
+  assay calibrate F chi-square --law exponential --alpha 0.01 --runs 20000 --report html=F.html
+  assay calibrate t --law 'lognormal(0, 2)' --samples 200
+)");
+  CalibrateArguments& given = command.arguments;
+  Output& output = command.output;
+  options.add({.name = "METHOD"}, given.methods, "methods; default all");
+  options.add({"--law", "LAW"}, given.laws,
+              "what is drawn, as exponential or 'student_t(3)'; repeatable; default eight laws");
+  options.add({"--alpha", "A"}, given.alphas, read_error_rate,
+              "nominal level, in [1e-9, 0.5]; repeatable; default 0.05, 0.01 and 0.001");
+  options.add({"--runs", "N"}, given.runs, at_least(1), "runs a cell; default 1000");
+  options.add({"--samples", "N"}, given.samples, at_least(2),
+              "observations of every test, in one look, 2 or more; default planned, in looks, and "
+              "1000 or 64 images of a method alone");
+  options.add({"--seed", "N|random"}, given.seed, read_seed,
+              "seed of the first run, the next ones follow; default 1");
+  add_threads(options, given.threads);
+  add_quiet(options, output);
+  add_report(options, output, "console, json, markdown or html");
+  options.afterwards([&output] {
+    for (const ReportRequest& report : output.reports) {
+      if (reports::report_format(report.kind).of_calibration != nullptr) continue;
       usage_error(fmt::format("a calibration has no {} report", report.kind));
     }
-  }
-  CalibrateArguments& arguments = command.arguments;
-  arguments.threads = options(given).threads;
-  arguments.methods = given.methods;
-  arguments.laws = given.laws;
-  for (const std::string& alpha : given.alphas) {
-    arguments.alphas.push_back(parse_rate(alpha, "--alpha"));
-  }
-  arguments.runs = count_if_given(given.runs, "--runs", 1).value_or(arguments.runs);
-  arguments.samples = count_if_given(given.samples, "--samples", 2);
-  if (!given.seed.empty()) arguments.seed = parse_seed(given.seed);
-  return command;
+  });
 }
 
-Command sample_command(const Given& given, const std::string& name) {
-  require(given.source, "an estimator", name);
-  SampleArguments arguments{.source = given.source, .estimators = given.estimators};
-  arguments.secondaries = count_if_given(given.secondaries, "--secondaries", 1);
-  arguments.primaries = count_if_given(given.primaries, "--primaries", 1).value_or(1);
-  if (!given.seed.empty()) arguments.seed = parse_seed(given.seed);
-  return arguments;
-}
+void define_list(Options& options, ListCommand& command) {
+  options.about(
+      R"(Prints what there is: plugins and tests one id a line, the tables with a word on each row.
 
-Command list_command(const Given& given, const std::string& name) {
-  std::vector<std::string> lists{"plugins", "tests"};
+Examples:
+  assay list plugins
+  assay list tests suites/*.yaml
+  assay list methods
+)");
+  Texts lists{"plugins", "tests"};
   for (const Table& table : tables()) lists.push_back(table.plural);
-  require(given.what, ("one of " + listed(lists)).c_str(), name);
-  const std::size_t what = choice(Value::scalar(given.what), "what is listed", lists);
-  const bool tests = lists[what] == "tests";
-  if (tests) require(given.suites.empty() ? "" : given.suites[0], "a suite file", name);
-  if (!tests && !given.suites.empty()) {
-    usage_error(fmt::format("`assay list {}` takes no suite", given.what));
-  }
-  if (!tests && !selection(given).empty()) {
-    usage_error(fmt::format("`assay list {}` takes no --filter and no --tag; they select tests",
-                            given.what));
-  }
-  return ListCommand{lists[what], given.suites, selection(given)};
+  options.add(
+      {.name = "WHAT", .needed = "one of " + listed(lists)}, command.what,
+      [lists](const std::string& text, const std::string& /*option*/) {
+        return lists[choice(Value::scalar(text), "what is listed", lists)];
+      },
+      "plugins, tests, methods, quantities, laws, gates or reports");
+  options.add({.name = "SUITE"}, command.suites, "suite files, of which the tests are listed");
+  add_selection(options, command.selection);
+  options.afterwards([&command] {
+    const std::string list = "`assay list " + command.what + "`";
+    if (command.what == "tests") {
+      if (!command.suites.empty() && !command.suites[0].empty()) return;
+      usage_error("`assay list` needs a suite file; see `assay list --help`");
+    }
+    if (!command.suites.empty()) usage_error(list + " takes no suite");
+    if (command.selection.empty()) return;
+    usage_error(list + " takes no --filter and no --tag; they select tests");
+  });
 }
 
-Command replay_command(const Given& given, const std::string& name) {
-  require(given.record, "a saved run", name);
-  require(given.test, "a test, as `assay list tests SUITE` prints them", name);
-  return ReplayArguments{given.record, given.test,
-                         count_if_given(given.observation, "the observation", 0)};
+void define_describe(Options& options, DescribeCommand& command) {
+  options.about(
+      R"(Prints the manual of a plugin: parameters, channels, references, samplers, mutants. Of a method, a
+quantity, a law or a report it prints what the tables say.
+
+Examples:
+  assay describe luminaire/area
+  assay describe t
+)");
+  options.add({.name = "NAME", .needed = "a plugin, a method, a quantity or a law"}, command.name,
+              "a plugin, a method, a quantity, a law or a report, as `assay list` prints them");
 }
 
-Command report_command(const Given& given, const std::string& name) {
-  require(given.record, "a saved run", name);
-  return ReportCommand{given.record, output(given)};
+void define_replay(Options& options, ReplayArguments& given) {
+  options.about(R"(Draws the numbers of a recorded test again, or one observation of it alone.
+
+Examples:
+  assay replay run.json 'luminaire/mean(triangle_area) == analytic'
+  assay replay run.json 'luminaire/mean(triangle_area) == analytic' 17
+)");
+  options.add({.name = "RUN.json", .needed = "a saved run"}, given.record, "a saved run");
+  options.add({.name = "TEST", .needed = "a test, as `assay list tests SUITE` prints them"},
+              given.test, "a test's id or name");
+  options.add(
+      {.name = "OBSERVATION"}, given.observation,
+      [](const std::string& text, const std::string& /*option*/) {
+        return at_least(0)(text, "the observation");
+      },
+      "one observation alone, from 0; default the whole test");
 }
 
-Command merge_command(const Given& given, const std::string& name) {
-  require(given.records.empty() ? "" : given.records[0], "the records of all shards", name);
-  return MergeCommand{{given.records}, output(given)};
+void define_merge(Options& options, MergeCommand& command) {
+  options.about(
+      R"(Joins the records of all shards of a run, in any order, to the record of the whole, with Holm's
+adjustment over each suite, and reports it. Nothing is sampled.
+
+Examples:
+  assay run suites/luminaire.yaml --shard 1/2 --report json=1.json
+  assay run suites/luminaire.yaml --shard 2/2 --report json=2.json
+  assay merge 1.json 2.json --report json=run.json html=run.html
+)");
+  options.add({.name = "SHARD.json", .needed = "the records of all shards"},
+              command.arguments.records, "the records of all shards, in any order");
+  add_inconclusive(options, command.output);
+  add_output(options, command.output);
 }
 
-Command describe_command(const Given& given, const std::string& name) {
-  require(given.plugin, "a plugin, a method, a quantity or a law", name);
-  return DescribeCommand{given.plugin};
+void define_report(Options& options, ReportCommand& command) {
+  options.about(R"(Makes reports from a saved run; nothing is sampled.
+
+Examples:
+  assay report run.json --report html=run.html
+  assay report run.json --report console=-
+)");
+  options.add({.name = "RUN.json", .needed = "a saved run"}, command.file, "a saved run");
+  add_output(options, command.output);
 }
 
-Command command_of(const Given& given, const std::string& name) {
-  if (name == "run") return run_command(given, name);
-  if (name == "plan") return plan_command(given, name);
-  if (name == "check") return check_command(given, name);
-  if (name == "images") return images_command(given, name);
-  if (name == "calibrate") return calibrate_command(given);
-  if (name == "sample") return sample_command(given, name);
-  if (name == "list") return list_command(given, name);
-  if (name == "describe") return describe_command(given, name);
-  if (name == "replay") return replay_command(given, name);
-  if (name == "merge") return merge_command(given, name);
-  return report_command(given, name);
+template <class Kind>
+CommandRow command(const char* name, void (*define)(Options&, Kind&)) {
+  return {name, [define](Options& options) {
+            const auto kind = std::make_shared<Kind>();
+            define(options, *kind);
+            return [kind] { return Command(*kind); };
+          }};
 }
 
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
-  const SortedWords words = sorted_words(arguments);
-  if (words.version) return TextCommand{fmt::format("assay {} ({})\n", version(), commit())};
-  if (words.command.empty()) return TextCommand{words.help};
-  return command_of(words.given, words.command);
+  return parsed(
+      arguments, general_help,
+      {command("run", define_run), command("plan", define_plan), command("check", define_check),
+       command("images", define_images), command("sample", define_sample),
+       command("calibrate", define_calibrate), command("list", define_list),
+       command("describe", define_describe), command("replay", define_replay),
+       command("merge", define_merge), command("report", define_report)});
 }
 
 }  // namespace assay::harness

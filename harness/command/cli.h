@@ -14,19 +14,14 @@
 
 namespace assay::harness {
 
-struct RunCommand {
+struct SuitesCommand {
   std::vector<std::string> suites;
   std::vector<std::string> assignments;  ///< of --set
   RunOptions options;
   Output output;
 };
-
-struct PlanCommand {
-  std::vector<std::string> suites;
-  std::vector<std::string> assignments;  ///< of --set
-  RunOptions options;
-  bool quiet = false;
-};
+struct RunCommand : SuitesCommand {};
+struct PlanCommand : SuitesCommand {};
 
 struct CheckCommand {
   CheckArguments arguments;

@@ -24,7 +24,8 @@ namespace {
 constexpr int trouble = 2;
 constexpr int stopped = 130;
 
-std::vector<Suite> load(const std::vector<std::string>& files) {
+std::vector<Suite> load(const std::vector<std::string>& files,
+                        const std::vector<std::string>& assignments = {}) {
   std::vector<Suite> suites;
   std::map<std::filesystem::path, std::string> seen;
   for (const std::string& file : files) {
@@ -36,21 +37,20 @@ std::vector<Suite> load(const std::vector<std::string>& files) {
                 ? fmt::format("the suite `{}` is given twice", file)
                 : fmt::format("`{}` and `{}` are one suite; give it once", first->second, file));
   }
+  for (const std::string& assignment : assignments) set_parameter(suites, assignment);
   return suites;
 }
 
 int act(const RunCommand& command) {
-  std::vector<Suite> suites = load(command.suites);
-  for (const std::string& text : command.assignments) set_parameter(suites, text);
+  const std::vector<Suite> suites = load(command.suites, command.assignments);
   RunOptions options = command.options;
   take_shard_from(system_environment, options);
   return run_suites(suites, options, command.output);
 }
 
 int act(const PlanCommand& command) {
-  std::vector<Suite> suites = load(command.suites);
-  for (const std::string& text : command.assignments) set_parameter(suites, text);
-  return plan_suites(suites, command.options, command.quiet);
+  return plan_suites(load(command.suites, command.assignments), command.options,
+                     command.output.quiet);
 }
 
 int act(const CheckCommand& command) {
@@ -69,21 +69,16 @@ int act(const ImagesCommand& command) {
   return run_suites({suite_of_images(command.arguments)}, command.options, command.output);
 }
 
-int act(const SampleArguments& arguments) { return sample(arguments); }
-
 int act(const ListCommand& command) {
   if (command.what == "tests") return list_tests(load(command.suites), command.selection);
   return command.what == "plugins" ? list_plugins() : list_table(command.what);
 }
 
+int act(const SampleArguments& arguments) { return sample(arguments); }
 int act(const DescribeCommand& command) { return describe(command.name); }
-
 int act(const ReplayArguments& arguments) { return replay(arguments); }
-
 int act(const ReportCommand& command) { return report_saved_run(command.file, command.output); }
-
 int act(const MergeCommand& command) { return merge_shards(command.arguments, command.output); }
-
 int act(const CalibrateCommand& command) { return calibrate(command.arguments, command.output); }
 
 int act(const TextCommand& command) {

@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "harness/command/cli_values.h"
+#include "harness/command/option_values.h"
 #include "harness/googletest/sources.h"
 #include "harness/plan/pilot_run.h"
 #include "harness/plan/plan.h"
@@ -60,7 +60,7 @@ std::uint64_t ordinal() {
 
 std::uint64_t seed_of(const ClaimBudget& budget) {
   const char* given = std::getenv("ASSAY_SEED");
-  return given == nullptr || *given == '\0' ? budget.seed : harness::parse_seed(given);
+  return given == nullptr || *given == '\0' ? budget.seed : harness::read_seed(given, "ASSAY_SEED");
 }
 
 /// One claim with its sources and margins.

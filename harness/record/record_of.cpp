@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "estimators/core/quoting.h"
 #include "harness/base/numbers.h"
 #include "harness/base/quantiles.h"
 #include "harness/theta/methods.h"
@@ -242,8 +241,6 @@ reports::Test record_of_untested(const Untested& untested, const std::string& fi
   return test;
 }
 
-std::string id_filter(const std::string& id) { return " --filter " + shell_quoted(id); }
-
 }  // namespace
 
 reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm) {
@@ -303,11 +300,10 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
     for (const TestWork& work : run->tests) {
       add_untested_before(work.outcome.question.test);
       suite.tests.push_back(record_of_test(work, run->suite.file, run->holm));
-      suite.tests.back().replay =
-          options.command.empty()
-              ? ""
-              : options.command + fmt::format(" --seed {}", run->seed) +
-                    (run->suite.file.empty() ? "" : id_filter(suite.tests.back().id));
+      if (options.command.empty()) continue;
+      reports::Test& test = suite.tests.back();
+      test.replay = options.command + option_words("--seed", {fmt::format("{}", run->seed)});
+      if (!run->suite.file.empty()) test.replay += option_words("--filter", {test.id});
     }
     add_untested_before(nullptr);
     suite.statements = statements_of(run->suite, suite.tests);

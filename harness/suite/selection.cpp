@@ -91,11 +91,16 @@ bool selects(const Selection& selection, const TestEntry& test) {
          passes(selection.filters, test.id);
 }
 
-std::string options_text(const Selection& selection) {
+std::string option_words(const std::string& option, const std::vector<std::string>& values) {
   std::string text;
-  for (const std::string& filter : selection.filters) text += " --filter " + shell_quoted(filter);
-  for (const std::string& tag : selection.tags) text += " --tag " + shell_quoted(tag);
+  for (const std::string& value : values) {
+    text += (option.empty() ? " " : " " + option + " ") + shell_quoted(value);
+  }
   return text;
+}
+
+std::string options_text(const Selection& selection) {
+  return option_words("--filter", selection.filters) + option_words("--tag", selection.tags);
 }
 
 std::string unmatched(const std::vector<Suite>& suites, const Selection& selection) {

@@ -19,6 +19,10 @@ struct Selection {
 /// An empty list selects everything.
 bool selects(const Selection& selection, const TestEntry& test);
 
+/// An option's words for a shell, each after a blank: " --tag 'a b' --tag c". Without a name they
+/// are arguments.
+std::string option_words(const std::string& option, const std::vector<std::string>& values);
+
 /// The options that make the selection, each after a blank: " --filter '*/mean*' --tag slow".
 std::string options_text(const Selection& selection);
 

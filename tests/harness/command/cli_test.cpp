@@ -67,7 +67,7 @@ TEST(CommandLine, PlansSuitesAsTheyWouldRun) {
   EXPECT_EQ(command.options.coarsen, 2);
   EXPECT_EQ(command.options.seed, 3U);
   EXPECT_EQ(command.options.threads, 1U);
-  EXPECT_TRUE(command.quiet);
+  EXPECT_TRUE(command.output.quiet);
   EXPECT_THAT(refused({"plan"}), HasSubstr("`assay plan` needs a suite file"));
   EXPECT_THAT(refused({"plan", "a.yaml", "--ledger", "f"}), HasSubstr("no option `--ledger`"));
 }
@@ -137,7 +137,7 @@ TEST(CommandLine, ChecksAClaim) {
   EXPECT_EQ(command.arguments.method, "t");
   EXPECT_EQ(command.arguments.primaries, 100U);
   EXPECT_EQ(command.arguments.secondaries, 1000U);
-  EXPECT_EQ(command.arguments.alpha, 0.02);
+  EXPECT_EQ(command.options.alpha, 0.02);
   EXPECT_EQ(command.options.command,
             "assay check 'mean(a) == analytic' --estimator 'a=luminaire/area,scene={x: [1, 2]}' "
             "--detect 0.5% --allow 1e-6 --test t --primaries 1e2 --secondaries 1000 --alpha 0.02");

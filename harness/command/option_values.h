@@ -1,0 +1,45 @@
+#pragma once
+
+// Readers of options' values. Each takes the text and the option's name, and throws an InputError
+// that names the option.
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "harness/record/output.h"
+#include "harness/suite/suite_keys.h"
+
+namespace assay::harness {
+
+/// A whole number, `least` or more.
+inline auto at_least(std::uint64_t least) {
+  return [least](const std::string& text, const std::string& option) {
+    return count_from(Value::scalar(text), option, least);
+  };
+}
+
+unsigned read_threads(const std::string& text, const std::string& option);
+double read_error_rate(const std::string& text, const std::string& option);
+double read_positive(const std::string& text, const std::string& option);
+
+/// A count, or `random`: 64 bits from the operating system.
+std::uint64_t read_seed(const std::string& text, const std::string& option);
+
+/// "I/N" with 1 <= I <= N.
+std::pair<unsigned, unsigned> read_shard(const std::string& text, const std::string& option);
+
+/// "KIND=PATH" with a known kind.
+ReportRequest read_report(const std::string& text, const std::string& option);
+
+/// One of the words, as the value beside it.
+template <class T>
+auto one_of(const std::vector<std::pair<std::string, T>>& meanings) {
+  return [meanings](const std::string& text, const std::string& option) {
+    std::vector<std::string> words;
+    for (const auto& [word, meaning] : meanings) words.push_back(word);
+    return meanings[choice(Value::scalar(text), option, words)].second;
+  };
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,238 @@
+#include "harness/command/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+
+#include "estimators/core/quoting.h"
+#include "harness/base/version.h"
+#include "harness/language/method_names.h"
+#include "harness/suite/suite_keys.h"
+
+namespace assay::harness {
+
+namespace {
+
+Texts option_names(const CLI::App& app) {
+  Texts names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+Texts subcommand_names(const CLI::App& app) {
+  Texts names;
+  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+  return names;
+}
+
+/// The suite's key that does the same as an option of `check`.
+std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
+  if (sub.get_name() != "run" && sub.get_name() != "plan") return "";
+  for (const char* key : {"detect", "allow", "test", "over", "reference", "cost", "budget",
+                          "primaries", "secondaries"}) {
+    if (option == std::string("--") + key) return key;
+  }
+  return "";
+}
+
+void refuse_extras(const CLI::App& sub) {
+  for (const std::string& extra : sub.remaining()) {
+    const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
+    if (!extra.starts_with("-")) {
+      std::string mend = help;
+      if (extra.ends_with(".exr")) mend = "quote a pattern, so that the shell leaves it alone";
+      if (sub.get_name() == "check") mend = "quote the claim: `assay check 'mean(a) == 3'`";
+      usage_error(fmt::format("`{}` is one argument too many; {}", extra, mend));
+    }
+    const std::string name = extra.substr(0, extra.find('='));
+    const std::string near = nearest(name, option_names(sub));
+    std::string mend = near.empty() ? help : fmt::format("did you mean `{}`?", near);
+    if (const std::string key = key_of_a_suite(sub, name); !key.empty()) {
+      mend = fmt::format("write it into the suite, as the key `{}`", key);
+    }
+    usage_error(fmt::format("`assay {}` has no option `{}`; {}", sub.get_name(), name, mend));
+  }
+}
+
+/// The command that fits a suite, a saved run or a claim.
+std::string command_meant(const std::string& word, const CLI::App& app) {
+  const auto meant = [&](const char* command) {
+    return fmt::format("; did you mean `assay {} {}`?", command, shell_quoted(word));
+  };
+  if (word.ends_with(".yaml") || word.ends_with(".yml")) return meant("run");
+  if (word.ends_with(".json")) return meant("report");
+  if (word.find('(') != std::string::npos) return meant("check");
+  return suggestion(word, subcommand_names(app));
+}
+
+const CLI::App& chosen(const CLI::App& app) {
+  for (const std::string& extra : app.remaining()) {
+    if (extra.starts_with("-")) {
+      usage_error(
+          fmt::format("unknown option `{}`; options stand after the command, see `assay "
+                      "--help`",
+                      extra));
+    }
+    usage_error(fmt::format("unknown command `{}`{}", extra, command_meant(extra, app)));
+  }
+  if (app.get_subcommands().empty()) usage_error("no command; see `assay --help`");
+  return *app.get_subcommands().front();
+}
+
+/// CLI11's help with its options at most 100 columns wide.
+std::string wrapped_options(const std::string& help) {
+  constexpr std::size_t width = 100;
+  constexpr std::size_t indent = 30;  // column of CLI11's descriptions of options
+  const std::size_t options = help.find("\nOptions:\n");
+  if (options == std::string::npos) return help;
+  std::string out = help.substr(0, options);
+  std::string rest = help.substr(options);
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::size_t blank = rest.substr(0, width + 1).rfind(' ');
+    if (end <= width || blank < indent || blank == std::string::npos) {
+      out += rest.substr(0, end + 1);
+      rest.erase(0, end + 1);
+    } else {
+      out += rest.substr(0, blank) + "\n";
+      rest.replace(0, blank + 1, std::string(indent, ' '));
+    }
+  }
+  return out;
+}
+
+/// `assay help` is `assay --help`, `assay help run` is `assay run --help`.
+Texts without_help_command(const Texts& arguments, const CLI::App& app) {
+  if (arguments.empty() || arguments.front() != "help") return arguments;
+  if (arguments.size() == 1) return {"--help"};
+  Texts asked(arguments.begin() + 1, arguments.end());
+  // An unknown command is passed on, so that it is refused.
+  if (std::ranges::count(subcommand_names(app), asked.front()) > 0) asked.emplace_back("--help");
+  return asked;
+}
+
+/// `--report json=a html=b` is `--report json=a --report html=b`. Nothing else that follows a
+/// report resembles KIND=PATH.
+Texts with_an_option_each(const Texts& words) {
+  Texts all;
+  bool is_value = false;
+  bool after_report = false;
+  for (const std::string& word : words) {
+    const std::size_t kind = word.find_first_not_of("abcdefghijklmnopqrstuvwxyz");
+    if (after_report && kind != std::string::npos && kind > 0 && word[kind] == '=') {
+      all.emplace_back("--report");
+      is_value = true;
+    }
+    all.push_back(word);
+    after_report = is_value || word.starts_with("--report=");
+    is_value = !is_value && word == "--report";
+  }
+  return all;
+}
+
+/// CLI11's refusal, reworded: it names the methods if one was expected. CLI11 says "--detect: 1
+/// required X missing" if a value is missing.
+std::string in_words(const CLI::ParseError& error) {
+  std::string text = error.what();
+  const std::size_t colon = text.find(": 1 required ");
+  if (colon != std::string::npos && text.ends_with(" missing")) {
+    const std::size_t kind = colon + std::string_view(": 1 required ").size();
+    const std::string option = text.substr(0, colon);
+    text = fmt::format("{0} needs a value: `{0} {1}`", option,
+                       text.substr(kind, text.rfind(' ') - kind));
+    if (option == "--test") text += "; METHOD is one of " + listed(method_names());
+  }
+  return text;
+}
+
+}  // namespace
+
+void usage_error(const std::string& why) { throw InputError({}, why); }
+
+void Options::about(const std::string& text) { app_.description(text); }
+
+Texts Options::Row::given() const {
+  Texts texts = option->results();
+  if (!repeats) std::erase(texts, "");
+  return texts;
+}
+
+void Options::add_row(const OptionName& name, const std::string& about, bool repeats,
+                      std::function<void(const std::string&)> take) {
+  CLI::Option* option = app_.add_option(name.name, CLI::callback_t{}, about);
+  option->type_name(name.value);
+  if (repeats) option->expected(CLI::detail::expected_max_vector_size);
+  if (repeats && !option->get_positional()) option->allow_extra_args(false)->take_all();
+  rows_.push_back({option, name, repeats, std::move(take)});
+}
+
+void Options::flag(const std::string& name, const std::string& about, bool& target) {
+  app_.add_flag(name, target, about);
+}
+
+void Options::read_values() const {
+  const std::string command = app_.get_name();
+  for (const Row& row : rows_) {
+    const Texts texts = row.given();
+    const std::string& needed = row.name.needed;
+    if (!needed.empty() && (texts.empty() || texts.front().empty())) {
+      usage_error(fmt::format("`assay {0}` needs {1}; see `assay {0} --help`", command, needed));
+    }
+    for (const std::string& text : texts) row.take(text);
+  }
+  afterwards_();
+  if (replay_line_ == nullptr) return;
+  *replay_line_ = "assay " + command;
+  for (const Replay place : {Replay::first, Replay::middle, Replay::last}) {
+    for (const Row& row : rows_) {
+      const bool argument = row.option->get_positional();
+      if ((argument ? Replay::first : row.name.replay) != place) continue;
+      *replay_line_ += option_words(argument ? "" : row.name.name, row.given());
+    }
+  }
+}
+
+std::string Options::help() const {
+  app_.set_help_flag("-h,--help", "this text");
+  // CLI11 shows needed arguments in the usage line. It would demand them too, in its own words.
+  for (const Row& row : rows_) {
+    row.option->required(row.option->get_positional() && !row.name.needed.empty());
+  }
+  return wrapped_options(app_.help("assay"));
+}
+
+Command parsed(const Texts& arguments, const std::string& help,
+               const std::vector<CommandRow>& commands) {
+  CLI::App app("", "assay");
+  app.require_subcommand(0, 1);
+  app.allow_extras();
+  bool version_asked = false;
+  app.add_flag("--version", version_asked);
+  std::map<std::string, Options> options;
+  std::map<std::string, std::function<Command()>> made;
+  for (const CommandRow& row : commands) {
+    CLI::App* sub = app.add_subcommand(row.name)->allow_extras();
+    made[row.name] = row.define(options.try_emplace(row.name, *sub).first->second);
+  }
+  try {
+    const Texts words = with_an_option_each(without_help_command(arguments, app));
+    // CLI11 takes the words from the back.
+    app.parse(Texts(words.rbegin(), words.rend()));
+  } catch (const CLI::CallForHelp&) {
+    const auto asked = app.get_subcommands();
+    return TextCommand{asked.empty() ? help : options.at(asked.front()->get_name()).help()};
+  } catch (const CLI::ParseError& e) {
+    usage_error(in_words(e));
+  }
+  if (version_asked) return TextCommand{fmt::format("assay {} ({})\n", version(), commit())};
+  const CLI::App& sub = chosen(app);
+  refuse_extras(sub);
+  options.at(sub.get_name()).read_values();
+  return made.at(sub.get_name())();
+}
+
+}  // namespace assay::harness

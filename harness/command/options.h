@@ -1,0 +1,99 @@
+#pragma once
+
+// Rows of options. CLI11's options, the lists of `--help`, the typed values and the words of the
+// replay line are made from them. Only options.cpp includes CLI11, which compiles slowly.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "harness/command/cli.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace assay::harness {
+
+using Texts = std::vector<std::string>;
+
+[[noreturn]] void usage_error(const std::string& why);
+
+/// The place of an option in the line that repeats a test. What changes no number is `nowhere`. So
+/// are seed and selection, since the record adds each test's own.
+enum class Replay { first, middle, last, nowhere };
+
+/// How an option or an argument is called.
+struct OptionName {
+  std::string name;                ///< "--seed"; an argument's is without dashes.
+  std::string value = "";          ///< What stands for an option's value in `--help`.
+  Replay replay = Replay::middle;  ///< An argument stands first.
+  std::string needed = "";         ///< What a message says is needed; "" if it may be left out.
+};
+
+/// The options and arguments of one command.
+class Options {
+ public:
+  explicit Options(CLI::App& app) : app_(app) {}
+
+  /// The text before the options in `--help`: a sentence and examples.
+  void about(const std::string& text);
+
+  /// An option or an argument, which repeats if the target is a list. `read` takes the text and the
+  /// option's name. An empty text counts as none if the option does not repeat.
+  template <class Target, class Read>
+  void add(const OptionName& name, Target& target, Read read, const std::string& about) {
+    constexpr bool repeats = requires { target.emplace_back(); };
+    add_row(name, about, repeats, [&target, read, option = name.name](const std::string& text) {
+      if constexpr (repeats) {
+        target.push_back(read(text, option));
+      } else {
+        target = read(text, option);
+      }
+    });
+  }
+  template <class Target>
+  void add(const OptionName& name, Target& target, const std::string& about) {
+    const auto as_typed = [](const std::string& text, const std::string&) { return text; };
+    add(name, target, as_typed, about);
+  }
+  void flag(const std::string& name, const std::string& about, bool& target);
+
+  /// The line that repeats a test goes there.
+  void repeat_by(std::string& line) { replay_line_ = &line; }
+  /// Called when all values are read.
+  void afterwards(std::function<void()> act) { afterwards_ = std::move(act); }
+
+  void read_values() const;
+  std::string help() const;
+
+ private:
+  struct Row {
+    CLI::Option* option;
+    OptionName name;
+    bool repeats;
+    std::function<void(const std::string& text)> take;
+
+    Texts given() const;
+  };
+  void add_row(const OptionName& name, const std::string& about, bool repeats,
+               std::function<void(const std::string&)> take);
+
+  CLI::App& app_;
+  std::vector<Row> rows_ = {};
+  std::string* replay_line_ = nullptr;
+  std::function<void()> afterwards_ = [] {};
+};
+
+/// A command by name. `define` adds its options and returns what makes the command of their values.
+struct CommandRow {
+  std::string name;
+  std::function<std::function<Command()>(Options&)> define;
+};
+
+/// The command that the arguments ask for. `help` is the text of `assay --help`.
+Command parsed(const Texts& arguments, const std::string& help,
+               const std::vector<CommandRow>& commands);
+
+}  // namespace assay::harness
