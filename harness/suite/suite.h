@@ -116,7 +116,6 @@ struct CheckArguments {
   std::optional<std::string> method = {};
   std::optional<std::uint64_t> primaries = {};
   std::optional<std::uint64_t> secondaries = {};
-  double alpha = 0.01;
   std::optional<std::string> over = {};       ///< YAML flow, as in a suite
   std::optional<std::string> reference = {};  ///< an estimator or a number
   std::optional<std::string> cost = {};

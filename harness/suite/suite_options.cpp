@@ -268,7 +268,6 @@ Suite suite_of_claim(const CheckArguments& arguments) {
   suite.name = "check";
   suite.stem = "check";
   suite.folder = ".";
-  suite.alpha = arguments.alpha;
   std::vector<Source> sources = sources_of(test.claim);
   if (test.reference) sources.push_back(*test.reference);
   suite.estimators = estimators_of(sources, arguments.estimators, arguments.primaries);

@@ -98,9 +98,7 @@ TEST(SuiteOfClaim, TakesPluginsByTheirName) {
                                       .allow = "1e-5%",
                                       .method = "welch",
                                       .primaries = 16,
-                                      .secondaries = 500,
-                                      .alpha = 0.05});
-  EXPECT_EQ(suite.alpha, 0.05);
+                                      .secondaries = 500});
   ASSERT_EQ(suite.estimators.size(), 2U);
   EXPECT_EQ(suite.estimators[0].plugin, "luminaire/area");
   EXPECT_EQ(suite.estimators[1].primaries, 16U);
