@@ -9,7 +9,6 @@
 
 #include "harness/plan/forecast.h"
 #include "harness/run/observation_faults.h"
-#include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
 #include "reports/words/columns.h"
 #include "reports/words/effect.h"
@@ -103,9 +102,9 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
     effect = forecast.detectable;
   }
   if (!effect) return unknown;
-  return plain(
-      reports::margin_text(*effect, {.quantity = test.question.is().logarithm ? "ln(ratio)" : "",
-                                     .relative = test.question.theta->is_relative(test.question, 0)}));
+  return plain(reports::margin_text(
+      *effect, {.quantity = test.question.is().logarithm ? "ln(ratio)" : "",
+                .relative = test.question.theta->is_relative(test.question, 0)}));
 }
 
 std::string gate_text(const Gate& gate) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "harness/command/describe.h"
-#include "harness/theta/methods.h"
 #include "harness/language/laws.h"
 #include "harness/language/quantities.h"
 #include "harness/theta/gate.h"
+#include "harness/theta/methods.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {

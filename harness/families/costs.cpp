@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "stats/gates/assumption_gates.h"
-#include "stats/gates/log_variance_level.h"
 
 namespace assay::harness {
 

@@ -8,13 +8,13 @@
 #include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
-#include "harness/plan/frozen.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/planned_rates.h"
 #include "harness/plan/sample_size.h"
+#include "harness/plan/secondaries.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/observation_faults.h"
-#include "harness/theta/critical.h"
 #include "stats/means/binomial.h"
 #include "stats/tails/tails.h"
 
@@ -127,19 +127,11 @@ class DrawsTheta : public Theta {
  public:
   DrawsTheta() : Theta({.of_single_values = true}) {}
 
-  const std::vector<MethodRow>& methods() const override { return rows(); }
-
   void check_margin(const Question& question, const Margin& margin) const override {
     require_absolute(margin, "this is a probability");
     Theta::check_margin(question, margin);
   }
   std::optional<double> known_size(const Question&) const override { return std::nullopt; }
-
-  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots& pilots,
-                       std::uint64_t, Plan& plan) const override {
-    freeze(question, pilots, plan);
-    return least_secondaries;
-  }
 
   /// Draws that show a probability off by `detect`. Exact binomial tests are planned as normal
   /// ones, plus z^2 / room for discreteness.
@@ -160,18 +152,24 @@ class DrawsTheta : public Theta {
     const double p = std::clamp(known.value, 0.0, 0.5) + distance + regions.allow;
     const double variance = std::min(0.25, p * std::max(0.0, 1 - p));
     const double count = z * z * (variance / (room * room) + 1 / room);
-    return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
+    return whole_secondaries(count);
   }
 
  protected:
   virtual CountedProbability counted(const Question&) const = 0;
-
- private:
-  static const std::vector<MethodRow>& rows();
 };
 
 class IntegralTheta final : public DrawsTheta {
  public:
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{{"binomial",
+                                               "exact: what a sampler's density integrates to",
+                                               any_question,
+                                               Keeps::cells,
+                                               integral,
+                                               {.exact = true}}};
+    return table;
+  }
   void require_density(const Question& question) const override {
     dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
   }
@@ -194,6 +192,15 @@ class IntegralTheta final : public DrawsTheta {
 
 class InconsistencyTheta final : public DrawsTheta {
  public:
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{{"binomial",
+                                               "exact: how often a draw contradicts its sampler",
+                                               any_question,
+                                               Keeps::cells,
+                                               inconsistency,
+                                               {.exact = true}}};
+    return table;
+  }
   std::string where_it_differs(const DrawnTest& test) const override {
     return first_contradiction(test);
   }
@@ -206,23 +213,6 @@ class InconsistencyTheta final : public DrawsTheta {
 
 const IntegralTheta integral_theta;
 const InconsistencyTheta inconsistency_theta;
-
-const std::vector<MethodRow>& DrawsTheta::rows() {
-  static const std::vector<MethodRow> table{
-      {"binomial",
-       "exact: what a sampler's density integrates to",
-       [](const Question& q) { return q.theta == &integral_theta; },
-       Keeps::cells,
-       integral,
-       {.exact = true}},
-      {"binomial",
-       "exact: how often a draw contradicts its sampler",
-       [](const Question& q) { return q.theta == &inconsistency_theta; },
-       Keeps::cells,
-       inconsistency,
-       {.exact = true}}};
-  return table;
-}
 
 void require_whole_sampler(const Source& source, const Estimators& estimators) {
   const Subject marginal = draws(source, estimators, Draws::cells);
@@ -254,6 +244,7 @@ Question bind_inconsistency(const TestEntry& test, const Estimators& estimators)
   return bind_draws(test, estimators, inconsistency_theta, Draws::consistency);
 }
 
-const Theta& theta_of_draws() { return integral_theta; }
+const Theta& theta_of_integrals() { return integral_theta; }
+const Theta& theta_of_inconsistencies() { return inconsistency_theta; }
 
 }  // namespace assay::harness

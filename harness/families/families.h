@@ -1,6 +1,6 @@
 #pragma once
 
-// What the families offer to the table of quantities and to each other. One file a family.
+// The families offer these to the table of quantities and to each other. Each has one file.
 
 #include <string>
 
@@ -29,12 +29,17 @@ Question bind_integral(const TestEntry&, const Estimators&);
 Question bind_inconsistency(const TestEntry&, const Estimators&);
 
 const Theta& theta_of_means();
+const Theta& theta_of_biases();
 const Theta& theta_of_images();
+const Theta& theta_of_bias_images();
 const Theta& theta_of_variances();
 const Theta& theta_of_costs();
+const Theta& theta_of_efficiencies();
+const Theta& theta_of_total_variances();
 const Theta& theta_of_laws();
 const Theta& theta_of_quantiles();
-const Theta& theta_of_draws();
+const Theta& theta_of_integrals();
+const Theta& theta_of_inconsistencies();
 const Theta& theta_of_slopes();
 const Theta& theta_of_variance_slopes();
 

@@ -63,9 +63,7 @@ void require_something(const Question& question) {
                                 [](const Constant& reference) { return reference.value == 0; });
   if (!dark) return;
   const TestEntry& test = *question.test;
-  const bool relative = (test.detect && test.detect->relative) ||
-                        (test.allow && test.allow->relative && test.allow->value > 0) ||
-                        (test.claim.relation == Relation::within && test.claim.margin.relative);
+  const bool relative = has_relative_margin(test);
   if (relative) {
     throw InputError(test.where,
                      "a margin in per cent has no meaning here: the reference is zero in every "
@@ -73,13 +71,9 @@ void require_something(const Question& question) {
   }
 }
 
-Evidence whole_images(const Method&, const Question&, std::size_t, std::span<const ChannelData>) {
-  throw std::logic_error("a claim on images has evidence of its own (image_evidence.h)");
-}
-
 /// Theta is the size of the difference of two images' means over all elements, or of one image and
 /// numbers (image_evidence.h).
-class ImageTheta final : public Theta {
+class ImageTheta : public Theta {
  public:
   ImageTheta() : Theta({.joins_channels = true, .of_images = true}) {}
 
@@ -89,7 +83,7 @@ class ImageTheta final : public Theta {
          "cells of every size, alternating sums and the sum of squares: images",
          any_question,
          Keeps::images,
-         whole_images,
+         nullptr,
          {.from_pilot = FromPilot::weights}}};
     return table;
   }
@@ -111,18 +105,13 @@ class ImageTheta final : public Theta {
   std::string claimed_value(const Question& question, std::size_t channel) const override {
     const Claim& claim = question.test->claim;
     if (other_side(claim) != nullptr) return Theta::claimed_value(question, channel);
-    if (claim.left.row->relative_to_0) return fmt::format("{}", question.offset);
     const auto* const number = std::get_if<Constant>(&claim.right);
     return number != nullptr ? fmt::format("{}", number->value) : "analytic";
   }
-  std::string circumstances(const Question& question) const override {
-    const bool bias = question.test->claim.left.row->relative_to_0;
-    return (bias ? reference_text(question) : "") + " in every pixel";
-  }
+  std::string circumstances(const Question&) const override { return " in every pixel"; }
 
   bool is_relative(const Question& question, std::size_t) const override {
     const TestEntry& test = *question.test;
-    if (test.claim.left.row->relative_to_0) return has_relative_margin(test);
     const auto lit = [](const Constant& reference) { return reference.value != 0; };
     return !has_absolute_margin(test) &&
            (question.of_two() || std::ranges::any_of(question.references, lit));
@@ -166,10 +155,25 @@ class ImageTheta final : public Theta {
   }
 };
 
+class BiasImageTheta final : public ImageTheta {
+ public:
+  std::string claimed_value(const Question& question, std::size_t) const override {
+    return fmt::format("{}", question.offset);
+  }
+  std::string circumstances(const Question& question) const override {
+    return reference_text(question) + ImageTheta::circumstances(question);
+  }
+  bool is_relative(const Question& question, std::size_t) const override {
+    return has_relative_margin(*question.test);
+  }
+};
+
 const ImageTheta image_theta;
+const BiasImageTheta bias_image_theta;
 
 }  // namespace
 
 const Theta& theta_of_images() { return image_theta; }
+const Theta& theta_of_bias_images() { return bias_image_theta; }
 
 }  // namespace assay::harness

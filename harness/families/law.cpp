@@ -10,14 +10,13 @@
 #include "harness/families/families.h"
 #include "harness/families/law_evidence.h"
 #include "harness/language/method_names.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/frozen.h"
-#include "harness/plan/look_sizes.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/rows.h"
-#include "harness/plan/sample_size.h"
+#include "harness/plan/secondaries.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
-#include "harness/theta/critical.h"
 #include "harness/theta/methods.h"
 #include "stats/basics/sorted.h"
 #include "stats/cells/chi_square_fit.h"
@@ -192,7 +191,7 @@ class LawTheta : public Theta {
     // If the pilot saw the atom alone, the rest is not planned for.
     if (!count || !atom || *atom >= 1) return count;
     const double all = std::ceil(static_cast<double>(*count) / (1 - *atom));
-    return all < 0x1p53 ? static_cast<std::uint64_t>(all) : impossible_secondaries;
+    return whole_secondaries(all);
   }
 
   std::optional<double> detectable(const Question& question, const TestSize& size, const Plan& plan,
@@ -306,8 +305,7 @@ const TwoLawsTheta two_planes_theta({.joins_channels = true,
                                      .pilots_draws = true});
 
 bool of_one_law(const Question& question) {
-  return question.theta == &named_law_theta ||
-         (question.theta == &density_theta && !of_whole_draws(question));
+  return !question.of_two() && (!question.law.name.empty() || !of_whole_draws(question));
 }
 
 const std::vector<MethodRow>& LawTheta::rows() {
@@ -325,11 +323,11 @@ const std::vector<MethodRow>& LawTheta::rows() {
        values_against_law<PointsTest::anderson_darling>,
        {.of_distinct_values = true, .allows_distance = false, .power_is_known = false}},
       {"ks", "Kolmogorov-Smirnov: values of two",
-       [](const Question& q) { return q.theta == &two_laws_theta; }, Keeps::values,
+       [](const Question& q) { return q.of_two() && !q.is().joins_channels; }, Keeps::values,
        law_against_law},
       {"two-part-ks",
        "Kolmogorov-Smirnov of two beside a value that comes again and again",
-       [](const Question& q) { return q.theta == &two_laws_theta && !about_draws(q); },
+       [](const Question& q) { return q.of_two() && !q.is().joins_channels && !about_draws(q); },
        Keeps::values,
        law_against_law,
        {.power_is_known = false, .from_pilot = FromPilot::atoms}},
@@ -340,7 +338,7 @@ const std::vector<MethodRow>& LawTheta::rows() {
        cells_of_two,
        {.joins_channels = true, .from_pilot = FromPilot::cells}},
       {"chi-square-fit", "chi-square: draws against their declared density, in cells",
-       [](const Question& q) { return q.theta == &density_theta && of_whole_draws(q); },
+       [](const Question& q) { return !q.of_two() && q.law.name.empty() && of_whole_draws(q); },
        Keeps::cells, cells_of_density}};
   return table;
 }

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/plan/look_sizes.h"
 #include "harness/plan/planned_rates.h"
 #include "harness/plan/sample_size.h"
-#include "harness/question/question_sources.h"
+#include "harness/plan/secondaries.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {

@@ -17,7 +17,8 @@ class LogTheta : public Theta {
                               double effect) const override;
 
  protected:
-  explicit LogTheta(ThetaTraits traits, const char* plural) : Theta(with_logarithm(traits)), plural_(plural) {}
+  explicit LogTheta(ThetaTraits traits, const char* plural)
+      : Theta(with_logarithm(traits)), plural_(plural) {}
 
   /// A channel as the pilots show it; nullopt if it has no spread there.
   virtual std::optional<PlannedChannel> from_pilots(const Question&, std::size_t channel,

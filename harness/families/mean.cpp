@@ -8,17 +8,17 @@
 #include "harness/families/families.h"
 #include "harness/families/lost_to_rounding.h"
 #include "harness/families/mean_evidence.h"
-#include "harness/plan/look_sizes.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/planned_rates.h"
 #include "harness/plan/rows.h"
 #include "harness/plan/sample_size.h"
+#include "harness/plan/secondaries.h"
 #include "harness/question/declared_range.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"
-#include "harness/theta/critical.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
@@ -148,7 +148,7 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
   const double left = wanted * wanted - channel.reference_error * channel.reference_error;
   if (!(left > 0)) return impossible_secondaries;
   const double count = std::ceil(deviation * deviation / left) + 2;
-  return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
+  return whole_secondaries(count);
 }
 
 // ---- Exact methods
@@ -233,7 +233,7 @@ std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& quest
 
 // ---- The choice of a method
 
-/// The same for the skewness-corrected t.
+/// Secondaries that keep the level of the skewness-corrected t within a quarter.
 std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double critical) {
   std::uint64_t needed = least_secondaries;
   for (const Known& known : channels) {
@@ -810,6 +810,7 @@ const std::vector<MethodRow>& MeanTheta::rows() {
 /// The mean less the truth. Its margins are numbers unless one is in per cent.
 class BiasTheta final : public MeanTheta {
  public:
+  const Theta* of_images() const override { return &theta_of_bias_images(); }
   bool is_relative(const Question& question, std::size_t) const override {
     return has_relative_margin(*question.test);
   }
@@ -886,5 +887,6 @@ Question bind_bias(const TestEntry& test, const Estimators& estimators) {
 }
 
 const Theta& theta_of_means() { return mean_theta; }
+const Theta& theta_of_biases() { return bias_theta; }
 
 }  // namespace assay::harness

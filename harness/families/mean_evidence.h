@@ -5,7 +5,6 @@
 #include <span>
 
 #include "harness/theta/method.h"
-#include "stats/means/bounded_mean.h"
 
 namespace assay::harness {
 

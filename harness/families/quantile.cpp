@@ -5,12 +5,11 @@
 #include <vector>
 
 #include "harness/families/families.h"
-#include "harness/plan/frozen.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/planned_rates.h"
 #include "harness/plan/sample_size.h"
+#include "harness/plan/secondaries.h"
 #include "harness/question/question_sources.h"
-#include "harness/run/evaluate.h"
-#include "harness/theta/critical.h"
 #include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/sorted.h"
@@ -155,15 +154,9 @@ class QuantileTheta final : public Theta {
     return !question.of_two() && has_relative_margin(*question.test);
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots& pilots,
-                       std::uint64_t, Plan& plan) const override {
-    freeze(question, pilots, plan);
-    return least_secondaries;
-  }
-
-  /// Planned by the pilot's counts over the distance to be found; means of several primaries count
-  /// as normal. If the density at the quantile differs, the size is off by its ratio and the
-  /// verdict may be inconclusive. The test itself is exact for every law.
+  /// The size is planned by the pilot's counts over the distance to be found; means of several
+  /// primaries count as normal. If the density at the quantile differs, the size is off by its
+  /// ratio and the verdict may be inconclusive. The test itself is exact for every law.
   std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
                                            const Pilots& pilots, const Plan& plan) const override {
     if (!all_piloted(question, pilots)) return std::nullopt;
@@ -181,9 +174,8 @@ class QuantileTheta final : public Theta {
         sd = std::hypot(sd, factor * other);
       }
       if (!(sd > 0)) return std::nullopt;
-      const double count = std::ceil(stats::normal_sample_size(
+      return whole_secondaries(stats::normal_sample_size(
           sd, {.allow = 0, .detect = distance}, planned_rates(share, plan.regions[channel])));
-      return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
     });
   }
 

@@ -149,6 +149,7 @@ Evidence evidence_of_replicates(const Method&, const Question& question, std::si
 }
 
 bool in_seconds(const Question& question) { return question.test->cost == CostKind::seconds; }
+bool in_counts(const Question& question) { return !in_seconds(question); }
 
 /// A pilot of single primaries.
 struct PilotMoments {
@@ -165,8 +166,6 @@ double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2)
 class RatioTheta : public LogTheta {
  public:
   using LogTheta::LogTheta;
-
-  const std::vector<MethodRow>& methods() const override { return rows(); }
 
   std::optional<PlannedChannel> planned(const Question& question, const Regions& regions,
                                         const Pilots& pilots, const Plan& plan) const override {
@@ -198,8 +197,6 @@ class RatioTheta : public LogTheta {
                                                  double averaged) const = 0;
 
  private:
-  static const std::vector<MethodRow>& rows();
-
   std::optional<PlannedChannel> from_pilots(const Question& question, std::size_t channel,
                                             const Pilots& pilots, const Plan& plan) const override {
     return worst_channel(question, plan.regions[channel], pilots, plan);
@@ -252,6 +249,13 @@ class CostTheta final : public RatioTheta {
  public:
   CostTheta() : RatioTheta({.joins_channels = true, .rests_on_tails = true}, "costs") {}
 
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{{"log-cost", "normal law of the logarithm of a cost",
+                                               in_counts, Keeps::costs, cost_evidence},
+                                              {"replicates", "t of replicates: costs in seconds",
+                                               in_seconds, Keeps::blocks, evidence_of_replicates}};
+    return table;
+  }
   const Theta* of_images() const override { return this; }
   std::string channel_name(const Question&, std::size_t) const override { return "cost"; }
   std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
@@ -277,6 +281,14 @@ class EfficiencyTheta final : public RatioTheta {
  public:
   EfficiencyTheta() : RatioTheta({.of_spread = true, .rests_on_tails = true}, "efficiencies") {}
 
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{
+        {"log-efficiency", "normal law of the logarithm of an efficiency", in_counts, Keeps::costs,
+         efficiency_evidence},
+        {"replicates", "t of replicates: efficiencies in seconds", in_seconds, Keeps::blocks,
+         evidence_of_replicates}};
+    return table;
+  }
   std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
     return choose_for_spread(question, place, pilots, most, plan);
@@ -308,6 +320,12 @@ class TotalVarianceTheta final : public RatioTheta {
       : RatioTheta({.joins_channels = true, .of_spread = true, .rests_on_tails = true},
                    "variances") {}
 
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{
+        {"log-total-variance", "normal law of the logarithm of the variances' sum", any_question,
+         Keeps::group_variances, total_variance_evidence}};
+    return table;
+  }
   const Theta* of_images() const override { return this; }
   std::string channel_name(const Question& question, std::size_t channel) const override {
     return question.subjects[0].channels.size() > 1 ? "all channels"
@@ -347,22 +365,6 @@ class TotalVarianceTheta final : public RatioTheta {
 const CostTheta cost_theta;
 const EfficiencyTheta efficiency_theta;
 const TotalVarianceTheta total_variance_theta;
-
-const std::vector<MethodRow>& RatioTheta::rows() {
-  static const std::vector<MethodRow> table{
-      {"log-cost", "normal law of the logarithm of a cost",
-       [](const Question& q) { return q.theta == &cost_theta && !in_seconds(q); }, Keeps::costs,
-       cost_evidence},
-      {"log-efficiency", "normal law of the logarithm of an efficiency",
-       [](const Question& q) { return q.theta == &efficiency_theta && !in_seconds(q); },
-       Keeps::costs, efficiency_evidence},
-      {"replicates", "t of replicates: costs and efficiencies in seconds", in_seconds,
-       Keeps::blocks, evidence_of_replicates},
-      {"log-total-variance", "normal law of the logarithm of the variances' sum",
-       [](const Question& q) { return q.theta == &total_variance_theta; }, Keeps::group_variances,
-       total_variance_evidence}};
-  return table;
-}
 
 bool is_biased(const Subject& subject) {
   return subject.estimator->nature().bias.value_or(BiasClass::unbiased) != BiasClass::unbiased;
@@ -414,5 +416,7 @@ Question bind_total_variance(const TestEntry& test, const Estimators& estimators
 }
 
 const Theta& theta_of_costs() { return cost_theta; }
+const Theta& theta_of_efficiencies() { return efficiency_theta; }
+const Theta& theta_of_total_variances() { return total_variance_theta; }
 
 }  // namespace assay::harness

@@ -10,13 +10,13 @@
 #include "harness/families/evidence_slope.h"
 #include "harness/families/families.h"
 #include "harness/families/spread_choice.h"
-#include "harness/plan/look_sizes.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/planned_rates.h"
 #include "harness/plan/sample_size.h"
+#include "harness/plan/secondaries.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
-#include "harness/theta/critical.h"
 
 namespace assay::harness {
 namespace {
@@ -114,7 +114,7 @@ std::optional<std::uint64_t> slope_channel(const Question& question, std::size_t
     most = std::max(most, *factor);
   }
   const double count = std::ceil(most);
-  return count < 0x1p53 ? static_cast<std::uint64_t>(count) : impossible_secondaries;
+  return whole_secondaries(count);
 }
 
 /// The level at which the verdict rejects theta: a pass beyond its margin, a fail elsewhere.

@@ -8,13 +8,13 @@
 #include <optional>
 
 #include "harness/families/costs.h"
-#include "harness/plan/look_sizes.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/rows.h"
 #include "harness/plan/sample_size.h"
+#include "harness/plan/secondaries.h"
 #include "harness/sampling/group_variance.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/critical.h"
 #include "harness/theta/methods.h"
 #include "reports/words/number.h"
 #include "stats/gates/assumption_gates.h"

@@ -2,8 +2,8 @@
 
 // The choice of a method for claims on variances or costs.
 
+#include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/pilot.h"
 
 namespace assay::harness {
 

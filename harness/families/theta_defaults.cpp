@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
+#include "harness/plan/critical.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/critical.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {
@@ -48,6 +48,11 @@ std::optional<double> Theta::known_size(const Question& question) const {
     }
   }
   return largest > 0 ? std::optional(largest) : std::nullopt;
+}
+
+std::uint64_t Theta::choose(const Question&, const FamilyPlace&, const Pilots&, std::uint64_t,
+                            Plan&) const {
+  return least_secondaries;
 }
 
 std::uint64_t Theta::usual_size() const { return usual_secondaries; }

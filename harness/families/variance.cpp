@@ -93,6 +93,20 @@ std::optional<double> planned_kurtosis(const Question& question, std::size_t sub
   return secondary_kurtosis(pilot, question.subjects[subject].averaged(plan.primaries[subject]));
 }
 
+/// Says that a row is held against a primary, if one side of two is a file; else "".
+std::string rows_beside_primaries(const Question& question) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Subject& rows = question.subjects[i];
+    const Subject& other = question.subjects[1 - i];
+    if (!is_recorded(rows) || !other.averages) continue;
+    return fmt::format(
+        "; a row of `{}` is held against a single primary of `{}`: rows that are means of n have a "
+        "variance n times less, and the claim on them a factor n",
+        rows.estimator->name, other.estimator->name);
+  }
+  return "";
+}
+
 /// theta = ln(Var x / v0), or ln(Var x / (c Var y)), each of one primary if the estimator averages.
 class VarianceTheta final : public LogTheta {
  public:

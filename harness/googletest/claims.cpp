@@ -7,7 +7,7 @@
 
 #include "harness/command/option_values.h"
 #include "harness/googletest/sources.h"
-#include "harness/plan/pilot_run.h"
+#include "harness/pilot/pilot_run.h"
 #include "harness/plan/plan.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
@@ -18,7 +18,7 @@
 #include "reports/words/describe.h"
 #include "reports/words/evidence.h"
 #include "reports/words/number.h"
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 
 namespace assay::googletest {
 namespace {

@@ -11,7 +11,6 @@
 #include "harness/image/image_uniform.h"
 #include "harness/sampling/picture_look.h"
 #include "harness/theta/inversion.h"
-#include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/errors.h"
 #include "stats/basics/moments.h"

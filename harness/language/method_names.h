@@ -5,7 +5,7 @@
 
 namespace assay::harness {
 
-/// The names of the method table (families/methods.cpp), each once, in its order.
+/// The names of the method table (theta/methods.h), each once, in its order.
 const std::vector<std::string>& method_names();
 
 /// Whether the method of this name compares all channels of two estimators together.

@@ -22,7 +22,7 @@ struct QuantityRow {
   std::string summary;
   /// Binds a claim about it to a suite's estimators.
   Question (*bind)(const TestEntry&, const Estimators&);
-  const Theta* theta;  ///< What a claim about numbers is about; its family has the methods.
+  const Theta* theta;  ///< The theta of a claim about it, unless of images or a slope.
   /// What `slope(…)` of it is about; null if it has no slope.
   const Theta* slope = nullptr;
   bool of_a_sampler = false;
@@ -33,8 +33,8 @@ struct QuantityRow {
   bool over_all_channels = false;
   bool may_be_analytic = false;  ///< A plugin may know it.
   bool relative_effect = false;  ///< A margin in per cent is one of the value, not of a ratio.
-  bool relative_to_0 = false;    ///< A margin in per cent is one of something else than the number.
-  bool told_by_moments = false;  ///< The moments of an earlier run are enough.
+  bool relative_to_0 = false;    ///< The truth, not the claimed number, is what per cent are of.
+  bool told_by_moments = false;  ///< A recorded run of it has moments that other claims can use.
   bool takes_reference = false;  ///< The test may have `reference`.
   bool counts_cost = false;      ///< The test may have `cost`.
 };

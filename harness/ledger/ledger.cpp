@@ -11,7 +11,6 @@
 #include "harness/ledger/ledger_book.h"
 #include "harness/ledger/ledger_reading.h"
 #include "harness/ledger/night_evidence.h"
-#include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {

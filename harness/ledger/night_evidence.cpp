@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "harness/base/text_hash.h"
-#include "harness/theta/theta.h"
 #include "harness/plan/forecast.h"
 #include "harness/plan/rows.h"
+#include "harness/theta/theta.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {

@@ -5,7 +5,7 @@
 // Means and variances by t, Welch, two one-sided tests, chi-square and F give score and information
 // on theta at the last look taken:
 //   V = 1 / e^2,   S = z E / e^2.
-// e is the standard error of theta from the drawn data (theta_error.h). E is hypot(e, the error
+// e is the standard error of theta from the drawn data (theta.h). E is hypot(e, the error
 // that all runs share). z is the normal quantile of the test's p-value of theta = 0. A mean has S =
 // sum (x - r) / sigma^2 and V = n / sigma^2 in units of theta, up to Student's t made normal. These
 // methods' estimates say nothing of their standard errors.
@@ -21,7 +21,7 @@
 #include <string>
 
 #include "harness/ledger/ledger_book.h"
-#include "harness/question/pilot.h"
+#include "harness/pilot/pilot.h"
 #include "harness/run/evaluate.h"
 
 namespace assay::harness {

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/pilot.h"
 
 namespace assay::harness {
 

@@ -10,7 +10,6 @@
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/rows.h"
 #include "harness/question/declared_range.h"
-#include "harness/theta/methods.h"
 
 namespace assay::harness {
 namespace {
@@ -100,15 +99,6 @@ void freeze_cells(const Question& question, const Pilots& pilots, Plan& plan) {
 }  // namespace
 
 bool takes_from_pilot(const Method& method) { return method.is.from_pilot != FromPilot::nothing; }
-
-std::vector<const Subject*> piloted_draws(const Question& question) {
-  std::vector<const Subject*> draws;
-  if (!question.is().pilots_draws) return draws;
-  for (const Subject& side : question.subjects) {
-    if (!side.purpose.empty()) draws.push_back(&side);
-  }
-  return draws;
-}
 
 std::vector<std::optional<Atom>> atoms_of(const Question& question, const Pilots& pilots,
                                           const Plan& plan) {

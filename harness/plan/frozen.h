@@ -4,16 +4,13 @@
 
 #include <vector>
 
+#include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/pilot.h"
 
 namespace assay::harness {
 
 /// True if the method needs the pilots.
 bool takes_from_pilot(const Method& method);
-
-/// The samplers of a question whose draws need a pilot.
-std::vector<const Subject*> piloted_draws(const Question& question);
 
 /// The most frequent value of each channel in both sides' pilots, if it makes up 1 % or more. Fewer
 /// ties hardly cost Kolmogorov and Smirnov's test. Empty for samplers, whose draws without a point

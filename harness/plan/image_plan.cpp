@@ -6,14 +6,13 @@
 #include <cmath>
 
 #include "harness/base/parallel.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/frozen.h"
-#include "harness/plan/look_sizes.h"
 #include "harness/plan/repeated_images.h"
 #include "harness/plan/rows.h"
+#include "harness/plan/secondaries.h"
 #include "harness/sampling/difference_skewness.h"
 #include "harness/sampling/image_views.h"
-#include "harness/theta/critical.h"
-#include "harness/theta/methods.h"
 #include "harness/theta/planned_channel.h"
 #include "harness/theta/theta.h"
 #include "stats/images/image_cell_skewness.h"

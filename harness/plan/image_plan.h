@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/pilot.h"
 
 namespace assay::harness {
 

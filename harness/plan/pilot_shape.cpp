@@ -6,12 +6,12 @@
 #include <array>
 #include <cmath>
 
-#include "harness/plan/look_sizes.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/rows.h"
+#include "harness/plan/secondaries.h"
 #include "harness/question/declared_range.h"
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/constant.h"
-#include "harness/theta/critical.h"
 #include "harness/theta/gate.h"
 
 namespace assay::harness {

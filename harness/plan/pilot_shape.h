@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "harness/pilot/pilot.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/pilot.h"
-#include "harness/theta/critical.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/gates/pareto_tail.h"
 

@@ -7,138 +7,21 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "harness/plan/critical.h"
 #include "harness/plan/gate_text.h"
-#include "harness/plan/look_sizes.h"
+#include "harness/plan/looks.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/rows.h"
-#include "harness/plan/sample_size.h"
+#include "harness/plan/secondaries.h"
 #include "harness/question/declared_range.h"
 #include "harness/sampling/pool.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/critical.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {
 namespace {
-
-// Half a day at 40 ns a primary.
-constexpr double most_planned_primaries = 1e12;
-// Ten looks cost at most twice one look's observations, unless a reference has an error.
-constexpr std::uint64_t dearest_looks = 4;
-// Fewest secondaries that have a spread.
-constexpr std::uint64_t fewest_tested = 2;
-
-/// The look that a budget in primaries pays for. Throws InputError if it buys fewer than two
-/// secondaries of each subject.
-std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t budget) {
-  const std::uint64_t each = primaries_of_each(question, plan);
-  std::uint64_t paid = budget / each;
-  // Subjects without more secondaries leave their part to the others.
-  while (paid >= fewest_tested) {
-    const std::uint64_t next = primaries_of_look(question, plan, paid + 1);
-    const std::uint64_t spent = primaries_of_look(question, plan, paid);
-    if (next == spent || next > budget) return paid;
-    paid += (budget - spent) / (next - spent);
-  }
-  throw InputError(question.test->place_of("budget"),
-                   fmt::format("its budget (or its share of the suite's) of {} primaries does not "
-                               "pay for two observations, the fewest that can be tested: these "
-                               "take {}; give a larger budget, or fewer `primaries`",
-                               budget, fewest_tested * each));
-}
-
-/// The largest look: the rows of the longest file, also for a side drawn beside it, or what a
-/// budget in primaries pays for.
-std::uint64_t most_available(const Question& question, const Plan& plan) {
-  const std::uint64_t most =
-      question.most_rows().value_or(std::numeric_limits<std::uint64_t>::max());
-  const std::optional<Budget>& budget = question.test->budget;
-  if (!budget || !budget->primaries) return most;
-  return std::min(most, paid_for(question, plan, *budget->primaries));
-}
-
-/// Throws InputError before hours are spent on what was hardly meant.
-void require_possible(const Question& question, const Plan& plan, std::uint64_t secondaries) {
-  const TestEntry& test = *question.test;
-  const Location& where = test.place_of(test.detect ? "detect" : "claim");
-  if (secondaries >= impossible_secondaries) {
-    throw InputError(where, question.theta->why_impossible(question));
-  }
-  const double total =
-      static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(question, plan));
-  if (total <= most_planned_primaries) return;
-  throw InputError(where, fmt::format("this claim would take about {:.1e} primaries; give a larger "
-                                      "margin, or a `budget` to spend on it all the same",
-                                      total));
-}
-
-stats::LookSchedule one_look(std::uint64_t secondaries) { return {{secondaries}, {1}}; }
-
-/// One look of a method in seconds: replicates of whole blocks, with as many observations for each
-/// subject.
-stats::LookSchedule timed_look(const Plan& plan, std::uint64_t secondaries) {
-  std::uint64_t block = 1;
-  for (const std::uint64_t primaries : plan.primaries) {
-    block = std::max(block, block_size_of(primaries));
-  }
-  const std::uint64_t unit = block * replicate_count;
-  return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit);
-}
-
-/// Looks that double from the fewest meaningful up to what `detect` needs at the last look's share
-/// of the errors. One look if nothing asks for a number or it is given: rows of a file,
-/// `secondaries`, the classical 1000.
-stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
-                               const Pilots& pilots, const Plan& plan, std::uint64_t first) {
-  const std::uint64_t most = most_available(question, plan);
-  if (plan.method.keeps == Keeps::blocks) {
-    if (question.test->secondaries || question.test->budget) {
-      throw InputError(
-          question.test->place_of(question.test->secondaries ? "secondaries" : "budget"),
-          "a claim in seconds is timed on whole replicates: `secondaries` and "
-          "`budget` cannot be chosen; leave them out");
-    }
-    const auto planned = question.theta->secondaries(question, place.share, pilots, plan);
-    if (planned) require_possible(question, plan, *planned);
-    return timed_look(plan, std::max(first, planned.value_or(usual_secondaries)));
-  }
-  if (question.test->secondaries) {
-    const std::uint64_t given = std::min(*question.test->secondaries, most);
-    if (!question.test->budget) require_possible(question, plan, given);
-    return one_look(given);
-  }
-  if (has_rows(question)) return one_look(most);
-  const std::optional<std::uint64_t> alone =
-      question.theta->secondaries(question, place.share, pilots, plan);
-  const std::uint64_t classical = question.theta->usual_size();
-  if (!alone) return one_look(std::min(std::max(first, classical), most));
-  if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
-  if (*alone <= first) return one_look(std::min(first, most));
-  std::size_t count = std::min<std::size_t>(most_looks, 1 + std::bit_width((*alone - 1) / first));
-  for (; count > 1; --count) {
-    const double weight = 1 / static_cast<double>(count);
-    const ErrorShare share{.alpha = place.share.alpha * weight, .beta = place.share.beta * weight};
-    const std::uint64_t last =
-        std::min(most, question.theta->secondaries(question, share, pilots, plan)
-                           .value_or(impossible_secondaries));
-    // A reference's error may put smaller shares beyond any number: try fewer looks.
-    if (last > dearest_looks * *alone) continue;
-    if (last <= first) return one_look(last);
-    return stats::geometric_looks(
-        {.first = std::max(first, (last >> (count - 1)) + 1), .last = last}, look_growth);
-  }
-  return one_look(std::min(*alone, most));
-}
-
-/// The look of a test that is invalid beforehand. It decides nothing; it shows the estimators'
-/// data.
-stats::LookSchedule look_for_its_picture(const Question& question, const Plan& plan) {
-  const bool given = question.test->secondaries || has_rows(question);
-  if (given || plan.method.keeps == Keeps::blocks) return plan.looks;
-  return one_look(std::min(plan.looks.sizes.front(), usual_secondaries));
-}
 
 std::vector<Regions> regions_of(const Question& question) {
   const TestEntry& test = *question.test;
@@ -210,19 +93,6 @@ std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
 std::string lack_of_density(const Question& question, const NoDensity& why) {
   return fmt::format("the density that `{}` declares cannot be had: {}",
                      question.subjects[0].estimator->name, why.what());
-}
-
-std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
-  return primaries_of_look(question, plan, 1);
-}
-
-std::uint64_t primaries_of_look(const Question& question, const Plan& plan, std::uint64_t look) {
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < plan.primaries.size(); ++i) {
-    const Subject& side = question.subjects[i];
-    sum += primaries_of_observation(*side.setup, plan.primaries[i]) * side.secondaries(look);
-  }
-  return sum;
 }
 
 Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,

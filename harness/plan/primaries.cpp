@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "harness/plan/critical.h"
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/constant.h"
-#include "harness/theta/critical.h"
 #include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/question/pilot.h"
+#include "harness/pilot/pilot.h"
 #include "harness/theta/family.h"
 
 namespace assay::harness {

@@ -9,16 +9,14 @@
 #include <vector>
 
 #include "estimators/ready_made.h"
-#include "harness/theta/constant.h"
+#include "harness/plan/critical.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/critical.h"
+#include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
-#include "stats/basics/sorted.h"
 #include "stats/gates/dependence.h"
 #include "stats/gates/independence_gates.h"
 #include "stats/gates/lagged_correlation.h"
-#include "stats/gates/quantisation_gate.h"
 #include "stats/gates/recurring_values.h"
 #include "stats/gates/repeated_run.h"
 #include "stats/gates/unpiloted_gates.h"
@@ -246,7 +244,8 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   std::string reason;
   if (plan.invalid.empty()) reason = too_few_to_tell(question, pilots, count, plan);
   const std::vector<Rows> all = rows_of(question, pilots, count);
-  const bool batches = question.is().batches_serve && question.test->claim.relation != Relation::within &&
+  const bool batches = question.is().batches_serve &&
+                       question.test->claim.relation != Relation::within &&
                        std::all_of(all.begin(), all.end(),
                                    [](const Rows& each) { return enough_batches(each.values); });
   bool answered = false;
@@ -289,19 +288,6 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   } else if (question.is().batches_serve && !plan.method.is.exact) {
     allow_for_dependence(all, plan);
   }
-}
-
-std::string rows_beside_primaries(const Question& question) {
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Subject& rows = question.subjects[i];
-    const Subject& other = question.subjects[1 - i];
-    if (!is_recorded(rows) || !other.averages) continue;
-    return fmt::format(
-        "; a row of `{}` is held against a single primary of `{}`: rows that are means of n have a "
-        "variance n times less, and the claim on them a factor n",
-        rows.estimator->name, other.estimator->name);
-  }
-  return "";
 }
 
 stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,

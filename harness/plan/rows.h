@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/pilot.h"
 #include "harness/theta/method.h"
 #include "stats/gates/assumption_gates.h"
 
@@ -47,10 +47,6 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
 /// value, coarse rounding for Kolmogorov and Smirnov.
 std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
                                    double critical_value);
-
-/// Part of a sentence that explains a fail of a row's variance against a primary's; "" for other
-/// claims.
-std::string rows_beside_primaries(const Question& question);
 
 /// Throws InputError at the record if rows of the suite came from standard input, a pipe or a
 /// device: they cannot be replayed.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/plan/critical.h"
 #include "harness/plan/rows.h"
-#include "harness/theta/critical.h"
 
 namespace assay::harness {
 

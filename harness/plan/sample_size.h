@@ -6,8 +6,8 @@
 #include <functional>
 #include <optional>
 
+#include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/pilot.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {

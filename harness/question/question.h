@@ -58,7 +58,7 @@ struct ThetaTraits {
 /// A claim, bound to the suite's estimators.
 struct Question {
   const TestEntry* test;
-  const Theta* theta;  ///< What the claim is about.
+  const Theta* theta;             ///< What the claim is about.
   std::vector<Subject> subjects;  ///< One or two (for a slope one a point), then perhaps a
                                   ///< reference.
   double factor = 1;              ///< Compares the first with factor * second.
@@ -73,7 +73,9 @@ struct Question {
   std::vector<double> sizes = {};  ///< For a slope: the values of the swept parameter.
 
   const ThetaTraits& is() const;
-  std::size_t channel_count() const { return is().joins_channels ? 1 : subjects[0].channels.size(); }
+  std::size_t channel_count() const {
+    return is().joins_channels ? 1 : subjects[0].channels.size();
+  }
   std::string channel_name(std::size_t channel) const;
   /// The number of subjects without the reference.
   std::size_t compared() const { return subjects.size() - (has_reference_subject ? 1 : 0); }

@@ -13,7 +13,7 @@
 #include "harness/record/record_of.h"
 #include "harness/record/shard_check.h"
 #include "harness/run/holm_verdict.h"
-#include "harness/run/narrate.h"
+#include "harness/run/verdict_text.h"
 #include "harness/sampling/recorded_moments.h"
 
 namespace assay::harness {

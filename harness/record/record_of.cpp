@@ -8,8 +8,6 @@
 
 #include "harness/base/numbers.h"
 #include "harness/base/quantiles.h"
-#include "harness/theta/methods.h"
-#include "harness/theta/ask.h"
 #include "harness/record/cell_record.h"
 #include "harness/record/environment.h"
 #include "harness/record/image_record.h"
@@ -17,6 +15,8 @@
 #include "harness/record/picture.h"
 #include "harness/record/shard_record.h"
 #include "harness/run/pools.h"
+#include "harness/theta/ask.h"
+#include "harness/theta/methods.h"
 
 namespace assay::harness {
 namespace {

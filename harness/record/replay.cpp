@@ -15,8 +15,7 @@
 #include "harness/base/record_file.h"
 #include "harness/draws/draw_text.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/theta/ask.h"
-#include "harness/theta/methods.h"
+#include "harness/pilot/pilot_run.h"
 #include "harness/plan/frozen.h"
 #include "harness/plan/rows.h"
 #include "harness/record/record_of.h"
@@ -24,6 +23,8 @@
 #include "harness/run/pools.h"
 #include "harness/suite/suite_entries.h"
 #include "harness/suite/yaml.h"
+#include "harness/theta/ask.h"
+#include "harness/theta/methods.h"
 
 namespace assay::harness {
 namespace {

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/plan/critical.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/plan.h"
 #include "harness/plan/rows.h"
 #include "harness/run/activation.h"
 #include "harness/run/found_effect.h"
 #include "harness/run/image_judge.h"
-#include "harness/run/narrate.h"
 #include "harness/run/observation_faults.h"
-#include "harness/theta/critical.h"
+#include "harness/run/verdict_text.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {
@@ -87,8 +87,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const std::vector<ChannelData> data = data_of(test, channel);
     const Regions& regions = outcome.plan.regions[channel];
-    if (auto settled =
-            question.theta->settled(question, channel, data, regions, outcome.share())) {
+    if (auto settled = question.theta->settled(question, channel, data, regions, outcome.share())) {
       add(channel, *std::move(settled));
       continue;
     }
@@ -278,7 +277,8 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
     if (outcome.message.empty()) {
       outcome.message = narrate(outcome) + outcome.question.theta->where_it_differs(test);
       if (outcome.verdict == Verdict::fail) {
-        outcome.message += outcome.plan.hint + outcome.question.theta->taken_as_exact(outcome.question);
+        outcome.message +=
+            outcome.plan.hint + outcome.question.theta->taken_as_exact(outcome.question);
       }
     }
   }

@@ -97,8 +97,8 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
     channel.detectable =
         detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
     channel.finds_nothing =
-        !channel.detectable &&
-        outcome.question.theta->finds_nothing(outcome.question, full_size(outcome), outcome.plan, observed);
+        !channel.detectable && outcome.question.theta->finds_nothing(
+                                   outcome.question, full_size(outcome), outcome.plan, observed);
     const bool equivalence = channel.regions.relation == Relation::within;
     if (!equivalence && !channel.regions.detect) continue;
     const std::optional<double> power =

@@ -4,7 +4,7 @@
 
 #include "harness/base/numbers.h"
 #include "harness/run/found_effect.h"
-#include "harness/run/narrate.h"
+#include "harness/run/verdict_text.h"
 #include "stats/planning/holm.h"
 
 namespace assay::harness {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/theta/critical.h"
+#include "harness/plan/critical.h"
 #include "stats/pyramids/image_pyramid.h"
 
 namespace assay::harness {

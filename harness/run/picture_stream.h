@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "harness/base/progress.h"
-#include "harness/question/pilot.h"
+#include "harness/pilot/pilot.h"
 #include "harness/question/question.h"
 #include "harness/theta/family.h"
 

@@ -8,13 +8,12 @@
 #include "estimators/core/program_path.h"
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
-#include "harness/theta/ask.h"
-#include "harness/theta/methods.h"
-#include "harness/plan/frozen.h"
-#include "harness/plan/pilot_run.h"
+#include "harness/pilot/pilot_run.h"
 #include "harness/plan/plan.h"
 #include "harness/run/image_memory.h"
 #include "harness/run/picture_stream.h"
+#include "harness/theta/ask.h"
+#include "harness/theta/methods.h"
 #include "stats/images/image.h"
 
 namespace assay::harness {

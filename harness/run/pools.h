@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/plan/outcome.h"
-#include "harness/question/pilot.h"
+#include "harness/pilot/pilot.h"
 #include "harness/sampling/pool.h"
 
 namespace assay::harness {

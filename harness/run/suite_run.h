@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/question/pilot.h"
+#include "harness/pilot/pilot.h"
 #include "harness/run/evaluate.h"
 
 namespace assay::harness {

@@ -102,6 +102,7 @@ struct MethodRow {
   std::string summary;  ///< Hypothesis and range of validity, for `assay list methods`.
   bool (*answers)(const Question&);
   Keeps keeps;
+  /// Null if the family has evidence of its own (Theta::evidence).
   Evidence (*evidence)(const Method&, const Question&, std::size_t channel,
                        std::span<const ChannelData>);
   MethodTraits is = {};

@@ -70,12 +70,13 @@ void require_margins(const Method& method, const Question& question) {
 /// The rows of the families that claims about the quantities may belong to, each family once.
 std::vector<MethodRow> rows_of_families() {
   std::vector<const std::vector<MethodRow>*> families;
-  for (const QuantityRow& row : quantities()) {
-    for (const Theta* theta : {row.theta, row.theta->of_images(), row.slope}) {
-      if (theta == nullptr || std::ranges::count(families, &theta->methods()) > 0) continue;
-      families.push_back(&theta->methods());
-    }
-  }
+  const auto add = [&](const Theta* theta) {
+    if (theta == nullptr || std::ranges::count(families, &theta->methods()) > 0) return;
+    families.push_back(&theta->methods());
+  };
+  for (const QuantityRow& row : quantities()) add(row.theta);
+  for (const QuantityRow& row : quantities()) add(row.slope);
+  for (const QuantityRow& row : quantities()) add(row.theta->of_images());
   std::vector<MethodRow> rows;
   for (const std::vector<MethodRow>* each : families) {
     rows.insert(rows.end(), each->begin(), each->end());

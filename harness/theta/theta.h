@@ -77,7 +77,7 @@ class Theta {
   /// Chooses among the methods by the pilots, and notes their gates. Returns the fewest secondaries
   /// that the method takes.
   virtual std::uint64_t choose(const Question&, const FamilyPlace&, const Pilots&,
-                               std::uint64_t most, Plan&) const = 0;
+                               std::uint64_t most, Plan&) const;
   /// Secondaries of each subject that find `detect`, or prove `within`, with this share of errors
   /// in every channel. `impossible_secondaries` if no number does.
   virtual std::optional<std::uint64_t> secondaries(const Question&, const ErrorShare&,

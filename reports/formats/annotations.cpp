@@ -11,7 +11,7 @@
 #include "reports/words/describe.h"
 #include "reports/words/evidence.h"
 #include "reports/words/text.h"
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 
 namespace assay::reports {
 namespace {

@@ -13,7 +13,7 @@
 #include "reports/words/number.h"
 #include "reports/words/statement_text.h"
 #include "reports/words/text.h"
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 
 namespace assay::reports {
 namespace {

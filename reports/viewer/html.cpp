@@ -8,7 +8,7 @@
 #include "reports/words/describe.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 
 namespace assay::reports {
 namespace {

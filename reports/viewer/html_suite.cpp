@@ -3,7 +3,7 @@
 #include "reports/viewer/html_parts.h"
 #include "reports/words/describe.h"
 #include "reports/words/text.h"
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 
 namespace assay::reports {
 

@@ -14,7 +14,7 @@
 #include "reports/words/image_text.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 
 namespace assay::reports {
 namespace {

@@ -8,7 +8,7 @@
 #include "reports/words/effect.h"
 #include "reports/words/evidence.h"
 #include "reports/words/number.h"
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 
 namespace assay::reports {
 namespace {

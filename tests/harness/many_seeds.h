@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "harness/plan/frozen.h"
-#include "harness/plan/pilot_run.h"
+#include "harness/pilot/pilot_run.h"
 #include "harness/plan/plan.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/pools.h"

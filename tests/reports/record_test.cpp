@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "reports/words/describe.h"
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

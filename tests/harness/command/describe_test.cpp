@@ -130,10 +130,9 @@ TEST(Describe, SuggestsTheNearestPlugin) {
             "there is no plugin `hemisphere`; did you mean `luminaire/hemisphere`?");
 }
 
-TEST(Wrapped, BreaksAtBlanksAndKeepsLineEnds) {
+TEST(Wrapped, BreaksAtBlanksElseAtTheWidthAndKeepsLineEnds) {
   EXPECT_EQ(wrapped("one two three\nfour", 9, 1), " one two\n three\n four\n");
-  EXPECT_EQ(wrapped("unbreakable", 5, 0), "unbreakable\n");
-  EXPECT_EQ(wrapped("", 5, 0), "");
+  EXPECT_EQ(wrapped("unbreakable", 5, 0), "unbre\nakabl\ne\n");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "harness/plan/outcome.h"
-#include "harness/theta/critical.h"
+#include "harness/plan/critical.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/theta/critical.h"
+#include "harness/plan/critical.h"
 #include "stats/gates/assumption_gates.h"
 #include "tests/harness/planned.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "harness/run/planned_run.h"
-#include "harness/theta/critical.h"
+#include "harness/plan/critical.h"
 #include "stats/planning/power.h"
 #include "stats/tails/tails.h"
 #include "tests/harness/planned.h"

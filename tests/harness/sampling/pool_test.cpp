@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "harness/base/progress.h"
-#include "harness/question/pilot.h"
+#include "harness/pilot/pilot.h"
 #include "harness/sampling/scheduler.h"
 #include "stats/basics/for_each.h"
 

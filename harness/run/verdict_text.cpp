@@ -1,4 +1,4 @@
-#include "harness/run/narrate.h"
+#include "harness/run/verdict_text.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 
 #include "harness/plan/gate_text.h"
 #include "harness/plan/plan.h"
-#include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
 #include "reports/words/effect.h"
 #include "reports/words/number.h"

@@ -1,4 +1,4 @@
-#include "harness/plan/look_sizes.h"
+#include "harness/plan/secondaries.h"
 
 #include <algorithm>
 #include <cmath>

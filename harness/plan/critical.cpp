@@ -1,8 +1,9 @@
-#include "harness/theta/critical.h"
+#include "harness/plan/critical.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "harness/plan/looks.h"
 #include "harness/theta/decision.h"
 #include "stats/tails/tails.h"
 
@@ -28,9 +29,11 @@ bool two_sided(const Question& question) {
 
 stats::ShapeLimits shape_limits(double critical) {
   const double log_tail = stats::normal_tails(critical).upper;
-  const double nearer = stats::normal_quantile({stats::Tail::upper, log_tail + std::log(1.25)});
+  const double nearer =
+      stats::normal_quantile({stats::Tail::upper, log_tail + std::log(level_factor)});
   const double inflation = critical / nearer;
-  return {.excess_kurtosis = std::min(0.2, 2 * (inflation * inflation - 1)), .level_factor = 1.25};
+  return {.excess_kurtosis = std::min(0.2, 2 * (inflation * inflation - 1)),
+          .level_factor = level_factor};
 }
 
 }  // namespace assay::harness

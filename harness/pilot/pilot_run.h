@@ -4,9 +4,12 @@
 
 #include <vector>
 
-#include "harness/question/pilot.h"
+#include "harness/pilot/pilot.h"
 
 namespace assay::harness {
+
+/// The samplers of a question whose draws need a pilot.
+std::vector<const Subject*> piloted_draws(const Question& question);
 
 /// The pilots of a suite's questions. All questions decide what a pilot keeps and how large it may
 /// be, so a selection does not change it. The chosen ones decide whether it is drawn.

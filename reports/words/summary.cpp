@@ -1,4 +1,4 @@
-#include "reports/words/verdict.h"
+#include "reports/words/summary.h"
 
 #include <fmt/format.h>
 

@@ -9,10 +9,6 @@ namespace assay::harness {
 /// The normal quantile beyond which a test at this level rejects.
 double critical_value(double alpha, bool two_sided);
 
-// Each look doubles the sample, so ten of them let a test end after 1/512 of the last one.
-inline constexpr double look_growth = 2;
-inline constexpr std::size_t most_looks = 10;
-
 // Fewer observations do not show their own shape.
 inline constexpr std::uint64_t least_secondaries = 100;
 // Size of a test without `detect`.

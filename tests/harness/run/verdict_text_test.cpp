@@ -1,4 +1,4 @@
-#include "harness/run/narrate.h"
+#include "harness/run/verdict_text.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,8 +1,7 @@
-#include "harness/plan/pilot_run.h"
+#include "harness/pilot/pilot_run.h"
 
 #include <algorithm>
 
-#include "harness/plan/frozen.h"
 #include "harness/theta/method.h"
 #include "harness/theta/methods.h"
 
@@ -38,6 +37,15 @@ std::map<std::string, std::uint64_t> on_tails(const std::vector<Question>& quest
 }
 
 }  // namespace
+
+std::vector<const Subject*> piloted_draws(const Question& question) {
+  std::vector<const Subject*> draws;
+  if (!question.is().pilots_draws) return draws;
+  for (const Subject& side : question.subjects) {
+    if (!side.purpose.empty()) draws.push_back(&side);
+  }
+  return draws;
+}
 
 PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
                       std::uint64_t seed, unsigned threads) {

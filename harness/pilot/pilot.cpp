@@ -1,4 +1,4 @@
-#include "harness/question/pilot.h"
+#include "harness/pilot/pilot.h"
 
 #include <algorithm>
 
@@ -181,7 +181,8 @@ std::string where_pilots_stopped(const Question& question, const Pilots& pilots)
   for (const Subject& subject : question.subjects) {
     const Fault* fault = pilots.fault(subject.estimator->name, subject.purpose);
     const Pilot* const pilot = pilot_of(subject, pilots);
-    if (fault == nullptr && pilot != nullptr && pilot->larger_fault && question.is().rests_on_tails) {
+    if (fault == nullptr && pilot != nullptr && pilot->larger_fault &&
+        question.is().rests_on_tails) {
       fault = &*pilot->larger_fault;
     }
     if (fault == nullptr) continue;
