@@ -22,7 +22,7 @@ duplicate_key duplicate_name duplicate_nested_key merge_key method over_not_asce
 over_unknown_parameter over_without_slope reference_of_a_mean reference_text reference_unknown
 slope_without_over statement_glob_of_nothing statement_of_an_invalid_test
 statement_on_both_sides statement_unknown_test tag unknown_estimator unknown_estimator_right unknown_parameter unknown_plugin
-variance_of_zero
+variance_of_zero worst_variance_of_zero
 """.split()
 
 
