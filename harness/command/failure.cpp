@@ -11,7 +11,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr int page_width = 80;
+constexpr int message_width = 80;
 
 /// The end of the piece that begins at `begin`: the next blank outside backticks.
 std::size_t end_of_piece(const std::string& text, std::size_t begin) {
@@ -24,14 +24,14 @@ std::size_t end_of_piece(const std::string& text, std::size_t begin) {
 }
 
 /// The text after `lead`; further lines are indented as deep.
-std::string wrapped(const std::string& text, const std::string& lead) {
+std::string wrapped_message(const std::string& text, const std::string& lead) {
   std::string out;
   std::string line = lead;
   bool is_new = true;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = end_of_piece(text, begin);
     const std::string piece = text.substr(begin, end - begin);
-    if (!is_new && reports::columns(line + " " + piece) > page_width) {
+    if (!is_new && reports::columns(line + " " + piece) > message_width) {
       out += line + "\n";
       line = std::string(lead.size(), ' ');
       is_new = true;
@@ -47,7 +47,7 @@ std::string wrapped(const std::string& text, const std::string& lead) {
 
 std::string in_lines(const std::string& sentence) {
   const std::size_t end = std::min(sentence.find('\n'), sentence.size());
-  std::string out = wrapped(sentence.substr(0, end), "assay: ");
+  std::string out = wrapped_message(sentence.substr(0, end), "assay: ");
   // Text that already has lines, such as another program's, keeps them.
   if (end < sentence.size()) out += sentence.substr(end + 1) + "\n";
   return out;

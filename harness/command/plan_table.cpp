@@ -18,7 +18,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr int page_width = 100;
+constexpr int table_width = 100;
 constexpr std::size_t most_gates = 3;
 constexpr const char* unknown = "-";
 
@@ -190,7 +190,7 @@ class Page {
   }
   void paragraph(const std::string& text, const std::string& indent = "") {
     for (const std::string& part :
-         reports::wrap(reports::one_line(text), page_width - static_cast<int>(indent.size()))) {
+         reports::wrap(reports::one_line(text), table_width - static_cast<int>(indent.size()))) {
       line(indent + part);
     }
   }
@@ -213,7 +213,7 @@ std::array<int, column_count> widths_of(const std::vector<Row>& rows) {
 std::string line_of(const Cells& cells, const std::array<int, column_count>& widths) {
   int wide = 4;
   for (const int width : widths) wide += width + 2;
-  const std::string gap = wide - 2 <= page_width ? "  " : " ";
+  const std::string gap = wide - 2 <= table_width ? "  " : " ";
   std::string line = "    " + reports::pad_right(cells[0], widths[0]);
   for (std::size_t c = 1; c < column_count; ++c) {
     const auto blanks = static_cast<std::size_t>(widths[c] - reports::columns(cells[c]));

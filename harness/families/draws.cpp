@@ -26,7 +26,7 @@ namespace {
 using stats::Interval;
 using stats::TestResult;
 
-constexpr double impossible = std::numeric_limits<double>::lowest();
+constexpr double log_of_impossible = std::numeric_limits<double>::lowest();
 
 /// theta = q + offset; the offset has an error.
 struct Shifted {
@@ -37,11 +37,11 @@ struct Shifted {
 
 /// log_p_upper of "q is at most `most`"; no probability is below 0.
 double log_p_at_most(const stats::Successes& seen, double most) {
-  return most < 0 ? impossible : stats::binomial(seen, std::min(most, 1.0)).log_p_upper;
+  return most < 0 ? log_of_impossible : stats::binomial(seen, std::min(most, 1.0)).log_p_upper;
 }
 
 double log_p_at_least(const stats::Successes& seen, double least) {
-  return least > 1 ? impossible : stats::binomial(seen, std::max(least, 0.0)).log_p_lower;
+  return least > 1 ? log_of_impossible : stats::binomial(seen, std::max(least, 0.0)).log_p_lower;
 }
 
 Evidence from_probability(const Shifted& known) {

@@ -14,7 +14,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr const char* quantity = "effect size w over the cells";
+constexpr const char* effect_over_cells = "effect size w over the cells";
 
 std::string range_text(const std::string& name, const std::vector<double>& borders,
                        std::size_t part) {
@@ -103,7 +103,7 @@ Evidence cells_against_density(const Question& question, const ChannelData& data
           .at = at,
           .interval = interval,
           .most_against = always(worst_of(fit, draws)),
-          .quantity = quantity,
+          .quantity = effect_over_cells,
           .distance = true};
 }
 
@@ -127,7 +127,7 @@ Evidence cells_against_cells(const Method& method, const Question& question,
           .interval = interval,
           .most_against = always(fmt::format("; farthest apart in {}, {} against {}",
                                              pool_text(worst.members, place), worst.x, worst.y)),
-          .quantity = quantity,
+          .quantity = effect_over_cells,
           .distance = true};
 }
 

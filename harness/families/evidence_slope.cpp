@@ -21,8 +21,6 @@ using stats::SlopePoint;
 // The gate is red below this p, however small the test's level.
 constexpr double least_p_of_fit = 1e-5;
 
-bool of_costs(const Question& question) { return question.test->claim.left.row->counts_cost; }
-
 /// Each point of a bias has a truth.
 bool of_biases(const Question& question) { return !question.truths.empty(); }
 

@@ -14,6 +14,10 @@ namespace assay::harness {
 Evidence evidence_of_slope(const Question& question, std::size_t channel,
                            std::span<const ChannelData> data);
 
+inline bool of_costs(const Question& question) {
+  return question.test->claim.left.row->counts_cost;
+}
+
 /// Checks that the points lie on a power law, by p of the slope that fits best. The gate is red up
 /// to max(`level`, 1e-5); `level` is the largest at which a verdict rejects a slope. A red gate
 /// leaves no slope: to reject all others neither shows nor refutes a claim. Under a power law it is

@@ -20,9 +20,9 @@ namespace {
 using stats::Interval;
 using stats::TestResult;
 
-constexpr const char* quantity = "largest distance of distribution functions";
+constexpr const char* distance_of_laws = "largest distance of distribution functions";
 constexpr const char* masses_without_a_point = "the masses without a point";
-constexpr const char* quantity_of_both =
+constexpr const char* distance_of_parts =
     "largest distance of distribution functions, or of the masses without a point";
 
 /// Evidence from a sup distance that the law's table leaves uncertain by `error`.
@@ -46,7 +46,7 @@ Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
   return {.estimate = measured.distance,
           .at = at,
           .interval = interval,
-          .quantity = quantity,
+          .quantity = distance_of_laws,
           .distance = true};
 }
 
@@ -65,7 +65,7 @@ Evidence from_distance(const stats::TwoSampleDistance& distance, const TestResul
                 double theta) { return theta <= 0 ? at_none : stats::ks_margin(distance, theta); },
       .interval =
           [distance](double confidence) { return stats::ks_interval(distance, confidence); },
-      .quantity = quantity,
+      .quantity = distance_of_laws,
       .distance = true};
 }
 
@@ -185,7 +185,7 @@ Evidence larger_of(const Evidence& points, const Part& masses) {
             const double of_masses = masses.evidence.at(theta).log_p_upper;
             return of_masses < points.at(theta).log_p_upper ? p_is_of(masses) : "";
           },
-          .quantity = quantity_of_both,
+          .quantity = distance_of_parts,
           .distance = true};
 }
 
@@ -197,7 +197,7 @@ Evidence unknown_distance() {
               [](double confidence) {
                 return Interval{0, 1, confidence};
               },
-          .quantity = quantity,
+          .quantity = distance_of_laws,
           .distance = true};
 }
 

@@ -16,12 +16,12 @@ namespace {
 constexpr double tolerated = 0.1;
 
 /// Errors of one side, on the scale of the first mean.
-struct Part {
+struct RoundedPart {
   double rounding = 0;
   double standard_error = 0;
 };
 
-Part part_of(const Question& question, std::size_t subject, const ChannelData& data) {
+RoundedPart part_of(const Question& question, std::size_t subject, const ChannelData& data) {
   if (data.moments.count < 2) return {};
   const double factor = subject == 0 ? 1 : std::abs(question.factor);
   return {.rounding = factor * stats::rounding_of_mean(data.moments),
@@ -60,7 +60,7 @@ std::string lost_to_rounding(const Question& question, std::size_t channel,
   double rounding = 0;
   double error = question.of_two() ? 0 : question.references[channel].standard_error;
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
-    const Part part = part_of(question, subject, data[subject]);
+    const RoundedPart part = part_of(question, subject, data[subject]);
     if (part.rounding > most) worst = subject;
     most = std::max(most, part.rounding);
     rounding = std::hypot(rounding, part.rounding);

@@ -68,16 +68,6 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
   return means;
 }
 
-std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
-  std::vector<Constant> numbers;
-  const std::vector<Channel> channels = subject.setup->channels();
-  for (const std::size_t i : subject.channels) {
-    const auto* const number = std::get_if<Constant>(&claim.right);
-    numbers.push_back(number != nullptr ? *number : analytic_mean(channels[i], claim.left.source));
-  }
-  return numbers;
-}
-
 // ---- Sizes
 
 // Normal quantile: one pilot in a thousand exceeds the upper limit of its variance.
@@ -842,7 +832,7 @@ Question bind_mean(const TestEntry& test, const Estimators& estimators) {
       .test = &test, .theta = &mean_theta, .subjects = {estimates(claim.left.source, estimators)}};
   const ScaledQuantity* const other = other_side(claim);
   if (other == nullptr) {
-    question.references = references_of(claim, question.subjects[0]);
+    question.references = references_of(claim, question.subjects[0], analytic_mean);
     return question;
   }
   question.factor = other->factor;

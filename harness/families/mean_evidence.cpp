@@ -73,7 +73,7 @@ OneMeanTest bounded_of_one(const Moments& x, const stats::Range& range) {
   };
 }
 
-constexpr MeanTest t{t_of_one, t_of_two, true};
+constexpr MeanTest student{t_of_one, t_of_two, true};
 constexpr MeanTest corrected{corrected_of_one, corrected_of_two};
 constexpr MeanTest binomial{binomial_of_one, binomial_of_two};
 constexpr MeanTest bounded{bounded_of_one, nullptr};
@@ -202,7 +202,7 @@ Evidence of_means(const MeanTest& mean, const Question& question, std::size_t ch
 
 Evidence mean_by_t(const Method&, const Question& question, std::size_t channel,
                    std::span<const ChannelData> data) {
-  return of_means(t, question, channel, data);
+  return of_means(student, question, channel, data);
 }
 
 Evidence mean_by_corrected_t(const Method&, const Question& question, std::size_t channel,

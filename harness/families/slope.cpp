@@ -127,8 +127,6 @@ Evidence slope(const Method&, const Question& question, std::size_t channel,
   return evidence_of_slope(question, channel, data);
 }
 
-bool of_costs(const Question& question) { return question.test->claim.left.row->counts_cost; }
-
 /// theta = s - the claimed exponent, where the quantity goes like (swept parameter)^s.
 class SlopeTheta final : public Theta {
  public:

@@ -206,21 +206,6 @@ class VarianceTheta final : public LogTheta {
 
 const VarianceTheta variance_theta;
 
-std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
-  std::vector<Constant> numbers;
-  const std::vector<Channel> channels = subject.setup->channels();
-  for (const std::size_t i : subject.channels) {
-    const auto* const number = std::get_if<Constant>(&claim.right);
-    if (number != nullptr && number->standard_error > 0) {
-      throw InputError(claim.left.where,
-                       "a variance is tested against an exact number: `+-` has no method here");
-    }
-    numbers.push_back(number != nullptr ? *number
-                                        : analytic_variance(channels[i], claim.left.source));
-  }
-  return numbers;
-}
-
 }  // namespace
 
 Question bind_variance(const TestEntry& test, const Estimators& estimators) {
@@ -232,7 +217,12 @@ Question bind_variance(const TestEntry& test, const Estimators& estimators) {
     question.factor = other->factor;
     question.subjects.push_back(estimates(other->quantity.source, estimators));
   } else {
-    question.references = references_of(claim, question.subjects[0]);
+    const auto* const number = std::get_if<Constant>(&claim.right);
+    if (number != nullptr && number->standard_error > 0) {
+      throw InputError(claim.left.where,
+                       "a variance is tested against an exact number: `+-` has no method here");
+    }
+    question.references = references_of(claim, question.subjects[0], analytic_variance);
   }
   return question;
 }

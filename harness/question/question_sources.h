@@ -28,6 +28,10 @@ Subject values(const Source& source, const Estimators& estimators);
 Constant analytic_mean(const Channel& channel, const Source& source);
 Constant analytic_variance(const Channel& channel, const Source& source);
 
+/// The right side for each channel: the claim's number, or what the plugin knows.
+std::vector<Constant> references_of(const Claim& claim, const Subject& subject,
+                                    Constant (*analytic)(const Channel&, const Source&));
+
 /// "32 x 32 irradiance".
 std::string image_name(const ImageShape& shape);
 

@@ -12,7 +12,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr std::size_t parts = 64;
+constexpr std::size_t curve_parts = 64;
 
 /// Cached: it takes tenths of a second, and tests of one suite ask for the same values.
 double pointwise_error(std::uint64_t n, double confidence) {
@@ -22,7 +22,7 @@ double pointwise_error(std::uint64_t n, double confidence) {
                                               // (distribution_band.h)
   const std::scoped_lock lock(once);
   const auto [place, added] = known.try_emplace({std::min(n, limit_from), confidence});
-  if (added) place->second = stats::simultaneous_error(n, parts, confidence);
+  if (added) place->second = stats::simultaneous_error(n, curve_parts, confidence);
   return place->second;
 }
 
@@ -35,8 +35,8 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
   if (n < 2 || !(confidence < 1)) return drawn;
   const double gamma = pointwise_error(n, confidence);
   std::uint64_t before = 0;
-  for (std::size_t i = 1; i < parts; ++i) {
-    const std::uint64_t rank = i * n / parts;
+  for (std::size_t i = 1; i < curve_parts; ++i) {
+    const std::uint64_t rank = i * n / curve_parts;
     if (rank <= before) continue;
     const double value = sorted[rank - 1];
     // The end of a group of equal values.

@@ -24,8 +24,6 @@ GateState state_of(const Gate& gate, double green_up_to) {
   return gate.low > gate.limit ? GateState::red : GateState::amber;
 }
 
-double upper_z(double probability) { return normal_quantile({Tail::upper, std::log(probability)}); }
-
 // ---- Normal-data quantiles of g1 and b2
 
 // The b2 - 3 that normal samples of n exceed with probability 1e-4: Anscombe & Glynn (1983), n
@@ -37,7 +35,7 @@ double normal_kurtosis_quantile(double n) {
   const double skewness = 6 * (n * n - 5 * n + 2) / ((n + 7) * (n + 9)) *
                           std::sqrt(6 * (n + 3) * (n + 5) / (n * (n - 2) * (n - 3)));
   const double a = 6 + 8 / skewness * (2 / skewness + std::sqrt(1 + 4 / (skewness * skewness)));
-  const double c = 1 - 2 / (9 * a) - upper_z(false_red) * std::sqrt(2 / (9 * a));
+  const double c = 1 - 2 / (9 * a) - upper_normal_quantile(false_red) * std::sqrt(2 / (9 * a));
   if (c <= 0) return std::numeric_limits<double>::infinity();
   const double x = ((1 - 2 / a) / (c * c * c) - 1) / std::sqrt(2 / (a - 4));
   return mean + x * std::sqrt(variance) - 3;
@@ -142,7 +140,7 @@ double normal_skewness_quantile(double n, double probability) {
   const double w2 = std::sqrt(2 * (beta2 - 1)) - 1;
   const double delta = 1 / std::sqrt(0.5 * std::log(w2));
   const double alpha = std::sqrt(2 / (w2 - 1));
-  const double y = alpha * std::sinh(upper_z(probability / 2) / delta);
+  const double y = alpha * std::sinh(upper_normal_quantile(probability / 2) / delta);
   return y * std::sqrt(6 * (n - 2) / ((n + 1) * (n + 3)));
 }
 

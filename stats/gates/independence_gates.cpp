@@ -14,7 +14,7 @@
 namespace assay::stats {
 namespace {
 
-constexpr double false_red = 5e-5;
+constexpr double false_red_of_dependence = 5e-5;
 constexpr double false_amber = 0.01;
 constexpr double false_allowance = 0.05;
 // Correlations cost up to the square of this number.
@@ -25,14 +25,13 @@ GateState state_of(double value, double green_up_to, double limit) {
   return value > green_up_to ? GateState::amber : GateState::green;
 }
 
-double upper_z(double probability) { return normal_quantile({Tail::upper, std::log(probability)}); }
-
 // The farthest lag with a correlation beyond chance, 0 if there is none. An autocorrelation time
 // widens the spread of the correlations by its root.
 std::size_t farthest_correlated(std::span<const double> values, double time) {
   const std::vector<LaggedCorrelation> all = lagged_correlations(values);
   if (all.empty()) return 0;
-  const double limit = upper_z(false_red / static_cast<double>(all.size()));
+  const double limit =
+      upper_normal_quantile(false_red_of_dependence / static_cast<double>(all.size()));
   const double beyond_chance = limit * std::sqrt(std::max(1.0, time));
   std::size_t farthest = 0;
   for (const LaggedCorrelation& each : all) {
@@ -76,15 +75,16 @@ Gate lag_one_gate(std::span<const double> values) {
   const double deviation = z == 0 ? 1 / std::sqrt(n) : (r + 1 / n) / z;
   const double sign = z < 0 ? -1 : 1;
   Gate gate{.name = "correlation of successive values", .value = r, .low = r};
-  gate.limit = sign * upper_z(false_red / 2) * deviation - 1 / n;
-  gate.state = state_of(std::abs(z), upper_z(false_amber / 2), upper_z(false_red / 2));
+  gate.limit = sign * upper_normal_quantile(false_red_of_dependence / 2) * deviation - 1 / n;
+  gate.state = state_of(std::abs(z), upper_normal_quantile(false_amber / 2),
+                        upper_normal_quantile(false_red_of_dependence / 2));
   return gate;
 }
 
 Gate batch_gate(std::span<const double> values) {
   const BatchRatio batches = batch_ratio(values, default_batch(values.size()));
   Gate gate{.name = "variance of batch means", .value = batches.value, .low = batches.value};
-  gate.limit = batches.quantile(false_red);
+  gate.limit = batches.quantile(false_red_of_dependence);
   gate.state = state_of(batches.value, batches.quantile(false_amber), gate.limit);
   return gate;
 }
@@ -95,12 +95,13 @@ Gate lagged_gate(std::span<const double> values) {
   if (all.empty()) return gate;
   const LaggedCorrelation worst = worst_of(all);
   const auto limit = [&](double probability) {
-    return upper_z(probability / (2 * static_cast<double>(all.size())));
+    return upper_normal_quantile(probability / (2 * static_cast<double>(all.size())));
   };
   gate.value = worst.correlation;
   gate.low = worst.correlation;
-  gate.limit = worst.z == 0 ? 0 : worst.correlation * limit(false_red) / std::abs(worst.z);
-  gate.state = state_of(std::abs(worst.z), limit(false_amber), limit(false_red));
+  gate.limit =
+      worst.z == 0 ? 0 : worst.correlation * limit(false_red_of_dependence) / std::abs(worst.z);
+  gate.state = state_of(std::abs(worst.z), limit(false_amber), limit(false_red_of_dependence));
   return gate;
 }
 
@@ -124,7 +125,7 @@ double autocorrelation_time(std::span<const double> values) {
 
 double allowance_for_dependence(std::span<const double> values) {
   const std::size_t n = values.size();
-  bool doubtful = lag_one_test(values).statistic > upper_z(false_allowance);
+  bool doubtful = lag_one_test(values).statistic > upper_normal_quantile(false_allowance);
   double factor = 1;
   for (const std::size_t length : {default_batch(n), n / 10}) {
     if (length < default_batch(n)) continue;

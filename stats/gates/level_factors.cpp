@@ -14,10 +14,11 @@ namespace {
 // Two-sided normal quantile of probability 1e-4.
 constexpr double scatter_quantile = 3.9;
 // Larger arguments of e^x are left to the library.
-constexpr double largest = 700;
+constexpr double largest_exponent = 700;
 
-// e^x for |x| <= `largest`, right to two units in the last place. It has no branches or calls, so
-// that many are computed at a time. It is 2^k e^r with |r| <= ln 2 / 2, and e^r by its series.
+// e^x for |x| <= `largest_exponent`, right to two units in the last place. It has no branches or
+// calls, so that many are computed at a time. It is 2^k e^r with |r| <= ln 2 / 2, and e^r by its
+// series.
 inline double exponential(double x) {
   // Added to a number, leaves it rounded in the last bits.
   constexpr double to_integer = 0x1.8p52;
@@ -47,7 +48,7 @@ inline double exponential(double x) {
 }
 
 inline double hyperbolic_cosine(double x) {
-  const double e = exponential(std::min(std::abs(x), largest));
+  const double e = exponential(std::min(std::abs(x), largest_exponent));
   return (e + 1 / e) / 2;
 }
 
@@ -65,7 +66,7 @@ ASSAY_VECTOR_COPIES void factors_of(std::span<const Cumulants> cells, double sca
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const double variance = cells[i].variance;
     const double unit = scale / (variance * std::sqrt(variance));
-    const double scatter = std::min(unit * unit * cells[i].third_variance, 2 * largest);
+    const double scatter = std::min(unit * unit * cells[i].third_variance, 2 * largest_exponent);
     const double centred = exponential(-scatter / 2);
     out.argument[i] = unit * cells[i].third;
     out.scatter[i] = scatter;
@@ -85,7 +86,7 @@ void LevelFactors::add(std::span<const Cumulants> cells) {
       if (!(some[i].variance > 0)) continue;
       ++count_;
       const double argument = factors.argument[i];
-      sum_ += std::abs(argument) > largest ? std::cosh(argument) : factors.factor[i];
+      sum_ += std::abs(argument) > largest_exponent ? std::cosh(argument) : factors.factor[i];
       excess_ += factors.excess[i];
       arguments_ += argument;
       scatters_ += factors.scatter[i];

@@ -11,7 +11,7 @@
 namespace assay::stats {
 namespace {
 
-constexpr double chance = 1e-5;
+constexpr double chance_of_triple = 1e-5;
 
 /// Numbers of values in three patterns, whose expectations satisfy (E middle)^2 <= (factor)^2 E
 /// below E above.
@@ -82,7 +82,7 @@ std::optional<RecurringValues> recurring_values(std::span<const double> values) 
   const std::vector<double> stays = sorted_stays(values);
   const Occurrences occurrences = occurrences_of(stays);
   const auto n = static_cast<double>(stays.size());
-  const double log_chance = std::log(chance / static_cast<double>(occurrences.size()));
+  const double log_chance = std::log(chance_of_triple / static_cast<double>(occurrences.size()));
   std::optional<RecurringValues> worst;
   double least = log_chance;
   for (const auto& [times, count] : occurrences) {
@@ -122,10 +122,10 @@ std::optional<RecurringValues> shared_values(std::span<const double> first,
   for (auto at = two.begin(); at != two.end(); at = std::upper_bound(at, two.end(), *at)) {
     if (count(two, *at) == 2 && count(one, *at) == 0) ++triple.above;
   }
-  if (!(log_ratio(triple) < std::log(chance))) return {};
+  if (!(log_ratio(triple) < std::log(chance_of_triple))) return {};
   return RecurringValues{.times = 1,
                          .values = static_cast<std::size_t>(triple.middle),
-                         .limit = greatest_middle(triple, std::log(chance))};
+                         .limit = greatest_middle(triple, std::log(chance_of_triple))};
 }
 
 }  // namespace assay::stats

@@ -14,22 +14,22 @@ constexpr double values_a_cube = 6;
 // Above it a sample's skewness is too uncertain to correct by.
 constexpr double skewness_of_mean = 0.15;
 constexpr double skewness_times_critical = 0.4;
-constexpr double false_red = 5e-5;
+constexpr double false_red_without_pilot = 5e-5;
 
 // One sample's share in the skewness of a contrast, and the share that normal data would have.
-struct Part {
+struct SkewnessShare {
   double value = 0;
   double allowance = 0;
 };
 
-Part part_of(const Moments& x, double variance_share) {
+SkewnessShare part_of(const Moments& x, double variance_share) {
   if (x.m2 == 0) return {};
   const double n = static_cast<double>(x.count);
   const double weight = variance_share * std::sqrt(variance_share / n);
-  return {weight * x.skewness(), weight * normal_skewness_quantile(n, false_red)};
+  return {weight * x.skewness(), weight * normal_skewness_quantile(n, false_red_without_pilot)};
 }
 
-Gate gate_of(const Part& first, const Part& second, double critical_value) {
+Gate gate_of(const SkewnessShare& first, const SkewnessShare& second, double critical_value) {
   check::positive({"unpiloted_skewness_gate", "critical_value"}, critical_value);
   Gate gate{.name = "skewness of the mean", .value = std::abs(first.value - second.value)};
   gate.low = gate.value;
@@ -71,7 +71,7 @@ Gate unpiloted_skewness_gate(const Moments& x, const Moments& y, double scale,
   const double vx = x.variance() / static_cast<double>(x.count);
   const double vy = scale * scale * y.variance() / static_cast<double>(y.count);
   if (vx + vy == 0) throw ZeroVariance("unpiloted_skewness_gate: zero variance in both samples");
-  Part of_y = part_of(y, vy / (vx + vy));
+  SkewnessShare of_y = part_of(y, vy / (vx + vy));
   of_y.value = std::copysign(of_y.value, scale * of_y.value);
   return gate_of(part_of(x, vx / (vx + vy)), of_y, critical_value);
 }

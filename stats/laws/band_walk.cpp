@@ -8,12 +8,12 @@
 namespace assay::stats {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double log_of_zero = -std::numeric_limits<double>::infinity();
 
 double real(std::uint64_t n) { return static_cast<double>(n); }
 
 double log_poisson(std::uint64_t k, double mean) {
-  if (mean == 0) return k == 0 ? 0 : -infinity;
+  if (mean == 0) return k == 0 ? 0 : log_of_zero;
   return real(k) * std::log(mean) - mean - std::lgamma(real(k) + 1);
 }
 
@@ -23,7 +23,7 @@ struct Binomial {
 };
 
 double log_binomial(std::uint64_t k, Binomial law) {
-  if (k > law.trials) return -infinity;
+  if (k > law.trials) return log_of_zero;
   const double rest = real(law.trials - k);
   return std::lgamma(real(law.trials) + 1) - std::lgamma(real(k) + 1) - std::lgamma(rest + 1) +
          real(k) * std::log(law.probability) + rest * std::log1p(-law.probability);
@@ -98,7 +98,7 @@ double BandWalk::log_start(std::size_t point, std::uint64_t x) const {
 }
 
 double BandWalk::log_rest(std::size_t point, std::uint64_t x) const {
-  if (x > n_) return -infinity;
+  if (x > n_) return log_of_zero;
   const Step& step = steps_[point];
   if (two_) return log_binomial(n_ - x, {total_ - step.rank, share()});
   return log_poisson(n_ - x, real(n_) * (1 - step.z));
@@ -130,7 +130,7 @@ double BandWalk::ratio(std::size_t point, std::uint64_t x) const {
 // on.
 double BandWalk::log_tail(std::size_t point, std::uint64_t x, bool upwards) const {
   const double at = log_probability(point, x);
-  if (at == -infinity) return at;
+  if (at == log_of_zero) return at;
   double sum = 1;
   double term = 1;
   for (std::uint64_t y = x; (upwards ? y < n_ : y > 0) && term > 1e-17 * sum;) {

@@ -60,7 +60,7 @@ struct Transform {
   double operator()(double y) const { return scale * y + offset; }
 };
 
-struct Side {
+struct SortedSide {
   std::span<const double> values;
   Transform map;
 
@@ -82,7 +82,7 @@ struct Side {
 // second at its end. That prunes the search.
 class LargestProduct {
  public:
-  LargestProduct(const Side& lower, const Side& upper, double probability)
+  LargestProduct(const SortedSide& lower, const SortedSide& upper, double probability)
       : lower_(lower), upper_(upper), probability_(probability) {
     for (const double y : lower.values) splits_.push_back(lower.map(y));
     const auto middle = static_cast<std::ptrdiff_t>(splits_.size());
@@ -110,14 +110,14 @@ class LargestProduct {
     if (middle < end) search(middle + 1, end);
   }
 
-  const Side& lower_;
-  const Side& upper_;
+  const SortedSide& lower_;
+  const SortedSide& upper_;
   double probability_;
   std::vector<double> splits_;
   double largest_ = -infinity;
 };
 
-double log_p_below(const Side& lower, const Side& upper, double probability) {
+double log_p_below(const SortedSide& lower, const SortedSide& upper, double probability) {
   return log_fisher(LargestProduct(lower, upper, probability).logarithm());
 }
 
@@ -132,7 +132,7 @@ void check_contrast(const QuantileContrast& contrast) {
 QuantileCounts count_around(std::span<const double> sorted, double value) {
   check_sorted("count_around", sorted);
   check::finite({"count_around", "value"}, value);
-  const Side side{sorted, {1, 0}};
+  const SortedSide side{sorted, {1, 0}};
   return {side.below(value), side.at_most(value), sorted.size()};
 }
 
@@ -169,8 +169,8 @@ TestResult quantile_compare(std::span<const double> sorted_x, std::span<const do
   check_sorted("quantile_compare", sorted_y);
   check_contrast(contrast);
   const double q = contrast.probability;
-  const Side x{sorted_x, {1, 0}};
-  const Side y{sorted_y, {contrast.scale, contrast.offset}};
+  const SortedSide x{sorted_x, {1, 0}};
+  const SortedSide y{sorted_y, {contrast.scale, contrast.offset}};
   const double difference = sample_quantile(sorted_x, q) - y.map(sample_quantile(sorted_y, q));
   return {difference, {"bound", {}}, log_p_below(x, y, q), log_p_below(y, x, q), Exactness::exact};
 }
@@ -183,8 +183,8 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
   check::inside_unit({"quantile_difference_interval", "probability"}, probability);
   check_sorted("quantile_difference_interval", sorted_x);
   check_sorted("quantile_difference_interval", sorted_y);
-  const Side x{sorted_x, {1, 0}};
-  const auto moved = [&](double offset) { return Side{sorted_y, {1, offset}}; };
+  const SortedSide x{sorted_x, {1, 0}};
+  const auto moved = [&](double offset) { return SortedSide{sorted_y, {1, offset}}; };
   const auto rejected_above = [&](double offset) {
     return log_p_below(x, moved(offset), probability) <= log_level;
   };

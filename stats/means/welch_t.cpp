@@ -11,7 +11,7 @@
 namespace assay::stats {
 namespace {
 
-struct Scale {
+struct ContrastScale {
   double standard_error;
   double degrees;
 };
@@ -23,7 +23,7 @@ void check_samples(const char* function, const Moments& x, const Moments& y) {
   check::finite({function, "mean of y"}, y.mean);
 }
 
-Scale scale_of(const char* function, const Moments& x, const Moments& y, double factor) {
+ContrastScale scale_of(const char* function, const Moments& x, const Moments& y, double factor) {
   const double vx = x.variance() / static_cast<double>(x.count);
   const double vy = factor * factor * y.variance() / static_cast<double>(y.count);
   const double total = vx + vy;
@@ -47,7 +47,7 @@ struct Excess {
   double confidence;
 
   double operator()(double ratio) const {
-    const Scale scale = scale_of("welch_ratio_interval", x, y, ratio);
+    const ContrastScale scale = scale_of("welch_ratio_interval", x, y, ratio);
     const double t = contrast_of_means(x, y, {ratio, 0}) / scale.standard_error;
     return std::abs(t) - critical_value(confidence, scale.degrees);
   }
@@ -70,7 +70,7 @@ TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value) {
   check_samples("welch_t", x, y);
   check::finite({"welch_t", "scale"}, null_value.scale);
   check::finite({"welch_t", "offset"}, null_value.offset);
-  const Scale scale = scale_of("welch_t", x, y, null_value.scale);
+  const ContrastScale scale = scale_of("welch_t", x, y, null_value.scale);
   const double t = contrast_of_means(x, y, null_value) / scale.standard_error;
   const LogTails tails = student_t_tails(t, scale.degrees);
   return {t, {"student-t", {scale.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
@@ -79,7 +79,7 @@ TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value) {
 Interval welch_t_interval(const Moments& x, const Moments& y, double confidence) {
   check_samples("welch_t_interval", x, y);
   check::inside_unit({"welch_t_interval", "confidence"}, confidence);
-  const Scale scale = scale_of("welch_t_interval", x, y, 1);
+  const ContrastScale scale = scale_of("welch_t_interval", x, y, 1);
   const double half = critical_value(confidence, scale.degrees) * scale.standard_error;
   const double centre = contrast_of_means(x, y, {});
   return {centre - half, centre + half, confidence};

@@ -11,7 +11,7 @@ namespace assay::stats {
 namespace {
 
 // Rounding that a sum of weights such as 1/m + … + 1/m may carry.
-constexpr double rounding = 1e-9;
+constexpr double rounding_of_weights = 1e-9;
 
 double checked_total(const char* function, std::span<const WeightedLogP> entries) {
   double total = 0;
@@ -20,7 +20,8 @@ double checked_total(const char* function, std::span<const WeightedLogP> entries
     check::positive({function, "weight"}, entry.weight);
     total += entry.weight;
   }
-  if (total > 1 + rounding) check::fail({function, "sum of weights"}, total, "at most 1");
+  if (total > 1 + rounding_of_weights)
+    check::fail({function, "sum of weights"}, total, "at most 1");
   return total;
 }
 

@@ -15,7 +15,7 @@ using Quiet = policies::policy<policies::overflow_error<policies::ignore_error>,
                                policies::promote_double<false>>;
 
 // Below this Boost's result may be denormal. The log forms take over long before.
-constexpr double boost_minimum = 1e-280;
+constexpr double boost_gamma_minimum = 1e-280;
 
 // ln P(a, x) = prefix - ln a + ln sum x^k / ((a+1) … (a+k)); DLMF 8.7.1. It takes four terms at a
 // time, whose factors do not wait for one another.
@@ -59,14 +59,14 @@ constexpr double most_for_sum = 2000;
 double log_upper(double shape, double x) {
   if (shape <= most_for_sum) return log_far_upper(shape, x);
   const double q = boost::math::gamma_q(shape, x, Quiet());
-  return q > boost_minimum ? std::log(q) : log_far_upper(shape, x);
+  return q > boost_gamma_minimum ? std::log(q) : log_far_upper(shape, x);
 }
 
 double log_lower(double shape, double x) {
   if (x == 0) return special::lowest_log();
   if (shape <= most_for_sum) return log_far_lower(shape, x);
   const double p = boost::math::gamma_p(shape, x, Quiet());
-  return p > boost_minimum ? std::log(p) : log_far_lower(shape, x);
+  return p > boost_gamma_minimum ? std::log(p) : log_far_lower(shape, x);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "stats/tails/test_result.h"
@@ -64,6 +65,10 @@ LogTails noncentral_chi_square_tails(double x, Noncentral parameters);
 // Quantiles, by inversion of the log tails. A quantile too large for a double is infinite.
 // log_probability must be below 0.
 double normal_quantile(LogTail tail);
+// The value that a standard normal variable exceeds with this probability.
+inline double upper_normal_quantile(double probability) {
+  return normal_quantile({Tail::upper, std::log(probability)});
+}
 double student_t_quantile(LogTail tail, double degrees);
 double chi_square_quantile(LogTail tail, double degrees);
 double f_quantile(LogTail tail, FDegrees degrees);
