@@ -401,7 +401,7 @@ Examples:
 void define_merge(Options& options, MergeCommand& command) {
   options.about(
       R"(Joins the records of all shards of a run, in any order, to the record of the whole, with Holm's
-adjustment over each suite, and reports it. Nothing is sampled.
+adjusted p-values, and reports it. Nothing is sampled.
 
 Examples:
   assay run suites/luminaire.yaml --shard 1/2 --report json=1.json

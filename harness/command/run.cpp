@@ -9,20 +9,17 @@
 #include "harness/ledger/ledger.h"
 #include "harness/record/environment.h"
 #include "harness/record/record_of.h"
-#include "harness/run/holm_verdict.h"
+#include "harness/run/holm.h"
 #include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
 
 namespace assay::harness {
 namespace {
 
-void judge_family(SuiteRun& run, const RunOptions& options) {
-  std::vector<TestWork*> tests;
-  for (TestWork& work : run.tests) tests.push_back(&work);
-  if (run.tests.size() + run.untested.size() == run.suite.tests.size() && !options.shard) {
-    apply_holm(tests, run.suite.alpha);
-    run.holm = true;
-  }
+/// A family without some of its tests has no adjusted p-values.
+void adjust_if_whole(SuiteRun& run, const RunOptions& options) {
+  run.adjusted = run.tests.size() + run.untested.size() == run.suite.tests.size() && !options.shard;
+  if (run.adjusted) adjust_p_values(run.tests);
 }
 
 void add_note(reports::Record& record, const std::string& note) {
@@ -64,7 +61,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   }
   sample_in_looks(tests, planned.pools.all(), options.threads, progress);
   stop_if_interrupted();
-  for (auto& run : planned.suites) judge_family(*run, options);
+  for (auto& run : planned.suites) adjust_if_whole(*run, options);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   reports::Record record = record_of(planned.suites, options);
   record.started = started;

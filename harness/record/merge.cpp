@@ -12,8 +12,7 @@
 #include "harness/record/comparisons.h"
 #include "harness/record/record_of.h"
 #include "harness/record/shard_check.h"
-#include "harness/run/holm_verdict.h"
-#include "harness/run/verdict_text.h"
+#include "harness/run/holm.h"
 #include "harness/sampling/recorded_moments.h"
 
 namespace assay::harness {
@@ -21,7 +20,7 @@ namespace {
 
 using reports::Verdict;
 
-/// A shard's test with the data for Holm's decision.
+/// A shard's test with the data for Holm's method.
 struct Part {
   reports::Test test;
   reports::ShardTest family;
@@ -40,23 +39,7 @@ std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t sui
   return parts;
 }
 
-void refute(Part& part, const FamilyMember& member) {
-  reports::Test& test = part.test;
-  test.verdict = Verdict::fail;
-  test.ok = test.verdict == test.expected;
-  for (std::size_t i = 0; i < test.channels.size(); ++i) {
-    test.channels[i].effect = part.family.refuted[i];
-  }
-  const std::size_t by = *member.refuted_by;
-  const bool several = member.log_p.size() + member.untested > 1;
-  test.message = narrate_holm({.effect = test.channels[by].effect,
-                               .channel = several ? test.channels[by].name : "",
-                               .log_p = member.log_p[by],
-                               .log_p_adjusted = member.log_p_adjusted[by],
-                               .earlier_look = several ? 0 : earlier_look(test.looks)});
-}
-
-void apply_holm(std::vector<Part>& parts, double alpha) {
+void adjust_p_values(std::vector<Part>& parts) {
   std::vector<FamilyMember> family;
   std::vector<Part*> owners;
   for (Part& part : parts) {
@@ -68,7 +51,7 @@ void apply_holm(std::vector<Part>& parts, double alpha) {
     owners.push_back(&part);
   }
   try {
-    decide_family(family, alpha);
+    adjust_family(family);
   } catch (const std::domain_error& error) {
     throw InputError({}, fmt::format("the shards' shares of alpha do not fit together: {}; was a "
                                      "record edited? Run the shards again",
@@ -80,7 +63,6 @@ void apply_holm(std::vector<Part>& parts, double alpha) {
       channels[i].p_adjusted = probability(family[k].log_p_adjusted[i]);
       channels[i].log10_p_adjusted = log10_of(family[k].log_p_adjusted[i]);
     }
-    if (family[k].refuted_by) refute(*owners[k], family[k]);
   }
 }
 
@@ -152,7 +134,7 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
   });
   std::vector<Part> parts = parts_of(shards, index);
   const bool complete = parts.size() == shards.front().record.shard->suites[index].tests;
-  if (complete) apply_holm(parts, suite.alpha);
+  if (complete) adjust_p_values(parts);
   whole = whole && complete;
   std::vector<Pictured> pictures;
   for (const View& view : views_of(shards, index)) {

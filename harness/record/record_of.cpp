@@ -243,7 +243,7 @@ reports::Test record_of_untested(const Untested& untested, const std::string& fi
 
 }  // namespace
 
-reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm) {
+reports::Test record_of_test(const TestWork& work, const std::string& file, bool adjusted) {
   const TestOutcome& outcome = work.outcome;
   const TestEntry& entry = *outcome.question.test;
   const Regions& regions = outcome.plan.regions[0];
@@ -266,7 +266,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   test.samples = samples_of(work);
   if (const std::optional<DrawnTest> drawn = harness::drawn(work)) {
     for (const ChannelOutcome& channel : outcome.channels) {
-      test.channels.push_back(channel_of(channel, holm && outcome.place.inside, regions));
+      test.channels.push_back(channel_of(channel, adjusted && outcome.place.inside, regions));
       test.channels.back().laws = empirical_laws(*drawn, channel.index);
     }
     if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
@@ -299,7 +299,7 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
     };
     for (const TestWork& work : run->tests) {
       add_untested_before(work.outcome.question.test);
-      suite.tests.push_back(record_of_test(work, run->suite.file, run->holm));
+      suite.tests.push_back(record_of_test(work, run->suite.file, run->adjusted));
       if (options.command.empty()) continue;
       reports::Test& test = suite.tests.back();
       test.replay = options.command + option_words("--seed", {fmt::format("{}", run->seed)});
@@ -308,7 +308,7 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
     add_untested_before(nullptr);
     suite.statements = statements_of(run->suite, suite.tests);
     suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
-    whole = whole && run->holm;
+    whole = whole && run->adjusted;
     add_pictures(*run, suite);
     record.suites.push_back(std::move(suite));
   }

@@ -12,12 +12,12 @@ namespace assay::harness {
 
 /// The note of a record without some tests of its suites.
 inline constexpr const char* partial_note =
-    "not every test of the suites ran: verdicts rest on each test's fixed share of alpha, without "
-    "Holm's adjustment";
+    "not every test of the suites ran: their p-values are not adjusted by Holm's method, which "
+    "takes all";
 
 reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
                           const RunOptions& options);
 
-reports::Test record_of_test(const TestWork& work, const std::string& file, bool holm);
+reports::Test record_of_test(const TestWork& work, const std::string& file, bool adjusted);
 
 }  // namespace assay::harness

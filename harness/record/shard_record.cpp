@@ -8,8 +8,7 @@
 #include "estimators/ready_made.h"
 #include "harness/base/text_hash.h"
 #include "harness/record/picture.h"
-#include "harness/run/found_effect.h"
-#include "harness/run/holm_verdict.h"
+#include "harness/run/holm.h"
 #include "harness/sampling/recorded_moments.h"
 
 namespace assay::harness {
@@ -61,18 +60,12 @@ std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
 
 reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
   const FamilyMember member = member_of(outcome);
-  reports::ShardTest part{.position = position_of(*outcome.question.test, run.suite),
-                          .inside = outcome.place.inside,
-                          .weight = member.weight,
-                          .untested = member.untested,
-                          .log_p = member.log_p,
-                          .refuted = {},
-                          .compared = compared_by(outcome.question)};
-  if (!part.inside || !member.tested() || member.verdict == reports::Verdict::fail) return part;
-  for (const ChannelOutcome& channel : outcome.channels) {
-    part.refuted.push_back(refuted_effect_of(outcome, channel));
-  }
-  return part;
+  return {.position = position_of(*outcome.question.test, run.suite),
+          .inside = outcome.place.inside,
+          .weight = member.weight,
+          .untested = member.untested,
+          .log_p = member.log_p,
+          .compared = compared_by(outcome.question)};
 }
 
 }  // namespace
@@ -102,8 +95,8 @@ void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOpti
   }
   record.shard = std::move(shard);
   record.note = fmt::format(
-      "shard {} of {}: verdicts rest on each test's fixed share of alpha, without Holm's "
-      "adjustment over the suite, which `assay merge` makes from all shards",
+      "shard {} of {}: `assay merge` joins the records of all shards and adjusts their p-values by "
+      "Holm's method",
       index, count);
 }
 

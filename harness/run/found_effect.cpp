@@ -27,10 +27,9 @@ TestSize full_size(const TestOutcome& outcome) {
 }
 
 /// Confidence of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
-double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel,
-                           bool refuted) {
+double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const ErrorShare share = outcome.share();
-  if (!refuted && channel.regions.has_forbidden()) {
+  if (outcome.verdict != Verdict::fail && channel.regions.has_forbidden()) {
     return 1 - 2 * share.beta;
   }
   const bool two_tails = channel.regions.two_sided() && !channel.evidence.distance;
@@ -47,12 +46,18 @@ std::string quantity_of(const Evidence& evidence, double factor) {
   return evidence.ratio ? "ln(" + quantity + ")" : quantity;
 }
 
-reports::Effect effect_at(const Evidence& evidence, double confidence, double factor) {
+/// The effect with the interval behind the verdict, at this look's shares. A fail shows the
+/// interval at alpha, which misses the claimed region. A pass that excludes the forbidden region
+/// shows the interval at 1 - 2 beta: one test at beta to each side. An undecided test shows that
+/// interval too.
+reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const Evidence& evidence = channel.evidence;
+  const double confidence = deciding_confidence(outcome, channel);
   const stats::Interval interval = evidence.interval(confidence);
   const auto number = [](double value) {
     return std::isfinite(value) ? reports::Number(value) : reports::Number();
   };
-  return {.quantity = quantity_of(evidence, factor),
+  return {.quantity = quantity_of(evidence, outcome.question.factor),
           .estimate = number(evidence.estimate),
           .low = number(interval.low),
           .high = number(interval.high),
@@ -61,17 +66,6 @@ reports::Effect effect_at(const Evidence& evidence, double confidence, double fa
 }
 
 }  // namespace
-
-reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const bool refuted = outcome.verdict == Verdict::fail;
-  return effect_at(channel.evidence, deciding_confidence(outcome, channel, refuted),
-                   outcome.question.factor);
-}
-
-reports::Effect refuted_effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  return effect_at(channel.evidence, deciding_confidence(outcome, channel, true),
-                   outcome.question.factor);
-}
 
 void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
   for (ChannelOutcome& channel : outcome.channels) {

@@ -35,7 +35,7 @@ struct SuiteRun {
   std::vector<TestWork> tests = {};      ///< The selected tests.
   std::vector<Untested> untested = {};   ///< Selected tests without a question.
   std::vector<Picture> pictures = {};
-  bool holm = false;  ///< True if the whole family ran.
+  bool adjusted = false;  ///< True if the whole family ran, so that its p-values are adjusted.
 };
 
 /// The number of observations that a picture shows: those of the test that drew most. It depends on

@@ -295,29 +295,6 @@ std::string told(const TestOutcome& outcome) {
 
 }  // namespace
 
-std::uint64_t earlier_look(std::span<const reports::Look> looks) {
-  if (looks.empty()) return 0;
-  const auto share_of_p = [](const reports::Look& look) {
-    return look.log10_p.value_or(0) - std::log10(look.weight);
-  };
-  const auto least = std::ranges::min_element(looks, {}, share_of_p);
-  const bool last = share_of_p(*least) == share_of_p(looks.back());
-  return last ? 0 : least->secondaries;
-}
-
-std::string narrate_holm(const HolmFinding& found) {
-  const std::string look =
-      found.earlier_look == 0
-          ? ""
-          : fmt::format(" (of the look at {} observations, the estimate of all)",
-                        reports::count_text(found.earlier_look));
-  return plain(fmt::format(
-      "{}{}, {}{} and after Holm {}: refuted by the share of alpha that the suite's other "
-      "refuted claims leave to it, not by its own, which the interval is for",
-      finding(found.effect), found.channel.empty() ? "" : " in channel " + found.channel,
-      p_text(found.log_p), look, p_text(found.log_p_adjusted)));
-}
-
 std::string narrate(const TestOutcome& outcome) {
   return outcome.channels.empty() ? "" : plain(told(outcome));
 }

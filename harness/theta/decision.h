@@ -54,7 +54,7 @@ struct ErrorShare {
 struct ChannelDecision {
   double log_p_claimed = 0;
   double log_p_forbidden = 0;
-  bool rejected = false;  ///< Rejects "theta in C", at the fixed share or by Holm.
+  bool rejected = false;  ///< Rejects "theta in C".
 };
 reports::Verdict decide(const std::vector<ChannelDecision>& channels, const Regions& regions,
                         double beta);

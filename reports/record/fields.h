@@ -334,7 +334,6 @@ void fields(Archive& a, T& test) {
   a("weight", test.weight);
   a("untested", test.untested);
   a("log_p", test.log_p);
-  a("refuted", test.refuted);
   a("compared", test.compared);
 }
 

@@ -306,7 +306,6 @@ struct ShardTest {
   double weight = 0;                  ///< One channel's; the family's weights sum to 1.
   std::uint64_t untested = 0;         ///< Channels without a p-value.
   std::vector<double> log_p;          ///< Natural logarithms, one a channel of the test.
-  std::vector<Effect> refuted;        ///< The effects to show if Holm refutes the claim.
   std::vector<std::string> compared;  ///< The estimators of a claim about two.
   bool operator==(const ShardTest&) const = default;
 };

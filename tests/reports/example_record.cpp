@@ -252,7 +252,6 @@ Shard shard_of(const Record& record) {
                                            .weight = 0.125,
                                            .untested = 1,
                                            .log_p = {-3.5, -0.25},
-                                           .refuted = {mean_effect(0.01, 0.002)},
                                            .compared = {suite.name, "b"}});
   }
   return shard;

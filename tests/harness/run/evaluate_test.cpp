@@ -1,12 +1,13 @@
 #include "harness/run/evaluate.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "harness/families/families.h"
-#include "harness/run/holm_verdict.h"
+#include "harness/run/holm.h"
 #include "tests/harness/normal_evidence.h"
 #include "tests/harness/running.h"
 
@@ -14,6 +15,8 @@ namespace assay::harness {
 namespace {
 
 using reports::Verdict;
+using testing::DoubleNear;
+using testing::Pointwise;
 
 constexpr double alpha = 0.05;
 
@@ -36,55 +39,27 @@ TestWork judged(double p, double weight, Verdict verdict, const TestEntry& test)
   return work;
 }
 
-std::vector<Verdict> after_holm(std::vector<TestWork> tests) {
-  std::vector<TestWork*> pointers;
-  for (TestWork& work : tests) pointers.push_back(&work);
-  apply_holm(pointers, alpha);
-  std::vector<Verdict> verdicts;
-  for (const TestWork& work : tests) verdicts.push_back(work.outcome.verdict);
-  return verdicts;
-}
-
-TEST(Evaluate, HolmTurnsAPassIntoAFail) {
-  const TestEntry test;
-  // 0.03 is above its share of 0.025; once the first is rejected all of 0.05 is its.
-  EXPECT_EQ(
-      after_holm({judged(1e-9, 0.5, Verdict::fail, test), judged(0.03, 0.5, Verdict::pass, test)}),
-      (std::vector{Verdict::fail, Verdict::fail}));
-  EXPECT_EQ(after_holm({judged(1e-9, 0.5, Verdict::fail, test),
-                        judged(0.03, 0.5, Verdict::inconclusive, test)}),
-            (std::vector{Verdict::fail, Verdict::fail}));
-}
-
-TEST(Evaluate, HolmSaysThatItAloneRefutesAndMarksEveryChannel) {
-  const TestEntry test;
-  TestWork second = judged(0.03, 0.25, Verdict::pass, test);
-  second.outcome.question.subjects = {Subject{.channels = {0, 1}}};
-  second.outcome.channels.push_back(second.outcome.channels.front());
-  second.outcome.channels[1].decision.log_p_claimed = std::log(0.01);
-  second.outcome.channels[0].decision.log_p_claimed = std::log(0.01);
-  TestWork first = judged(1e-9, 0.5, Verdict::fail, test);
-  apply_holm({&first, &second}, alpha);
-  EXPECT_EQ(second.outcome.verdict, Verdict::fail);
-  EXPECT_NE(second.outcome.message.find("after Holm"), std::string::npos) << second.outcome.message;
-  for (const ChannelOutcome& channel : second.outcome.channels) {
-    EXPECT_TRUE(channel.decision.rejected);
+std::vector<double> adjusted(std::vector<TestWork> tests) {
+  adjust_p_values(tests);
+  std::vector<double> p;
+  for (const TestWork& work : tests) {
+    for (const ChannelOutcome& channel : work.outcome.channels) {
+      p.push_back(std::exp(channel.log_p_adjusted));
+    }
   }
+  return p;
 }
 
-TEST(Evaluate, HolmLeavesWhatNothingBeforeItFreed) {
+// The first p takes all of alpha, the second what the first leaves.
+TEST(Evaluate, HolmAdjustsByTheSharesThatSmallerPValuesFree) {
   const TestEntry test;
-  EXPECT_EQ(
-      after_holm({judged(0.04, 0.5, Verdict::pass, test), judged(0.03, 0.5, Verdict::pass, test)}),
-      (std::vector{Verdict::pass, Verdict::pass}));
-}
-
-TEST(Evaluate, HolmCountsInvalidAndErrorAsNotRejected) {
-  const TestEntry test;
+  const auto with = [&](Verdict first) {
+    return adjusted({judged(1e-9, 0.5, first, test), judged(0.03, 0.5, Verdict::pass, test)});
+  };
+  EXPECT_THAT(with(Verdict::fail), Pointwise(DoubleNear(1e-15), {2e-9, 0.03}));
+  // Invalid and error count as p = 1 and free nothing.
   for (const Verdict verdict : {Verdict::invalid, Verdict::error}) {
-    EXPECT_EQ(
-        after_holm({judged(1e-9, 0.5, verdict, test), judged(0.03, 0.5, Verdict::pass, test)}),
-        (std::vector{verdict, Verdict::pass}));
+    EXPECT_THAT(with(verdict), Pointwise(DoubleNear(1e-15), {1., 0.06}));
   }
 }
 
@@ -92,16 +67,17 @@ TEST(Evaluate, HolmCountsATestWithoutNumbersAsNotRejected) {
   const TestEntry test;
   TestWork without = judged(1e-9, 0.5, Verdict::error, test);
   without.outcome.channels.clear();
-  EXPECT_EQ(after_holm({without, judged(0.03, 0.5, Verdict::pass, test)}),
-            (std::vector{Verdict::error, Verdict::pass}));
+  EXPECT_THAT(adjusted({without, judged(0.03, 0.5, Verdict::pass, test)}),
+              Pointwise(DoubleNear(1e-15), {0.06}));
 }
 
 TEST(Evaluate, HolmIsNotForTestsOutsideTheFamily) {
   const TestEntry test;
   TestWork outside = judged(0.03, 0.5, Verdict::pass, test);
   outside.outcome.place.inside = false;
-  EXPECT_EQ(after_holm({judged(1e-9, 1, Verdict::fail, test), outside}),
-            (std::vector{Verdict::fail, Verdict::pass}));
+  const double before = outside.outcome.channels[0].log_p_adjusted;
+  EXPECT_THAT(adjusted({judged(1e-9, 1, Verdict::fail, test), outside}),
+              Pointwise(DoubleNear(1e-15), {1e-9, std::exp(before)}));
 }
 
 // Its per cent is of no use to a claim that names none.

@@ -94,28 +94,19 @@ TEST(Narrate, ClassicalPassSaysWhereNothingCouldHaveBeenFound) {
   expect_said(told(std::string(claim) + "400"), Verdict::pass, "or more would have been found");
 }
 
-TEST(Narrate, HolmSaysWhichLookItsPIsOf) {
-  const std::vector<reports::Look> looks{{.secondaries = 100, .weight = .5, .log10_p = -2},
-                                         {.secondaries = 200, .weight = .25, .log10_p = -2.22},
-                                         {.secondaries = 400, .weight = .25, .log10_p = -.52}};
-  EXPECT_EQ(earlier_look(looks), 100) << ".02, .024 and 1.2";
-  EXPECT_EQ(earlier_look(std::vector<reports::Look>{looks[2], looks[0]}), 0) << "the last";
-  EXPECT_EQ(earlier_look({}), 0);
-  const reports::Effect effect{.quantity = "difference", .estimate = 1., .low = 0.};
-  const auto said = [&](std::uint64_t look) {
-    return narrate_holm(
-        {.effect = effect, .log_p = -4, .log_p_adjusted = -3, .earlier_look = look});
-  };
-  EXPECT_NE(said(100).find("(of the look at 100 observations, the estimate of all) and after Holm"),
-            std::string::npos)
-      << said(100);
-  EXPECT_EQ(said(0).find("look"), std::string::npos) << said(0);
-}
-
 // An exponent of points of which one alone is not zero is infinite.
 TEST(Narrate, WithoutANumberSaysThatThereIsNone) {
-  const auto said = [](const reports::Effect& effect) {
-    return narrate_holm({.effect = effect, .log_p = -14, .log_p_adjusted = -13});
+  const auto asked = ask_text(R"(suite: none
+estimators: {area: {plugin: luminaire/area}}
+tests: [{name: t, claim: mean(area) == 1}]
+)");
+  const auto said = [&](const reports::Effect& effect) {
+    TestOutcome outcome{.question = asked->question("t")};
+    outcome.verdict = Verdict::fail;
+    ChannelOutcome& channel = outcome.channels.emplace_back();
+    channel.effect = effect;
+    channel.decision.log_p_claimed = -14;
+    return narrate(outcome);
   };
   EXPECT_TRUE(said({.quantity = "difference from the claimed slope"})
                   .starts_with("difference from the claimed slope is no finite number, p = "));
