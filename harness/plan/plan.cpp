@@ -73,8 +73,8 @@ std::string caution_of(const Question& question, const Pilots& pilots) {
                      question.test->detect->value);
 }
 
-/// Chooses the method by the pilots' shapes, then judges the rows of files. Returns the fewest
-/// secondaries that the method takes.
+/// Chooses the method by the pilots' shapes, then judges the order of rows and draws. Returns the
+/// fewest secondaries that the method takes.
 std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
                             const Pilots& pilots, std::uint64_t most, Plan& plan) {
   const std::uint64_t used = largest_look(question, most);
@@ -85,6 +85,7 @@ std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
   }
   const std::uint64_t least = question.theta->choose(question, place, pilots, most, plan);
   if (has_rows(question)) judge_independence(question, pilots, used, plan);
+  judge_drawn_order(question, pilots, plan);
   return least;
 }
 

@@ -290,6 +290,26 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   }
 }
 
+void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& plan) {
+  for (const Subject& side : question.subjects) {
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const std::span<const double> values = pilot_channel(side, *pilot, channel).values;
+      if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) continue;
+      const stats::Gate gate = stats::drawn_order_gate(values);
+      if (gate.state != GateState::red) continue;
+      plan.gates.push_back(gate_of(gate, ", " + side.estimator->name));
+      if (question.test->method || !plan.invalid.empty()) continue;
+      plan.invalid = fmt::format(
+          "the observations of `{}` are not independent: their order in the pilot has a rank "
+          "correlation of {:.2g}; an observation may rest on its own random numbers alone, not on "
+          "what was drawn before it or beside it",
+          side.estimator->name, gate.value);
+    }
+  }
+}
+
 stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
                          std::span<const double> values, stats::Moments moments) {
   // Constants are judged by themselves, and have no order.

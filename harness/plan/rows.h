@@ -38,6 +38,10 @@ void require_independent_sides(const Question& question, const Pilots& pilots, s
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
                         Plan& plan);
 
+/// Judges the independence of what estimators drew in their pilots (stats::drawn_order_gate). Notes
+/// a red gate, which makes a test invalid. A forced method is kept.
+void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& plan);
+
 /// The moments that a test of means takes, of batch means if that is its method. Rows with an
 /// allowance get larger deviations: those of independent values with as uncertain a mean.
 stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,

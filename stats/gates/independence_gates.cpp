@@ -15,10 +15,13 @@ namespace assay::stats {
 namespace {
 
 constexpr double false_red_of_dependence = 5e-5;
+// A suite has many tests, and hardly one whose estimator forgets to be independent.
+constexpr double false_red_of_draws = 1e-7;
 constexpr double false_amber = 0.01;
 constexpr double false_allowance = 0.05;
 // Correlations cost up to the square of this number.
 constexpr std::size_t most_correlated = 8192;
+constexpr std::size_t most_drawn = 2048;
 
 GateState state_of(double value, double green_up_to, double limit) {
   if (value > limit) return GateState::red;
@@ -65,6 +68,20 @@ BatchRatio batch_ratio(std::span<const double> values, std::size_t length) {
   return {.value = ratio, .degrees = degrees};
 }
 
+Gate gate_of_lags(const std::vector<LaggedCorrelation>& all, const char* name, double chance) {
+  Gate gate{.name = name};
+  if (all.empty()) return gate;
+  const LaggedCorrelation worst = worst_of(all);
+  const auto limit = [&](double probability) {
+    return upper_normal_quantile(probability / (2 * static_cast<double>(all.size())));
+  };
+  gate.value = worst.correlation;
+  gate.low = worst.correlation;
+  gate.limit = worst.z == 0 ? 0 : worst.correlation * limit(chance) / std::abs(worst.z);
+  gate.state = state_of(std::abs(worst.z), limit(false_amber), limit(chance));
+  return gate;
+}
+
 }  // namespace
 
 Gate lag_one_gate(std::span<const double> values) {
@@ -90,19 +107,14 @@ Gate batch_gate(std::span<const double> values) {
 }
 
 Gate lagged_gate(std::span<const double> values) {
-  const std::vector<LaggedCorrelation> all = lagged_correlations(values);
-  Gate gate{.name = "correlation of values some steps apart"};
-  if (all.empty()) return gate;
-  const LaggedCorrelation worst = worst_of(all);
-  const auto limit = [&](double probability) {
-    return upper_normal_quantile(probability / (2 * static_cast<double>(all.size())));
-  };
-  gate.value = worst.correlation;
-  gate.low = worst.correlation;
-  gate.limit =
-      worst.z == 0 ? 0 : worst.correlation * limit(false_red_of_dependence) / std::abs(worst.z);
-  gate.state = state_of(std::abs(worst.z), limit(false_amber), limit(false_red_of_dependence));
-  return gate;
+  return gate_of_lags(lagged_correlations(values), "correlation of values some steps apart",
+                      false_red_of_dependence);
+}
+
+Gate drawn_order_gate(std::span<const double> values) {
+  const auto first = values.first(std::min(values.size(), most_drawn));
+  return gate_of_lags(lagged_correlations(first, 1), "rank correlation of drawn observations",
+                      false_red_of_draws);
 }
 
 double autocorrelation_time(std::span<const double> values) {

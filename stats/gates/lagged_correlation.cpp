@@ -33,7 +33,8 @@ std::vector<double> centred_ranks(std::span<const double> values) {
 
 }  // namespace
 
-std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values) {
+std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
+                                                   std::size_t first) {
   const std::size_t n = values.size();
   const bool constant =
       std::ranges::adjacent_find(values, std::ranges::not_equal_to{}) == values.end();
@@ -43,7 +44,7 @@ std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> value
   const std::size_t farthest = std::min({n / 4, most_lags, most_products / n});
   const double count = static_cast<double>(n);
   std::vector<LaggedCorrelation> all;
-  for (std::size_t lag = 2; lag <= farthest; ++lag) {
+  for (std::size_t lag = first; lag <= farthest; ++lag) {
     const auto later = ranks.begin() + static_cast<std::ptrdiff_t>(lag);
     const double r = std::inner_product(later, ranks.end(), ranks.begin(), 0.0) / squares;
     const double z = (r + 1 / count) * count / std::sqrt(count - static_cast<double>(lag));

@@ -26,6 +26,40 @@ TEST(DependentRows, OfChainsThatTakeTurnsAreInvalid) {
   EXPECT_THAT(test.message, HasSubstr("those 10 apart have a rank correlation of 0."));
 }
 
+// A program whose observation is the mean of five neighbours' random numbers, and its sound sister.
+TEST(DependentDraws, OfAProgramAreInvalidUnlessForced) {
+  const Workplace place;
+  place.write("moving.py", R"(import random, struct, sys
+questions, replies = open(0, "rb"), open(1, "wb")
+replies.write(b"assay 1 binary\nchannel x\nready\n")
+replies.flush()
+wide = int(sys.argv[1])
+while question := questions.read(32):
+    key, first, count, primaries = struct.unpack("<4Q", question)
+    noise = [random.Random(key << 64 | i).random() for i in range(first, first + count + wide)]
+    for i in range(count):
+        replies.write(struct.pack("<d", sum(noise[i:i + wide]) / wide))
+    replies.write(question)
+    replies.flush()
+)");
+  const auto judged_with = [&](const std::string& wide, const std::string& more, int seed) {
+    const std::string file =
+        place.write("moving.yaml",
+                    "suite: moving\nestimators:\n  x: {plugin: process, command: [python3, "
+                    "moving.py, '" +
+                        wide + "']}\ntests:\n  - {claim: mean(x) == 0.5" + more + "}\n");
+    return run_files({file}, {.seed = seed}).suites[0].tests[0];
+  };
+  for (int seed = 1; seed <= 5; ++seed) {
+    const reports::Test test = judged_with("5", "", seed);
+    EXPECT_EQ(test.verdict, Verdict::invalid) << test.message;
+    EXPECT_THAT(test.message, HasSubstr("the observations of `x` are not independent"));
+    EXPECT_EQ(judged_with("1", "", seed).verdict, Verdict::pass);
+  }
+  const Verdict forced = judged_with("5", ", test: t", 1).verdict;
+  EXPECT_TRUE(forced == Verdict::pass || forced == Verdict::fail);
+}
+
 TEST(DependentRows, OfOneLongChainAreTestedByBatchMeans) {
   const reports::Test test = judged(chain(0.9, 8000, 5), "claim: mean(rows) == 0");
   EXPECT_EQ(test.method, "batch-means");
