@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The long studies of levels and sample counts: calibration of all methods, spikes, biases. The
-# calibration has 20,000 runs a cell, or RUNS. Its cells go to calibration.html and calibration.json
+# The long studies of levels and sample counts: calibration of all methods, verdicts on laws of every
+# shape. The calibration has 20,000 runs a cell, or RUNS. Its cells go to calibration.html and calibration.json
 # here.
 #   bash tests/calibrate_study.sh [RUNS]
 set -euo pipefail
@@ -14,6 +14,5 @@ runs=${1:-20000}
 failed=0
 build/harness/assay calibrate --runs "$runs" --report html="$folder/calibration.html" \
   --report json="$folder/calibration.json" || failed=1
-/usr/bin/python3 tests/spike_study.py --assay build/harness/assay || failed=1
-python3 tests/bias_study.py --assay build/harness/assay || failed=1
+/usr/bin/python3 tests/verdict_study.py --assay build/harness/assay || failed=1
 exit "$failed"
