@@ -148,9 +148,13 @@ bool passes_without_fit(const TestOutcome& outcome) {
 void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constants) {
   const std::string red = outcome.plan.gates_invalidate ? red_gates(outcome.gates) : "";
   remember(outcome, red.empty());
-  if (!red.empty() || !outcome.plan.invalid.empty()) {
-    settle(outcome, Verdict::invalid,
-           outcome.plan.invalid.empty() ? red + what_would_help(outcome) : outcome.plan.invalid);
+  if (!outcome.plan.invalid.empty()) {
+    settle(outcome, Verdict::invalid, outcome.plan.invalid);
+    return;
+  }
+  if (!red.empty()) {
+    settle(outcome, need_more(outcome.gates) ? Verdict::inconclusive : Verdict::invalid,
+           red + what_would_help(outcome));
     return;
   }
   settle(outcome, verdict_of_channels(outcome), "");

@@ -19,6 +19,7 @@ const std::vector<GateKind>& gate_kinds() {
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
                    "{0}, limit "
                    "{1}",
+       .needs_more = true,
        .falls = Falls::by_its_logarithm},
       {.name = "level factor of the mean cost",
        .sentence =
@@ -32,12 +33,14 @@ const std::vector<GateKind>& gate_kinds() {
       {.name = "level factor after correction",
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
                    "{0} even "
-                   "after correction, limit {1}"},
+                   "after correction, limit {1}",
+       .needs_more = true},
       {.name = "largest deviation",
        .sentence = "one observation outweighs the others: its deviation over standard deviation "
                    "and sqrt(n) is "
                    "{0}, limit {1}",
-       .heavy_tail = true},
+       .heavy_tail = true,
+       .needs_more = true},
       {.name = "excess kurtosis",
        .sentence =
            "the observations are not normal enough for this test of their variance: their excess "
@@ -79,6 +82,11 @@ const GateKind& Gate::row() const {
   static const GateKind none{};
   const auto found = std::ranges::find(gate_kinds(), kind, &GateKind::name);
   return found == gate_kinds().end() ? none : *found;
+}
+
+bool need_more(const std::vector<Gate>& gates) {
+  return std::ranges::all_of(
+      gates, [](const Gate& gate) { return !gate.is_red() || gate.row().needs_more; });
 }
 
 Gate gate_of(const reports::Gate& gate, const std::string& where) {

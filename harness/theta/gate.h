@@ -21,6 +21,7 @@ struct GateKind {
   bool asks_for_normal_values = false;  ///< Student's t may be forced for near-normal values
   bool heavy_tail = false;              ///< more observations may only show more of the tail
   bool says_what_helps = false;         ///< its sentence does
+  bool needs_more = false;              ///< If it is red the test goes on, and ends inconclusive.
   Falls falls = Falls::not_known;
 };
 
@@ -34,6 +35,9 @@ struct Gate : reports::Gate {
   /// The row of the table, or an empty one.
   const GateKind& row() const;
 };
+
+/// True if more observations mend all red gates.
+bool need_more(const std::vector<Gate>& gates);
 
 /// A gate of its own kind. `where` follows the kind in its name.
 Gate gate_of(const reports::Gate& gate, const std::string& where = "");
