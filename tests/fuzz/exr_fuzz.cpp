@@ -2,8 +2,8 @@
 // read, or refused with its name.
 
 // sources: estimators/render/exr/exr_file.cpp estimators/render/exr/exr_header.cpp
-// sources: estimators/pictures.cpp estimators/core/value.cpp
-// sources: estimators/estimator.cpp estimators/image.cpp estimators/core/text_pattern.cpp
+// sources: estimators/pictures.cpp estimators/core/value.cpp estimators/estimator.cpp
+// sources: estimators/image.cpp estimators/core/text_pattern.cpp
 // libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 // libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath
 

@@ -3,7 +3,7 @@
 // report can be made from it.
 
 // options: -max_len=32768
-// sources: reports/*.cpp
+// sources: reports/*.cpp reports/*/*.cpp
 // libraries: -lfmt -lpng
 
 #include <cstddef>
