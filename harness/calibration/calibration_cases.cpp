@@ -200,10 +200,6 @@ void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
   if (f.has_density) {
     drafts.push_back({"ks", "law == law given", "distribution(x) == " + f.law,
                       "distribution(moved) == " + f.law, detect});
-    drafts.push_back({.method = "anderson-darling",
-                      .question = "law == law given",
-                      .true_claim = "distribution(x) == " + f.law,
-                      .is_default = false});
     drafts.push_back({"ks", "law == law", "distribution(x) == distribution(y)",
                       "distribution(moved) == distribution(y)", detect});
     drafts.push_back({.method = "chi-square-two-sample",
@@ -217,10 +213,6 @@ void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
     return;
   }
   drafts.push_back({"ks", "law == law", "distribution(x) == distribution(y)", "", detect});
-  drafts.push_back({.method = "two-part-ks",
-                    .question = "law == law",
-                    .true_claim = "distribution(x) == distribution(y)",
-                    .is_default = false});
 }
 
 std::vector<Draft> images() {

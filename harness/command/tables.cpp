@@ -54,9 +54,7 @@ std::string page_of(const MethodRow& row) {
   say(row.is.corrects_skewness, "It estimates the skewness from the data.");
   say(row.is.of_normal_values, "It takes the values for nearly normal.");
   say(row.is.of_distinct_values, "Coarsely rounded values are refused.");
-  say(!row.is.allows_distance, "It cannot `allow` a distance between two laws.");
   say(!row.is.excludes_larger, "It can refute, and never excludes a larger mean.");
-  say(!row.is.power_is_known, "No formula plans its sample size.");
   return page;
 }
 

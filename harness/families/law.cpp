@@ -28,20 +28,16 @@ namespace {
 
 // ---- Evidence
 
-Evidence law_against_law(const Method& method, const Question& question, std::size_t channel,
+Evidence law_against_law(const Method&, const Question& question, std::size_t channel,
                          std::span<const ChannelData> data) {
-  const Points x = points_of(question, 0, channel, data[0].values);
-  const Points y = points_of(question, 1, channel, data[1].values);
-  const std::vector<std::optional<Atom>>& atoms = method.frozen.atoms;
-  if (channel < atoms.size() && atoms[channel]) return points_split_at(atoms[channel]->value, x, y);
-  return points_against_points(x, y);
+  return points_against_points(points_of(question, 0, channel, data[0].values),
+                               points_of(question, 1, channel, data[1].values));
 }
 
-template <PointsTest test>
 Evidence values_against_law(const Method&, const Question& question, std::size_t channel,
                             std::span<const ChannelData> data) {
   return points_against_law(points_of(question, 0, channel, data[0].values),
-                            declared_law(question, channel), test);
+                            declared_law(question, channel));
 }
 
 Evidence cells_of_density(const Method&, const Question& question, std::size_t,
@@ -52,12 +48,6 @@ Evidence cells_of_density(const Method&, const Question& question, std::size_t,
 Evidence cells_of_two(const Method& method, const Question& question, std::size_t,
                       std::span<const ChannelData> data) {
   return cells_against_cells(method, question, data);
-}
-
-/// True if a side is a sampler's draws.
-bool about_draws(const Question& question) {
-  return std::any_of(question.subjects.begin(), question.subjects.end(),
-                     [](const Subject& side) { return !side.purpose.empty(); });
 }
 
 /// True if a sampler's draws are tested against its density in cells of all coordinates.
@@ -130,30 +120,6 @@ double worth(const Question& question, const TestSize& size) {
   return question.of_two() ? sizes.x / (1 + sizes.x / sizes.y) : sizes.x;
 }
 
-/// The largest share of an atom over the channels.
-std::optional<double> largest_atom(const Method& method) {
-  std::optional<double> largest;
-  for (const std::optional<Atom>& atom : method.frozen.atoms) {
-    if (atom) largest = std::max(largest.value_or(0), atom->share);
-  }
-  return largest;
-}
-
-// ---- Atoms
-
-void note(const Question& question, const std::vector<std::optional<Atom>>& atoms, Plan& plan) {
-  for (std::size_t channel = 0; channel < atoms.size(); ++channel) {
-    if (!atoms[channel]) continue;
-    const std::string part =
-        atoms.size() > 1 ? " in channel " + question.channel_name(channel) : "";
-    plan.gates.push_back(gate_of(reports::Gate{
-        .name = fmt::format("share of {:.6g}{}, pilots of both", atoms[channel]->value, part),
-        .value = atoms[channel]->share,
-        .limit = least_atom,
-        .state = "amber"}));
-  }
-}
-
 /// Theta is a distance between two laws: of their distribution functions, or Cohen's effect size
 /// over cells.
 class LawTheta : public Theta {
@@ -173,9 +139,7 @@ class LawTheta : public Theta {
     return least_secondaries;
   }
 
-  /// Counts in cells are planned by the noncentral chi-square, distances by Hoeffding's bound. The
-  /// parts of two-part-ks have half the level each, and as many more observations as the atom takes
-  /// from the rest.
+  /// Counts in cells are planned by the noncentral chi-square, distances by Hoeffding's bound.
   std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
                                            const Pilots&, const Plan& plan) const override {
     const Regions& regions = plan.regions[0];
@@ -184,14 +148,7 @@ class LawTheta : public Theta {
       const auto alone = fit_secondaries(question, share, plan);
       return alone ? sides(question) * *alone : impossible_secondaries;
     }
-    const std::optional<double> atom = largest_atom(plan.method);
-    const ErrorShare each{.alpha = atom ? share.alpha / 2 : share.alpha, .beta = share.beta};
-    const auto count =
-        stats::ks_sample_size(distance_plan(question, each, regions.allow), *regions.detect);
-    // If the pilot saw the atom alone, the rest is not planned for.
-    if (!count || !atom || *atom >= 1) return count;
-    const double all = std::ceil(static_cast<double>(*count) / (1 - *atom));
-    return whole_secondaries(all);
+    return stats::ks_sample_size(distance_plan(question, share, regions.allow), *regions.detect);
   }
 
   std::optional<double> detectable(const Question& question, const TestSize& size, const Plan& plan,
@@ -281,19 +238,6 @@ class TwoLawsTheta final : public LawTheta {
   std::string channel_name(const Question& question, std::size_t channel) const override {
     return is.joins_channels ? "cells" : Theta::channel_name(question, channel);
   }
-
-  /// Chooses `two-part-ks` for pilots that show an atom, unless the test forces a method.
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
-    if (!is.joins_channels) {
-      const auto atoms = atoms_of(question, pilots, plan);
-      note(question, atoms, plan);
-      if (!question.test->method && has_atom(atoms)) {
-        plan.method = find_method(question, "two-part-ks");
-      }
-    }
-    return LawTheta::choose(question, place, pilots, most, plan);
-  }
 };
 
 const DensityTheta density_theta({.of_single_values = true, .of_a_law = true});
@@ -314,23 +258,11 @@ const std::vector<MethodRow>& LawTheta::rows() {
        "Kolmogorov-Smirnov: values against a law",
        of_one_law,
        Keeps::values,
-       values_against_law<PointsTest::kolmogorov_smirnov>,
+       values_against_law,
        {.of_distinct_values = true}},
-      {"anderson-darling",
-       "Anderson-Darling: values against a law, tails included",
-       of_one_law,
-       Keeps::values,
-       values_against_law<PointsTest::anderson_darling>,
-       {.of_distinct_values = true, .allows_distance = false, .power_is_known = false}},
-      {"ks", "Kolmogorov-Smirnov: values of two",
+      {"ks", "Kolmogorov-Smirnov: values of two, a frequent one apart",
        [](const Question& q) { return q.of_two() && !q.is().joins_channels; }, Keeps::values,
        law_against_law},
-      {"two-part-ks",
-       "Kolmogorov-Smirnov of two beside a value that comes again and again",
-       [](const Question& q) { return q.of_two() && !q.is().joins_channels && !about_draws(q); },
-       Keeps::values,
-       law_against_law,
-       {.power_is_known = false, .from_pilot = FromPilot::atoms}},
       {"chi-square-two-sample",
        "chi-square of two: one or two coordinates together, in cells",
        [](const Question& q) { return q.of_two(); },

@@ -9,7 +9,6 @@
 #include "harness/draws/sampler_setup.h"
 #include "harness/language/law_cdf.h"
 #include "stats/basics/sorted.h"
-#include "stats/laws/anderson_darling.h"
 #include "stats/laws/two_part_ks.h"
 #include "stats/means/binomial.h"
 #include "stats/means/two_valued.h"
@@ -24,6 +23,11 @@ constexpr const char* distance_of_laws = "largest distance of distribution funct
 constexpr const char* masses_without_a_point = "the masses without a point";
 constexpr const char* distance_of_parts =
     "largest distance of distribution functions, or of the masses without a point";
+
+/// Says which part p belongs to: the estimate may be another's.
+std::string p_is_of(const std::string& part, double difference) {
+  return fmt::format("; p is that of {}, {:.4g} apart", part, difference);
+}
 
 /// Evidence from a sup distance that the law's table leaves uncertain by `error`.
 Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
@@ -50,27 +54,23 @@ Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
           .distance = true};
 }
 
-/// The same distance, with Anderson and Darling's p at theta = 0.
-Evidence with_anderson_darling(Evidence distance, const TestResult& at_null) {
-  distance.at = [at_null, margin = std::move(distance.at)](double theta) {
-    return theta <= 0 ? at_null : margin(theta);
-  };
-  return distance;
-}
-
-Evidence from_distance(const stats::TwoSampleDistance& distance, const TestResult& at_none) {
-  return {
+Evidence from_distance(std::span<const double> x, std::span<const double> y) {
+  const stats::TwoSampleDistance distance = stats::ks_distance(x, y);
+  const stats::TwoLawsTest at_none = stats::two_part_ks(x, y, distance);
+  Evidence evidence{
       .estimate = distance.distance(),
-      .at = [distance, at_none](
+      .at = [distance, at_none = at_none.result](
                 double theta) { return theta <= 0 ? at_none : stats::ks_margin(distance, theta); },
       .interval =
           [distance](double confidence) { return stats::ks_interval(distance, confidence); },
       .quantity = distance_of_laws,
       .distance = true};
-}
-
-Evidence from_distance(const stats::TwoSampleDistance& distance) {
-  return from_distance(distance, stats::kolmogorov_smirnov(distance));
+  if (at_none.common && at_none.common->decides) {
+    const std::string of_value = p_is_of(fmt::format("the values at {:.6g}", at_none.common->value),
+                                         at_none.common->difference);
+    evidence.most_against = [of_value](double theta) { return theta <= 0 ? of_value : ""; };
+  }
+  return evidence;
 }
 
 double clamp_unit(double p) { return std::clamp(p, 0.0, 1.0); }
@@ -150,11 +150,6 @@ struct Part {
   std::string name;
 };
 
-/// Says which part p belongs to: the estimate may be the other's.
-std::string p_is_of(const Part& part) {
-  return fmt::format("; p is that of {}, {:.4g} apart", part.name, part.evidence.estimate);
-}
-
 /// theta = the larger distance. Bonferroni rejects "at most" if either part does at half the level.
 /// Intersection of unions rejects "at least" if both do.
 Evidence larger_of(const Evidence& points, const Part& masses) {
@@ -183,28 +178,12 @@ Evidence larger_of(const Evidence& points, const Part& masses) {
           .interval = interval,
           .most_against = [points, masses](double theta) -> std::string {
             const double of_masses = masses.evidence.at(theta).log_p_upper;
-            return of_masses < points.at(theta).log_p_upper ? p_is_of(masses) : "";
+            return of_masses < points.at(theta).log_p_upper
+                       ? p_is_of(masses.name, masses.evidence.estimate)
+                       : "";
           },
           .quantity = distance_of_parts,
           .distance = true};
-}
-
-/// A distance of which nothing is known.
-Evidence unknown_distance() {
-  return {.estimate = 0,
-          .at = [](double) { return TestResult{.distribution = {.family = "bound"}}; },
-          .interval =
-              [](double confidence) {
-                return Interval{0, 1, confidence};
-              },
-          .quantity = distance_of_laws,
-          .distance = true};
-}
-
-/// The points that are not at the atom.
-Points away_from(double atom, Points points) {
-  std::erase(points.sorted, atom);
-  return points;
 }
 
 void require_points(const Points& points) {
@@ -246,14 +225,11 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel) {
   return declared;
 }
 
-Evidence points_against_law(const Points& points, const DeclaredLaw& declared, PointsTest test) {
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
   require_points(points);
   const std::vector<double> values = stats::probabilities(points.sorted, declared.law);
-  const stats::Probabilities at{values};
-  Evidence rest = from_distance(stats::ks_distance(points.sorted, at), declared.error);
-  if (test == PointsTest::anderson_darling) {
-    rest = with_anderson_darling(std::move(rest), stats::anderson_darling(at, declared.error));
-  }
+  const Evidence rest = from_distance(
+      stats::ks_distance(points.sorted, stats::Probabilities{values}), declared.error);
   if (declared.missing == 0 && points.missing() == 0) return rest;
   const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
   return larger_of(rest, {from_proportion(missing, declared), masses_without_a_point});
@@ -262,38 +238,9 @@ Evidence points_against_law(const Points& points, const DeclaredLaw& declared, P
 Evidence points_against_points(const Points& x, const Points& y) {
   require_points(x);
   require_points(y);
-  const Evidence rest = from_distance(stats::ks_distance(x.sorted, y.sorted));
+  const Evidence rest = from_distance(x.sorted, y.sorted);
   if (!x.of_a_sampler && !y.of_a_sampler) return rest;
   return larger_of(rest, {from_proportions(x, y), masses_without_a_point});
-}
-
-Evidence points_split_at(double atom, const Points& x, const Points& y) {
-  const stats::TwoPartTest parts = stats::two_part_ks(x.sorted, y.sorted, atom);
-  const Points x_rest = away_from(atom, x);
-  const Points y_rest = away_from(atom, y);
-  const bool both = !x_rest.sorted.empty() && !y_rest.sorted.empty();
-  const Part at_atom{from_proportions(x_rest, y_rest), fmt::format("the values at {:.6g}", atom)};
-  Evidence evidence =
-      larger_of(both ? from_distance(stats::ks_distance(x_rest.sorted, y_rest.sorted), parts.rest)
-                     : unknown_distance(),
-                at_atom);
-  const bool atom_decides = log_p_two_sided(parts.atom) < parts.rest.log_p_upper;
-  TestResult at_null = atom_decides ? parts.atom : parts.rest;
-  at_null.log_p_lower = 0;
-  at_null.log_p_upper = parts.log_p;
-  evidence.at = [at_null, margin = std::move(evidence.at)](double theta) {
-    return theta <= 0 ? at_null : margin(theta);
-  };
-  evidence.most_against = [atom_decides, at_atom,
-                           margin = std::move(evidence.most_against)](double theta) -> std::string {
-    if (theta > 0) return margin(theta);
-    return atom_decides ? p_is_of(at_atom) : "";
-  };
-  evidence.quantity = fmt::format(
-      "largest distance of distribution functions away from {0:.6g}, or of the probabilities of "
-      "{0:.6g},",
-      atom);
-  return evidence;
 }
 
 }  // namespace assay::harness

@@ -39,24 +39,14 @@ struct DeclaredLaw {
 /// The law that a claim about one sample names, or the sampler's density.
 DeclaredLaw declared_law(const Question& question, std::size_t channel);
 
-/// The points' test of "the law is the declared one". Anderson and Darling's gives weight to the
-/// tails but knows no margin. It leaves theta > 0 and intervals to Kolmogorov and Smirnov's
-/// distance, valid for every law.
-enum class PointsTest { kolmogorov_smirnov, anderson_darling };
-
 /// If no mass is declared missing and the sample misses none, the points have the whole level.
 /// Under the null hypothesis missing mass then has probability 0 (up to the error). Else points and
 /// mass have half the level each (Bonferroni).
-Evidence points_against_law(const Points& points, const DeclaredLaw& declared,
-                            PointsTest test = PointsTest::kolmogorov_smirnov);
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared);
 
-/// Two samplers always share the level: missing mass is not known beforehand.
+/// "One law" is tested given the pooled values (stats/laws/two_part_ks.h), "at most theta" by a
+/// bound on the distance. Two samplers always share the level: missing mass is not known
+/// beforehand.
 Evidence points_against_points(const Points& x, const Points& y);
-
-/// Values of one law that may have an atom. One part tests whether the atom is as probable in both
-/// (Fisher's exact test, 1935), the other whether the remaining values follow one law. The parts
-/// share the level; theta is the larger difference. A sample that is all atom says nothing of the
-/// rest.
-Evidence points_split_at(double atom, const Points& x, const Points& y);
 
 }  // namespace assay::harness

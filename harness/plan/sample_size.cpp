@@ -38,14 +38,12 @@ std::optional<std::uint64_t> most_of_channels(const Question& question,
 std::optional<double> detectable_effect(const Question& question, const TestSize& size,
                                         const Plan& plan, const PlannedChannel& channel) {
   if (channel.regions.relation == Relation::within) return std::nullopt;  // it finds nothing
-  if (!plan.method.is.power_is_known) return std::nullopt;
   const std::optional<double> found = question.theta->detectable(question, size, plan, channel);
   return found && std::isfinite(*found) ? found : std::nullopt;
 }
 
 std::optional<double> power_at(const Question& question, const TestSize& size, const Plan& plan,
                                const PlannedChannel& channel, double effect) {
-  if (!plan.method.is.power_is_known) return std::nullopt;
   return question.theta->power(question, size, plan, channel, effect);
 }
 

@@ -44,12 +44,6 @@ enum class Keeps { moments, values, points, cells, costs, group_variances, block
 /// Replicates of a method that keeps blocks: enough for Student's t to have near-normal tails.
 inline constexpr std::uint64_t replicate_count = 32;
 
-/// A frequent value, and its share of the pilot's values.
-struct Atom {
-  double value;
-  double share;
-};
-
 /// Factor on the variance of the mean of a recorded channel's rows.
 struct RowAllowance {
   std::size_t subject;
@@ -59,7 +53,6 @@ struct RowAllowance {
 
 /// Data that a method takes from the pilot, before the test's own are seen.
 struct Frozen {
-  std::vector<std::optional<Atom>> atoms = {};                 ///< One a channel, for two-part-ks.
   std::shared_ptr<const stats::SampledCells> cells = nullptr;  ///< For chi-square-two-sample.
   std::vector<double> weights = {};                            ///< Weights of an image's elements.
   /// Excess kurtoses that chi-square and F allow for, one entry a channel; 0 means none.
@@ -76,7 +69,7 @@ struct Frozen {
 struct Method;
 
 /// Part of the pilots that a method's evidence needs.
-enum class FromPilot { nothing, atoms, cells, weights };
+enum class FromPilot { nothing, cells, weights };
 
 /// Other properties of a method.
 struct MethodTraits {
@@ -87,10 +80,8 @@ struct MethodTraits {
   bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.
   bool of_normal_values = false;    ///< Takes values for normal, with an allowance for kurtosis.
   bool of_distinct_values = false;  ///< Coarsely rounded values break its level.
-  bool allows_distance = true;      ///< Tests a claim up to `allow`.
   bool excludes_larger = true;      ///< Refutes "theta is larger" at some sample size.
   bool scores = false;              ///< The estimate does not show its standard error.
-  bool power_is_known = true;       ///< A formula gives the power.
   bool joins_channels = false;      ///< compares all channels of two estimators together
   FromPilot from_pilot = FromPilot::nothing;
   std::optional<stats::ExactMethod> plans = {};  ///< Planning of an exact method of a mean.

@@ -57,16 +57,6 @@ void require_data(const Method& method, const Question& question) {
   }
 }
 
-/// Throws InputError if the method cannot test the claim's `allow`.
-void require_margins(const Method& method, const Question& question) {
-  const TestEntry& test = *question.test;
-  if (method.is.allows_distance || !test.allow || test.allow->value == 0) return;
-  throw InputError(test.place_of("allow"),
-                   fmt::format("`{}` tests that two laws are the same and knows no distance to "
-                               "`allow` between them; leave `allow` out, or test by `ks`",
-                               method.name));
-}
-
 /// The rows of the families that claims about the quantities may belong to, each family once.
 std::vector<MethodRow> rows_of_families() {
   std::vector<const std::vector<MethodRow>*> families;
@@ -129,7 +119,6 @@ Method find_method(const Question& question, const std::string& name) {
   for (const Method& method : methods_for(question)) {
     if (method.name == name) {
       require_data(method, question);
-      require_margins(method, question);
       return method;
     }
     known += (known.empty() ? "`" : ", `") + method.name + "`";

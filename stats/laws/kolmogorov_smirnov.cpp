@@ -50,6 +50,22 @@ OneSampleDistance largest_gap(std::span<const double> sorted, std::span<const do
   return result;
 }
 
+void add_run(double value, TiedRun run, TwoSampleDistance& result) {
+  if (run.size < 2) return;
+  result.ties.push_back(run);
+  if (run.size > result.most_frequent.count) result.most_frequent = {value, run.size};
+}
+
+// The runs of equal values after `before` others.
+void add_runs(std::span<const double> sorted, std::uint64_t before, TwoSampleDistance& result) {
+  for (std::size_t begin = 0; begin < sorted.size();) {
+    std::size_t end = begin + 1;
+    while (end < sorted.size() && sorted[end] == sorted[begin]) ++end;
+    add_run(sorted[begin], {before + begin, end - begin}, result);
+    begin = end;
+  }
+}
+
 TestResult result_of(double distance, Distribution law, SmirnovTail tail) {
   return {distance, std::move(law), 0, tail.log_p, tail.exactness};
 }
@@ -145,20 +161,21 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
   std::size_t j = 0;
   std::int64_t gap = 0;
   std::int64_t largest = 0;
-  TwoSampleDistance result{{0, m, n}, sorted_x.front(), 0};
+  TwoSampleDistance result{.lattice = {0, m, n}, .location = sorted_x.front()};
   while (i < m && j < n) {
     const double x = sorted_x[i];
     const double y = sorted_y[j];
     const double value = std::min(x, y);
+    const std::uint64_t before = i + j;
     // Without ties one of the two advances by one. Branch-free, because the order is unpredictable.
     const bool take_x = x <= y;
     const bool take_y = y <= x;
     i += take_x;
     j += take_y;
     gap += (take_x ? up : 0) - (take_y ? down : 0);
-    result.ties += take_x && take_y;
-    while (i < m && sorted_x[i] == value) ++i, gap += up, ++result.ties;
-    while (j < n && sorted_y[j] == value) ++j, gap -= down, ++result.ties;
+    while (i < m && sorted_x[i] == value) ++i, gap += up;
+    while (j < n && sorted_y[j] == value) ++j, gap -= down;
+    if (i + j > before + 1) add_run(value, {before, i + j - before}, result);
     const std::int64_t size = gap < 0 ? -gap : gap;
     if (size > largest) {
       largest = size;
@@ -166,6 +183,7 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
     }
   }
   // Beyond the end of one sample the gap only shrinks to zero. Its largest size was just seen.
+  add_runs(i < m ? sorted_x.subspan(i) : sorted_y.subspan(j), i + j, result);
   result.lattice.steps = static_cast<std::uint64_t>(largest);
   return result;
 }
@@ -180,7 +198,7 @@ TestResult kolmogorov_smirnov(const TwoSampleDistance& distance) {
   const auto& lattice = distance.lattice;
   return result_of(distance.distance(),
                    {"smirnov", {static_cast<double>(lattice.m), static_cast<double>(lattice.n)}},
-                   smirnov_upper_tail(lattice));
+                   smirnov_upper_tail(lattice, distance.ties));
 }
 
 TestResult ks_margin(const OneSampleDistance& distance, double null_distance) {

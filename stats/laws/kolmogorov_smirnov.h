@@ -33,10 +33,16 @@ struct OneSampleDistance {
   double location = 0;  // The value at which the distance is attained.
 };
 
+struct FrequentValue {
+  double value = 0;
+  std::uint64_t count = 1;
+};
+
 struct TwoSampleDistance {
   LatticeDistance lattice;
   double location = 0;
-  std::uint64_t ties = 0;  // Values that occur in both samples or twice in one. 0: exact p-value.
+  std::vector<TiedRun> ties = {};    // Equal values of both samples together.
+  FrequentValue most_frequent = {};  // Of both together; the first of several.
 
   double distance() const { return lattice.value(); }
 };
@@ -47,13 +53,13 @@ OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLa
 // Also throws if the number of probabilities is not that of values.
 OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at);
 
-// One merging pass over two sorted samples; no allocation. Throws as above.
+// One merging pass over two sorted samples. It allocates for ties alone. Throws as above.
 TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const double> sorted_y);
 
 // Null hypothesis: the sample follows the law (the two samples one law). The p-value is
 // log_p_upper; log_p_lower is 0, because a fit that is too good is not tested. One sample: exact
-// for continuous laws, conservative with atoms. Two samples: exact without ties, conservative with
-// them. Exactness says where the limit law had to serve (smirnov.h).
+// for continuous laws, conservative with atoms. Two samples: exact for every law, given the ties of
+// both together. smirnov.h says where a bound or the limit law has to serve.
 TestResult kolmogorov_smirnov(const OneSampleDistance& distance);
 TestResult kolmogorov_smirnov(const TwoSampleDistance& distance);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <optional>
 #include <span>
 
 #include "stats/laws/kolmogorov_smirnov.h"
@@ -8,24 +8,29 @@
 
 namespace assay::stats {
 
-// Test of laws with one atom: black pixels, clamped values. Kolmogorov and Smirnov's distance is
-// conservative with ties, so the claim is split in two: the atom's probability, and the law of the
-// other values. Given the number at the atom the others are independent and continuous. So each
-// part is exact, and the smaller p-value counts twice (Bonferroni).
-struct TwoPartTest {
-  TestResult atom;  // Hypergeometric, both sides.
-  TestResult rest;  // Values away from the atom; p = 1 when a sample has none.
-  // min(0, ln 2 + the smaller of the two parts' ln p). The atom's is two-sided.
-  double log_p = 0;
-  std::uint64_t atoms_x = 0;
-  std::uint64_t atoms_y = 0;
+// A value that many of both samples share: a black pixel, a clamped value.
+struct CommonValue {
+  double value = 0;
+  double difference = 0;  // The shares of the two samples differ by so much, without sign.
+  bool decides = false;   // True if p is that of its counts.
 };
 
-// Null hypothesis: two independent samples of one law, which may have an atom at `atom`. The atom's
-// part is Fisher's exact test (1935) of two proportions, given the atoms in both together. Its
-// larger one-sided p-value, above 1/2, is given as 1. Throws std::domain_error: empty or unsorted
-// values, an atom that is not finite.
-TwoPartTest two_part_ks(std::span<const double> sorted_x, std::span<const double> sorted_y,
-                        double atom);
+struct TwoLawsTest {
+  TestResult result;
+  std::optional<CommonValue> common = {};
+};
+
+// Share of both samples together from which on their most frequent value is tested apart.
+inline constexpr double least_common_share = 0.01;
+
+// Null hypothesis: two independent samples of one law, continuous or not. The test is a permutation
+// test given the values of both together, so a value may be chosen from them. If the most frequent
+// value makes up `least_common_share` or more, it is tested apart. Fisher's exact test (1935)
+// compares its counts. Given these, kolmogorov_smirnov compares the other values. The parts are
+// exact, and the smaller p-value counts twice (Bonferroni). Without such a value it is
+// kolmogorov_smirnov of all. Exact and conservative; exactness is that of kolmogorov_smirnov.
+// `distance` is that of the samples. Throws std::domain_error as ks_distance does.
+TwoLawsTest two_part_ks(std::span<const double> sorted_x, std::span<const double> sorted_y,
+                        const TwoSampleDistance& distance);
 
 }  // namespace assay::stats

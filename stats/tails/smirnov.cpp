@@ -13,7 +13,8 @@
 namespace assay::stats {
 namespace {
 
-constexpr double largest_lattice = 1e8;
+constexpr std::int64_t most_places = 200'000'000;
+constexpr double least_log_p = -20000;
 
 // ---- m = n: P = 2 sum_i (-1)^(i-1) C(2n, n - i k) / C(2n, n)
 
@@ -44,53 +45,119 @@ double log_equal_sizes(std::uint64_t steps, std::uint64_t n) {
   return std::numbers::ln2 + first + std::log(nested);
 }
 
-// ---- m != n: v(i, j) = P(a path to (i, j) has touched the boundary)
+// ---- Otherwise: the share of paths that have touched the boundary
 
-// The result is 1 outside |i/m - j/n| < d, else (i v(i-1, j) + j v(i, j-1)) / (i + j). Only sums of
-// positive terms. `Real` holds `one` in place of 1, so that the smallest path probability is in
-// range.
-template <class Real>
-Real touching_probability(const LatticeDistance& distance, Real one) {
-  const std::uint64_t common = std::gcd(distance.m, distance.n);
-  const auto row_step = static_cast<std::int64_t>(distance.n / common);
-  const auto column_step = static_cast<std::int64_t>(distance.m / common);
-  const auto bound = static_cast<std::int64_t>(distance.steps);
-  std::vector<Real> row(distance.n + 1, one);
-  // A table of reciprocals keeps the division out of the chain from one column to the next.
-  std::vector<Real> reciprocal(distance.m + distance.n + 1, Real{0});
-  for (std::size_t k = 1; k < reciprocal.size(); ++k) reciprocal[k] = 1 / static_cast<Real>(k);
-  for (std::uint64_t i = 0; i <= distance.m; ++i) {
-    const std::int64_t gap = static_cast<std::int64_t>(i) * row_step;
-    // Columns with |gap - j column_step| < bound. The band only moves to higher columns. Beyond it
-    // `row` is still 1, and columns left behind are not read again.
-    const std::int64_t below = gap - bound;
-    const auto first = static_cast<std::uint64_t>(below < 0 ? 0 : below / column_step + 1);
-    const auto last =
-        std::min(static_cast<std::uint64_t>((gap + bound - 1) / column_step), distance.n);
-    Real left = first == 0 ? Real{0} : one;
-    for (std::uint64_t j = first; j <= last; ++j) {
-      const Real weight = reciprocal[i + j];
-      left = static_cast<Real>(i) * weight * row[j] + static_cast<Real>(j) * weight * left;
-      row[j] = left;
+// After k pooled values, the places (i, k - i) of paths that may not have touched the boundary.
+struct Band {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+
+  std::int64_t places() const { return last + 1 - first; }
+};
+
+class Lattice {
+ public:
+  Lattice(const LatticeDistance& distance, std::span<const TiedRun> ties)
+      : m_(static_cast<std::int64_t>(distance.m)),
+        n_(static_cast<std::int64_t>(distance.n)),
+        up_(n_ / std::gcd(m_, n_)),
+        down_(m_ / std::gcd(m_, n_)),
+        bound_(static_cast<std::int64_t>(distance.steps)),
+        ties_(ties) {}
+
+  // Calls visit(k, reached, left) for k = 1 .. m + n. Untouched paths come to the places `reached`,
+  // and stay untouched at those `left`. The walk ends where visit returns false.
+  template <class Visit>
+  void walk(const Visit& visit) const {
+    Band left;
+    auto run = ties_.begin();
+    for (std::int64_t k = 1; k <= m_ + n_; ++k) {
+      const Band reached{std::max(left.first, k - n_), std::min(left.last + 1, m_)};
+      while (run != ties_.end() && end_of(*run) <= k) ++run;
+      const bool inside_a_run = run != ties_.end() && static_cast<std::int64_t>(run->before) < k;
+      left = inside_a_run ? reached : inside(k, reached);
+      if (!visit(k, reached, left)) return;
     }
   }
-  return row[distance.n];
-}
 
-double log_lattice(const LatticeDistance& distance) {
+  // True if the bands have at most so many places.
+  bool is_within(std::int64_t places) const {
+    walk([&](std::int64_t, const Band& reached, const Band&) {
+      places -= reached.places();
+      return places >= 0 && reached.places() > 0;
+    });
+    return places >= 0;
+  }
+
+  // v(i, j) is 1 where a path has touched, else (i v(i-1, j) + j v(i, j-1)) / (i + j). Only sums of
+  // positive terms. `Real` holds `one` in place of 1, so that the smallest path probability is in
+  // range.
+  template <class Real>
+  Real touching_probability(Real one) const {
+    std::vector<Real> v(static_cast<std::size_t>(m_) + 2, one);
+    Real* const at = v.data() + 1;  // at[-1] has the weight 0.
+    at[0] = 0;
+    walk([&](std::int64_t k, const Band& reached, const Band& left) {
+      const Real share = 1 / static_cast<Real>(k);
+      for (std::int64_t i = reached.last; i >= reached.first; --i) {
+        at[i] = share * (static_cast<Real>(i) * at[i - 1] + static_cast<Real>(k - i) * at[i]);
+      }
+      if (left.places() <= 0) {
+        at[m_] = one;
+        return false;
+      }
+      std::fill(at + reached.first, at + left.first, one);
+      std::fill(at + left.last + 1, at + reached.last + 1, one);
+      return true;
+    });
+    return at[m_];
+  }
+
+ private:
+  static std::int64_t end_of(const TiedRun& run) {
+    return static_cast<std::int64_t>(run.before + run.size);
+  }
+
+  Band inside(std::int64_t k, Band band) const {
+    const auto gap = [&](std::int64_t i) { return i * up_ - (k - i) * down_; };
+    while (band.places() > 0 && gap(band.first) <= -bound_) ++band.first;
+    while (band.places() > 0 && gap(band.last) >= bound_) --band.last;
+    return band;
+  }
+
+  std::int64_t m_;
+  std::int64_t n_;
+  std::int64_t up_;
+  std::int64_t down_;
+  std::int64_t bound_;
+  std::span<const TiedRun> ties_;
+};
+
+double log_limit(const LatticeDistance& distance) {
   const double m = static_cast<double>(distance.m);
   const double n = static_cast<double>(distance.n);
+  return log_kolmogorov_limit(std::sqrt(m / (m + n) * n) * distance.value());
+}
+
+double log_lattice(const Lattice& lattice, double expected) {
   // The limit law tells if a double will do. Denormal numbers would be slow as well as wrong.
-  const double expected = log_kolmogorov_limit(std::sqrt(m / (m + n) * n) * distance.value());
   if (expected > -400) {
-    const double p = touching_probability<double>(distance, 1.0);
+    const double p = lattice.touching_probability<double>(1.0);
     if (p > 1e-250) return std::log(p);
   }
-  // C(m + n, m) is below 2^20001 for m n <= 1e8. (With m or n = 1 no p is small.) With 1 raised to
-  // 2^16000 a long double's range covers it.
+  // A long double's range from 2^16000 down covers least_log_p.
   constexpr int raised = 16000;
-  const long double q = touching_probability<long double>(distance, std::ldexp(1.0L, raised));
+  const long double q = lattice.touching_probability<long double>(std::ldexp(1.0L, raised));
   return static_cast<double>(std::log(q) - raised * std::numbers::ln2_v<long double>);
+}
+
+void check_ties(const LatticeDistance& distance, std::span<const TiedRun> ties) {
+  std::uint64_t end = 0;
+  for (const TiedRun& run : ties) {
+    check::at_least({"smirnov_upper_tail", "begin of a run"}, run.before, end);
+    end = run.before + run.size;
+  }
+  check::at_least({"smirnov_upper_tail", "pooled values"}, distance.m + distance.n, end);
 }
 
 }  // namespace
@@ -100,7 +167,7 @@ double LatticeDistance::value() const {
   return static_cast<double>(steps) * (common / static_cast<double>(m)) / static_cast<double>(n);
 }
 
-SmirnovTail smirnov_upper_tail(LatticeDistance distance) {
+SmirnovTail smirnov_upper_tail(LatticeDistance distance, std::span<const TiedRun> ties) {
   check::at_least({"smirnov_upper_tail", "m"}, distance.m, 1);
   check::at_least({"smirnov_upper_tail", "n"}, distance.n, 1);
   const double m = static_cast<double>(distance.m);
@@ -110,18 +177,21 @@ SmirnovTail smirnov_upper_tail(LatticeDistance distance) {
     check::fail({"smirnov_upper_tail", "lcm(m, n)"}, m / static_cast<double>(common) * n,
                 "at most 2^62");
   }
+  check_ties(distance, ties);
   if (distance.steps == 0) return {0, Exactness::exact};
   if (distance.steps > distance.m / common * distance.n) {
     return {special::lowest_log(), Exactness::exact};
   }
+  const bool by_formula = distance.m == distance.n && ties.empty();
+  const Lattice lattice(distance, ties);
+  const double expected = log_limit(distance);
+  if (!by_formula && expected > least_log_p && lattice.is_within(most_places)) {
+    return {special::clamp_log(log_lattice(lattice, expected)), Exactness::exact};
+  }
   if (distance.m == distance.n) {
     return {special::clamp_log(log_equal_sizes(distance.steps, distance.n)), Exactness::exact};
   }
-  if (m * n <= largest_lattice) {
-    return {special::clamp_log(log_lattice(distance)), Exactness::exact};
-  }
-  const double z = std::sqrt(m / (m + n) * n) * distance.value();
-  return {log_kolmogorov_limit(z), Exactness::asymptotic};
+  return {expected, Exactness::asymptotic};
 }
 
 }  // namespace assay::stats

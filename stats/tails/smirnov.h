@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "stats/tails/test_result.h"
 
@@ -15,16 +16,28 @@ struct LatticeDistance {
   double value() const;
 };
 
+// Equal values of both samples together: those after the first `before` pooled values, `size` of
+// them.
+struct TiedRun {
+  std::uint64_t before = 0;
+  std::uint64_t size = 0;
+};
+
 struct SmirnovTail {
   double log_p = 0;  // ln P(max |F_m - G_n| >= distance).
   Exactness exactness = Exactness::exact;
 };
 
-// The tail for two samples of one continuous law. For m = n of any size it is the reflection
-// formula in nested form (Gnedenko & Korolyuk 1951). Otherwise, up to m n = 1e8, a recursion over
-// the lattice of paths gives the upper tail itself, free of cancellation. (In the manner of Hodges
-// 1957 and Schroeer & Trenkler 1995.) Beyond it is the limit law at sqrt(m n / (m + n)) d,
-// asymptotic. Throws std::domain_error for empty samples, and when lcm(m, n) is beyond 2^62.
-SmirnovTail smirnov_upper_tail(LatticeDistance distance);
+// The tail for two samples of one law, given the ties of both together. All orders of the pooled
+// values are equally likely. So the m x n lattice's paths are, and a path counts at the ends of
+// runs alone (Schroeer & Trenkler 1995). Without ties it is the tail for continuous laws.
+//   m = n without ties: the reflection formula in nested form (Gnedenko & Korolyuk 1951).
+//   Else: a recursion over the lattice gives the upper tail itself, free of cancellation.
+//   If the band of paths has more than 2e8 places, or p is below e^-20000: the tail without ties.
+//   It bounds that with ties from above. For m != n it is the limit law at sqrt(m n / (m + n)) d,
+//   asymptotic.
+// Runs ascend and do not overlap. Throws std::domain_error: empty samples, runs beyond m + n values
+// or out of order, lcm(m, n) beyond 2^62.
+SmirnovTail smirnov_upper_tail(LatticeDistance distance, std::span<const TiedRun> ties = {});
 
 }  // namespace assay::stats

@@ -12,7 +12,6 @@
 #include "estimators/core/flush_denormals.h"
 #include "estimators/stream.h"
 #include "stats/basics/moments.h"
-#include "stats/laws/anderson_darling.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/bounded_mean.h"
 #include "stats/means/nonnegative_mean.h"
@@ -138,7 +137,6 @@ void print_tests() {
   std::vector<double> law = x;
   for (double& value : law) value = value * value * (3 - value * 2 / 3) / 9;
   print_result("Kolmogorov-Smirnov", kolmogorov_smirnov(ks_distance(x, Probabilities{law})));
-  print_result("Anderson-Darling", anderson_darling({law}, 0));
 }
 
 }  // namespace

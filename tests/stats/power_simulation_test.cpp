@@ -139,7 +139,7 @@ double probability_of_steps(std::uint64_t steps, std::uint64_t n, double distanc
 std::uint64_t rejected_steps(const DistancePlan& plan, std::uint64_t n) {
   std::uint64_t steps = 0;
   for (;; ++steps) {
-    const TwoSampleDistance seen{{steps, n, n}, 0, 0};
+    const TwoSampleDistance seen{.lattice = {steps, n, n}};
     const TestResult result =
         plan.allow == 0 ? kolmogorov_smirnov(seen) : ks_margin(seen, plan.allow);
     if (result.log_p_upper <= std::log(plan.rates.alpha)) return steps;

@@ -208,24 +208,6 @@ def band_rows():
             yield [case, confidence, gammas[low], gammas[high], 1 - lost(gammas[low] * (1 + 1e-9))]
 
 
-def anderson_darling_limit():
-    """One minus Anderson and Darling's series for the lower tail (1954), in 60 digits."""
-    mp.mp.dps = 60
-    for x in ("0.05", "0.2", "0.5", "1", "1.933", "2.492", "3.857", "6", "10", "20", "40"):
-        z = mp.mpf(x)
-        cdf = mp.mpf(0)
-        for j in range(200):
-            a = (4 * j + 1) ** 2 * mp.pi**2 / (8 * z)
-            inner = mp.quad(lambda w: mp.exp(z / (8 * (w * w + 1)) - a * w * w),
-                            [0, 1 / mp.sqrt(a), 4 / mp.sqrt(a), 18 / mp.sqrt(a)])
-            term = mp.binomial(mp.mpf(-1) / 2, j) * (4 * j + 1) * mp.exp(-a) * inner
-            cdf += term
-            if abs(term) < mp.mpf(10) ** -58:
-                break
-        cdf *= mp.sqrt(2 * mp.pi) / z
-        yield [x, mp.nstr(mp.log(1 - cdf), 20)]
-
-
 if __name__ == "__main__":
     write("log_efficiency", "k,n,value,error,biased,biased_error,ratio_z,ratio_upper,cost_z",
           efficiency_rows())
@@ -233,4 +215,3 @@ if __name__ == "__main__":
     write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
     write("ledger", "k,nights,tau,u,log_e,night,change,share_2", ledger_rows())
     write("band", "case,confidence,step,next_step,coverage", band_rows())
-    write("anderson_darling", "x,log_upper", anderson_darling_limit())

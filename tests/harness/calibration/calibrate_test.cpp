@@ -149,7 +149,7 @@ TEST(Calibrate, EveryMethodHasCellsOnEveryLawThatSuitsIt) {
   EXPECT_FALSE(has("bounded", "exponential(1)"));
   EXPECT_TRUE(has("betting", "exponential(1)"));
   EXPECT_FALSE(has("betting", "normal(0, 1)"));
-  EXPECT_TRUE(has("two-part-ks", "zero_inflated(0.1)"));
+  EXPECT_TRUE(has("ks", "zero_inflated(0.1)"));
   EXPECT_TRUE(has("chi-square-two-sample", "normal(0, 1)"));
 }
 

@@ -112,90 +112,25 @@ TEST(CellsOfADensity, OfAnIntervalAsNarrowAsRoundingAreFewer) {
 
 // Verdicts below are right with probability 1 - alpha - beta = 0.9998 at least, with the seed 1.
 
-TEST(AndersonDarlingClaim, HoldsForTheLawAndForADeclaredDensity) {
-  const reports::Test law = tested(
-      "{claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, detect: 0.05}");
-  EXPECT_EQ(law.verdict, Verdict::pass) << law.message;
-  EXPECT_EQ(law.method, "anderson-darling");
-  EXPECT_FALSE(law.power.has_value()) << "no formula";
-  EXPECT_FALSE(law.detectable.has_value());
-  ASSERT_TRUE(law.channels[0].effect.high.has_value());
-  EXPECT_LT(*law.channels[0].effect.high, 0.05) << "the interval is of the largest distance";
-  EXPECT_EQ(verdict_of("{claim: distribution(importance.x.x) == density, test: anderson-darling, "
-                       "secondaries: 20000}"),
-            Verdict::pass);
-  EXPECT_EQ(verdict_of("{claim: distribution(ward.direction.theta) == density, test: "
-                       "anderson-darling, secondaries: 20000}"),
-            Verdict::pass)
-      << "missing mass included";
-}
-
-// A2 / n tends to .054 for the first: A2 = 160 at 3000 values, where p < 1e-60.
-TEST(AndersonDarlingClaim, FailsForWrongTailsAndForABrokenSampler) {
-  EXPECT_EQ(verdict_of("{claim: 'distribution(normal) == normal(2, 1.5)', test: anderson-darling, "
-                       "secondaries: 3000}"),
-            Verdict::fail);
-  EXPECT_EQ(verdict_of("{claim: distribution(redrawn.direction.theta) == density, test: "
-                       "anderson-darling, secondaries: 20000}"),
-            Verdict::fail);
-}
-
-TEST(AndersonDarlingClaim, IsRefusedWhereItHasNoAnswer) {
-  EXPECT_EQ(refused("{claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
-                    "allow: 0.01}"),
-            "20:77: `anderson-darling` tests that two laws are the same and knows no distance to "
-            "`allow` between them; leave `allow` out, or test by `ks`");
-  EXPECT_THAT(refused("{claim: distribution(normal) == distribution(again), test: "
-                      "anderson-darling}"),
-              testing::StartsWith("20:58: `test: anderson-darling` does not answer this claim"));
-  EXPECT_EQ(
-      refused("{claim: distribution(ward.direction) == density, test: anderson-darling}"),
-      "20:54: `test: anderson-darling` does not answer this claim; there is `chi-square-fit`");
-  EXPECT_EQ(verdict_of("{claim: 'distribution(normal) == normal(2, 1)', test: anderson-darling, "
-                       "secondaries: 4}"),
-            Verdict::invalid)
-      << "fewer than 5 values";
-}
-
-TEST(TwoPartClaim, IsChosenWhereThePilotShowsAnAtom) {
+// Nine in ten values of `hits` are 0.
+TEST(TwoLawsClaim, HoldsForLawsWithAFrequentValue) {
   const reports::Test same =
-      tested("{claim: distribution(hits) == distribution(hits_again), secondaries: 4000}");
+      tested("{claim: distribution(hits) == distribution(hits_again), detect: 0.1}");
   EXPECT_EQ(same.verdict, Verdict::pass) << same.message;
-  EXPECT_EQ(same.method, "two-part-ks");
-  ASSERT_FALSE(same.gates.empty());
-  EXPECT_THAT(same.gates[0].name, testing::StartsWith("share of 0"));
-  EXPECT_EQ(tested("{claim: distribution(normal) == distribution(again), secondaries: 400}").method,
-            "ks");
-  EXPECT_EQ(tested("{claim: distribution(hits) == distribution(hits_again), test: ks, "
-                   "secondaries: 400}")
-                .method,
-            "ks")
-      << "a forced method runs as asked";
+  EXPECT_EQ(same.method, "ks");
 }
 
 // The light is missed by more than nine in ten directions, and never by points on it.
-TEST(TwoPartClaim, FailsForAnotherAtomAndSaysWhich) {
+TEST(TwoLawsClaim, FailsForAnotherShareOfAFrequentValueAndSaysWhich) {
   const reports::Test apart =
       tested("{claim: distribution(hits) == distribution(area), secondaries: 1000}");
   EXPECT_EQ(apart.verdict, Verdict::fail);
-  EXPECT_EQ(apart.method, "two-part-ks");
-  EXPECT_THAT(apart.message, testing::HasSubstr("away from 0, or of the probabilities of 0,"));
+  EXPECT_THAT(apart.message, testing::HasSubstr("p is that of the values at 0, 0.9"));
 }
 
-TEST(TwoPartClaim, DecidesWithTheObservationsThatItPlans) {
-  const reports::Test planned =
-      tested("{claim: distribution(hits) == distribution(hits_again), detect: 0.1}");
-  EXPECT_EQ(planned.verdict, Verdict::pass) << planned.message;
-}
-
-TEST(TwoPartClaim, WithoutAnAtomIsInvalidOrRefused) {
-  const reports::Test none = tested(
-      "{claim: distribution(normal) == distribution(again), test: two-part-ks, secondaries: 400}");
-  EXPECT_EQ(none.verdict, Verdict::invalid);
-  EXPECT_THAT(none.message, testing::HasSubstr("the pilots show none"));
-  EXPECT_EQ(refused("{claim: 'distribution(hits) == normal(0, 1)', test: two-part-ks}"),
-            "20:51: `test: two-part-ks` does not answer this claim; there is `ks`, "
-            "`anderson-darling`");
+TEST(TwoLawsClaim, IsRefusedForAMethodOfAnother) {
+  EXPECT_EQ(refused("{claim: 'distribution(hits) == normal(0, 1)', test: chi-square-two-sample}"),
+            "20:51: `test: chi-square-two-sample` does not answer this claim; there is `ks`");
 }
 
 TEST(TwoSampleCellsClaim, ComparesSamplersAndEstimatorsAsAWhole) {

@@ -28,7 +28,7 @@ TEST(KolmogorovSmirnov, OneSampleGoldenValuesToThePrintedDigits) {
 TEST(KolmogorovSmirnov, TwoSampleGoldenValuesToThePrintedDigits) {
   const TwoSampleDistance distance = ks_distance(sorted(golden_x), sorted(golden_y));
   EXPECT_DOUBLE_EQ(distance.distance(), .4);
-  EXPECT_EQ(distance.ties, 0U);
+  EXPECT_TRUE(distance.ties.empty());
   EXPECT_NEAR(std::exp(kolmogorov_smirnov(distance).log_p_upper), .433412176059232, 1e-14);
 }
 
@@ -43,13 +43,51 @@ TEST(KolmogorovSmirnov, AnAtomNeedsItsLeftLimit) {
 
 TEST(KolmogorovSmirnov, TiesStepTogetherAndAreCounted) {
   const TwoSampleDistance distance =
-      ks_distance(std::vector<double>{0, 0, 0, 1, 2}, std::vector<double>{0, 0, 0, 1, 2});
-  EXPECT_EQ(distance.distance(), 0);
-  EXPECT_GT(distance.ties, 0U);
+      ks_distance(std::vector<double>{0, 0, 0, 1, 2}, std::vector<double>{0, 0, 0, 1, 3, 3});
+  ASSERT_EQ(distance.ties.size(), 3U);
+  EXPECT_EQ(distance.ties[1].before, 6U);
+  EXPECT_EQ(distance.ties[1].size, 2U);
+  EXPECT_EQ(distance.ties[2].before, 9U) << "beyond the end of the first sample";
+  EXPECT_EQ(distance.most_frequent.value, 0);
+  EXPECT_EQ(distance.most_frequent.count, 6U);
   const TwoSampleDistance shifted =
       ks_distance(std::vector<double>{0, 0, 0, 0}, std::vector<double>{0, 1, 1, 1});
   EXPECT_DOUBLE_EQ(shifted.distance(), .75);
   EXPECT_EQ(shifted.location, 0);
+}
+
+// Values of low discrepancy to the power b, rounded down to so many levels.
+std::vector<double> rounded_values(std::size_t count, double step, double power, double levels) {
+  std::vector<double> values;
+  for (std::size_t i = 1; i <= count; ++i) {
+    const double u = std::fmod(static_cast<double>(i) * step, 1.0);
+    values.push_back(std::floor(levels * std::pow(u, power)));
+  }
+  return sorted(values);
+}
+
+// R 4.2: psmirnov(ks.test(x, y)$statistic, sizes = c(m, n), z = c(x, y), lower.tail = FALSE).
+TEST(KolmogorovSmirnov, AgreesWithTheExactLawGivenTheTiesOfR) {
+  struct Case {
+    std::size_t m;
+    std::size_t n;
+    double power;
+    double levels;
+    double distance;
+    double p;
+  };
+  for (const Case& c : {Case{10, 14, 2, 3, 0.314285714285714, 0.211233005788115},
+                        Case{40, 40, 1.5, 5, 0.15, 0.478712637285825},
+                        Case{100, 64, 1.3, 4, 0.115, 0.296744097754161},
+                        Case{200, 300, 1.2, 50, 0.075, 0.401421144677214},
+                        Case{300, 500, 1.25, 1000, 0.0893333333333333, 0.0933294030372724},
+                        Case{30, 17, 3, 2, 0.356862745098039, 0.0291468755694492}}) {
+    const auto x = rounded_values(c.m, 0.6180339887498949, 1, c.levels);
+    const auto y = rounded_values(c.n, 0.7548776662466927, c.power, c.levels);
+    const TwoSampleDistance distance = ks_distance(x, y);
+    EXPECT_NEAR(distance.distance(), c.distance, 1e-14);
+    EXPECT_NEAR(std::exp(kolmogorov_smirnov(distance).log_p_upper) / c.p, 1, 1e-9) << c.m;
+  }
 }
 
 TEST(KolmogorovSmirnov, DisjointSamplesAreAtDistanceOne) {
@@ -66,7 +104,7 @@ TEST(KolmogorovSmirnov, AZeroMarginIsThePlainOneSampleTest) {
 
 TEST(KolmogorovSmirnov, MarginsMoveBothTailsMonotonically) {
   const OneSampleDistance one{.1, 500, 0};
-  const TwoSampleDistance two{{50, 500, 500}, 0, 0};
+  const TwoSampleDistance two{.lattice = {50, 500, 500}};
   double last_upper = -1e300;
   double last_lower = 0;
   for (double delta = 0; delta < .9; delta += .05) {
@@ -86,7 +124,7 @@ TEST(KolmogorovSmirnov, IntervalEndsAreJustRejected) {
   const Interval interval = ks_interval(one, .98);
   EXPECT_NEAR(ks_margin(one, interval.low).log_p_upper, std::log(.01), 1e-6);
   EXPECT_NEAR(ks_margin(one, interval.high).log_p_lower, std::log(.01), 1e-6);
-  const TwoSampleDistance two{{300, 1000, 1000}, 0, 0};
+  const TwoSampleDistance two{.lattice = {300, 1000, 1000}};
   const Interval wider = ks_interval(two, .98);
   EXPECT_NEAR(ks_margin(two, wider.low).log_p_upper, std::log(.01), 1e-6);
   EXPECT_NEAR(ks_margin(two, wider.high).log_p_lower, std::log(.01), 1e-6);

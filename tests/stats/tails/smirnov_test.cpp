@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/stats/table.h"
 
@@ -38,8 +41,68 @@ TEST(Smirnov, LargeEqualSizesAreExactAndNearTheLimitLaw) {
   EXPECT_NEAR(tail.log_p, std::log(2) - 2 * z2, 1e-3);
 }
 
+// Every order of m values of x among n of y, at the ends of runs.
+double enumerated(const LatticeDistance& distance, const std::vector<TiedRun>& ties) {
+  const std::uint64_t total = distance.m + distance.n;
+  const auto steps = [&](std::uint64_t of, std::uint64_t size) {
+    return static_cast<double>(of) / static_cast<double>(size);
+  };
+  double orders = 0;
+  double touching = 0;
+  for (std::uint64_t bits = 0; bits < (1ULL << total); ++bits) {
+    if (static_cast<std::uint64_t>(std::popcount(bits)) != distance.m) continue;
+    ++orders;
+    bool touches = false;
+    for (std::uint64_t k = 1; k <= total; ++k) {
+      const bool inside = std::any_of(ties.begin(), ties.end(), [&](const TiedRun& run) {
+        return run.before < k && k < run.before + run.size;
+      });
+      const auto x = static_cast<std::uint64_t>(std::popcount(bits & ((1ULL << k) - 1)));
+      const double gap = std::abs(steps(x, distance.m) - steps(k - x, distance.n));
+      touches = touches || (!inside && gap > distance.value() - 1e-9);
+    }
+    touching += touches;
+  }
+  return touching / orders;
+}
+
+TEST(Smirnov, GivenTiesIsTheShareOfAllOrders) {
+  const std::vector<TiedRun> some{{0, 3}, {4, 2}, {9, 4}};
+  const std::vector<TiedRun> all{{0, 13}};
+  for (std::uint64_t steps = 1; steps <= 42; ++steps) {
+    for (const auto& ties : {std::vector<TiedRun>{}, some, all}) {
+      const LatticeDistance distance{steps, 6, 7};
+      const double p = std::exp(smirnov_upper_tail(distance, ties).log_p);
+      EXPECT_NEAR(p, enumerated(distance, ties), 1e-14) << steps;
+    }
+    const LatticeDistance even{steps % 6 + 1, 6, 6};
+    EXPECT_NEAR(std::exp(smirnov_upper_tail(even, std::vector<TiedRun>{{2, 5}}).log_p),
+                enumerated(even, {{2, 5}}), 1e-14);
+  }
+}
+
+TEST(Smirnov, BeyondTheExactCountTiesAreBoundedFromAbove) {
+  const std::uint64_t n = 40000;
+  const std::vector<TiedRun> half{{0, n}};
+  const SmirnovTail bound = smirnov_upper_tail({400, n, n}, half);
+  EXPECT_EQ(bound.log_p, smirnov_upper_tail({400, n, n}).log_p);
+  const SmirnovTail exact =
+      smirnov_upper_tail({100, n / 4, n / 4}, std::vector<TiedRun>{{0, n / 4}});
+  EXPECT_LT(exact.log_p, smirnov_upper_tail({100, n / 4, n / 4}).log_p);
+}
+
+TEST(Smirnov, RefusesRunsOutOfOrderOrBeyondTheValues) {
+  EXPECT_THROW(smirnov_upper_tail({1, 3, 4}, std::vector<TiedRun>{{5, 3}}), std::domain_error);
+  EXPECT_THROW(smirnov_upper_tail({1, 3, 4}, std::vector<TiedRun>{{2, 3}, {4, 2}}),
+               std::domain_error);
+}
+
 TEST(Smirnov, LargeUnequalSizesSayTheyAreAsymptotic) {
-  EXPECT_EQ(smirnov_upper_tail({100000, 20000, 30001}).exactness, Exactness::asymptotic);
+  const SmirnovTail exact = smirnov_upper_tail({10000000, 20000, 30001});
+  EXPECT_EQ(exact.exactness, Exactness::exact);
+  const SmirnovTail limit = smirnov_upper_tail({300000000, 200000, 300001});
+  EXPECT_EQ(limit.exactness, Exactness::asymptotic);
+  EXPECT_NEAR(limit.log_p, std::log(2) - 2 * 3e8 * 3e8 / 200000 / 300001 / 500001, 1e-6);
 }
 
 TEST(Smirnov, ImpossibleAndEmptyDistances) {
