@@ -1,6 +1,7 @@
 #include "harness/pilot/pilot.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
@@ -11,18 +12,27 @@
 namespace assay::harness {
 namespace {
 
-// The pilot of an estimator that does not average, which may be a chain or an image. It grows if
-// the observations are far from normal. The larger number, many_observations, tells a light-tailed
-// skewness and kurtosis to a few per cent.
+// The pilot of an estimator that does not average, which may be a chain or an image, has 512
+// observations, and up to 2048 if they have few primaries: so many show that neighbours share an
+// offset of half a standard deviation. It grows if the observations are far from normal. The larger
+// number, many_observations, tells a light-tailed skewness and kurtosis to a few per cent.
 constexpr std::uint64_t few_observations = 512;
+constexpr std::uint64_t most_of_few = 2048;
+constexpr std::uint64_t primaries_of_few = std::uint64_t{1} << 14;
 // Most primaries of a larger pilot: a chain's observation may have millions.
 constexpr std::uint64_t most_primaries_of_larger = std::uint64_t{1} << 27;
-// 3 + 3 sqrt(24 / 512): three standard errors above the kurtosis of 512 normal values.
-constexpr double near_normal_kurtosis = 3.65;
 // An image's pilot has as many images as this pays for, at least the fewest that tell their
 // variance.
 constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
 constexpr std::uint64_t least_images = 2 * stats::least_replicates;
+
+/// Separates the observations that show whether an estimator averages. No sampler has this name.
+const std::string averages_purpose = "(averages)";
+
+std::uint64_t few_of(const PreparedEstimator& estimator) {
+  return std::clamp(primaries_of_few / estimator.primaries.value_or(1), few_observations,
+                    most_of_few);
+}
 
 /// Observations of the larger pilot. Images and files have no larger one, since each observation
 /// may be a rendering: it returns the usual number.
@@ -32,14 +42,16 @@ std::uint64_t larger_size(const PreparedEstimator& estimator, const PilotRun& ru
   if (worth == run.on_tails.end() || estimator.nature().averages || setup.observations() ||
       setup.image() || recorded::keeps_files(setup) ||
       setup.channels().size() > most_kept_channels) {
-    return few_observations;
+    return few_of(estimator);
   }
   const std::uint64_t affordable = most_primaries_of_larger / estimator.primaries.value_or(1);
-  return std::clamp(std::min(worth->second, affordable), few_observations, many_observations);
+  return std::clamp(std::min(worth->second, affordable), few_of(estimator), many_observations);
 }
 
+/// Three standard errors above the kurtosis of normal values.
 bool is_far_from_normal(const stats::Moments& moments) {
-  return !(moments.m2 > 0) || moments.kurtosis() > near_normal_kurtosis;
+  const double error = std::sqrt(24 / static_cast<double>(moments.count));
+  return !(moments.m2 > 0) || moments.kurtosis() > 3 + 3 * error;
 }
 
 /// A constant value may hide a rare one. A constant cost is usual.
@@ -59,7 +71,7 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, const Pilot
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
   auto pool =
       std::make_shared<Pool>(estimator.setup, key_of(estimator, run.seed, 0, "pilot"), primaries);
-  std::uint64_t usual = averages ? many_observations : few_observations;
+  std::uint64_t usual = averages ? many_observations : few_of(estimator);
   if (const auto images = usual_images(*estimator.setup, primaries)) {
     usual = *images;
     pool->keep_observations(usual);  // files keep theirs anyway
@@ -69,6 +81,27 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, const Pilot
     const std::uint64_t kept = std::max(count, larger_size(estimator, run));
     for (ChannelPlan& channel : pool->plans()) channel.keep = kept;
   }
+  pool->request(count);
+  return pool;
+}
+
+/// A mutant has its original's declaration. Ready-made data and images have no primaries to
+/// compare.
+std::uint64_t averaged_primaries_of(const PreparedEstimator& estimator) {
+  const Setup& setup = *estimator.setup;
+  if (!estimator.nature().averages || estimator.original || setup.observations() || setup.image() ||
+      as_recorded_run(setup) != nullptr || setup.channels().size() > most_kept_channels) {
+    return 1;
+  }
+  return std::min(averaged_primaries, estimator.primaries.value_or(averaged_primaries));
+}
+
+std::shared_ptr<Pool> averaged_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
+  const std::uint64_t primaries = averaged_primaries_of(estimator);
+  const std::uint64_t count = many_observations / primaries;
+  auto pool = std::make_shared<Pool>(
+      estimator.setup, key_of(estimator, seed, 0, averages_purpose + " pilot"), primaries);
+  for (ChannelPlan& channel : pool->plans()) channel.keep = count;
   pool->request(count);
   return pool;
 }
@@ -141,6 +174,11 @@ std::string pilot_name(const Subject& subject) {
   return pilot_name_of(subject.estimator->name, subject.purpose);
 }
 
+const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots) {
+  if (!subject.purpose.empty()) return nullptr;
+  return pilots.find(pilot_name_of(subject.estimator->name, averages_purpose));
+}
+
 const Pilot* Pilots::find(const std::string& name) const {
   const auto found = drawn_.find(name);
   return found != drawn_.end() ? &found->second : nullptr;
@@ -180,6 +218,9 @@ void Pilots::merge(Pilots others) {
 std::string where_pilots_stopped(const Question& question, const Pilots& pilots) {
   for (const Subject& subject : question.subjects) {
     const Fault* fault = pilots.fault(subject.estimator->name, subject.purpose);
+    if (fault == nullptr && subject.purpose.empty()) {
+      fault = pilots.fault(subject.estimator->name, averages_purpose);
+    }
     const Pilot* const pilot = pilot_of(subject, pilots);
     if (fault == nullptr && pilot != nullptr && pilot->larger_fault &&
         question.is().rests_on_tails) {
@@ -224,7 +265,7 @@ void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estima
   for (std::size_t i = 0; i < estimators.size(); ++i) {
     const std::uint64_t size = larger_size(*estimators[i], run);
     const Pilot* const few = pilots.find(estimators[i]->name);
-    if (size == few_observations || few == nullptr) continue;
+    if (size == few_of(*estimators[i]) || few == nullptr) continue;
     if (!is_far_from_normal(*pools[i], *few->sums)) continue;
     names.push_back(estimators[i]->name);
     enlarged.push_back(pools[i]);
@@ -246,8 +287,14 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   for (const PreparedEstimator* estimator : estimators) {
     names.push_back(estimator->name);
     pools.push_back(pilot_pool(*estimator, run));
-    if (!run.with_cost.contains(estimator->name)) continue;
-    for (ChannelPlan& channel : pools.back()->plans()) channel.with_cost = true;
+    if (run.with_cost.contains(estimator->name)) {
+      for (ChannelPlan& channel : pools.back()->plans()) channel.with_cost = true;
+    }
+  }
+  for (const PreparedEstimator* estimator : estimators) {
+    if (averaged_primaries_of(*estimator) == 1) continue;
+    names.push_back(pilot_name_of(estimator->name, averages_purpose));
+    pools.push_back(averaged_pool(*estimator, run.seed));
   }
   for (const Subject* subject : run.draws) {
     names.push_back(pilot_name(*subject));

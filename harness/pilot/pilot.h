@@ -44,6 +44,10 @@ struct Pilot {
 /// many.
 inline constexpr std::uint64_t many_observations = 8192;
 
+/// Primaries of an observation that shows whether an averaging estimator averages: these, or the
+/// suite's `primaries` if they are fewer.
+inline constexpr std::uint64_t averaged_primaries = 32;
+
 /// Number of images in a pilot; nullopt for an estimator of something else.
 std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries);
 /// A pilot keeps the values of estimators with at most so many channels.
@@ -87,6 +91,10 @@ std::string pilot_name(const Subject& subject);
 
 /// Says which of the needed pilots stopped, where and why; "" if none did.
 std::string where_pilots_stopped(const Question& question, const Pilots& pilots);
+
+/// Observations of several primaries each, of an estimator that declares `averages`, as many
+/// primaries as its pilot has. Null if it declares none, is a mutant, or always has one primary.
+const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots);
 
 /// The pilot of a subject; null if there is none or it has a fault.
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);

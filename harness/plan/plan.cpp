@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "harness/plan/critical.h"
+#include "harness/plan/drawn_order.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/looks.h"
 #include "harness/plan/pilot_shape.h"
@@ -19,6 +20,7 @@
 #include "harness/theta/methods.h"
 #include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
+#include "stats/gates/averages_gate.h"
 
 namespace assay::harness {
 namespace {
@@ -55,13 +57,43 @@ std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) 
   return "";
 }
 
-/// Names the estimator whose pilot broke its channel's declaration; "" if none did. Single
-/// primaries show what means may hide.
+/// Why a subject's observations are no means of its primaries; "" if they may be.
+std::string no_averages(const Subject& subject, const Pilot& single, const Pilot& averaged) {
+  const std::vector<Channel> channels = subject.setup->channels();
+  for (std::size_t channel = 0; channel < subject.channels.size(); ++channel) {
+    if (channels[subject.channels[channel]].diagnostic) continue;
+    const PilotChannel primaries = pilot_channel(subject, single, channel);
+    const PilotChannel means = pilot_channel(subject, averaged, channel);
+    if (means.moments.count < means.values.size() ||
+        primaries.moments.count < primaries.values.size()) {
+      continue;  // not finite: another fault
+    }
+    const std::uint64_t each = averaged.primaries;
+    if (stats::averages_gate(primaries.values, means.values, each).state != stats::GateState::red) {
+      continue;
+    }
+    return fmt::format(
+        "`{0}` declares `averages`, but its observations of {1} primaries are no means of {1} of "
+        "its primaries: their variance times {1} is {2:.3g} times that of one primary, their mean "
+        "is {3:.4g} and that of one primary {4:.4g}; average `primaries` independent primaries, "
+        "or leave `averages` out",
+        subject.estimator->name, each,
+        static_cast<double>(each) * means.moments.variance() / primaries.moments.variance(),
+        means.moments.mean, primaries.moments.mean);
+  }
+  return "";
+}
+
+/// Names the estimator whose pilot broke a declaration; "" if none did. Single primaries show what
+/// means may hide.
 std::string misdeclared(const Question& question, const Pilots& pilots) {
   for (const Subject& subject : question.subjects) {
     const Pilot* const pilot = pilot_of(subject, pilots);
     if (pilot == nullptr) continue;
     if (std::string fault = outside_of_range(subject, *pilot->sums); !fault.empty()) return fault;
+    const Pilot* const averaged = averaged_pilot_of(subject, pilots);
+    if (averaged == nullptr) continue;
+    if (std::string fault = no_averages(subject, *pilot, *averaged); !fault.empty()) return fault;
   }
   return "";
 }

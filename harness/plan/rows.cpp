@@ -76,6 +76,7 @@ std::string enough_of_a_chain(const Question& question, double time) {
   if (!question.is().batches_serve) {
     return fmt::format("keep one row in {}, {} of them at least", apart, fewest_in_order_to_tell);
   }
+  if (question.test->method) return "leave `test` out: batches of enough rows are then averaged";
   if (question.test->claim.relation == Relation::within) {
     return fmt::format("means of {} successive rows each, {} of them at least", apart,
                        fewest_in_order_to_tell);
@@ -241,10 +242,10 @@ void require_independent_sides(const Question& question, const Pilots& pilots,
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
                         Plan& plan) {
   const bool forced = question.test->method.has_value();
-  std::string reason;
-  if (plan.invalid.empty()) reason = too_few_to_tell(question, pilots, count, plan);
+  std::string reason = too_few_to_tell(question, pilots, count, plan);
+  if (forced || !plan.invalid.empty()) reason.clear();
   const std::vector<Rows> all = rows_of(question, pilots, count);
-  const bool batches = question.is().batches_serve &&
+  const bool batches = question.is().batches_serve && (!forced || plan.method.is.of_batches) &&
                        question.test->claim.relation != Relation::within &&
                        std::all_of(all.begin(), all.end(),
                                    [](const Rows& each) { return enough_batches(each.values); });
@@ -265,7 +266,7 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     const bool red = std::any_of(gates.begin(), gates.end(), [](const stats::Gate& gate) {
       return gate.state == GateState::red;
     });
-    const bool averaged = red && batches && !forced;
+    const bool averaged = red && batches;
     answered = answered || averaged;
     if (red && !averaged && reason.empty()) {
       reason = dependent(question, rows,
@@ -276,9 +277,10 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
       plan.gates.push_back(gate_of(gate, ", " + rows.label));
     }
   }
-  if (forced) return;
   if (!reason.empty()) {
     plan.invalid = reason;
+  } else if (forced) {
+    return;
   } else if (answered) {
     plan.method = find_method(question, "batch-means");
     // Batches answer what spoke against single rows; it still speaks against a drawn side.
@@ -287,26 +289,6 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     }
   } else if (question.is().batches_serve && !plan.method.is.exact) {
     allow_for_dependence(all, plan);
-  }
-}
-
-void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& plan) {
-  for (const Subject& side : question.subjects) {
-    const Pilot* pilot = pilot_of(side, pilots);
-    if (is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
-    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const std::span<const double> values = pilot_channel(side, *pilot, channel).values;
-      if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) continue;
-      const stats::Gate gate = stats::drawn_order_gate(values);
-      if (gate.state != GateState::red) continue;
-      plan.gates.push_back(gate_of(gate, ", " + side.estimator->name));
-      if (question.test->method || !plan.invalid.empty()) continue;
-      plan.invalid = fmt::format(
-          "the observations of `{}` are not independent: their order in the pilot has a rank "
-          "correlation of {:.2g}; an observation may rest on its own random numbers alone, not on "
-          "what was drawn before it or beside it",
-          side.estimator->name, gate.value);
-    }
   }
 }
 

@@ -32,15 +32,11 @@ void require_independent_sides(const Question& question, const Pilots& pilots, s
 /// Notes what the first `count` rows of every recorded subject say of independence
 /// (stats/gates/independence_gates.h). Dependent rows make a test of means one of batch means, if
 /// they are enough, and other tests invalid. A run of rows that recurs (stats/gates/repeated_run.h)
-/// or values that occur equally often (stats/gates/recurring_values.h) make any test invalid. A
-/// forced method is kept. For dependence too weak for a gate, a test of means allows
+/// or values that occur equally often (stats/gates/recurring_values.h) make any test invalid, a
+/// forced method as well. For dependence too weak for a gate, a test of means allows
 /// (stats::allowance_for_dependence).
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
                         Plan& plan);
-
-/// Judges the independence of what estimators drew in their pilots (stats::drawn_order_gate). Notes
-/// a red gate, which makes a test invalid. A forced method is kept.
-void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& plan);
 
 /// The moments that a test of means takes, of batch means if that is its method. Rows with an
 /// allowance get larger deviations: those of independent values with as uncertain a mean.

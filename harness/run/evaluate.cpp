@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/plan/critical.h"
+#include "harness/plan/drawn_order.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/plan.h"
 #include "harness/plan/rows.h"
@@ -167,6 +168,21 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
   }
 }
 
+/// Judges the order of the test's own draws. A dependence that the pilot did not show is no plan's
+/// to mend.
+void judge_drawn_order(TestOutcome& outcome, const DrawnTest& test) {
+  for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
+    const Subject& side = outcome.question.subjects[subject];
+    if (!shows_order(side)) continue;
+    for (const std::size_t channel : side.channels) {
+      const std::span<const double> values = test.samples[subject].values(channel);
+      std::string why = why_dependent(
+          side, values.first(std::min<std::size_t>(values.size(), ordered_values)), outcome.gates);
+      if (outcome.plan.invalid.empty()) outcome.plan.invalid = std::move(why);
+    }
+  }
+}
+
 void require_activation(TestOutcome& outcome, const DrawnTest& test) {
   // A plan that is invalid draws little, and has its own reason.
   if (outcome.question.test->expect != Expectation::fail || !outcome.plan.invalid.empty()) return;
@@ -269,6 +285,7 @@ namespace {
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   if (is_settled_beforehand(outcome)) return;
+  judge_drawn_order(outcome, test);
   judge(outcome, test);
   const bool last = outcome.look + 1 == outcome.plan.looks.sizes.size();
   const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;

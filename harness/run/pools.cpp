@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "harness/draws/consistency_setup.h"
+#include "harness/plan/drawn_order.h"
 
 namespace assay::harness {
 namespace {
@@ -158,6 +159,12 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
     }
   }
   if (plan.method.keeps == Keeps::images) pool->keep_observations(plan.most_secondaries());
+  if (shows_order(side)) {
+    for (const std::size_t channel : side.channels) {
+      std::uint64_t& keep = pool->plans()[channel].keep;
+      keep = std::max(keep, std::min(ordered_values, plan.most_secondaries()));
+    }
+  }
   // Keeps a mutant's first observations, which was_activated compares with its original's.
   if (side.estimator->original && side.purpose.empty()) pool->keep_observations(1);
   keep_for(plan.method, side, *pool);

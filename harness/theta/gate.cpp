@@ -67,6 +67,11 @@ const std::vector<GateKind>& gate_kinds() {
            "means of consecutive values vary too much for independent ones: ratio {0}, limit {1}"},
       {.name = "correlation of values some steps apart",
        .sentence = "values some steps apart depend on each other: correlation {0}, limit {1}"},
+      {.name = "rank correlation of drawn observations",
+       .sentence = "those some steps apart have a rank correlation of {0}, limit {1}"},
+      {.name = "variance of batch ranks of drawn observations",
+       .sentence = "means of neighbours vary {0} times as much as those of independent ones, limit "
+                   "{1}"},
       {.name = "longest repetition", .sentence = "a run of {0} values occurs twice"},
       {.name = "values that occur equally often",
        .sentence = "{0} values occur equally often, limit {1}: they are no independent draws"},

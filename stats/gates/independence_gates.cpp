@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "stats/basics/check.h"
@@ -15,13 +16,15 @@ namespace assay::stats {
 namespace {
 
 constexpr double false_red_of_dependence = 5e-5;
-// A suite has many tests, and hardly one whose estimator forgets to be independent.
+// A suite has many tests of many looks, and hardly one whose estimator forgets to be independent.
 constexpr double false_red_of_draws = 1e-7;
 constexpr double false_amber = 0.01;
 constexpr double false_allowance = 0.05;
 // Correlations cost up to the square of this number.
 constexpr std::size_t most_correlated = 8192;
-constexpr std::size_t most_drawn = 2048;
+constexpr std::size_t most_lagged = 2048;
+constexpr std::size_t shortest_rank_batch = 8;
+constexpr std::size_t fewest_rank_batches = 8;
 
 GateState state_of(double value, double green_up_to, double limit) {
   if (value > limit) return GateState::red;
@@ -82,6 +85,43 @@ Gate gate_of_lags(const std::vector<LaggedCorrelation>& all, const char* name, d
   return gate;
 }
 
+/// H of independence_gates.h.
+double rank_batch_statistic(std::span<const double> ranks, std::size_t length) {
+  double sum = 0;
+  for (std::size_t end = length; end <= ranks.size(); end += length) {
+    const auto batch = ranks.subspan(end - length, length);
+    const double ranks_of_batch = std::accumulate(batch.begin(), batch.end(), 0.0);
+    sum += ranks_of_batch * ranks_of_batch;
+  }
+  const auto n = static_cast<double>(ranks.size());
+  return 12 * sum / (static_cast<double>(length) * n * (n + 1));
+}
+
+Gate gate_of_rank_batches(std::span<const double> values) {
+  Gate gate{.name = "variance of batch ranks of drawn observations", .value = 1, .low = 1};
+  std::vector<std::size_t> lengths;
+  for (std::size_t length = shortest_rank_batch; length * fewest_rank_batches <= values.size();
+       length *= 2) {
+    lengths.push_back(length);
+  }
+  const std::vector<double> ranks = centred_ranks(values);
+  const double tests = static_cast<double>(lengths.size());
+  double least = 0;
+  for (const std::size_t length : lengths) {
+    const auto batches = static_cast<double>(values.size() / length);
+    const double statistic = rank_batch_statistic(ranks, length);
+    const double log_p = chi_square_tails(statistic, batches).upper + std::log(tests);
+    if (log_p >= least) continue;
+    least = log_p;
+    gate.value = statistic / batches;
+    gate.low = gate.value;
+    gate.limit =
+        chi_square_quantile({Tail::upper, std::log(false_red_of_draws / tests)}, batches) / batches;
+  }
+  gate.state = state_of(-least, -std::log(false_amber), -std::log(false_red_of_draws));
+  return gate;
+}
+
 }  // namespace
 
 Gate lag_one_gate(std::span<const double> values) {
@@ -111,10 +151,12 @@ Gate lagged_gate(std::span<const double> values) {
                       false_red_of_dependence);
 }
 
-Gate drawn_order_gate(std::span<const double> values) {
-  const auto first = values.first(std::min(values.size(), most_drawn));
-  return gate_of_lags(lagged_correlations(first, 1), "rank correlation of drawn observations",
-                      false_red_of_draws);
+std::vector<Gate> drawn_order_gates(std::span<const double> values) {
+  if (values.size() < 8) return {};
+  const auto first = values.first(std::min(values.size(), most_lagged));
+  return {gate_of_lags(lagged_correlations(first, 1), "rank correlation of drawn observations",
+                       false_red_of_draws),
+          gate_of_rank_batches(values)};
 }
 
 double autocorrelation_time(std::span<const double> values) {

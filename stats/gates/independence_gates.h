@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "stats/gates/assumption_gates.h"
 
@@ -27,11 +28,18 @@ Gate batch_gate(std::span<const double> values);
 // if there are no such lags.
 Gate lagged_gate(std::span<const double> values);
 
-// Null hypothesis: what an estimator draws is independent, of any one law. Value: the rank
-// correlation that is farthest from 0, over lags 1 to K of the first 2048 values. Red with
-// probability 1e-7, amber below .01. Shared offsets of neighbours show at lag one as well. Green
-// below 8 values.
-Gate drawn_order_gate(std::span<const double> values);
+// Null hypothesis: what an estimator draws is independent, of any one law. Both gates rest on
+// ranks, whose law is that of a random order, whatever the values. Each is red with probability
+// 1e-7 at most, and amber below .01. Below 8 values there are none.
+//
+// The first has the rank correlation r_k that is farthest from 0, over the lags k = 1 ... K of the
+// first 2048 values (lagged_correlation.h). The second has the largest H / B, over batches of
+// L = 8, 16, ... neighbours, B = floor(n / L) >= 8 of them. S_b is the sum of the ranks of batch b,
+// less their mean.
+//   H = 12 / (L n (n + 1)) sum S_b^2
+// H is near chi-square of at most B degrees of freedom (Kruskal & Wallis 1952). It sees offsets
+// that neighbours share, and slow chains, which no single lag shows.
+std::vector<Gate> drawn_order_gates(std::span<const double> values);
 
 // Integrated autocorrelation time n Var(mean) / Var x by effective_sample_size. More than 8192
 // values are first averaged with neighbours, which keeps n Var(mean).

@@ -19,6 +19,8 @@ std::uint64_t scattered(std::uint64_t number) {
   return splitmix64_finalised(number + 0x9e3779b97f4a7c15);
 }
 
+}  // namespace
+
 std::vector<double> centred_ranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -30,8 +32,6 @@ std::vector<double> centred_ranks(std::span<const double> values) {
   for (std::size_t i = 0; i < order.size(); ++i) ranks[order[i]] = static_cast<double>(i) - middle;
   return ranks;
 }
-
-}  // namespace
 
 std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
                                                    std::size_t first) {

@@ -1,0 +1,57 @@
+// What estimators declare, and what the program finds that they do.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+using testing::HasSubstr;
+
+/// A test of a program that declares `averages`. `observation` makes a number of the list `draws`.
+reports::Test judged(const std::string& law, const std::string& observation, int seed) {
+  const Workplace place;
+  place.write("mine.py", R"(import math, random, struct
+questions, replies = open(0, "rb"), open(1, "wb")
+replies.write(b"assay 1 binary\nchannel x\naverages\nready\n")
+replies.flush()
+while question := questions.read(32):
+    key, first, count, primaries = struct.unpack("<4Q", question)
+    for i in range(first, first + count):
+        stream = random.Random(key << 64 | i)
+        draws = [)" + law + R"( for _ in range(primaries)]
+        replies.write(struct.pack("<d", )" +
+                             observation + R"())
+    replies.write(question)
+    replies.flush()
+)");
+  const std::string file =
+      place.write("mine.yaml",
+                  "suite: mine\nestimators:\n  mine: {plugin: process, command: [python3, "
+                  "mine.py]}\ntests:\n  - {claim: variance(mine) == 1, detect: 20%}\n");
+  return run_files({file}, {.seed = static_cast<std::uint64_t>(seed)}).suites[0].tests[0];
+}
+
+TEST(Declared, AveragesThatIsUntrueIsAnError) {
+  for (const char* observation :
+       {"draws[0]", "sum(draws)", "(draws[0] + sum(draws)) / primaries"}) {
+    const reports::Test test = judged("stream.gauss(0, 1)", observation, 1);
+    EXPECT_EQ(test.verdict, Verdict::error) << observation << ": " << test.message;
+    EXPECT_THAT(test.message, HasSubstr("`mine` declares `averages`, but its observations of 32"));
+  }
+}
+
+TEST(Declared, AveragesThatIsTrueIsNone) {
+  for (const char* law : {"stream.gauss(0, 1)", "stream.lognormvariate(0, 2)"}) {
+    const reports::Test test = judged(law, "sum(draws) / primaries", 2);
+    EXPECT_NE(test.verdict, Verdict::error) << law << ": " << test.message;
+  }
+}
+
+}  // namespace
+}  // namespace assay::harness

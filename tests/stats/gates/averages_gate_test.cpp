@@ -1,0 +1,123 @@
+#include "stats/gates/averages_gate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "stats/tails/tails.h"
+#include "tests/stats/expect_calibrated.h"
+#include "tests/stats/samples.h"
+
+namespace assay::stats {
+namespace {
+
+using tests::Philox;
+
+using Law = std::function<double(Philox&)>;
+
+const std::vector<std::pair<const char*, Law>> laws{
+    {"normal", [](Philox& random) { return random.normal(); }},
+    {"lognormal(0, 2)", [](Philox& random) { return std::exp(2 * random.normal()); }},
+    {"Pareto 2.1", [](Philox& random) { return std::pow(1 - random.uniform(), -1 / 2.1); }},
+    {"spike of 1e-3", [](Philox& random) { return random.uniform() < 1e-3 ? 1000.0 : 1.0; }}};
+
+std::vector<double> means_of(const Law& law, std::size_t count, std::size_t each, Philox& random) {
+  std::vector<double> means;
+  for (std::size_t i = 0; i < count; ++i) {
+    double sum = 0;
+    for (std::size_t k = 0; k < each; ++k) sum += law(random);
+    means.push_back(sum / static_cast<double>(each));
+  }
+  return means;
+}
+
+constexpr std::size_t each = 32;
+constexpr std::size_t count = 64;
+
+double log_p(const Law& law, Philox& random, std::size_t taken) {
+  const std::vector<double> values = means_of(law, each * count, 1, random);
+  const double z = averages_gate(values, means_of(law, count, taken, random), each).value;
+  // Two statistics, each on both sides.
+  return std::min(0.0, normal_tails(z).upper + std::log(4.0));
+}
+
+TEST(AveragesGate, IsCalibratedAtAnyLaw) {
+  std::uint32_t number = 0;
+  for (const auto& [name, law] : laws) {
+    SCOPED_TRACE(name);
+    tests::expect_calibrated(
+        {.test_case = 7100 + number++, .repetitions = 4000, .shape = tests::Shape::at_most_uniform},
+        [&](Philox& random) { return log_p(law, random, each); });
+  }
+}
+
+// Observations of 24 primaries that are said to be of 32.
+TEST(AveragesGate, OfFewerPrimariesIsCaught) {
+  tests::expect_caught(
+      {.test_case = 7110, .repetitions = 4000, .shape = tests::Shape::at_most_uniform},
+      [&](Philox& random) { return log_p(laws[0].second, random, 24); });
+}
+
+// One of 1000 seeds is accused with probability 1e-4.
+TEST(AveragesGate, AccusesNoMeans) {
+  Philox random(7111);
+  for (const auto& [name, law] : laws) {
+    for (int run = 0; run < 250; ++run) {
+      const std::vector<double> values = means_of(law, 8192, 1, random);
+      const Gate gate = averages_gate(values, means_of(law, 256, each, random), each);
+      EXPECT_NE(gate.state, GateState::red) << name << " " << gate.value;
+    }
+  }
+}
+
+TEST(AveragesGate, SeesWhatIsNoMean) {
+  Philox random(7112);
+  for (int run = 0; run < 50; ++run) {
+    for (const auto& [name, law] : {laws[0], laws[1], laws[2]}) {
+      const std::vector<double> values = means_of(law, 8192, 1, random);
+      // One primary, and an offset that all primaries share.
+      EXPECT_EQ(averages_gate(values, means_of(law, 256, 1, random), each).state, GateState::red)
+          << name;
+    }
+    const Law& normal = laws[0].second;
+    const std::vector<double> values = means_of(normal, 8192, 1, random);
+    std::vector<double> sharing = means_of(normal, 256, each, random);
+    for (double& mean : sharing) mean += .4 * random.normal();
+    EXPECT_EQ(averages_gate(values, sharing, each).state, GateState::red);
+    // Stratified primaries vary less than independent ones.
+    std::vector<double> stratified = means_of(normal, 256, each, random);
+    for (double& mean : stratified) mean /= 2;
+    EXPECT_EQ(averages_gate(values, stratified, each).state, GateState::red);
+    std::vector<double> sums = means_of(normal, 256, each, random);
+    for (double& mean : sums) mean += .2;
+    EXPECT_EQ(averages_gate(values, sums, each).state, GateState::red);
+  }
+}
+
+// The larger of two z, from scores and their permutation moments in R:
+//   x <- c(1:16, 3.01 * (1:16)); a <- qnorm((rank(x) - .5) / 32); k <- 16
+//   s <- function(a) sqrt(k * k / (32 * 31) * sum((a - mean(a))^2))
+//   z <- function(a) abs(sum(a[1:k]) - k * mean(a)) / s(a); c(z(a), z(a^2))
+TEST(AveragesGate, AgreesWithR) {
+  std::vector<double> values(16);
+  std::iota(values.begin(), values.end(), 1.0);
+  std::vector<double> means;
+  for (const double value : values) means.push_back(3.01 * value);
+  EXPECT_NEAR(averages_gate(values, means, 1).value, 3.402320526064484, 1e-9);
+}
+
+TEST(AveragesGate, OfTooFewMeansSaysNothing) {
+  const std::vector<double> values(600, 1.0);
+  EXPECT_EQ(averages_gate(values, std::vector<double>(15, 2.0), 32).state, GateState::green);
+  EXPECT_EQ(averages_gate(values, std::vector<double>(256, 2.0), 64).value, 0);
+  EXPECT_THROW(averages_gate(values, values, 0), std::domain_error);
+  const std::vector<double> nan(16, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THROW(averages_gate(values, nan, 32), std::domain_error);
+}
+
+}  // namespace
+}  // namespace assay::stats
