@@ -137,14 +137,14 @@ void means(const Facts& f, std::vector<Draft>& drafts) {
                     against(within.c_str(), f.mean)});
   std::vector<const char*> others{"skewness-corrected-t"};
   if (f.two_valued()) others.push_back("binomial");
-  if (f.bounded()) others.push_back("bounded");
+  if (f.bounded()) others.push_back("betting");
   for (const char* method : others) {
     drafts.push_back({.method = method,
                       .question = "mean == number",
                       .true_claim = against("==", f.mean),
                       .is_default = false});
   }
-  if (!std::isfinite(f.low)) return;
+  if (f.bounded() || !std::isfinite(f.low)) return;
   drafts.push_back({.method = "betting",
                     .question = "mean <= number",
                     .true_claim = against("<=", f.mean),

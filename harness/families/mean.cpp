@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "estimators/ready_made.h"
 #include "harness/families/families.h"
@@ -22,7 +23,6 @@
 #include "harness/theta/methods.h"
 #include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
-#include "reports/words/number.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/power_exact.h"
 #include "stats/means/skewness_corrected_t.h"
@@ -81,16 +81,34 @@ double upper_variance(const stats::Moments& pilot) {
 
 // Beyond this a constant's unseen values stay undecided: they may not exist.
 constexpr std::uint64_t most_for_the_unseen = 1024 * usual_secondaries;
+// Fewer secondaries of a pilot do not show their law.
+constexpr std::size_t fewest_of_a_law = 64;
 
-/// The largest deviation that a constant pilot leaves open for a mean in a declared range. It is
-/// the smaller of two: all values at the ends, with the claimed mean; or values that the pilot
-/// missed with probability .01.
-double unseen_deviation(const PlannedChannel& planned, const stats::Moments& pilot) {
+/// The values of a secondary for planning bets. A constant pilot may have missed values at the ends
+/// of the range with probability .01: they take the mean to the claimed one, or leave it. Of few
+/// secondaries only mean and deviation are known.
+std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& planned,
+                                                     const stats::Moments& pilot,
+                                                     std::span<const double> secondaries) {
   const auto [low, high] = planned.range;
-  const double of_the_ends = (planned.null_value - low) * (high - planned.null_value);
-  const double reach = std::max(high - pilot.mean, pilot.mean - low);
-  const double unseen = std::log(100.0) / static_cast<double>(pilot.count) * reach * reach;
-  return std::sqrt(std::max(0.0, std::min(of_the_ends, unseen)));
+  const double mean = pilot.mean;
+  if (planned.unseen) {
+    auto law = std::make_shared<stats::ValueCells>(std::vector<double>{mean});
+    const double most = std::log(100.0) / static_cast<double>(pilot.count);
+    const double shift = planned.null_value - mean;
+    const double width = high - low;
+    const double to_high = shift == 0 ? most * (mean - low) / width : shift / (high - mean);
+    const double to_low = shift == 0 ? most * (high - mean) / width : -shift / (mean - low);
+    if (to_high > 0 && std::isfinite(to_high)) law->add(high, std::min(most, to_high));
+    if (to_low > 0 && std::isfinite(to_low)) law->add(low, std::min(most, to_low));
+    return law;
+  }
+  if (secondaries.size() >= fewest_of_a_law) {
+    return std::make_shared<const stats::ValueCells>(secondaries);
+  }
+  const double deviation = planned.standard_deviation;
+  return std::make_shared<const stats::ValueCells>(
+      std::vector<double>{mean - deviation, mean + deviation});
 }
 
 /// True if both samples of a comparison spread; else it is planned as one mean against a number.
@@ -163,17 +181,32 @@ std::vector<int> sides_of(Relation relation) {
 }
 
 bool is_quoted(const Question& question, const Plan& plan, const PlannedChannel& channel) {
-  return plan.method.is.plans && !question.of_two() &&
-         channel.regions.relation != Relation::within && std::isfinite(channel.range.low) &&
-         std::isfinite(channel.range.high) && channel.range.low < channel.range.high;
+  return plan.method.is.plans != nullptr && !question.of_two() &&
+         channel.regions.relation != Relation::within &&
+         (!plan.method.is.in_range || channel.law) && channel.range.low < channel.range.high;
 }
 
 stats::ExactMeanPlan plan_of(const PlannedChannel& channel, const stats::ErrorRates& rates) {
   return {.range = channel.range,
           .null_mean = channel.null_value,
-          .standard_deviation = channel.standard_deviation,
+          .law = channel.law.get(),
           .allow = channel.regions.proof() ? 0 : channel.regions.allow * channel.unit,
           .rates = rates};
+}
+
+/// Secondaries that reject the claimed region where theta is `effect`, and the forbidden one where
+/// theta is at the claimed region's edge.
+std::optional<std::uint64_t> exact_size(const stats::ExactPlanning& plans,
+                                        const stats::ExactMeanPlan& claimed, double effect) {
+  const double edge = std::copysign(claimed.allow, effect);
+  stats::ExactMeanPlan forbidden = claimed;
+  forbidden.null_mean += effect;
+  forbidden.allow = 0;
+  forbidden.rates = {.alpha = claimed.rates.beta, .beta = claimed.rates.beta, .two_sided = false};
+  const auto rejects = plans.sample_size(claimed, effect);
+  if (!rejects) return std::nullopt;
+  // An end of the range that is infinite lets no number of secondaries pass.
+  return std::max(*rejects, plans.sample_size(forbidden, edge - effect).value_or(0));
 }
 
 std::optional<std::uint64_t> exact_secondaries(const Question& question, const Plan& plan,
@@ -191,8 +224,10 @@ std::optional<std::uint64_t> exact_secondaries(const Question& question, const P
   }
   std::uint64_t most = 0;
   for (const int side : sides_of(channel.regions.relation)) {
-    const auto count =
-        stats::exact_sample_size(*plan.method.is.plans, plan_of(channel, rates), side * detect);
+    const stats::ExactMeanPlan claimed = plan_of(channel, rates);
+    const auto count = channel.regions.proof()
+                           ? plan.method.is.plans->sample_size(claimed, side * detect)
+                           : exact_size(*plan.method.is.plans, claimed, side * detect);
     if (!count) return std::nullopt;
     most = std::max(most, *count);
   }
@@ -213,8 +248,7 @@ std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& quest
   std::uint64_t most = 0;
   for (const int side : {1, -1}) {
     at_margin.null_value = channel.null_value + side * margin;
-    const auto count =
-        stats::exact_sample_size(*plan.method.is.plans, plan_of(at_margin, rates), -side * margin);
+    const auto count = plan.method.is.plans->sample_size(plan_of(at_margin, rates), -side * margin);
     if (!count) return std::nullopt;
     most = std::max(most, *count);
   }
@@ -222,40 +256,6 @@ std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& quest
 }
 
 // ---- The choice of a method
-
-/// Secondaries that keep the level of the skewness-corrected t within a quarter.
-std::uint64_t enough_for_corrected(const std::vector<Known>& channels, double critical) {
-  std::uint64_t needed = least_secondaries;
-  for (const Known& known : channels) {
-    const stats::PrimaryShape primary = stats::primary_shape(known.pilot.moments);
-    const stats::PrimaryShape shape{.skewness = primary.skewness / std::sqrt(known.averaged),
-                                    .excess_kurtosis = primary.excess_kurtosis / known.averaged};
-    const auto factor = [&](std::uint64_t count) {
-      return stats::corrected_level_factor(shape, {.count = count, .critical_value = critical});
-    };
-    while (needed < impossible_secondaries && factor(needed) > level_factor)
-      needed += needed / 4 + 1;
-  }
-  return needed;
-}
-
-/// Secondaries from which unseen values of a declared range move the mean by a tenth of its
-/// standard error at most. An event that N primaries missed has probability ln(1 / alpha) / N at
-/// most.
-std::uint64_t enough_to_see(const Question& question, const std::vector<Known>& channels,
-                            double alpha) {
-  constexpr double share_of_error = 0.1;
-  double needed = 2;
-  for (const Known& known : channels) {
-    const stats::Moments& seen = known.pilot.moments;
-    const stats::Range range = range_of(question, known.subject, known.channel, seen);
-    const double beyond = std::max(range.high - seen.maximum, seen.minimum - range.low);
-    const double root =
-        std::log(1 / alpha) * beyond / (share_of_error * std::sqrt(seen.variance()));
-    needed = std::max(needed, root * root / known.averaged);
-  }
-  return whole_secondaries(needed);
-}
 
 /// True if every known value is one of the two ends of its range.
 bool are_two_valued(const Question& question, const std::vector<Known>& channels,
@@ -275,117 +275,28 @@ bool are_two_valued(const Question& question, const std::vector<Known>& channels
          });
 }
 
-/// True if the range is finite on both sides and the reference exact.
-bool in_known_bounds(const Question& question, std::size_t channel, const stats::Moments& seen) {
-  const stats::Range range = range_of(question, 0, channel, seen);
-  return std::isfinite(range.low) && std::isfinite(range.high) &&
-         question.references[channel].standard_error == 0;
-}
-
-bool are_bounded(const Question& question, const std::vector<Known>& channels) {
-  if (question.of_two()) return false;
-  return std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
-    return !known.rows && in_known_bounds(question, known.channel, known.pilot.moments);
-  });
-}
-
-/// True if "too much" has an exact test, which takes a declared lower bound and no other.
-bool can_be_bet_on(const Question& question, const std::vector<Known>& channels) {
-  if (question.of_two() || question.test->claim.relation != Relation::at_most) return false;
-  return !channels.empty() &&
-         std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
-           const stats::Range range = range_of(question, 0, known.channel, known.pilot.moments);
-           return !known.rows && std::isfinite(range.low) &&
-                  question.references[known.channel].standard_error == 0;
-         });
-}
-
-/// True if the pilot saw a single value of means in declared ranges: only unseen values are left to
-/// test.
-bool are_unseen_in_ranges(const Question& question, const Pilots& pilots) {
-  if (question.of_two()) return false;
-  const Pilot* const pilot = pilot_of(question, 0, pilots);
-  if (pilot == nullptr || has_rows(question)) return false;
-  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
-    const stats::Moments& seen = pilot_channel(question, 0, channel, pilots).moments;
-    const stats::Range range = range_of(question, 0, channel, seen);
-    if (!is_constant(question, 0, channel, seen) || !(range.low < range.high) ||
-        !in_known_bounds(question, channel, seen)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
-                              const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  if (!question.test->method && are_unseen_in_ranges(question, pilots)) {
-    plan.method = find_method(question, "bounded");
-    return least_secondaries;
-  }
+std::uint64_t choose_for_mean(const Question& question, const Pilots& pilots, std::uint64_t most,
+                              Plan& plan) {
   const std::vector<Known> channels =
       known_channels(question, pilots, largest_look(question, most), plan);
-  const double x = critical_value(smallest_level(question, place), two_sided(question));
-  const std::string heavy = too_heavy(question, channels, stats::TailClaim::mean, plan);
-  const bool bounded = !channels.empty() && are_bounded(question, channels);
-  const std::uint64_t to_see =
-      bounded ? enough_to_see(question, channels, smallest_level(question, place)) : 2;
-  const std::uint64_t for_t = std::max(to_see, enough_for_t(channels, x));
-  const std::uint64_t for_corrected = std::max(to_see, enough_for_corrected(channels, x));
-  const std::uint64_t size = intended_secondaries(question, place, pilots, most, plan);
-  const bool fixed = question.test->secondaries || size == most;
-  // If the size is open, validity may ask for more; the t test only if looks stay early.
-  const std::uint64_t affordable = fixed ? size : std::min(most, std::max(size, most_for_a_mean));
-  const std::uint64_t early = fixed || size <= usual_secondaries ? size : size / 4;
-  std::uint64_t least = std::max(least_secondaries, for_t);
-  if (question.test->method) {
-    least = least_secondaries;
-  } else if (are_two_valued(question, channels, plan)) {
-    plan.method = find_method(question, "binomial");
-    return least_secondaries;
-  } else if (has_rows(question)) {
-    // The data's own gates judge their shape further (rows.h).
-    if (for_t > fewest_secondaries(question, size))
-      plan.method = find_method(question, "skewness-corrected-t");
-    least = size;
-  } else if (for_t > std::max(least_secondaries, early) && for_corrected < for_t &&
-             for_corrected <= affordable) {
-    plan.method = find_method(question, "skewness-corrected-t");
-    least = for_corrected;
-  } else if (for_t > affordable && bounded) {
-    plan.method = find_method(question, "bounded");
-    answer_red_gates(plan);
-    return least_secondaries;
-  } else if ((for_t > affordable || !heavy.empty()) && can_be_bet_on(question, channels)) {
-    plan.method = find_method(question, "betting");
-    answer_red_gates(plan);
-    return least_secondaries;
-  }
+  bool near_normal = true;
   for (const Known& known : channels) {
-    stats::Gate gate = stats::predicted_skewness_gate(
-        stats::primary_shape(known.pilot.moments), whole_secondaries(known.averaged),
-        {.secondaries = std::clamp(std::max(least, size), std::uint64_t{2}, affordable),
-         .critical_value = x});
-    // The chosen method answers it.
-    const bool answered = plan.method.is.corrects_skewness;
-    if (answered && gate.state == GateState::red) gate.state = GateState::amber;
+    const stats::Gate gate = near_normal_gate(known);
+    near_normal = near_normal && gate.state == GateState::green;
     note(plan, known, gate);
   }
-  if (question.test->method) return least;
-  plan.invalid = heavy;
-  // Red: at this size the t test's worse tail is off by more than a factor of two.
-  const double red = std::pow(std::log(level_factor) / std::log(2.0), 2);
-  const bool t_is_red = red * static_cast<double>(for_t) > static_cast<double>(affordable);
-  if (fixed && !has_rows(question) && plan.invalid.empty() && t_is_red &&
-      for_corrected > affordable) {
-    note_too_few(plan, affordable, std::min(for_t, for_corrected));
-    plan.invalid = fmt::format(
-        "secondary estimates of this shape need about {} observations before any test of their "
-        "mean "
-        "keeps its level; a larger `primaries` brings them nearer to normal, or declare the range",
-        reports::human(static_cast<double>(std::min(for_t, for_corrected)), 2));
+  if (!question.test->method) {
+    if (!channels.empty() && are_two_valued(question, channels, plan)) {
+      plan.method = find_method(question, "binomial");
+    } else if (bets_on_range(question, pilots)) {
+      plan.method = find_method(question, "betting");
+    } else if (!near_normal) {
+      plan.method = find_method(question, "skewness-corrected-t");
+    }
   }
-  return std::min(least, affordable);
+  // Without a size to plan, the floor is as usual as any.
+  const bool planned = question.test->detect || is_within(question);
+  return plan.method.is.exact && planned ? least_secondaries : secondaries_of_floor(question, plan);
 }
 
 // ---- Data
@@ -476,9 +387,9 @@ class MeanTheta : public Theta {
     return error;
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
-    return choose_for_mean(question, place, pilots, most, plan);
+    return choose_for_mean(question, pilots, most, plan);
   }
 
   std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
@@ -521,6 +432,9 @@ class MeanTheta : public Theta {
       observed.reference_error = question.references[channel].standard_error;
     }
     note_range(question, channel, data[0].moments, observed);
+    if (!question.of_two() && !data[0].values.empty()) {
+      observed.law = std::make_shared<const stats::ValueCells>(data[0].values);
+    }
     observed.unit = unit_of_theta(question, channel, other_mean);
     return observed;
   }
@@ -571,9 +485,9 @@ class MeanTheta : public Theta {
 
   std::optional<ConstantVerdict> settled(const Question& question, std::size_t channel,
                                          std::span<const ChannelData> data, const Regions& regions,
-                                         const ErrorShare& share) const override {
+                                         const ErrorShare&) const override {
     if (!all_constant(question, channel, data)) return std::nullopt;
-    return judge_constant(question, channel, data, regions, share);
+    return judge_constant(question, channel, data, regions);
   }
 
   std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
@@ -593,10 +507,6 @@ class MeanTheta : public Theta {
     const MethodTraits& method = outcome.plan.method.is;
     const std::string name = channel_suffix(question, channel);
     if (method.exact) return gates;
-    for (const stats::Gate& gate : row_gates(outcome, data, x)) {
-      gates.push_back(gate_of(gate, name));
-    }
-    if (method.of_batches) return gates;
     gates.push_back(gate_of(method.corrects_skewness ? residual_gate(question, channel, data, x)
                                                      : skewness_gate(question, data, x),
                             name));
@@ -634,10 +544,9 @@ class MeanTheta : public Theta {
     PlannedChannel planned{.regions = plan.regions[channel]};
     const bool constant = is_constant(question, 0, channel, first);
     note_range(question, channel, first, planned);
-    if (constant && plan.method.is.plans == stats::ExactMethod::bounded) {
-      planned.standard_deviation = unseen_deviation(planned, first) /
-                                   std::sqrt(question.subjects[0].averaged(plan.primaries[0]));
-      planned.unseen = true;
+    planned.unseen = constant && plan.method.is.in_range;
+    if (planned.unseen && !question.of_two()) {
+      planned.law = planned_law(planned, first, {});
       planned.unit = unit_of_theta(question, channel, 0);
       return planned;
     }
@@ -646,6 +555,12 @@ class MeanTheta : public Theta {
     if (!constant) {
       planned.standard_deviation =
           std::sqrt(upper_variance(first) / question.subjects[0].averaged(plan.primaries[0]));
+    }
+    if (plan.method.is.in_range && !question.of_two()) {
+      planned.law = planned_law(
+          planned, first,
+          as_secondaries(question.subjects[0], pilot_channel(question, 0, channel, pilots).values,
+                         plan.primaries[0]));
     }
     double other_mean = 0;
     if (question.of_two()) {
@@ -732,10 +647,7 @@ class MeanTheta : public Theta {
     double least = 1;
     for (const int side : sides_of(channel.regions.relation)) {
       const double theta = side * effect * channel.unit;
-      const double power = *plan.method.is.plans == stats::ExactMethod::binomial
-                               ? stats::binomial_power(exact, size.secondaries, theta)
-                               : stats::bounded_power(exact, size.secondaries, theta);
-      least = std::min(least, power);
+      least = std::min(least, plan.method.is.plans->power(exact, size.secondaries, theta));
     }
     return least;
   }
@@ -772,28 +684,23 @@ const std::vector<MethodRow>& MeanTheta::rows() {
        any_question,
        Keeps::moments,
        mean_of_two_values,
-       {.exact = true, .of_observations = true, .plans = stats::ExactMethod::binomial}},
-      {"bounded",
-       "exact: a mean of values in a declared range",
-       [](const Question& q) { return !q.of_two(); },
-       Keeps::moments,
-       mean_in_a_range,
+       {.exact = true, .of_observations = true, .plans = &stats::binomial_planning}},
+      {"betting",
+       "exact at every look: means of values in declared ranges, by bets",
+       any_question,
+       Keeps::values,
+       mean_by_bets,
        {.exact = true,
         .in_range = true,
+        .anytime_valid = true,
         .of_observations = true,
-        .plans = stats::ExactMethod::bounded}},
+        .plans = &stats::betting_planning}},
       {"batch-means",
        "t of batch means: a mean of observations that depend on their neighbours",
        [](const Question& q) { return !is_within(q); },
        Keeps::values,
        mean_by_t,
-       {.of_observations = true, .of_batches = true}},
-      {"betting",
-       "exact: a mean of values with a declared lower bound is not larger",
-       [](const Question& q) { return !q.of_two() && !is_within(q); },
-       Keeps::values,
-       mean_by_bets,
-       {.exact = true, .in_range = true, .of_observations = true, .excludes_larger = false}}};
+       {.of_observations = true, .of_batches = true}}};
   return table;
 }
 

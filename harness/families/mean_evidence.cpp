@@ -10,7 +10,7 @@
 #include "harness/question/declared_range.h"
 #include "harness/theta/inversion.h"
 #include "harness/theta/theta.h"
-#include "stats/means/nonnegative_mean.h"
+#include "stats/means/betting_mean.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
 #include "stats/means/two_valued.h"
@@ -28,55 +28,111 @@ using OneMeanTest = std::function<TestResult(const stats::Reference&)>;
 /// Tests "E x - scale E y = offset".
 using ContrastTest = std::function<TestResult(const stats::Contrast&)>;
 
+/// One subject's data of a channel, with its declared range and rounding.
+struct Side {
+  const ChannelData& data;
+  stats::Range range;
+  double rounding = 0;
+};
+
 /// A test of one mean and of two. Without closed intervals, `at` is inverted.
 struct MeanTest {
-  OneMeanTest (*of_one)(const Moments& x, const stats::Range& range);
-  ContrastTest (*of_two)(const Moments& x, const Moments& y, const stats::Range& of_x,
-                         const stats::Range& of_y);
+  OneMeanTest (*of_one)(const Side& x);
+  ContrastTest (*of_two)(const Side& x, const Side& y);
   bool closed_interval = false;
 };
 
-OneMeanTest t_of_one(const Moments& x, const stats::Range&) {
-  return [x](const stats::Reference& null) { return stats::student_t(x, null); };
+OneMeanTest t_of_one(const Side& x) {
+  return [x = x.data.moments](const stats::Reference& null) { return stats::student_t(x, null); };
 }
 
-ContrastTest t_of_two(const Moments& x, const Moments& y, const stats::Range&,
-                      const stats::Range&) {
-  return [=](const stats::Contrast& null) { return stats::welch_t(x, y, null); };
-}
-
-OneMeanTest corrected_of_one(const Moments& x, const stats::Range&) {
-  return [x](const stats::Reference& null) { return stats::skewness_corrected_t(x, null); };
-}
-
-ContrastTest corrected_of_two(const Moments& x, const Moments& y, const stats::Range&,
-                              const stats::Range&) {
-  return [=](const stats::Contrast& null) { return stats::skewness_corrected_welch(x, y, null); };
-}
-
-OneMeanTest binomial_of_one(const Moments& x, const stats::Range& range) {
-  return [x, range](const stats::Reference& null) {
-    return stats::two_valued_mean(stats::two_valued(x, range), null.value);
+ContrastTest t_of_two(const Side& x, const Side& y) {
+  return [x = x.data.moments, y = y.data.moments](const stats::Contrast& null) {
+    return stats::welch_t(x, y, null);
   };
 }
 
-ContrastTest binomial_of_two(const Moments& x, const Moments& y, const stats::Range& of_x,
-                             const stats::Range& of_y) {
-  return [=](const stats::Contrast& null) {
-    return stats::two_valued_contrast(stats::two_valued(x, of_x), stats::two_valued(y, of_y), null);
+OneMeanTest corrected_of_one(const Side& x) {
+  return [x = x.data.moments](const stats::Reference& null) {
+    return stats::skewness_corrected_t(x, null);
   };
 }
 
-OneMeanTest bounded_of_one(const Moments& x, const stats::Range& range) {
-  return [x, range](const stats::Reference& null) {
-    return stats::bounded_mean(x, range, null.value);
+ContrastTest corrected_of_two(const Side& x, const Side& y) {
+  return [x = x.data.moments, y = y.data.moments](const stats::Contrast& null) {
+    return stats::skewness_corrected_welch(x, y, null);
+  };
+}
+
+OneMeanTest binomial_of_one(const Side& x) {
+  return [x = stats::two_valued(x.data.moments, x.range)](const stats::Reference& null) {
+    return stats::two_valued_mean(x, null.value);
+  };
+}
+
+ContrastTest binomial_of_two(const Side& x, const Side& y) {
+  return [x = stats::two_valued(x.data.moments, x.range),
+          y = stats::two_valued(y.data.moments, y.range)](const stats::Contrast& null) {
+    return stats::two_valued_contrast(x, y, null);
+  };
+}
+
+using Cells = std::shared_ptr<const stats::ValueCells>;
+
+Cells cells_of(const Side& side) {
+  return std::make_shared<const stats::ValueCells>(side.data.values);
+}
+
+/// Values are exact to `rounding`: each tail is that of the nearest null.
+TestResult within_rounding(const std::function<TestResult(double)>& at, double rounding) {
+  if (rounding == 0) return at(0);
+  TestResult result = at(0);
+  result.log_p_upper = at(rounding).log_p_upper;
+  result.log_p_lower = at(-rounding).log_p_lower;
+  return result;
+}
+
+OneMeanTest bets_of_one(const Side& x) {
+  return
+      [cells = cells_of(x), range = x.range, rounding = x.rounding](const stats::Reference& null) {
+        return within_rounding(
+            [&](double shift) { return stats::betting_mean(*cells, range, null.value + shift); },
+            rounding);
+      };
+}
+
+ContrastTest bets_of_two(const Side& x, const Side& y) {
+  return [cells_of_x = cells_of(x), cells_of_y = cells_of(y), of_x = x.range, of_y = y.range,
+          rounding = x.rounding, other = y.rounding](const stats::Contrast& null) {
+    const auto at = [&](double shift) {
+      return stats::betting_contrast(*cells_of_x, of_x, *cells_of_y, of_y,
+                                     {null.scale, null.offset + shift});
+    };
+    return within_rounding(at, rounding + std::abs(null.scale) * other);
   };
 }
 
 constexpr MeanTest student{t_of_one, t_of_two, true};
 constexpr MeanTest corrected{corrected_of_one, corrected_of_two};
 constexpr MeanTest binomial{binomial_of_one, binomial_of_two};
-constexpr MeanTest bounded{bounded_of_one, nullptr};
+constexpr MeanTest bets{bets_of_one, bets_of_two};
+
+Side side_of(const Question& question, std::size_t channel, std::span<const ChannelData> data,
+             std::size_t subject) {
+  return {data[subject], range_of(question, subject, channel, data[subject].moments),
+          rounding_of(question, subject, channel)};
+}
+
+/// A first step from an estimate of theta. Without a spread it is what one more value could add.
+double step_of(const Side& side, double factor) {
+  const Moments& x = side.data.moments;
+  const double count = static_cast<double>(x.count);
+  double step = std::sqrt(x.variance() / count);
+  for (const double end : {side.range.low, side.range.high}) {
+    if (!(x.m2 > 0) && std::isfinite(end)) step = std::max(step, std::abs(end - x.mean) / count);
+  }
+  return std::abs(factor) * step;
+}
 
 /// Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
 double log_p_of_no_sign(const Moments& y, const OneMeanTest& test) {
@@ -84,19 +140,17 @@ double log_p_of_no_sign(const Moments& y, const OneMeanTest& test) {
   return stats::log_p_two_sided(test({.value = 0}));
 }
 
-double spread_of(const Moments& x, double factor) {
-  return std::abs(factor) * std::sqrt(x.variance() / static_cast<double>(x.count));
-}
-
-Evidence difference_of_means(bool closed_interval, const Question& question, const Moments& x,
-                             const Moments& y, const ContrastTest& test) {
+Evidence difference_of_means(bool closed_interval, const Question& question, const Side& first,
+                             const Side& second, const ContrastTest& test) {
+  const Moments x = first.data.moments;
+  const Moments y = second.data.moments;
   const double factor = question.factor;
   const double offset = question.offset;
   const double estimate = stats::contrast_of_means(x, y, {.scale = factor, .offset = offset});
   const auto at = [=](double theta) { return test({.scale = factor, .offset = offset + theta}); };
+  const double step = std::hypot(step_of(first, 1), step_of(second, factor));
   const auto interval = [=](double confidence) {
     if (!closed_interval) {
-      const double step = std::hypot(spread_of(x, 1), spread_of(y, factor));
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
     // Only count, mean and m2 enter. The difference stands for x, with y's mean at 0.
@@ -111,8 +165,11 @@ Evidence difference_of_means(bool closed_interval, const Question& question, con
   return {.estimate = estimate, .at = at, .interval = interval, .quantity = "difference of means"};
 }
 
-Evidence ratio_of_means(bool closed_interval, const Question& question, const Moments& x,
-                        const Moments& y, const ContrastTest& test, const OneMeanTest& test_of_y) {
+Evidence ratio_of_means(bool closed_interval, const Question& question, const Side& first,
+                        const Side& second, const ContrastTest& test,
+                        const OneMeanTest& test_of_y) {
+  const Moments x = first.data.moments;
+  const Moments y = second.data.moments;
   const double factor = question.factor;
   const double offset = question.offset;
   const double other = factor * y.mean;
@@ -131,9 +188,9 @@ Evidence ratio_of_means(bool closed_interval, const Question& question, const Mo
     result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
     return result;
   };
+  const double step = std::hypot(step_of(first, 1), step_of(second, factor)) / std::abs(other);
   const auto interval = [=](double confidence) {
     if (!closed_interval || offset != 0) {
-      const double step = std::hypot(spread_of(x, 1), spread_of(y, factor)) / std::abs(other);
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
     return map_ends(stats::welch_ratio_interval(x, y, confidence),
@@ -146,27 +203,24 @@ Evidence ratio_of_means(bool closed_interval, const Question& question, const Mo
           .relative = true};
 }
 
-}  // namespace
-
-namespace {
-
 Evidence mean_against_number(const MeanTest& mean, const Question& question, std::size_t channel,
-                             const stats::Moments& x) {
+                             const Side& side) {
+  const Moments x = side.data.moments;
   const Constant& reference = question.references[channel];
   const bool relative = question.theta->is_relative(question, channel);
   const double unit = relative ? std::abs(reference.value) : 1;
   const double slope = relative ? std::copysign(1, reference.value) : 0;
   const double null = reference.value + question.offset;
   const double estimate = x.mean_less(null) / unit;
-  const OneMeanTest test = mean.of_one(x, range_of(question, 0, channel, x));
+  const OneMeanTest test = mean.of_one(side);
   const auto at = [=](double theta) {
     return test({.value = null + theta * unit,
                  .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
   };
+  const double step = std::hypot(step_of(side, 1), reference.standard_error) / unit;
   const auto interval = [=](double confidence) {
     // Theta also scales the reference's error, so `at` is inverted.
     if ((relative && reference.standard_error > 0) || !mean.closed_interval) {
-      const double step = std::hypot(spread_of(x, 1), reference.standard_error) / unit;
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
     return map_ends(stats::student_t_interval(x, {null, reference.standard_error}, confidence),
@@ -180,22 +234,16 @@ Evidence mean_against_number(const MeanTest& mean, const Question& question, std
           .relative = relative};
 }
 
-Evidence mean_against_mean(const MeanTest& mean, const Question& question, std::size_t channel,
-                           std::span<const ChannelData> data) {
-  const Moments& x = data[0].moments;
-  const Moments& y = data[1].moments;
-  const ContrastTest test =
-      mean.of_two(x, y, range_of(question, 0, channel, x), range_of(question, 1, channel, y));
-  if (!question.theta->is_relative(question, channel))
-    return difference_of_means(mean.closed_interval, question, x, y, test);
-  return ratio_of_means(mean.closed_interval, question, x, y, test,
-                        mean.of_one(y, range_of(question, 1, channel, y)));
-}
-
 Evidence of_means(const MeanTest& mean, const Question& question, std::size_t channel,
                   std::span<const ChannelData> data) {
-  if (question.of_two()) return mean_against_mean(mean, question, channel, data);
-  return mean_against_number(mean, question, channel, data[0].moments);
+  const Side x = side_of(question, channel, data, 0);
+  if (!question.of_two()) return mean_against_number(mean, question, channel, x);
+  const Side y = side_of(question, channel, data, 1);
+  const ContrastTest test = mean.of_two(x, y);
+  if (!question.theta->is_relative(question, channel)) {
+    return difference_of_means(mean.closed_interval, question, x, y, test);
+  }
+  return ratio_of_means(mean.closed_interval, question, x, y, test, mean.of_one(y));
 }
 
 }  // namespace
@@ -215,35 +263,9 @@ Evidence mean_of_two_values(const Method&, const Question& question, std::size_t
   return of_means(binomial, question, channel, data);
 }
 
-Evidence mean_in_a_range(const Method&, const Question& question, std::size_t channel,
-                         std::span<const ChannelData> data) {
-  return of_means(bounded, question, channel, data);
-}
-
 Evidence mean_by_bets(const Method&, const Question& question, std::size_t channel,
                       std::span<const ChannelData> data) {
-  const Moments& x = data[0].moments;
-  const std::span<const double> values = data[0].values;
-  const Constant& reference = question.references[channel];
-  const bool relative = question.theta->is_relative(question, channel);
-  const double unit = relative ? std::abs(reference.value) : 1;
-  const double null = reference.value + question.offset;
-  const double bound = range_of(question, 0, channel, x).low;
-  auto above = std::make_shared<std::vector<double>>();
-  for (const double value : values) above->push_back(value - bound);
-  const auto at = [=](double theta) {
-    return stats::nonnegative_mean(*above, null + theta * unit - bound);
-  };
-  const auto interval = [=](double confidence) {
-    const double low = stats::nonnegative_mean_lower_limit(*above, (1 + confidence) / 2) + bound;
-    return Interval{(low - null) / unit, std::numeric_limits<double>::infinity(), confidence};
-  };
-  return {.estimate = (x.mean - null) / unit,
-          .at = at,
-          .interval = interval,
-          .quantity =
-              relative ? "relative difference from the reference" : "difference from the reference",
-          .relative = relative};
+  return of_means(bets, question, channel, data);
 }
 
 }  // namespace assay::harness

@@ -21,10 +21,7 @@ Evidence mean_by_corrected_t(const Method&, const Question&, std::size_t channel
 /// Exact, for values at the two ends of a range.
 Evidence mean_of_two_values(const Method&, const Question&, std::size_t channel,
                             std::span<const ChannelData>);
-/// Exact, for one estimator with values in a declared range.
-Evidence mean_in_a_range(const Method&, const Question&, std::size_t channel,
-                         std::span<const ChannelData>);
-/// Tests "E x <= r" by bets on values above the declared lower bound. Never refutes "E x > r".
+/// Exact, for values in declared ranges. Keeps the values.
 Evidence mean_by_bets(const Method&, const Question&, std::size_t channel,
                       std::span<const ChannelData>);
 

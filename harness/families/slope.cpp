@@ -149,9 +149,7 @@ class SlopeTheta final : public Theta {
   std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
     if (is.of_spread) return choose_for_spread(question, place, pilots, most, plan);
-    const double x = critical_value(smallest_level(question, place), two_sided(question));
-    const auto channels = known_channels(question, pilots, largest_look(question, most), plan);
-    return std::clamp(enough_for_t(channels, x), least_secondaries, most_for_a_mean);
+    return secondaries_of_floor(question, plan);
   }
 
   /// Size for each subject, from a pilot that shows the claimed power law: its constant at the

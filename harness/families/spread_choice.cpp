@@ -238,7 +238,7 @@ std::uint64_t choose_for_variance(const Question& question, const FamilyPlace& p
   const std::vector<Known> channels =
       known_channels(question, pilots, largest_look(question, most), plan);
   const double x = critical_value(smallest_level(question, place), two_sided(question));
-  const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
+  const std::string heavy = too_heavy(question, channels, plan);
   const bool forced = question.test->method.has_value();
   if (forced && !plan.method.is.of_normal_values) {
     const std::uint64_t needed = enough_for_log_variance(question, channels, x);
@@ -275,7 +275,7 @@ std::uint64_t choose_for_spread(const Question& question, const FamilyPlace& pla
   // A reference comes last, and only its mean is used.
   while (!channels.empty() && channels.back().subject >= question.compared()) channels.pop_back();
   const double x = critical_value(smallest_level(question, place), two_sided(question));
-  const std::string heavy = too_heavy(question, channels, stats::TailClaim::variance, plan);
+  const std::string heavy = too_heavy(question, channels, plan);
   std::uint64_t needed = log_variance_secondaries;
   for (const Known& known : channels) {
     const auto shape = secondary_shape(known);

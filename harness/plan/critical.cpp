@@ -32,8 +32,7 @@ stats::ShapeLimits shape_limits(double critical) {
   const double nearer =
       stats::normal_quantile({stats::Tail::upper, log_tail + std::log(level_factor)});
   const double inflation = critical / nearer;
-  return {.excess_kurtosis = std::min(0.2, 2 * (inflation * inflation - 1)),
-          .level_factor = level_factor};
+  return {.excess_kurtosis = std::min(0.2, 2 * (inflation * inflation - 1))};
 }
 
 }  // namespace assay::harness

@@ -169,6 +169,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
     const double averaged = side.averaged(test.plan.primaries[i]);
     data[i] = {.primaries = test.plan.primaries[i],
                .moments = scaled(pilot, averaged, secondaries)};
+    if (averaged == 1) data[i].values = pilot_channel(question, i, channel, pilots).values;
     known = i;
   }
   if (!known) return std::nullopt;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "harness/plan/critical.h"
 #include "harness/plan/rows.h"
 #include "harness/theta/ask.h"
 #include "reports/words/number.h"
@@ -34,15 +35,18 @@ std::string median_of(const Question& question) {
   return fmt::format("quantile({}, 0.5) == …", to_string(question.test->claim.left.source));
 }
 
-/// Factor on the observations that would turn the gate green.
+/// Factor on the observations that would turn the gate green, with room for what more of them show.
 double wanted(const Gate& gate) {
-  if (!gate.is_red() || !gate.value || !gate.limit) return 1;
+  if (!gate.is_red() || !gate.value) return 1;
   switch (gate.row().falls) {
     case Falls::by_its_logarithm:
       // The level factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
       return std::pow(std::log(*gate.value) / std::log(1.25), 2);
-    case Falls::like_the_root:
-      return std::pow(*gate.value / *gate.limit, 2);
+    case Falls::as_one_observation: {
+      // The others' share of the sum of squares grows like n.
+      constexpr double wanted_share = 0.1;
+      return (1 / wanted_share - 1) / (1 / *gate.value - 1);
+    }
     case Falls::not_known:
       break;
   }
@@ -52,9 +56,6 @@ double wanted(const Gate& gate) {
 }  // namespace
 
 std::string red_gates(const std::vector<Gate>& gates) {
-  for (const Gate& gate : gates) {
-    if (gate.is_red() && gate.row().stands_alone) return sentence(gate);
-  }
   std::string text;
   constexpr int most = 4;
   int red = 0;
@@ -96,10 +97,6 @@ std::string what_would_help(const TestOutcome& outcome) {
   for (const Gate& gate : outcome.gates) {
     if (!gate.is_red()) continue;
     const GateKind& row = gate.row();
-    if (row.asks_for_normal_values) {
-      return ", or, if they are near normal, add " +
-             written_key(*outcome.question.test, "test", "t");
-    }
     says_it_all = says_it_all && row.says_what_helps;
     heavy = heavy || row.heavy_tail;
     factor = std::max(factor, wanted(gate));
@@ -117,7 +114,10 @@ std::string what_would_help(const TestOutcome& outcome) {
   const std::string more =
       factor > 1 && std::isfinite(factor) ? "about " + sizes_text(outcome, factor) : "more";
   if (rows) return fmt::format(": give {} rows, or rows that each average several", more);
-  return fmt::format("; {} `secondaries` would help, or a larger `primaries`", more);
+  return fmt::format(
+      "; {} `secondaries` would do: no test knows of a rare bright value that it never drew, so "
+      "that without a declared range none decides on fewer than {} primaries",
+      more, floor_of_evidence);
 }
 
 }  // namespace assay::harness

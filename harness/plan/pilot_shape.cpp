@@ -13,6 +13,7 @@
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
+#include "harness/theta/methods.h"
 
 namespace assay::harness {
 namespace {
@@ -70,27 +71,25 @@ bool is_small(std::uint64_t count) { return count < usual_secondaries; }
 /// State at the estimate. A lattice or a rare second part can look like a heavy tail. It is none
 /// while the variance of the variance, (kurtosis - 1) / n, is small. If that is large, the pilot
 /// does not know the variance yet.
-GateState tail_state(const stats::Gate& gate, const stats::Moments& moments,
-                     stats::TailClaim claim) {
-  const bool mean = claim == stats::TailClaim::mean;
+GateState tail_state(const stats::Gate& gate, const stats::Moments& moments) {
   const double variance_of_variance = (moments.kurtosis() - 1) / static_cast<double>(moments.count);
   // Only a surely light tail explains such a kurtosis.
-  if (!mean && variance_of_variance > (is_small(moments.count) ? 0.05 : 0.01) && gate.value > 0.1) {
+  if (variance_of_variance > (is_small(moments.count) ? 0.05 : 0.01) && gate.value > 0.1) {
     return GateState::red;
   }
   if (gate.value <= gate.limit) return GateState::green;
   if (is_small(moments.count)) return GateState::amber;
-  return variance_of_variance > (mean ? 0.1 : 0.001) ? GateState::red : GateState::amber;
+  return variance_of_variance > 0.001 ? GateState::red : GateState::amber;
 }
 
 /// The heavier tail's gate, at the estimate: the pilot chooses, it does not accuse.
-std::optional<stats::Gate> tail_gate(const Question& question, const Known& known,
-                                     stats::TailClaim claim) {
+std::optional<stats::Gate> tail_gate(const Question& question, const Known& known) {
+  constexpr stats::TailClaim claim = stats::TailClaim::variance;
   const stats::Moments& moments = known.pilot.moments;
   std::vector<double> values(known.pilot.values.begin(), known.pilot.values.end());
   const bool finite =
       std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  const bool few = is_small(values.size()) && (known.rows || claim == stats::TailClaim::mean);
+  const bool few = is_small(values.size()) && known.rows;
   if (few || values.size() < least_of_a_tail || !finite) return {};
   std::optional<stats::Gate> heavier;
   const stats::Range range = range_of(question, known.subject, known.channel, moments);
@@ -104,7 +103,7 @@ std::optional<stats::Gate> tail_gate(const Question& question, const Known& know
   }
   if (!heavier) return {};
   heavier->low = heavier->value;
-  heavier->state = tail_state(*heavier, moments, claim);
+  heavier->state = tail_state(*heavier, moments);
   return heavier;
 }
 
@@ -161,50 +160,112 @@ std::vector<double> as_secondaries(const Subject& side, std::span<const double> 
   return means;
 }
 
-void answer_red_gates(Plan& plan) {
-  for (Gate& gate : plan.gates) {
-    if (gate.state == "red") gate.state = "amber";
-  }
-}
-
 void note(Plan& plan, const Known& known, const stats::Gate& gate) {
   if (!known.rows) plan.gates.push_back(gate_of(gate, known.label));
 }
 
-std::string too_heavy(const Question& question, const std::vector<Known>& channels,
-                      stats::TailClaim claim, Plan& plan) {
+std::string too_heavy(const Question& question, const std::vector<Known>& channels, Plan& plan) {
   std::string reason;
-  const bool mean = claim == stats::TailClaim::mean;
   for (const Known& known : channels) {
-    const std::optional<stats::Gate> gate = tail_gate(question, known, claim);
+    const std::optional<stats::Gate> gate = tail_gate(question, known);
     if (!gate) continue;
     note(plan, known, *gate);
     if (gate->state != GateState::red) continue;
     if (has_rows(question)) {
       reason = fmt::format(
-          "the rows are too heavy-tailed for a {}: more of them may only show more of the tail; "
-          "claim a quantile, as `quantile({}, 0.5) == …`",
-          mean ? "mean" : "variance", to_string(question.test->claim.left.source));
+          "the rows are too heavy-tailed for a variance: more of them may only show more of the "
+          "tail; claim a quantile, as `quantile({}, 0.5) == …`",
+          to_string(question.test->claim.left.source));
       continue;
     }
     reason = fmt::format(
-        "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the {} moment that the test rests "
-        "on may not exist; clamp the estimator{}, or claim something of its distribution",
-        gate->value, gate->limit, known.label, mean ? "second" : "fourth",
-        mean ? ", declare its range" : "");
+        "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the fourth moment that the test "
+        "rests on may not exist; clamp the estimator, or claim something of its distribution",
+        gate->value, gate->limit, known.label);
   }
   return reason;
 }
 
-std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical) {
-  double needed = 2;
-  for (const Known& known : channels) {
-    const double skewness = stats::primary_shape(known.pilot.moments).skewness;
-    const double root = std::abs(skewness) * std::pow(critical, 3) / (3 * std::log(level_factor));
-    const double wanted = root * root / known.averaged / known.times;
-    needed = wanted <= needed ? needed : wanted;  // also if it is NaN
+stats::Gate near_normal_gate(const Known& known) {
+  // At the floor of evidence it moves a tail of one per cent by a fifth.
+  constexpr double near_normal = 0.3;
+  // Normal data exceed the allowance with this probability.
+  constexpr double unlikely = 0.01;
+  const stats::Moments& moments = known.pilot.moments;
+  const double root = std::sqrt(known.averaged);
+  const double value = std::abs(moments.skewness()) / root;
+  const double allowance =
+      stats::normal_skewness_quantile(static_cast<double>(moments.count), unlikely) / root;
+  const double limit = std::max(near_normal, allowance);
+  return {.name = "skewness of an observation",
+          .value = value,
+          .low = value,
+          .limit = limit,
+          .state = value <= limit ? GateState::green : GateState::amber};
+}
+
+namespace {
+
+// So few values beyond half the way to an end may be none in the test.
+constexpr std::ptrdiff_t few_values = 32;
+
+/// Ends of a mean's range that its decisions need: to reject "too much" the low one.
+struct NeededEnds {
+  bool low;
+  bool high;
+};
+
+NeededEnds needed_ends(const TestEntry& test) {
+  switch (test.claim.relation) {
+    case Relation::at_most:
+      return {.low = true, .high = test.detect.has_value()};
+    case Relation::at_least:
+      return {.low = test.detect.has_value(), .high = true};
+    case Relation::less:
+      return {.low = false, .high = true};
+    case Relation::greater:
+      return {.low = true, .high = false};
+    case Relation::equal:
+    case Relation::within:
+      break;
   }
-  return whole_secondaries(needed);
+  return {.low = true, .high = true};
+}
+
+/// True if the values beyond half the way from their mean to an end are few.
+bool hides(std::span<const double> values, double mean, double end) {
+  const double half = mean + (end - mean) / 2;
+  return std::ranges::count_if(values, [&](double value) {
+           return end > mean ? value >= half : value <= half;
+         }) < few_values;
+}
+
+}  // namespace
+
+bool bets_on_range(const Question& question, const Pilots& pilots) {
+  if (question.test->method) return find_method(question, *question.test->method).is.in_range;
+  const auto uncertain = [](const Constant& reference) { return reference.standard_error > 0; };
+  if (std::ranges::any_of(question.references, uncertain)) return false;
+  const NeededEnds ends = question.of_two() ? NeededEnds{true, true} : needed_ends(*question.test);
+  bool hidden = false;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    const Pilot* const pilot = pilot_of(question, subject, pilots);
+    if (pilot == nullptr || !side.purpose.empty() || is_recorded(side)) return false;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const PilotChannel seen = pilot_channel(question, subject, channel, pilots);
+      const stats::Range range = range_of(question, subject, channel, seen.moments);
+      const bool low = ends.low && !std::isfinite(range.low);
+      const bool high = ends.high && !std::isfinite(range.high);
+      if (low || high || !(range.low < range.high) || seen.values.empty()) return false;
+      const bool constant = is_constant(question, subject, channel, seen.moments);
+      if (question.of_two() && !constant) return false;
+      const double mean = seen.moments.mean;
+      hidden = hidden || constant || (ends.low && hides(seen.values, mean, range.low)) ||
+               (ends.high && hides(seen.values, mean, range.high));
+    }
+  }
+  return hidden;
 }
 
 }  // namespace assay::harness

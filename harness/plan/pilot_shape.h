@@ -38,21 +38,18 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots);
 std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
                                   std::uint64_t look, const Plan& plan);
 
-/// Turns red gates amber: the chosen method asks nothing of that shape.
-void answer_red_gates(Plan& plan);
-
 /// Notes a gate of the pilot, but none of rows: they are judged with the test's own data.
 void note(Plan& plan, const Known& known, const stats::Gate& gate);
 
-/// Notes the tails' gates. Returns why the claim cannot be tested if a tail is too heavy, else "".
-std::string too_heavy(const Question& question, const std::vector<Known>& channels,
-                      stats::TailClaim claim, Plan& plan);
+/// Notes the tails' gates. Returns why a variance cannot be tested if a tail is too heavy, else "".
+std::string too_heavy(const Question& question, const std::vector<Known>& channels, Plan& plan);
 
-/// Secondaries, of the subject with fewest, that keep the worse tail of Student's t right within a
-/// quarter.
-std::uint64_t enough_for_t(const std::vector<Known>& channels, double critical);
+/// Skewness of a secondary. Student's t takes values for near normal where it is green.
+stats::Gate near_normal_gate(const Known& known);
 
-// The most secondaries that a method of means may ask for; more cost more than they give.
-inline constexpr std::uint64_t most_for_a_mean = 64 * usual_secondaries;
+/// True if a claim on means rests on the range that its channels declare: bets are its method.
+/// Every end that a decision needs is finite, and a pilot saw few values in the outer half before
+/// one, or none that vary. Two means are bet on only if both are constant.
+bool bets_on_range(const Question& question, const Pilots& pilots);
 
 }  // namespace assay::harness

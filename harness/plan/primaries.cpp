@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "harness/plan/critical.h"
+#include "harness/plan/pilot_shape.h"
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/constant.h"
 #include "stats/gates/assumption_gates.h"
@@ -20,21 +21,21 @@ bool chooses_primaries(const Subject& subject) {
   return subject.averages && subject.purpose.empty() && !subject.estimator->primaries;
 }
 
-/// Primaries that one question wants of one estimator.
+/// Primaries that one question wants of one estimator. Bets are placed on single values: what a
+/// rare one takes, they win back from each.
 std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& place,
                                std::size_t subject, const Pilots& pilots) {
-  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  if (question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots))
+    return 1;
   std::uint64_t wanted = least_primaries;
+  if (!question.is().of_spread) return wanted;
+  const double x = critical_value(smallest_level(question, place), two_sided(question));
   for (std::size_t channel = 0; channel < question.subjects[subject].channels.size(); ++channel) {
     const stats::Moments& pilot = pilot_channel(question, subject, channel, pilots).moments;
     if (is_constant(question, subject, channel, pilot)) continue;
     if (!beyond_doubles(pilot, "").empty()) continue;  // the plan says so
-    const stats::PrimaryShape shape = stats::primary_shape(pilot);
-    const stats::PlannedTest test{
-        .secondaries = question.test->secondaries.value_or(usual_secondaries), .critical_value = x};
-    wanted = std::max(wanted, question.is().of_spread
-                                  ? stats::primaries_for_variance(shape, shape_limits(x))
-                                  : stats::primaries_for_mean(shape, test));
+    wanted = std::max(wanted,
+                      stats::primaries_for_variance(stats::primary_shape(pilot), shape_limits(x)));
   }
   return wanted;
 }

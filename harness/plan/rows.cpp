@@ -19,7 +19,6 @@
 #include "stats/gates/lagged_correlation.h"
 #include "stats/gates/recurring_values.h"
 #include "stats/gates/repeated_run.h"
-#include "stats/gates/unpiloted_gates.h"
 
 namespace assay::harness {
 namespace {
@@ -306,32 +305,6 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
     moments.m4 *= each.factor * each.factor;
   }
   return moments;
-}
-
-std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
-                                   double critical_value) {
-  const Question& question = outcome.question;
-  const MethodTraits& method = outcome.plan.method.is;
-  std::vector<stats::Gate> gates;
-  if (!has_rows(question)) return gates;
-  const bool batches = method.of_batches;
-  const stats::Moments& first = data[0].moments;
-  if (data.size() == 1) {
-    if (!batches) gates.push_back(stats::unpiloted_count_gate(first, critical_value));
-    gates.push_back(stats::unpiloted_skewness_gate(first, critical_value));
-    return gates;
-  }
-  const double factor = question.factor;
-  const double x = first.variance() / static_cast<double>(first.count);
-  const double y =
-      factor * factor * data[1].moments.variance() / static_cast<double>(data[1].moments.count);
-  const double shares[] = {x / (x + y), y / (x + y)};
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (batches || !is_recorded(question.subjects[i])) continue;
-    gates.push_back(stats::unpiloted_count_gate(data[i].moments, critical_value, shares[i]));
-  }
-  gates.push_back(stats::unpiloted_skewness_gate(first, data[1].moments, factor, critical_value));
-  return gates;
 }
 
 void require_lasting_rows(const Suite& suite, const std::string& record) {

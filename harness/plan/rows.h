@@ -43,11 +43,6 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
 stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
                          std::span<const double> values, stats::Moments moments);
 
-/// Gates on the shape of rows, which no pilot judged: number, skewness of the mean at the critical
-/// value, coarse rounding for Kolmogorov and Smirnov.
-std::vector<stats::Gate> row_gates(const TestOutcome& outcome, std::span<const ChannelData> data,
-                                   double critical_value);
-
 /// Throws InputError at the record if rows of the suite came from standard input, a pipe or a
 /// device: they cannot be replayed.
 void require_lasting_rows(const Suite& suite, const std::string& record);

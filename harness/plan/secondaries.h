@@ -19,6 +19,11 @@ double times_the_fewest(const Question& question, std::size_t subject, std::uint
 /// Sizes of the two subjects; a single one is both.
 stats::SampleSizes sizes_of(const Question& question, std::uint64_t look);
 
+/// Secondaries that the floor of evidence asks for (critical.h), at least `least_secondaries`. Rows
+/// of a file, pictures and files that a program writes are as many as somebody paid for: they have
+/// no floor.
+std::uint64_t secondaries_of_floor(const Question& question, const Plan& plan);
+
 /// A computed count, rounded up; `impossible_secondaries` if it is too large or NaN.
 std::uint64_t whole_secondaries(double count);
 

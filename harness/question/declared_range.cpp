@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "estimators/ready_made.h"
 #include "harness/draws/sampler_setup.h"
 
 namespace assay::harness {
@@ -37,6 +38,13 @@ stats::Range range_of(const Question& question, std::size_t subject, std::size_t
   if (side.setup->observations()) return {moments.minimum, moments.maximum};
   const Channel declared = side.setup->channels()[side.channels[channel]];
   return {declared.low, declared.high};
+}
+
+double rounding_of(const Question& question, std::size_t subject, std::size_t channel) {
+  const Subject& side = question.subjects[subject];
+  // Pictures declare nothing. Their millions of channel names are not made for one of them.
+  if (recorded::unknown_channels(*side.setup)) return 0;
+  return side.setup->channels()[side.channels[channel]].rounding;
 }
 
 std::optional<double> no_point_of(const Subject& side) {

@@ -250,9 +250,9 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
-  if (!outcome.plan.method.is.excludes_larger) {
-    return "no number of samples would decide: without an upper bound on the values a larger mean "
-           "cannot be excluded; declare the range";
+  if (outcome.plan.method.is.in_range && !std::isfinite(half)) {
+    return "no number of samples would decide: what rare values could add is not bounded; declare "
+           "the range";
   }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
     return "the estimate lies where the claim must not pass, yet not clearly so";

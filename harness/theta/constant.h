@@ -25,14 +25,11 @@ struct ConstantVerdict {
   std::string message;
 };
 
-/// Verdict on a mean claim whose samples are all constant. With (1 - q)^n = level, an unseen value
-/// has probability q at most (exact binomial). So the mean lies within q * (declared range) of the
-/// constant. A constant as claimed passes if there is no forbidden region, or if the bound at beta
-/// excludes it; else it is inconclusive. Any other constant fails if the bound at alpha excludes
-/// the claimed region; else it is invalid.
+/// Verdict on a mean claim whose samples are all constant, where no declared range bounds what was
+/// never seen. A constant as claimed passes if there is no forbidden region; else it is
+/// inconclusive. Any other constant is invalid.
 ConstantVerdict judge_constant(const Question& question, std::size_t channel,
-                               std::span<const ChannelData> data, const Regions& regions,
-                               const ErrorShare& share);
+                               std::span<const ChannelData> data, const Regions& regions);
 
 /// Passes a constant sample if the claim bounds its variance from above and forbids no region, as
 /// each channel of `worst_variance`. Returns nullopt for other claims, for samples that vary, or if

@@ -6,15 +6,6 @@ namespace assay::harness {
 
 const std::vector<GateKind>& gate_kinds() {
   static const std::vector<GateKind> table{
-      {.name = "count",
-       .sentence = "{0} rows are too few to show how skewed they are: at this level it takes {1}; "
-                   "give more",
-       .stands_alone = true,
-       .asks_for_normal_values = true},
-      {.name = "skewness of the mean",
-       .sentence = "the rows are too few for how skewed they are",
-       .stands_alone = true,
-       .falls = Falls::like_the_root},
       {.name = "level factor by skewness",
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
                    "{0}, limit "
@@ -34,13 +25,13 @@ const std::vector<GateKind>& gate_kinds() {
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
                    "{0} even "
                    "after correction, limit {1}",
-       .needs_more = true},
-      {.name = "largest deviation",
-       .sentence = "one observation outweighs the others: its deviation over standard deviation "
-                   "and sqrt(n) is "
-                   "{0}, limit {1}",
-       .heavy_tail = true,
-       .needs_more = true},
+       .needs_more = true,
+       .falls = Falls::by_its_logarithm},
+      {.name = "share of one observation",
+       .sentence = "one observation outweighs the others: it has {0} of the sum of squares, limit "
+                   "{1}",
+       .needs_more = true,
+       .falls = Falls::as_one_observation},
       {.name = "excess kurtosis",
        .sentence =
            "the observations are not normal enough for this test of their variance: their excess "

@@ -11,17 +11,15 @@
 namespace assay::harness {
 
 /// How a red gate's value falls with the number of observations, towards its limit.
-enum class Falls { not_known, by_its_logarithm, like_the_root };
+enum class Falls { not_known, by_its_logarithm, as_one_observation };
 
 /// A row of the table of gates. A gate without a row is shown by its name.
 struct GateKind {
   std::string name;
-  std::string sentence = "";            ///< if it is red; {0} is its value, {1} its limit
-  bool stands_alone = false;            ///< if it is red, no other gate is worth a word
-  bool asks_for_normal_values = false;  ///< Student's t may be forced for near-normal values
-  bool heavy_tail = false;              ///< more observations may only show more of the tail
-  bool says_what_helps = false;         ///< its sentence does
-  bool needs_more = false;              ///< If it is red the test goes on, and ends inconclusive.
+  std::string sentence = "";     ///< if it is red; {0} is its value, {1} its limit
+  bool heavy_tail = false;       ///< more observations may only show more of the tail
+  bool says_what_helps = false;  ///< its sentence does
+  bool needs_more = false;       ///< If it is red the test goes on, and ends inconclusive.
   Falls falls = Falls::not_known;
 };
 

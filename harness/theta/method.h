@@ -75,16 +75,16 @@ enum class FromPilot { nothing, cells, weights };
 struct MethodTraits {
   bool exact = false;     ///< The level holds at every sample size; the reference must be exact.
   bool in_range = false;  ///< Rests on a channel's declared range.
+  bool anytime_valid = false;       ///< The p-value is valid at every look, however many are taken.
   bool of_observations = false;     ///< The moments of an earlier run are too little.
   bool of_batches = false;          ///< Tests means of consecutive observations.
   bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.
   bool of_normal_values = false;    ///< Takes values for normal, with an allowance for kurtosis.
   bool of_distinct_values = false;  ///< Coarsely rounded values break its level.
-  bool excludes_larger = true;      ///< Refutes "theta is larger" at some sample size.
   bool scores = false;              ///< The estimate does not show its standard error.
   bool joins_channels = false;      ///< compares all channels of two estimators together
   FromPilot from_pilot = FromPilot::nothing;
-  std::optional<stats::ExactMethod> plans = {};  ///< Planning of an exact method of a mean.
+  const stats::ExactPlanning* plans = nullptr;  ///< Planning of an exact method of a mean.
 };
 
 /// A row of the method table (methods.h). Rows of different families of claims may share a name.

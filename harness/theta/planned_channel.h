@@ -1,9 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "harness/theta/decision.h"
-#include "stats/means/bounded_mean.h"
+#include "stats/means/betting_mean.h"
 
 namespace assay::harness {
 
@@ -20,6 +21,7 @@ struct PlannedChannel {
   bool unseen = false;      ///< The deviation is what a constant pilot may have missed.
   stats::Range range = {};  ///< Declared range of one mean's values.
   double null_value = 0;    ///< The value of one mean where theta is 0.
+  std::shared_ptr<const stats::ValueCells> law = {};  ///< Values of a secondary, for bets.
 };
 
 /// A look's levels, and its secondaries of each subject, or all that it has.

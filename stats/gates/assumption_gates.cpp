@@ -17,7 +17,8 @@ constexpr double false_red = 1e-4;
 constexpr double green_factor = 1.25;
 constexpr double red_factor = 2;
 constexpr double kurtosis_limit = 0.2;
-constexpr double dominance_limit = 0.5;
+constexpr double red_share = 0.5;
+constexpr double green_share = 0.25;
 
 GateState state_of(const Gate& gate, double green_up_to) {
   if (gate.value <= green_up_to) return GateState::green;
@@ -154,37 +155,12 @@ std::uint64_t primaries_for_variance(PrimaryShape shape, ShapeLimits limits) {
   return whole_up("primaries_for_variance", shape.excess_kurtosis / limits.excess_kurtosis);
 }
 
-std::uint64_t primaries_for_mean(PrimaryShape shape, PlannedTest test, ShapeLimits limits) {
-  check_shape("primaries_for_mean", shape);
-  check::at_least({"primaries_for_mean", "secondaries"}, test.secondaries, 2);
-  const double cube = checked_cube(test.critical_value);
-  if (!(limits.level_factor > 1)) {
-    check::fail({"primaries_for_mean", "level_factor"}, limits.level_factor, "above 1");
-  }
-  const double root = std::abs(shape.skewness) * cube / (3 * std::log(limits.level_factor));
-  return whole_up("primaries_for_mean", root * root / static_cast<double>(test.secondaries));
-}
-
 Gate predicted_kurtosis_gate(PrimaryShape shape, std::uint64_t primaries, ShapeLimits limits) {
   check_shape("predicted_kurtosis_gate", shape);
   check::at_least({"predicted_kurtosis_gate", "primaries"}, primaries, 1);
   const double value = shape.excess_kurtosis / static_cast<double>(primaries);
   Gate gate{"excess kurtosis", value, value, limits.excess_kurtosis, GateState::green};
   gate.state = state_of(gate, limits.excess_kurtosis);
-  return gate;
-}
-
-Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, PlannedTest test,
-                             ShapeLimits limits) {
-  check_shape("predicted_skewness_gate", shape);
-  check::at_least({"predicted_skewness_gate", "primaries"}, primaries, 1);
-  check::at_least({"predicted_skewness_gate", "secondaries"}, test.secondaries, 2);
-  const double total = static_cast<double>(primaries) * static_cast<double>(test.secondaries);
-  const double exponent =
-      std::abs(shape.skewness) * checked_cube(test.critical_value) / (3 * std::sqrt(total));
-  const double value = std::exp(std::min(exponent, 700.0));
-  Gate gate{"level factor by skewness", value, value, limits.level_factor, GateState::green};
-  gate.state = state_of(gate, limits.level_factor);
   return gate;
 }
 
@@ -226,12 +202,15 @@ Gate log_mean_gate(const Moments& positive, double critical_value, const std::st
 Gate dominance_gate(const Moments& x) {
   check::at_least({"dominance_gate", "count"}, x.count, 3);
   if (x.m2 == 0) throw ZeroVariance("dominance_gate: zero variance");
-  const double n = static_cast<double>(x.count);
   const double largest = std::max(x.maximum - x.mean, x.mean - x.minimum);
-  const double value = largest / (x.standard_deviation() * std::sqrt(n));
-  const double limit = std::max(dominance_limit, grubbs(n, false_red) / std::sqrt(n));
-  Gate gate{"largest deviation", value, value, limit, GateState::green};
-  gate.state = state_of(gate, std::max(dominance_limit, grubbs(n, 0.05) / std::sqrt(n)));
+  const double value = largest / x.m2 * largest;
+  const auto critical = [n = static_cast<double>(x.count)](double probability) {
+    const double deviation = grubbs(n, probability);
+    return deviation / (n - 1) * deviation;
+  };
+  const double limit = std::max(red_share, critical(false_red));
+  Gate gate{"share of one observation", value, value, limit, GateState::green};
+  gate.state = state_of(gate, std::max(green_share, critical(0.05)));
   return gate;
 }
 

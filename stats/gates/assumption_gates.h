@@ -18,28 +18,14 @@ PrimaryShape primary_shape(const Moments& pilot);
 
 struct ShapeLimits {
   double excess_kurtosis = 0.2;  // For F and chi-square. At nominal .10 the level stays below .12.
-  double level_factor = 1.25;    // For t: exp(2 |a| x^3), see skewness_gate.
-};
-
-// The planned test: its number of secondary estimates, and the critical value x of its smallest
-// share.
-struct PlannedTest {
-  std::uint64_t secondaries = 2;
-  double critical_value = 0;
 };
 
 // Smallest m with excess_kurtosis / m <= limits.excess_kurtosis (1 for negative excess).
 std::uint64_t primaries_for_variance(PrimaryShape shape, ShapeLimits limits = {});
-// Smallest m with exp(|skewness| x^3 / (3 sqrt(m secondaries))) <= limits.level_factor.
-std::uint64_t primaries_for_mean(PrimaryShape shape, PlannedTest test, ShapeLimits limits = {});
-
-// Predictions of what the gates read with m primaries a secondary. A prediction has no error of its
-// own, so low = value. Red above the planning bound.
+// Prediction of what the gate reads with m primaries a secondary. It has no error of its own, so
+// low = value. Red above the planning bound.
 Gate predicted_kurtosis_gate(PrimaryShape shape, std::uint64_t primaries, ShapeLimits limits = {});
-Gate predicted_skewness_gate(PrimaryShape shape, std::uint64_t primaries, PlannedTest test,
-                             ShapeLimits limits = {});
-
-// ---- On the test's own data: can only invalidate
+// ---- On the test's own data
 
 // Value: exp(2 |a| x^3), 2 |a| = |g1| / (3 sqrt n). The worse tail of a Studentised mean departs
 // from nominal by this factor at critical value x. (Self-normalised moderate deviations: Jing, Shao
@@ -59,11 +45,9 @@ Gate log_mean_gate(const Moments& positive, double critical_value, const std::st
 // Infinite for smaller n, whose g1 cannot exceed (n - 2) / sqrt(n - 1).
 double normal_skewness_quantile(double n, double probability);
 
-// Value: max |x_i - mean| / (s sqrt n). Its square is one observation's share of the sum of
-// squares. Limit: .5, or the 1e-4 critical value of Grubbs (1950) where normal data exceed .5. That
-// is the exact allowance, so low = value. Green up to .5 or the 5 % critical value. At .5 one
-// observation alone makes 2a = .04, the limit of the skewness gate at level .01. Smaller values
-// keep sound levels.
+// Value: max (x_i - mean)^2 / ((n - 1) s^2), one observation's share of the sum of squares. Limit:
+// .5, or the 1e-4 critical value of Grubbs (1950) where normal data exceed .5. That is the exact
+// allowance, so low = value. Green up to .25 or the 5 % critical value.
 Gate dominance_gate(const Moments& x);
 
 // For F and chi-square tests of variances. Value: excess kurtosis b2 - 3. Green up to .2, limit .2.

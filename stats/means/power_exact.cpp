@@ -2,21 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "stats/basics/check.h"
-#include "stats/basics/moments.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
 
+constexpr std::uint64_t largest_size = std::uint64_t{1} << 40;
+
 // The plan with the effect above the null value. An effect below it is mirrored.
 struct Upward {
+  double sign;
   Range range;
   double null_mean;  // The nearer end of the allowed range.
   double mean;       // With the effect.
   double log_level;
+
+  bool is_impossible() const {
+    return null_mean < range.low || null_mean > range.high || mean > range.high;
+  }
 };
 
 Upward upward(const char* function, const ExactMeanPlan& plan, double effect) {
@@ -29,8 +35,11 @@ Upward upward(const char* function, const ExactMeanPlan& plan, double effect) {
   const bool mirrored = effect < 0;
   const Range range = mirrored ? Range{-plan.range.high, -plan.range.low} : plan.range;
   const double null = mirrored ? -plan.null_mean : plan.null_mean;
-  return {range, null + plan.allow, null + std::abs(effect), std::log(level)};
+  return {mirrored ? -1.0 : 1.0, range, null + plan.allow, null + std::abs(effect),
+          std::log(level)};
 }
+
+// ---- Binomial
 
 double probability(const Upward& plan, double mean) {
   return (mean - plan.range.low) / (plan.range.high - plan.range.low);
@@ -49,105 +58,104 @@ std::uint64_t critical_count(std::uint64_t n, double p, double log_level) {
   return rejected;
 }
 
-Moments ideal(std::uint64_t n, double mean, double deviation) {
-  Moments moments{.count = n, .mean = mean};
-  moments.m2 = deviation * deviation * static_cast<double>(n - 1);
-  moments.minimum = mean;
-  moments.maximum = mean;
-  return moments;
-}
-
-double critical_mean(const Upward& plan, std::uint64_t n, double deviation) {
-  double kept = plan.null_mean;
-  double rejected = plan.range.high;
-  const auto rejects = [&](double mean) {
-    return bounded_mean(ideal(n, mean, deviation), plan.range, plan.null_mean).log_p_upper <=
-           plan.log_level;
-  };
-  if (!rejects(rejected)) return std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 60; ++i) {
-    const double middle = kept + (rejected - kept) / 2;
-    (rejects(middle) ? rejected : kept) = middle;
-  }
-  return rejected;
-}
-
-// True if every sample mean rejects the null value at alpha or the effect at beta.
-bool decides(const ExactMeanPlan& plan, std::uint64_t n, double effect) {
-  const Upward up = upward("exact_sample_size", plan, effect);
-  if (up.null_mean < up.range.low || up.mean > up.range.high) return true;
-  const Upward back{{-up.range.high, -up.range.low}, -up.mean, 0, std::log(plan.rates.beta)};
-  const double claimed = critical_mean(up, n, plan.standard_deviation);
-  return claimed <= -critical_mean(back, n, plan.standard_deviation);
-}
-
-double power_of(ExactMethod method, const ExactMeanPlan& plan, std::uint64_t n, double effect) {
-  return method == ExactMethod::binomial ? binomial_power(plan, n, effect)
-                                         : bounded_power(plan, n, effect);
-}
-
-}  // namespace
-
 double binomial_power(const ExactMeanPlan& plan, std::uint64_t n, double effect) {
   check::at_least({"binomial_power", "n"}, n, 1);
   const Upward up = upward("binomial_power", plan, effect);
-  const double null = probability(up, up.null_mean);
-  const double alternative = probability(up, up.mean);
-  if (null < 0 || null > 1 || alternative < 0 || alternative > 1) return 1;
-  const std::uint64_t critical = critical_count(n, null, up.log_level);
+  if (up.is_impossible()) return 1;
+  const std::uint64_t critical = critical_count(n, probability(up, up.null_mean), up.log_level);
   if (critical > n) return 0;
-  return std::exp(binomial_upper(critical, {n, alternative}));
+  return std::exp(binomial_upper(critical, {n, probability(up, up.mean)}));
 }
 
-double bounded_power(const ExactMeanPlan& plan, std::uint64_t n, double effect) {
-  check::at_least({"bounded_power", "n"}, n, 2);
-  check::non_negative({"bounded_power", "standard_deviation"}, plan.standard_deviation);
-  const Upward up = upward("bounded_power", plan, effect);
-  if (up.null_mean < up.range.low || up.null_mean > up.range.high || up.mean > up.range.high) {
-    return 1;
-  }
-  const double critical = critical_mean(up, n, plan.standard_deviation);
-  if (std::isinf(critical)) return 0;
-  const double error = plan.standard_deviation / std::sqrt(static_cast<double>(n));
-  if (error == 0) return up.mean >= critical ? 1 : 0;
-  return std::exp(normal_tails((up.mean - critical) / error).lower);
-}
-
-std::optional<double> exact_detectable(ExactMethod method, const ExactMeanPlan& plan,
-                                       std::uint64_t n, int side) {
-  const double room = side > 0 ? plan.range.high - plan.null_mean : plan.null_mean - plan.range.low;
-  const auto finds = [&](double effect) {
-    return power_of(method, plan, n, side * effect) >= 1 - plan.rates.beta;
-  };
-  if (!(room > plan.allow) || !finds(room)) return std::nullopt;
-  double missed = plan.allow;
-  double found = room;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = missed + (found - missed) / 2;
-    (finds(middle) ? found : missed) = middle;
-  }
-  return found;
-}
-
-std::optional<std::uint64_t> exact_sample_size(ExactMethod method, const ExactMeanPlan& plan,
-                                               double effect) {
-  constexpr std::uint64_t most = std::uint64_t{1} << 40;
+std::optional<std::uint64_t> binomial_size(const ExactMeanPlan& plan, double effect) {
   const auto enough_at = [&](std::uint64_t n) {
-    // For counts the two are the same.
-    return method == ExactMethod::bounded ? decides(plan, n, effect)
-                                          : binomial_power(plan, n, effect) >= 1 - plan.rates.beta;
+    return binomial_power(plan, n, effect) >= 1 - plan.rates.beta;
   };
   const auto enough = [&](std::uint64_t n) { return enough_at(n) && enough_at(2 * n); };
-  std::uint64_t missed = 1;  // Too few for a variance.
+  std::uint64_t missed = 1;
   std::uint64_t found = 2;
   while (!enough(found)) {
-    if (found >= most) return std::nullopt;
+    if (found >= largest_size) return std::nullopt;
     missed = found;
     found *= 2;
   }
   while (found - missed > 1 + missed / 256) {
     const std::uint64_t middle = missed + (found - missed) / 2;
     (enough(middle) ? found : missed) = middle;
+  }
+  return found;
+}
+
+// ---- Bets
+
+// ln of the wealth at which a mixture with this bet rejects.
+double log_goal(const Upward& up) {
+  return std::log(static_cast<double>(bet_count)) - up.log_level;
+}
+
+std::vector<BetGrowth> growths(const ExactMeanPlan& plan, const Upward& up) {
+  std::vector<BetGrowth> each;
+  if (!std::isfinite(up.range.low)) return each;
+  const MovedLaw law{*plan.law, up.sign, up.mean - up.null_mean, up.null_mean - up.range.low};
+  for (std::size_t k = 0; k < bet_count; ++k) each.push_back(bet_growth(law, k));
+  return each;
+}
+
+double betting_power(const ExactMeanPlan& plan, std::uint64_t n, double effect) {
+  check::at_least({"betting_power", "n"}, n, 1);
+  const Upward up = upward("betting_power", plan, effect);
+  if (up.is_impossible() || up.null_mean == up.range.low) return 1;
+  const double count = static_cast<double>(n);
+  double largest = 0;
+  for (const BetGrowth& growth : growths(plan, up)) {
+    const double beyond = count * growth.mean - log_goal(up);
+    const double spread = std::sqrt(count * growth.variance);
+    const double power =
+        spread > 0 ? std::exp(normal_tails(beyond / spread).lower) : (beyond >= 0 ? 1 : 0);
+    largest = std::max(largest, power);
+  }
+  return largest;
+}
+
+// sqrt n solves n mean - z sqrt(n variance) = goal for the bet that is first.
+std::optional<std::uint64_t> betting_size(const ExactMeanPlan& plan, double effect) {
+  const Upward up = upward("betting_size", plan, effect);
+  if (up.is_impossible() || up.null_mean == up.range.low) return 1;
+  const double z = normal_quantile({Tail::upper, std::log(plan.rates.beta)});
+  double least = static_cast<double>(largest_size);
+  for (const BetGrowth& growth : growths(plan, up)) {
+    if (!(growth.mean > 0)) continue;
+    const double b = z * std::sqrt(growth.variance);
+    const double root = (b + std::sqrt(b * b + 4 * growth.mean * log_goal(up))) / (2 * growth.mean);
+    least = std::min(least, std::ceil(root * root));
+  }
+  if (!(least < static_cast<double>(largest_size))) return std::nullopt;
+  return static_cast<std::uint64_t>(std::max(1.0, least));
+}
+
+}  // namespace
+
+const ExactPlanning binomial_planning{binomial_power, binomial_size};
+const ExactPlanning betting_planning{betting_power, betting_size};
+
+std::optional<double> exact_detectable(const ExactPlanning& method, const ExactMeanPlan& plan,
+                                       std::uint64_t n, int side) {
+  const double room = side > 0 ? plan.range.high - plan.null_mean : plan.null_mean - plan.range.low;
+  const auto finds = [&](double effect) {
+    return method.power(plan, n, side * effect) >= 1 - plan.rates.beta;
+  };
+  if (!(room > plan.allow)) return std::nullopt;
+  // Without an end the search begins at the distance to the other.
+  double found = room;
+  if (!std::isfinite(room)) {
+    found = side > 0 ? plan.null_mean - plan.range.low : plan.range.high - plan.null_mean;
+    for (int i = 0; i < 60 && !finds(found); ++i) found *= 2;
+  }
+  if (!std::isfinite(found) || !finds(found)) return std::nullopt;
+  double missed = plan.allow;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = missed + (found - missed) / 2;
+    (finds(middle) ? found : missed) = middle;
   }
   return found;
 }

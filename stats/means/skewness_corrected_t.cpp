@@ -155,16 +155,6 @@ double corrected_level_factor(const Moments& x, const Moments& y, double scale,
   return checked_factor(residue_of(x, y, scale, excess_or_zero), critical_value);
 }
 
-double corrected_level_factor(PrimaryShape shape, PlannedMean plan) {
-  check::finite({"corrected_level_factor", "skewness"}, shape.skewness);
-  check::finite({"corrected_level_factor", "excess_kurtosis"}, shape.excess_kurtosis);
-  check::at_least({"corrected_level_factor", "count"}, plan.count, 2);
-  const double n = static_cast<double>(plan.count);
-  Residue residue{shape.skewness / (6 * std::sqrt(n))};
-  add_part(residue, {1, n, shape.excess_kurtosis});
-  return checked_factor(residue, plan.critical_value);
-}
-
 Gate residual_skewness_gate(const Moments& x, Reference null_mean, double critical_value) {
   return gate_of(corrected_level_factor(x, null_mean, critical_value),
                  checked_factor(residue_of(x, null_mean, lower_excess), critical_value));

@@ -43,12 +43,6 @@ TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast
 double corrected_level_factor(const Moments& x, Reference null_mean, double critical_value);
 double corrected_level_factor(const Moments& x, const Moments& y, double scale,
                               double critical_value);
-// A plan: one sample of `count` values of this shape.
-struct PlannedMean {
-  std::uint64_t count = 2;
-  double critical_value = 0;
-};
-double corrected_level_factor(PrimaryShape shape, PlannedMean plan);
 
 // Gates of the correction. Value as above, limit 2, green up to 1.25. `low` subtracts from the
 // kurtosis what normal data show by themselves (kurtosis_gate). The last term stays, because too

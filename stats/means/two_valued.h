@@ -4,7 +4,7 @@
 
 #include "stats/basics/moments.h"
 #include "stats/means/binomial.h"
-#include "stats/means/bounded_mean.h"
+#include "stats/means/range.h"
 #include "stats/means/welch_t.h"
 #include "stats/tails/test_result.h"
 

@@ -13,8 +13,7 @@
 #include "estimators/stream.h"
 #include "stats/basics/moments.h"
 #include "stats/laws/kolmogorov_smirnov.h"
-#include "stats/means/bounded_mean.h"
-#include "stats/means/nonnegative_mean.h"
+#include "stats/means/betting_mean.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
 #include "stats/means/welch_t.h"
@@ -129,8 +128,7 @@ void print_tests() {
   print_result("t", student_t(mx, {.value = 1.5}));
   print_result("Welch", welch_t(mx, my, {}));
   print_result("skewness-corrected t", skewness_corrected_t(mx, {.value = 1.5}));
-  print_result("bounded mean", bounded_mean(mx, {0, 3}, 1.4));
-  print_result("nonnegative mean", nonnegative_mean(x, 1.4));
+  print_result("betting mean", betting_mean(ValueCells(x), {0, 3}, 1.4));
   std::sort(x.begin(), x.end());
   std::sort(y.begin(), y.end());
   print_result("two-sample Kolmogorov-Smirnov", kolmogorov_smirnov(ks_distance(x, y)));

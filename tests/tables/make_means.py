@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Reference values of the tests of means, from numpy and scipy by the definitions (influence values one
-by one, bounds inverted by root finding, suprema over a dense grid). Run in this folder:
+by one, products multiplied out, suprema over a dense grid). Run in this folder:
 python3 make_means.py. Columns named log_* are natural logarithms of p."""
 import math
 
 import numpy as np
-from scipy import optimize, special, stats
+from scipy import optimize, stats
 
 COMMAND = "# python3 tests/tables/make_means.py"
 
@@ -49,64 +49,26 @@ def skewness_rows():
                two, stats.t.logcdf(two, nu2), stats.t.logsf(two, nu2)]
 
 
-def kl(a, m):
-    return sum(p * math.log(p / q) for p, q in ((a, m), (1 - a, 1 - m)) if p > 0)
-
-
-def wealth(x, m):
-    """What moments tell of four constant bets that the mean is below m: of each the most that the
-    bound yields at any null value up to m, value by value."""
-    def log_wealth(bet, null):
-        z = (null - x) / (1 - null)
-        return (bet * z + (math.log(1 - bet) + bet) * z * z).sum()
-
-    def most(bet):
-        grid = np.linspace(x.mean(), m, 400)
-        at = int(np.argmax([log_wealth(bet, null) for null in grid]))
-        around = (grid[max(0, at - 1)], grid[min(399, at + 1)])
-        best = optimize.minimize_scalar(lambda null: -log_wealth(bet, null), bounds=around,
-                                        method="bounded", options={"xatol": 1e-14})
-        return max(-best.fun, log_wealth(bet, grid[at]))
-
-    return special.logsumexp([most(bet) for bet in (7 / 8, 1 / 2, 1 / 4, 1 / 8)]) - math.log(4)
-
-
-def below(x, m):
-    """ln p of "the mean is at least m" on the unit scale."""
-    mean, n, s2 = x.mean(), len(x), x.var(ddof=1)
-    if mean >= m:
-        return 0.0
-    bentkus = 1 + stats.binom.logcdf(math.ceil(n * mean - 1e-9), n, m)
-    first = min(-n * kl(mean, m), bentkus)
-
-    def radius(big):
-        return math.sqrt(2 * s2 * big / n) + 7 * big / (3 * (n - 1)) - (m - mean)
-
-    second = math.log(2) - optimize.brentq(radius, 0, 1e6, xtol=1e-13)
-    return min(0.0, math.log(3) + min(first, second, -wealth(x, m)))
-
-
 def fractions(k, n):
     u = np.arange(1, n + 1) * (math.sqrt(5) - 1) / 2 % 1
     return u**k
 
 
-def bounded_rows():
+def betting_rows():
+    """ln p of both tails with the products multiplied out, for values in [-2, 3] or half-lines."""
+    bets = [1 - 2.0**-10, 0.875, 0.6875] + [2.0**-k for k in range(1, 21)]
+
+    def log_p(gains):
+        e = np.mean([np.prod((1 + bet * gains).astype(np.longdouble)) for bet in bets])
+        return min(0.0, -float(np.log(e)))
+
     for k in range(1, 6):
         for part in (1.0, 0.01):
-            for null in (0.1, 0.3, 0.45, 0.6, 0.95):
-                x = part * fractions(k, 40 * k * k)
-                yield [k, len(x), part, -2 + 5 * part * null, below(x, part * null),
-                       below(1 - x, 1 - part * null)]
-
-
-def nonnegative_rows():
-    for k in range(1, 6):
-        x = skewed(k, 50 * k)
-        for null in (0.5, 0.8, 1.0, 1.3):
-            e = np.mean([np.prod((1 + 2.0**-j * (x / null - 1)).astype(np.longdouble))
-                         for j in range(1, 13)])
-            yield [k, null, min(0.0, -math.log(e))]
+            for n in (5, 20, 60, 128):
+                x = -2 + 5 * part * fractions(k, n)
+                for null in (0.1, 0.3, 0.45, 0.6, 0.95):
+                    m = -2 + 5 * part * null
+                    yield [k, n, part, m, log_p((m - x) / (3 - m)), log_p((x - m) / (m + 2))]
 
 
 def fisher(x, n, y, m, start, slope):
@@ -135,6 +97,5 @@ def two_valued_rows():
 
 write("skewness_corrected_t",
       "k,null,error,scale,offset,one,one_lower,one_upper,two,two_lower,two_upper", skewness_rows())
-write("bounded_mean", "k,n,part,null,log_lower,log_upper", bounded_rows())
-write("nonnegative_mean", "k,null,log_upper", nonnegative_rows())
+write("betting_mean", "k,n,part,null,log_lower,log_upper", betting_rows())
 write("two_valued", "x,n,y,m,start,slope,log_lower", two_valued_rows())

@@ -145,8 +145,7 @@ TEST(Calibrate, EveryMethodHasCellsOnEveryLawThatSuitsIt) {
   }
   EXPECT_TRUE(has("binomial", "bernoulli(0.01)"));
   EXPECT_FALSE(has("binomial", "normal(0, 1)"));
-  EXPECT_TRUE(has("bounded", "uniform(0, 1)"));
-  EXPECT_FALSE(has("bounded", "exponential(1)"));
+  EXPECT_TRUE(has("betting", "uniform(0, 1)"));
   EXPECT_TRUE(has("betting", "exponential(1)"));
   EXPECT_FALSE(has("betting", "normal(0, 1)"));
   EXPECT_TRUE(has("ks", "zero_inflated(0.1)"));

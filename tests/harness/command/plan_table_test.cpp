@@ -127,27 +127,27 @@ TEST(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
       "  wide: {plugin: analytic/dart_throwing}\ntests:\n"
       "  - {claim: mean(normal) within 0.001 of 2, secondaries: 500}\n"
       "  - {claim: mean(normal) within 50% of 2, name: beyond, secondaries: 500}\n"
-      "  - {claim: mean(wide) within 1% of analytic, test: bounded, secondaries: 500}\n";
+      "  - {claim: mean(wide) within 1% of analytic, test: betting, secondaries: 500}\n";
   const PlannedRun planned = planned_of({load_suite(place.write("margins.yaml", text))});
   const auto shown = [&](std::size_t i) {
     return forecast(planned.suites[0]->tests[i].outcome, planned.suites[0]->pilots).detectable;
   };
   EXPECT_NEAR(shown(0).value(), 3.605 * .5 / std::sqrt(500), .004);
   EXPECT_NEAR(shown(1).value(), shown(0).value() / 2, 1e-4) << "of 2";
-  EXPECT_FALSE(shown(2).has_value()) << "bounded, of which no formula tells";
+  EXPECT_FALSE(shown(2).has_value()) << "betting, of which no formula tells";
 }
 
 // Three observations in [0, 4] find no difference that the range allows: `detect` is no answer to
 // what the last look finds.
 TEST(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
   const Workplace place;
-  const std::vector<Suite> suites = {load_suite(
-      place.write("poor.yaml",
-                  "suite: poor\nestimators:\n  d: {plugin: analytic/dart_throwing}\n"
-                  "tests:\n  - {claim: mean(d) == analytic, detect: 1%, budget: 200}\n"))};
+  const std::vector<Suite> suites = {load_suite(place.write(
+      "poor.yaml",
+      "suite: poor\nestimators:\n  d: {plugin: analytic/dart_throwing}\n"
+      "tests:\n  - {claim: mean(d) == analytic, test: betting, detect: 1%, budget: 3}\n"))};
   const PlannedRun planned = planned_of(suites);
   const std::string text = plan_text(planned, costs_of(planned));
-  const std::size_t row = text.find("bounded");
+  const std::size_t row = text.find("betting");
   ASSERT_NE(row, std::string::npos) << text;
   EXPECT_EQ(text.substr(row, text.find('\n', row) - row).find('%'), std::string::npos) << text;
 }

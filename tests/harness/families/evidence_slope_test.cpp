@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "harness/plan/outcome.h"
 #include "harness/plan/critical.h"
+#include "harness/plan/outcome.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "harness/plan/outcome.h"
 #include "harness/plan/critical.h"
+#include "harness/plan/outcome.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
 #include "tests/harness/questions.h"

@@ -27,7 +27,7 @@ tests:
 }
 
 TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
-  for (const char* gate : {"excess kurtosis", "largest deviation"}) {
+  for (const char* gate : {"excess kurtosis", "tail index"}) {
     EXPECT_THAT(help_for(gate, " of it"), HasSubstr("heavy-tailed"));
     EXPECT_THAT(help_for(gate, " of it"), HasSubstr("a quantile"));
     EXPECT_THAT(help_for(gate, " of it"), Not(HasSubstr("secondaries")));
@@ -37,15 +37,28 @@ TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
 // The logarithm of the factor falls like 1 / sqrt(n): (ln 4 / ln 1.25)^2 x 1000 = 38596.
 TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
   const std::string help = help_for("level factor by skewness");
-  EXPECT_THAT(help, HasSubstr("`secondaries` would help"));
+  EXPECT_THAT(
+      help, HasSubstr("about 39000 `secondaries` would do: no test knows of a rare bright value"));
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
+}
+
+// A share of .5: nine times as many others leave it a tenth.
+TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
+  const auto asked = ask_text(
+      "suite: gates\nestimators:\n  it: {plugin: analytic/normal}\ntests:\n"
+      "  - {name: test, claim: mean(it) == 0}\n");
+  TestOutcome outcome{.question = asked->questions[0]};
+  outcome.plan.looks = {{1000}, {1}};
+  outcome.gates = {gate_of(reports::Gate{
+      .name = "share of one observation", .value = 0.5, .limit = 0.5, .state = "red"})};
+  EXPECT_THAT(what_would_help(outcome), HasSubstr("about 9000 `secondaries` would do"));
 }
 
 TEST(GateText, NamesFewOfManyRedGates) {
   std::vector<Gate> gates;
   for (int i = 0; i < 1000; ++i) {
     gates.push_back(
-        gate_of(reports::Gate{.name = "largest deviation", .value = 4, .limit = 2, .state = "red"},
+        gate_of(reports::Gate{.name = "tail index", .value = 4, .limit = 2, .state = "red"},
                 ", value" + std::to_string(i)));
   }
   const std::string all = red_gates(gates);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "harness/theta/decision.h"
+#include "harness/theta/methods.h"
 #include "tests/harness/questions.h"
 
 namespace assay::harness {
@@ -18,6 +20,7 @@ estimators:
   nil: {plugin: analytic/normal, deviation: 0}
   none: {plugin: analytic/normal, deviation: 0}
   spike: {plugin: analytic/rare_spike, height: 10}      # values in [0.5, 10.5]
+  dimmer: {plugin: analytic/rare_spike, height: 10}
 tests:
   - {name: classical, claim: mean(spike) == 0.5}
   - {name: detect, claim: mean(spike) == 0.5, detect: 0.1}
@@ -36,6 +39,7 @@ tests:
   - {name: allowed, claim: mean(spike) == 0.499, allow: 1%, detect: 20%}
   - {name: uncertain, claim: mean(spike) == 0.4 +- 0.5}
   - {name: two, claim: mean(spike) == mean(normal), detect: 1%}
+  - {name: two in ranges, claim: mean(spike) == mean(dimmer), detect: 0.4}
   - {name: nothing, claim: mean(nil) == mean(none)}
   - {name: nothing to find, claim: mean(nil) == mean(none), detect: 1%}
   - {name: two alike, claim: mean(spike) == 0.25 * mean(normal), detect: 0.4}
@@ -46,6 +50,13 @@ struct Judged {
   std::string message;
 };
 
+Regions regions_of(const TestEntry& test) {
+  Regions regions{.relation = test.claim.relation, .within = test.claim.margin.value};
+  if (test.allow) regions.allow = test.allow->value;
+  if (test.detect) regions.detect = test.detect->value;
+  return regions;
+}
+
 /// The verdict of a test whose subjects were seen `count` times, always at `values`.
 Judged judge(const std::string& name, std::uint64_t count, std::vector<double> values) {
   const auto asked = ask_text(suite);
@@ -54,13 +65,28 @@ Judged judge(const std::string& name, std::uint64_t count, std::vector<double> v
   for (std::size_t i = 0; i < values.size(); ++i) {
     for (std::uint64_t k = 0; k < count; ++k) data[i].moments.add(values[i]);
   }
-  const TestEntry& test = *question.test;
-  Regions regions{.relation = test.claim.relation, .within = test.claim.margin.value};
-  if (test.allow) regions.allow = test.allow->value;
-  if (test.detect) regions.detect = test.detect->value;
-  const ConstantVerdict verdict =
-      judge_constant(question, 0, data, regions, {.alpha = 0.01, .beta = 0.01});
+  const Regions regions = regions_of(*question.test);
+  const ConstantVerdict verdict = judge_constant(question, 0, data, regions);
   return {verdict.verdict, verdict.message};
+}
+
+/// The same by bets on the declared range, at alpha = beta = .01.
+Verdict bet_on(const std::string& name, std::uint64_t count, std::vector<double> seen) {
+  const auto asked = ask_text(suite);
+  const Question& question = asked->question(name);
+  std::vector<std::vector<double>> values;
+  for (const double value : seen) values.emplace_back(count, value);
+  std::vector<ChannelData> data(seen.size());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    data[i].values = values[i];
+    for (const double value : values[i]) data[i].moments.add(value);
+  }
+  const Regions regions = regions_of(*question.test);
+  const Evidence evidence = evidence_of(find_method(question, "betting"), question, 0, data);
+  return decide({{.log_p_claimed = log_p_claimed(evidence, regions),
+                  .log_p_forbidden = log_p_forbidden(evidence, regions),
+                  .rejected = log_p_claimed(evidence, regions) <= std::log(.01)}},
+                regions, .01);
 }
 
 const double integral = std::expm1(3) / 3;
@@ -80,12 +106,12 @@ TEST(Constant, EqualToItsReferencePassesAClassicalTest) {
   EXPECT_EQ(judge("classical", 10, {0.5}).verdict, Verdict::pass);
 }
 
-// A value that was unseen n times has probability at most 1 - 0.01^(1/n) at beta = 0.01. It can add
-// at most 10 times that, which must be below the margin of 0.1. So n >= ln 0.01 / ln(1 - 0.01) =
-// 458.2.
+// Each value takes (0.6 - 0.5) / (10.5 - 0.6) of the stake from "the mean is at least 0.6". To 100
+// times the 23 bets of the mixture it takes ln(2300) / ln(1.0101) = 770 values.
 TEST(Constant, EqualToItsReferencePassesWhenTheRangeBoundsTheUnseen) {
-  EXPECT_EQ(judge("detect", 459, {0.5}).verdict, Verdict::pass);
-  EXPECT_EQ(judge("detect", 458, {0.5}).verdict, Verdict::inconclusive);
+  EXPECT_EQ(bet_on("detect", 775, {0.5}), Verdict::pass);
+  EXPECT_EQ(bet_on("detect", 458, {0.5}), Verdict::inconclusive)
+      << "(1 - 0.01)^458 is above 0.01: no test excludes it";
 }
 
 TEST(Constant, EqualToItsReferenceIsInconclusiveWithoutARange) {
@@ -94,20 +120,14 @@ TEST(Constant, EqualToItsReferenceIsInconclusiveWithoutARange) {
   EXPECT_NE(judged.message.find("declare the range"), std::string::npos);
 }
 
-TEST(Constant, DifferentIsInvalidWhileTheUnseenCouldMakeUpTheDifference) {
-  const Judged judged = judge("unseen", 1000, {0.5});
-  EXPECT_EQ(judged.verdict, Verdict::invalid);
-  EXPECT_NE(judged.message.find("unseen"), std::string::npos);
-}
-
-// 10 (1 - 0.01^(1/n)) < 0.01 from n = 4603 on: then a mean of 0.51 is refuted.
-TEST(Constant, DifferentFailsOnceTheUnseenCannot) {
-  EXPECT_EQ(judge("unseen", 4602, {0.5}).verdict, Verdict::invalid);
-  EXPECT_EQ(judge("unseen", 4603, {0.5}).verdict, Verdict::fail);
+// (10.49 / 10.5)^n <= 0.005 from n = 5561 on, and a mixture of 23 takes ln(4600) / ln(10 / 9.99).
+TEST(Constant, DifferentFailsOnceTheUnseenCannotMakeItUp) {
+  EXPECT_EQ(bet_on("unseen", 5200, {0.5}), Verdict::pass) << "nothing is forbidden";
+  EXPECT_EQ(bet_on("unseen", 8500, {0.5}), Verdict::fail);
 }
 
 TEST(Constant, DifferentOnTheSideWhereNothingLiesFailsAtOnce) {
-  EXPECT_EQ(judge("too low", 10, {0.5}).verdict, Verdict::fail);
+  EXPECT_EQ(bet_on("too low", 2, {0.5}), Verdict::fail);
 }
 
 TEST(Constant, DifferentWithoutARangeIsNeverAFailure) {
@@ -115,30 +135,30 @@ TEST(Constant, DifferentWithoutARangeIsNeverAFailure) {
 }
 
 TEST(Constant, BelowAnUpperBoundIsAsClaimed) {
-  EXPECT_EQ(judge("bound", 10, {0.5}).verdict, Verdict::pass);
-  EXPECT_EQ(judge("bound with detect", 10, {0.5}).verdict, Verdict::inconclusive);
-  EXPECT_EQ(judge("bound with detect", 1000, {0.5}).verdict, Verdict::pass);
+  EXPECT_EQ(bet_on("bound", 10, {0.5}), Verdict::pass);
+  EXPECT_EQ(bet_on("bound with detect", 10, {0.5}), Verdict::inconclusive);
+  EXPECT_EQ(bet_on("bound with detect", 1000, {0.5}), Verdict::pass);
 }
 
 TEST(Constant, BelowALowerBoundFailsOnlyOnceTheUnseenCannotRaiseIt) {
-  EXPECT_EQ(judge("lower bound", 10, {0.5}).verdict, Verdict::invalid);
-  EXPECT_EQ(judge("lower bound", 1000, {0.5}).verdict, Verdict::fail);
+  EXPECT_EQ(bet_on("lower bound", 10, {0.5}), Verdict::pass) << "nothing is forbidden";
+  EXPECT_EQ(bet_on("lower bound", 1000, {0.5}), Verdict::fail);
 }
 
 TEST(Constant, ProvesAnInequalityWithItsRange) {
-  EXPECT_EQ(judge("below", 10, {integral}).verdict, Verdict::pass);
-  EXPECT_EQ(judge("above itself", 10, {0.5}).verdict, Verdict::pass);
-  EXPECT_EQ(judge("below itself", 10, {0.5}).verdict, Verdict::fail)
-      << "0.5 is the least value there is, so the mean cannot be below it";
+  EXPECT_EQ(bet_on("below", 2, {integral}), Verdict::pass);
+  EXPECT_EQ(bet_on("above itself", 2, {0.5}), Verdict::pass);
+  EXPECT_EQ(bet_on("below itself", 10, {0.5}), Verdict::inconclusive)
+      << "0.5 is the least value there is, so the mean cannot be shown to be below it";
 }
 
 TEST(Constant, IsProvedOrRefutedWithinAMargin) {
-  EXPECT_EQ(judge("within", 10, {integral}).verdict, Verdict::pass);
-  EXPECT_EQ(judge("not within", 10, {integral}).verdict, Verdict::fail);
+  EXPECT_EQ(bet_on("within", 2, {integral}), Verdict::pass);
+  EXPECT_EQ(bet_on("not within", 2, {integral}), Verdict::fail);
 }
 
 TEST(Constant, MayDifferByWhatIsAllowed) {
-  EXPECT_EQ(judge("allowed", 1000, {0.5}).verdict, Verdict::pass);
+  EXPECT_EQ(bet_on("allowed", 1000, {0.5}), Verdict::pass);
 }
 
 TEST(Constant, CarriesTheReferencesError) {
@@ -152,9 +172,16 @@ TEST(Constant, ComparesTwoZeros) {
   EXPECT_EQ(judge("nothing to find", 1000, {0, 0}).verdict, Verdict::inconclusive);
 }
 
-TEST(Constant, ComparesTwoByBothRanges) {
+TEST(Constant, ComparesTwoWithoutARange) {
   EXPECT_EQ(judge("two", 1000, {0.5, 2}).verdict, Verdict::invalid);
   EXPECT_EQ(judge("two alike", 1000, {0.5, 2}).verdict, Verdict::inconclusive);
+}
+
+// The other's values lie in [0.5, 10.5] too.
+TEST(Constant, ComparesTwoByBothRanges) {
+  EXPECT_EQ(bet_on("two in ranges", 1000, {0.5, 9}), Verdict::fail);
+  EXPECT_EQ(bet_on("two in ranges", 2000, {0.5, 0.5}), Verdict::pass);
+  EXPECT_EQ(bet_on("two in ranges", 10, {0.5, 0.5}), Verdict::inconclusive);
 }
 
 }  // namespace

@@ -27,17 +27,6 @@ TEST(AssumptionGates, ThePilotChoosesPrimariesForVariances) {
   EXPECT_EQ(predicted_kurtosis_gate({2, 6}, 29).state, GateState::red);
 }
 
-TEST(AssumptionGates, ThePilotChoosesPrimariesForMeans) {
-  // (|gamma| x^3 / (3 ln 2))^2 for the exponential at x = 3.29 is 1174 observations.
-  const PlannedTest one{2, 3.2905};
-  const double total =
-      2.0 * static_cast<double>(primaries_for_mean({2, 6}, one, {.level_factor = 2}));
-  EXPECT_NEAR(total, 1174, 3);
-  const std::uint64_t m = primaries_for_mean({2, 6}, {1000, 3.29});
-  EXPECT_EQ(predicted_skewness_gate({2, 6}, m, {1000, 3.29}).state, GateState::green);
-  EXPECT_EQ(predicted_skewness_gate({2, 6}, m - 1, {1000, 3.29}).state, GateState::red);
-}
-
 TEST(AssumptionGates, SkewnessValueIsTheFactorOfTheFormula) {
   Moments x = draw_moments(400, [k = 0]() mutable { return std::exp(.01 * ++k); });
   const Gate gate = skewness_gate(x, 3);
@@ -164,13 +153,13 @@ Moments with_largest(double n, double deviation) {
 TEST(AssumptionGates, DominanceTurnsAtTheCriticalValuesOfGrubbs) {
   for (const tests::Row& row : tests::read_table("gates")) {
     const double n = row["n"];
-    const double root = std::sqrt(n);
-    const double limit = std::max(.5, row["grubbs_0001"] / root);
+    const auto share = [n](double deviation) { return deviation * deviation / (n - 1); };
+    const double limit = std::max(.5, share(row["grubbs_0001"]));
     EXPECT_NEAR(dominance_gate(with_largest(n, 1)).limit, limit, 1e-9) << n;
-    const double green = std::max(.5, row["grubbs_05"] / root) * root;
+    const double green = std::sqrt((n - 1) * std::max(.25, share(row["grubbs_05"])));
     EXPECT_EQ(dominance_gate(with_largest(n, green * (1 - 1e-6))).state, GateState::green) << n;
     EXPECT_NE(dominance_gate(with_largest(n, green * (1 + 1e-6))).state, GateState::green) << n;
-    const double red = limit * root;
+    const double red = std::sqrt((n - 1) * limit);
     EXPECT_NE(dominance_gate(with_largest(n, red * (1 - 1e-6))).state, GateState::red) << n;
     EXPECT_EQ(dominance_gate(with_largest(n, red * (1 + 1e-6))).state, GateState::red) << n;
   }

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 #include "stats/means/two_valued.h"
 #include "tests/philox.h"
+#include "tests/stats/laws.h"
 
 namespace assay::stats {
 namespace {
@@ -20,12 +23,12 @@ const ExactMeanPlan coin{
 TEST(PowerExact, OfACoinIsTheProbabilityOfItsRejectedCounts) {
   const double p = 0.8;
   const double expected = 10 * std::pow(p, 9) * (1 - p) + std::pow(p, 10);
-  EXPECT_NEAR(binomial_power(coin, 10, 0.3), expected, 1e-12);
-  EXPECT_NEAR(binomial_power(coin, 10, -0.3), expected, 1e-12);
+  EXPECT_NEAR(binomial_planning.power(coin, 10, 0.3), expected, 1e-12);
+  EXPECT_NEAR(binomial_planning.power(coin, 10, -0.3), expected, 1e-12);
   ExactMeanPlan scaled = coin;
   scaled.range = {-1, 3};
   scaled.null_mean = 1;
-  EXPECT_NEAR(binomial_power(scaled, 10, 1.2), expected, 1e-12);
+  EXPECT_NEAR(binomial_planning.power(scaled, 10, 1.2), expected, 1e-12);
 }
 
 TEST(PowerExact, SampleSizesHaveTheirPowerAndAreNearTheLeast) {
@@ -33,43 +36,68 @@ TEST(PowerExact, SampleSizesHaveTheirPowerAndAreNearTheLeast) {
                            .null_mean = 0.01,
                            .rates = {.alpha = 0.001, .beta = 0.01, .two_sided = true}};
   for (const double effect : {0.005, -0.005}) {
-    const std::uint64_t n = exact_sample_size(ExactMethod::binomial, rare, effect).value();
-    EXPECT_GE(binomial_power(rare, n, effect), 0.99);
-    EXPECT_LT(binomial_power(rare, n * 9 / 10, effect), 0.99);
+    const std::uint64_t n = binomial_planning.sample_size(rare, effect).value();
+    EXPECT_GE(binomial_planning.power(rare, n, effect), 0.99);
+    EXPECT_LT(binomial_planning.power(rare, n * 9 / 10, effect), 0.99);
   }
-  const double found = exact_detectable(ExactMethod::binomial, rare, 20000, 1).value();
-  EXPECT_NEAR(binomial_power(rare, 20000, found), 0.99, 1e-6);
+  const double found = exact_detectable(binomial_planning, rare, 20000, 1).value();
+  EXPECT_NEAR(binomial_planning.power(rare, 20000, found), 0.99, 1e-6);
   // No probability lies so far below one in a hundred.
-  EXPECT_FALSE(exact_detectable(ExactMethod::binomial, rare, 100, -1).has_value());
+  EXPECT_FALSE(exact_detectable(binomial_planning, rare, 100, -1).has_value());
 }
 
-// 1000 runs at the planned size, which promises .99. Fewer than .96 have probability below 1e-12.
-// The bound is conservative, so more are found.
-TEST(PowerExact, ABoundedMeanIsFoundAtThePlannedSize) {
-  const ExactMeanPlan plan{.range = {0, 1},
-                           .null_mean = 0.45,
-                           .standard_deviation = std::sqrt(1 / 12.0),
-                           .rates = {.alpha = 0.01, .beta = 0.01, .two_sided = true}};
-  const std::uint64_t n = exact_sample_size(ExactMethod::bounded, plan, 0.05).value();
-  EXPECT_GE(bounded_power(plan, n, 0.05), 0.99);
+// At the planned size, which promises .99, fewer than .96 of 1000 have probability below 1e-12.
+// Other bets of the mixture only add to what is found.
+TEST(PowerExact, BetsFindAMeanAtThePlannedSize) {
   Philox random(1);
-  int failed = 0;
-  int passed = 0;
-  constexpr int runs = 1000;
-  for (int k = 0; k < runs; ++k) {
-    Moments x;
-    for (std::uint64_t i = 0; i < n; ++i) x.add(random.uniform());
-    failed += bounded_mean(x, plan.range, 0.45).log_p_upper <= std::log(0.005) ? 1 : 0;
-    passed += bounded_mean(x, plan.range, 0.55).log_p_lower <= std::log(0.01) ? 1 : 0;
+  const auto exponential = tests::draw_values(tests::laws::exponential, 5000, random);
+  const auto uniform = tests::draw_values(tests::laws::uniform, 5000, random);
+  struct Case {
+    const tests::Law& law;
+    Range range;
+    const std::vector<double>& pilot;
+  };
+  const Case cases[] = {{tests::laws::uniform, {0, 1}, uniform},
+                        {tests::laws::exponential, {0, 40}, exponential}};
+  for (const Case& each : cases) {
+    const ValueCells law(each.pilot);
+    const ErrorRates rates{.alpha = 0.01, .beta = 0.01, .two_sided = true};
+    for (const double effect : {.1 * each.law.mean, -.4 * each.law.mean}) {
+      const ExactMeanPlan plan{
+          .range = each.range, .null_mean = each.law.mean - effect, .law = &law, .rates = rates};
+      const std::uint64_t n = betting_planning.sample_size(plan, effect).value();
+      EXPECT_GE(betting_planning.power(plan, n, effect), 0.99 - 1e-9);
+      EXPECT_LT(betting_planning.power(plan, n * 9 / 10, effect), 0.99);
+      int found = 0;
+      for (int run = 0; run < 1000; ++run) {
+        const ValueCells x(tests::draw_values(each.law, n, random));
+        const TestResult result = betting_mean(x, each.range, plan.null_mean);
+        found += (effect > 0 ? result.log_p_upper : result.log_p_lower) <= std::log(0.005);
+      }
+      EXPECT_GE(found, 960) << each.law.name << effect << " at " << n;
+      std::printf("  %s, effect %g: %d of 1000 at n = %d\n", each.law.name, effect, found,
+                  static_cast<int>(n));
+    }
   }
-  EXPECT_GE(failed, 960);
-  EXPECT_GE(passed, 960);
+}
+
+TEST(PowerExact, BetsFindNothingBeyondAnInfiniteEnd) {
+  const ValueCells law(std::vector<double>{0, 1, 2});
+  const ExactMeanPlan plan{.range = {0, std::numeric_limits<double>::infinity()},
+                           .null_mean = 1,
+                           .law = &law,
+                           .rates = {.alpha = 0.01, .beta = 0.01, .two_sided = false}};
+  EXPECT_EQ(betting_planning.power(plan, 1000000, -.5), 0);
+  EXPECT_FALSE(betting_planning.sample_size(plan, -.5).has_value());
+  EXPECT_FALSE(exact_detectable(betting_planning, plan, 1000000, -1).has_value());
+  const double found = exact_detectable(betting_planning, plan, 10000, 1).value();
+  EXPECT_NEAR(betting_planning.power(plan, 10000, found), .99, 1e-6);
 }
 
 TEST(PowerExact, RefusesWhatIsNoPlan) {
-  EXPECT_THROW(binomial_power(coin, 0, 0.1), std::domain_error);
-  EXPECT_THROW(binomial_power(coin, 10, 0), std::domain_error);
-  EXPECT_THROW(bounded_power(coin, 1, 0.1), std::domain_error);
+  EXPECT_THROW(binomial_planning.power(coin, 0, 0.1), std::domain_error);
+  EXPECT_THROW(binomial_planning.power(coin, 10, 0), std::domain_error);
+  EXPECT_THROW(betting_planning.power(coin, 0, 0.1), std::domain_error);
 }
 
 }  // namespace

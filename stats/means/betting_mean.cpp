@@ -1,0 +1,188 @@
+#include "stats/means/betting_mean.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "stats/basics/check.h"
+#include "stats/tails/special.h"
+
+namespace assay::stats {
+namespace {
+
+// Ranks from the nearer end to a value in a cell.
+constexpr std::size_t ranks_a_value = 32;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+constexpr std::array<double, bet_count> bets = [] {
+  std::array<double, bet_count> each{1 - 0x1p-10, 0.875, 0.6875};
+  double next = 1;
+  for (std::size_t k = 3; k < bet_count; ++k) each[k] = next /= 2;
+  return each;
+}();
+
+// The cell of values[begin, end), ascending.
+ValueCells::Cell cell_of(std::span<const double> values) {
+  ValueCells::Cell cell{.least = values.front(),
+                        .largest = values.back(),
+                        .count = static_cast<double>(values.size())};
+  const double width = cell.largest - cell.least;
+  if (width > 0) {
+    for (const double value : values) cell.at_largest += (value - cell.least) / width;
+  }
+  return cell;
+}
+
+// What a bet gains of a value, as a share of itself. Rounding may take a value past the range's
+// end.
+double gain(double value, double null, double room) {
+  return std::max(-1.0, (value - null) / room);
+}
+
+// ln of the mixture's wealth against "E (sign x) <= sign null".
+double log_wealth(const ValueCells& x, double sign, double null, double room) {
+  std::array<double, bet_count> logs{};
+  for (const ValueCells::Cell& cell : x.cells()) {
+    const double low = gain(sign * cell.least, sign * null, room);
+    const double high = gain(sign * cell.largest, sign * null, room);
+    const double at_low = cell.count - cell.at_largest;
+    for (std::size_t k = 0; k < bet_count; ++k) {
+      logs[k] += at_low * std::log1p(bets[k] * low);
+      if (cell.at_largest > 0) logs[k] += cell.at_largest * std::log1p(bets[k] * high);
+    }
+  }
+  if (*std::max_element(logs.begin(), logs.end()) == infinity) return infinity;
+  return special::log_sum_of(logs) - std::log(static_cast<double>(bet_count));
+}
+
+// ln p of "E (sign x) <= sign null", where `room` is from the null to the end of the range below.
+double log_p_upper(const ValueCells& x, double sign, double null, double room) {
+  if (room == infinity) return 0;
+  const double mean_above = sign * (x.mean() - null);
+  if (room < 0 || (room == 0 && mean_above > 0)) return special::lowest_log();
+  if (room == 0) return 0;
+  return special::clamp_log(-log_wealth(x, sign, null, room));
+}
+
+void check_arguments(const ValueCells& x, Range range, double null_mean) {
+  constexpr const char* function = "betting_mean";
+  check::finite({function, "null_mean"}, null_mean);
+  if (!(range.low < range.high)) check::fail({function, "high"}, range.high, "above low");
+  const double least = x.cells().front().least;
+  const double largest = x.cells().back().largest;
+  const auto slack = [](double end) { return std::isfinite(end) ? 1e-9 * std::abs(end) : 0; };
+  if (!(least >= range.low - slack(range.low) - slack(range.high))) {
+    check::fail({function, "least value"}, least, "inside the range");
+  }
+  if (!(largest <= range.high + slack(range.low) + slack(range.high))) {
+    check::fail({function, "largest value"}, largest, "inside the range");
+  }
+}
+
+struct Bettor {
+  const ValueCells& values;
+  Range range;
+
+  // ln p of "sign E x <= sign null".
+  double log_p(double sign, double null) const {
+    const double room = sign > 0 ? null - range.low : range.high - null;
+    return log_p_upper(values, sign, null, room);
+  }
+};
+
+// ln p of "sign (E x - scale E y) <= sign offset".
+double log_p_contrast(const Bettor& x, const Bettor& y, Contrast null, double sign) {
+  constexpr int halvings = 20;
+  double near = null.scale * y.values.mean() + null.offset;
+  double far = x.values.mean();
+  if (sign * (far - near) <= 0) return 0;
+  const double sign_of_y = -std::copysign(sign, sign * null.scale);
+  double smallest = 0;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = near + (far - near) / 2;
+    const double of_x = x.log_p(sign, middle);
+    const double of_y = y.log_p(sign_of_y, (middle - null.offset) / null.scale);
+    smallest = std::min(smallest, std::max(of_x, of_y));
+    (of_x < of_y ? near : far) = middle;
+  }
+  return special::clamp_log(std::log(2.0) + smallest);
+}
+
+}  // namespace
+
+ValueCells::ValueCells(std::span<const double> values) {
+  check::at_least({"ValueCells", "count"}, values.size(), 1);
+  std::vector<double> sorted(values.begin(), values.end());
+  for (const double value : sorted) check::finite({"ValueCells", "value"}, value);
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t n = sorted.size();
+  for (std::size_t begin = 0; begin < n;) {
+    const std::size_t size = std::max<std::size_t>(1, std::min(begin, n - begin) / ranks_a_value);
+    const double largest = sorted[begin + size - 1];
+    auto end = static_cast<std::size_t>(
+        std::upper_bound(sorted.begin() + static_cast<std::ptrdiff_t>(begin + size), sorted.end(),
+                         largest) -
+        sorted.begin());
+    cells_.push_back(cell_of(std::span<const double>(sorted).subspan(begin, end - begin)));
+    begin = end;
+  }
+  count_ = static_cast<double>(n);
+  for (const double value : sorted) mean_ += (value - sorted.front()) / count_;
+  mean_ += sorted.front();
+}
+
+void ValueCells::add(double value, double weight) {
+  check::finite({"ValueCells::add", "value"}, value);
+  check::positive({"ValueCells::add", "weight"}, weight);
+  const auto at = std::partition_point(cells_.begin(), cells_.end(),
+                                       [&](const Cell& cell) { return cell.least < value; });
+  cells_.insert(at, {.least = value, .largest = value, .count = weight});
+  count_ += weight;
+  mean_ += (value - mean_) * weight / count_;
+}
+
+double bet(std::size_t index) { return bets.at(index); }
+
+TestResult betting_mean(const ValueCells& x, Range range, double null_mean) {
+  check_arguments(x, range, null_mean);
+  return {x.mean() - null_mean,
+          {"bound", {}},
+          log_p_upper(x, -1, null_mean, range.high - null_mean),
+          log_p_upper(x, 1, null_mean, null_mean - range.low),
+          Exactness::exact};
+}
+
+TestResult betting_contrast(const ValueCells& x, Range of_x, const ValueCells& y, Range of_y,
+                            Contrast null_value) {
+  check::finite({"betting_contrast", "scale"}, null_value.scale);
+  if (null_value.scale == 0) return betting_mean(x, of_x, null_value.offset);
+  check_arguments(x, of_x, null_value.offset);
+  check_arguments(y, of_y, null_value.offset);
+  const Bettor first{x, of_x};
+  const Bettor second{y, of_y};
+  return {x.mean() - null_value.scale * y.mean() - null_value.offset,
+          {"bound", {}},
+          log_p_contrast(first, second, null_value, -1),
+          log_p_contrast(first, second, null_value, 1),
+          Exactness::exact};
+}
+
+BetGrowth bet_growth(const MovedLaw& law, std::size_t index) {
+  const double stake = bets.at(index);
+  const double null = law.sign * law.values.mean() - law.distance;
+  double sum = 0;
+  double squares = 0;
+  for (const ValueCells::Cell& cell : law.values.cells()) {
+    const double low = std::log1p(stake * gain(law.sign * cell.least, null, law.room));
+    const double high = std::log1p(stake * gain(law.sign * cell.largest, null, law.room));
+    const double at_low = cell.count - cell.at_largest;
+    sum += at_low * low + cell.at_largest * high;
+    squares += at_low * low * low + cell.at_largest * high * high;
+  }
+  const double mean = sum / law.values.count();
+  return {mean, std::max(0.0, squares / law.values.count() - mean * mean)};
+}
+
+}  // namespace assay::stats
