@@ -222,7 +222,7 @@ TEST(Forecast, BoundsTheMeanShareOfALastLook) {
 estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
 tests:
-  - {claim: mean(normal) == 2, detect: 2%}
+  - {claim: mean(normal) == 2, detect: 0.4%}
 )"))};
   double bound = 0;
   double share = 0;

@@ -84,9 +84,9 @@ TEST(NightEvidence, ThePriorsEffectIsAShareOfAnExpectedNight) {
   const Workplace place;
   write_data(place);
   const Ran ran = run_nights(place, "  - {claim: mean(normal) == 2}\n");
-  // 1000 secondaries of standard deviation 1, 2 the unit; the pilot knows it to within 5 %.
-  EXPECT_NEAR(ran.night(0).prior.effect, std::sqrt(0.2 / 1000) / 2,
-              0.05 * std::sqrt(0.2 / 1000) / 2);
+  // 16384 secondaries of standard deviation 1, 2 the unit; the pilot knows it to within 5 %.
+  EXPECT_NEAR(ran.night(0).prior.effect, std::sqrt(0.2 / 16384) / 2,
+              0.05 * std::sqrt(0.2 / 16384) / 2);
 }
 
 TEST(NightEvidence, OfTwoMeansAndVariancesHasTheDeltaMethodsInformation) {

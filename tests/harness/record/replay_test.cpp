@@ -258,8 +258,8 @@ TEST(Replay, RefusesAnObservationThatWasNotDrawn) {
   const Workplace place;
   const std::string file = recorded(place);
   const std::string text =
-      refusal([&] { replay({.record = file, .test = "zero", .observation = 1000}); });
-  EXPECT_NE(text.find("the test used 0 to 999"), std::string::npos) << text;
+      refusal([&] { replay({.record = file, .test = "zero", .observation = 16384}); });
+  EXPECT_NE(text.find("the test used 0 to 16383"), std::string::npos) << text;
 }
 
 TEST(Replay, FindsRecordedDataFromTheSuitesFolder) {

@@ -88,7 +88,7 @@ TEST(Narrate, ClassicalPassSaysWhatWouldHaveBeenFound) {
 
 // Values between 0 and 4: four of them do not tell a mean of 2 from any other.
 TEST(Narrate, ClassicalPassSaysWhereNothingCouldHaveBeenFound) {
-  const char* const claim = "claim: mean(ranged) == 2, test: bounded, secondaries: ";
+  const char* const claim = "claim: mean(ranged) == 2, test: betting, secondaries: ";
   expect_said(told(std::string(claim) + "4"), Verdict::pass,
               "nor could there be: in 4 observations no difference that the range allows is found");
   expect_said(told(std::string(claim) + "400"), Verdict::pass, "or more would have been found");
