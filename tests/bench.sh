@@ -29,13 +29,14 @@ if [ "${1:-}" = suites ]; then
   exit
 fi
 build_project build assay foreign_bench engine_bench ks_bench rays_bench image_bench tails_bench \
-  looks_bench pictures_bench -- -DASSAY_TESTS=ON
+  looks_bench boundary_bench pictures_bench -- -DASSAY_TESTS=ON
 build/tests/bench/engine_bench
 build/tests/estimators/rays_bench
 build/tests/bench/ks_bench
 build/tests/bench/image_bench
 build/tests/bench/pictures_bench build/harness/assay
 build/tests/bench/tails_bench
+build/tests/bench/boundary_bench
 build/tests/bench/foreign_bench estimators/foreign/examples estimators build/harness/assay
 build/tests/bench/looks_bench suites/analytic.yaml suites/luminaire.yaml suites/brdf.yaml
 # The same with scipy, where that is installed.

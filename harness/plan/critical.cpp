@@ -16,7 +16,7 @@ double critical_value(double alpha, bool two_sided) {
 double smallest_share(const Question& question, double share) {
   const TestEntry& test = *question.test;
   const bool planned = test.detect || test.claim.relation == Relation::within;
-  return planned && !test.secondaries ? share / most_looks : share;
+  return planned && !test.secondaries ? share / static_cast<double>(most_looks) : share;
 }
 
 double smallest_level(const Question& question, const FamilyPlace& place) {

@@ -21,10 +21,14 @@ inline constexpr std::uint64_t floor_of_evidence = std::uint64_t{1} << 14;
 // A method is taken to keep its level up to this factor.
 inline constexpr double level_factor = 1.25;
 
-/// The smallest part of a share that a look of this test may have.
+// A test has at most so many looks: one may end after 1/181 of the last.
+inline constexpr std::size_t most_looks = 16;
+
+/// An even part of a share, for a look of this test. A look with a smaller level need not keep it
+/// better than the part.
 double smallest_share(const Question& question, double share);
 
-/// The smallest level at which a look of this test may be taken.
+/// The level up to which a method of this test must keep its own.
 double smallest_level(const Question& question, const FamilyPlace& place);
 
 /// True if the claim's test rejects in both tails.

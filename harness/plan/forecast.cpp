@@ -28,7 +28,7 @@ std::optional<double> not_passed(const TestOutcome& test, std::size_t channel, s
   if (!data) return std::nullopt;
   const std::optional<ThetaError> error = test.question.theta->error(test.question, channel, *data);
   if (!error) return std::nullopt;
-  const double beta = test.place.share.beta * test.plan.looks.weights[k];
+  const double beta = test.plan.looks.beta[k];
   const double z = stats::normal_quantile({stats::Tail::upper, std::log(beta)});
   const double room = *margin / std::hypot(error->drawn, error->fixed) - z;
   const double tail = std::exp(stats::normal_tails(room).upper);
@@ -110,10 +110,8 @@ std::optional<double> shown_or_found(const Question& question, const TestSize& s
 
 std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilots) {
   const Plan& plan = test.plan;
-  const double weight = plan.looks.weights.back();
-  const TestSize size{
-      .share = {.alpha = test.place.share.alpha * weight, .beta = test.place.share.beta * weight},
-      .secondaries = plan.most_secondaries()};
+  const TestSize size{.share = test.share_at(plan.looks.count() - 1),
+                      .secondaries = plan.most_secondaries()};
   std::optional<double> largest;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
     const auto planned = expected_channel(test, channel, pilots, size.secondaries);

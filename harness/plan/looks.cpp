@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "harness/plan/critical.h"
 #include "harness/plan/rows.h"
@@ -16,7 +17,7 @@ namespace {
 
 // Half a day at 40 ns a primary.
 constexpr double most_planned_primaries = 1e12;
-// Ten looks cost at most twice one look's observations, unless a reference has an error.
+// Looks cost at most twice one look's observations, unless a reference has an error.
 constexpr std::uint64_t dearest_looks = 4;
 // Fewest secondaries that have a spread.
 constexpr std::uint64_t fewest_tested = 2;
@@ -57,13 +58,34 @@ void require_possible(const Question& question, const Plan& plan, std::uint64_t 
 
 /// One look of a method in seconds: replicates of whole blocks, with as many observations for each
 /// subject.
-stats::LookSchedule timed_look(const Plan& plan, std::uint64_t secondaries) {
+stats::LookSchedule timed_look(const Plan& plan, const ErrorShare& share,
+                               std::uint64_t secondaries) {
   std::uint64_t block = 1;
   for (const std::uint64_t primaries : plan.primaries) {
     block = std::max(block, block_size_of(primaries));
   }
   const std::uint64_t unit = block * replicate_count;
-  return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit);
+  return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit, share);
+}
+
+/// How looks grow, and how many there are at most.
+struct Growth {
+  double factor;
+  std::size_t most;
+};
+
+/// Each look pays for itself in a union bound, and costs next to nothing otherwise.
+Growth growth_of(stats::LookLaw law) {
+  if (law == stats::LookLaw::unknown) return {.factor = 2, .most = 10};
+  return {.factor = std::numbers::sqrt2, .most = most_looks};
+}
+
+/// Sizes up to `last` in at most `count` looks.
+std::vector<std::uint64_t> sizes_up_to(std::uint64_t last, std::uint64_t first, double growth,
+                                       std::size_t count) {
+  const double shrunk = static_cast<double>(last) / std::pow(growth, count - 1);
+  const auto earliest = static_cast<std::uint64_t>(std::ceil(shrunk));
+  return stats::geometric_sizes({.first = std::max(first, earliest), .last = last}, growth);
 }
 
 }  // namespace
@@ -76,7 +98,9 @@ std::uint64_t most_available(const Question& question, const Plan& plan) {
   return std::min(most, paid_for(question, plan, *budget->primaries));
 }
 
-stats::LookSchedule one_look(std::uint64_t secondaries) { return {{secondaries}, {1}}; }
+stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share) {
+  return {.sizes = {secondaries}, .alpha = {share.alpha}, .beta = {share.beta}};
+}
 
 stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, const Plan& plan, std::uint64_t first) {
@@ -90,40 +114,46 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
     }
     const auto planned = question.theta->secondaries(question, place.share, pilots, plan);
     if (planned) require_possible(question, plan, *planned);
-    return timed_look(plan, std::max(first, planned.value_or(usual_secondaries)));
+    return timed_look(plan, place.share, std::max(first, planned.value_or(usual_secondaries)));
   }
   if (question.test->secondaries) {
     const std::uint64_t given = std::min(*question.test->secondaries, most);
     if (!question.test->budget) require_possible(question, plan, given);
-    return one_look(given);
+    return one_look(given, place.share);
   }
-  if (has_rows(question)) return one_look(most);
+  if (has_rows(question)) return one_look(most, place.share);
   const std::optional<std::uint64_t> alone =
       question.theta->secondaries(question, place.share, pilots, plan);
   const std::uint64_t classical = question.theta->usual_size();
-  if (!alone) return one_look(std::min(std::max(first, classical), most));
+  if (!alone) return one_look(std::min(std::max(first, classical), most), place.share);
   if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
-  if (*alone <= first) return one_look(std::min(first, most));
-  std::size_t count = std::min<std::size_t>(most_looks, 1 + std::bit_width((*alone - 1) / first));
-  for (; count > 1; --count) {
-    const double weight = 1 / static_cast<double>(count);
-    const ErrorShare share{.alpha = place.share.alpha * weight, .beta = place.share.beta * weight};
+  if (*alone <= first) return one_look(std::min(first, most), place.share);
+  const stats::LookLaw law = plan.method.is.over_looks;
+  const Growth growth = growth_of(law);
+  const stats::ErrorRates errors{
+      .alpha = place.share.alpha, .beta = place.share.beta, .two_sided = two_sided(question)};
+  const std::size_t whole =
+      stats::geometric_sizes({.first = first, .last = *alone}, growth.factor).size();
+  for (std::size_t count = std::min(growth.most, whole); count > 1; --count) {
+    const stats::LookSchedule trial =
+        stats::schedule_looks(sizes_up_to(*alone, first, growth.factor, count), law, errors);
+    const ErrorShare share{.alpha = trial.alpha.back(), .beta = trial.beta.back()};
     const std::uint64_t last =
         std::min(most, question.theta->secondaries(question, share, pilots, plan)
                            .value_or(impossible_secondaries));
-    // A reference's error may put smaller shares beyond any number: try fewer looks.
+    // A reference's error may put smaller levels beyond any number: try fewer looks.
     if (last > dearest_looks * *alone) continue;
-    if (last <= first) return one_look(last);
-    return stats::geometric_looks(
-        {.first = std::max(first, (last >> (count - 1)) + 1), .last = last}, look_growth);
+    if (last <= first) return one_look(last, place.share);
+    return stats::schedule_looks(sizes_up_to(last, first, growth.factor, count), law, errors);
   }
-  return one_look(std::min(*alone, most));
+  return one_look(std::min(*alone, most), place.share);
 }
 
-stats::LookSchedule look_for_its_picture(const Question& question, const Plan& plan) {
+stats::LookSchedule look_for_its_picture(const Question& question, const FamilyPlace& place,
+                                         const Plan& plan) {
   const bool given = question.test->secondaries || has_rows(question);
   if (given || plan.method.keeps == Keeps::blocks) return plan.looks;
-  return one_look(std::min(plan.looks.sizes.front(), usual_secondaries));
+  return one_look(std::min(plan.looks.sizes.front(), usual_secondaries), place.share);
 }
 
 std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {

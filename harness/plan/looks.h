@@ -1,27 +1,24 @@
 #pragma once
 
-// The looks of a test: its interim analyses. Each has a size and a share of the errors.
+// The looks of a test: its interim analyses. Each has a size and levels.
 
 #include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
 
 namespace assay::harness {
 
-// Each look doubles the sample, so ten of them let a test end after 1/512 of the last one.
-inline constexpr double look_growth = 2;
-inline constexpr std::size_t most_looks = 10;
-
-/// Looks that double from the fewest meaningful up to what `detect` needs at the last look's share
-/// of the errors. One look if nothing asks for a number or it is given: rows of a file,
-/// `secondaries`, the classical 1000.
+/// Looks that grow from the fewest meaningful up to what `detect` needs at the last look's levels.
+/// One look if nothing asks for a number or it is given: rows of a file, `secondaries`, the
+/// classical 1000.
 stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
                                const Pilots& pilots, const Plan& plan, std::uint64_t first);
 
-stats::LookSchedule one_look(std::uint64_t secondaries);
+stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share);
 
 /// The look of a test that is invalid beforehand. It decides nothing; it shows the estimators'
 /// data.
-stats::LookSchedule look_for_its_picture(const Question& question, const Plan& plan);
+stats::LookSchedule look_for_its_picture(const Question& question, const FamilyPlace& place,
+                                         const Plan& plan);
 
 /// The largest look: the rows of the longest file, also for a side drawn beside it, or what a
 /// budget in primaries pays for.

@@ -92,10 +92,10 @@ struct TestOutcome {
   std::uint64_t secondaries(std::size_t subject) const {
     return question.subjects[subject].secondaries(secondaries());
   }
-  double weight() const { return plan.looks.weights[look]; }
-  /// Errors that one channel may spend at this look.
-  ErrorShare share() const {
-    return {.alpha = place.share.alpha * weight(), .beta = place.share.beta * weight()};
+  /// Levels at which this look rejects in one channel.
+  ErrorShare share() const { return share_at(look); }
+  ErrorShare share_at(std::size_t k) const {
+    return {.alpha = plan.looks.alpha[k], .beta = plan.looks.beta[k]};
   }
 };
 

@@ -143,7 +143,7 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
   plan.error = where_pilots_stopped(question, pilots);
   if (plan.error.empty()) plan.error = misdeclared(question, pilots);
   if (!plan.error.empty()) {
-    plan.looks = one_look(2);
+    plan.looks = one_look(2, place.share);
     return plan;
   }
   try {
@@ -152,14 +152,14 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     const std::uint64_t least = choose_method(question, place, pilots, most, plan);
     plan.looks = plan_looks(question, place, pilots, plan, least);
     if (plan.invalid.empty()) plan.invalid = question.theta->too_few(question, plan);
-    if (!plan.invalid.empty()) plan.looks = look_for_its_picture(question, plan);
+    if (!plan.invalid.empty()) plan.looks = look_for_its_picture(question, place, plan);
     plan.hint += question.theta->hint(question);
     plan.caution = caution_of(question, pilots);
   } catch (const std::domain_error& error) {
-    plan.looks = one_look(2);
+    plan.looks = one_look(2, place.share);
     plan.invalid = in_words(error);
   } catch (const NoDensity& failure) {
-    plan.looks = one_look(2);
+    plan.looks = one_look(2, place.share);
     plan.error = lack_of_density(question, failure);
   }
   return plan;

@@ -154,7 +154,8 @@ std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& r
       forbidden = std::max(forbidden, history.log_p_forbidden[k]);
     }
     reports::Look look{.secondaries = outcome.plan.looks.sizes[k],
-                       .weight = outcome.plan.looks.weights[k],
+                       .alpha = outcome.plan.looks.alpha[k],
+                       .beta = outcome.plan.looks.beta[k],
                        .log10_p = log10_of(claimed)};
     if (regions.has_forbidden()) {
       look.p_pass = probability(forbidden);
@@ -273,6 +274,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
     add_image(*drawn, test);
     add_cells(*drawn, test);
   }
+  test.planned_looks = outcome.plan.looks.sizes;
   test.looks = looks_of(outcome, regions);
   test.message = outcome.message;
   return test;

@@ -16,6 +16,7 @@
 #include "harness/draws/draw_text.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/pilot/pilot_run.h"
+#include "harness/plan/critical.h"
 #include "harness/plan/frozen.h"
 #include "harness/plan/rows.h"
 #include "harness/record/record_of.h"
@@ -119,22 +120,28 @@ Suite suite_of(const Recorded& recorded, const std::string& record) {
   return suite;
 }
 
-/// The looks that were taken; none for constants.
-stats::LookSchedule recorded_looks(const reports::Test& test) {
-  stats::LookSchedule looks;
-  for (const reports::Look& look : test.looks) {
-    looks.sizes.push_back(look.secondaries);
-    looks.weights.push_back(look.weight);
-  }
-  if (!looks.sizes.empty()) return looks;
-  return {{std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries}, {1}};
+std::uint64_t most_recorded(const reports::Test& test) {
+  return std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries;
+}
+
+/// The looks that were planned; what was drawn of constants.
+stats::LookSchedule recorded_looks(const Question& question, const Recorded& recorded,
+                                   stats::LookLaw law) {
+  const reports::Test& test = recorded.test;
+  const stats::ErrorRates errors{.alpha = test.alpha.value_or(recorded.suite.alpha),
+                                 .beta = test.beta.value_or(recorded.suite.beta),
+                                 .two_sided = two_sided(question)};
+  if (test.looks.empty()) return stats::schedule_looks({most_recorded(test)}, law, errors);
+  return stats::schedule_looks(test.planned_looks, law, errors);
 }
 
 /// The recorded plan, so that no pilot is needed.
-Plan recorded_plan(const Question& question, const reports::Test& test) {
+Plan recorded_plan(const Question& question, const Recorded& recorded) {
+  const reports::Test& test = recorded.test;
+  const Method method = find_method(question, test.method);
   Plan plan{
-      .method = find_method(question, test.method),
-      .looks = recorded_looks(test),
+      .method = method,
+      .looks = recorded_looks(question, recorded, method.is.over_looks),
       .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U,
       .symmetric = !test.image || test.image->symmetric,
       .gates_invalidate = !test.forced};
@@ -203,7 +210,7 @@ const reports::Sample* recorded_of(const reports::Test& test, const Question& qu
 }
 
 /// InputError if recorded data changed since.
-void require_same_rows(const Question& question, const Plan& plan, const Recorded& recorded,
+void require_same_rows(const Question& question, const Recorded& recorded,
                        const std::string& record) {
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const Subject& side = question.subjects[i];
@@ -211,7 +218,7 @@ void require_same_rows(const Question& question, const Plan& plan, const Recorde
     const auto now = side.setup->observations();
     // A recorded run is taken whole.
     if (!now || !then || then->secondaries == *now) continue;
-    if (then->secondaries == side.secondaries(plan.most_secondaries())) continue;
+    if (then->secondaries == side.secondaries(most_recorded(recorded.test))) continue;
     throw InputError({.file = record},
                      fmt::format("the test took {} observations of `{}`, of which there are now "
                                  "{}: replay needs the data as they were",
@@ -225,8 +232,8 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
   require_lasting_rows(rebuilt->suite, record);
   rebuilt->estimators = prepare_all(rebuilt->suite);
   Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
-  Plan plan = recorded_plan(question, recorded.test);
-  require_same_rows(question, plan, recorded, record);
+  Plan plan = recorded_plan(question, recorded);
+  require_same_rows(question, recorded, record);
   if (takes_from_pilot(plan.method)) {
     freeze(question, pilots_of(*rebuilt, question, recorded.seed), plan);
   }
@@ -237,6 +244,7 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
                           .beta = recorded.test.beta.value_or(rebuilt->suite.beta)}},
       .plan = std::move(plan)};
   TestWork& work = rebuilt->work;
+  if (!recorded.test.looks.empty()) work.last_look = recorded.test.looks.size() - 1;
   work.pools =
       rebuilt->pools.for_question(work.outcome.question, work.outcome.plan, recorded.seed, {});
   return rebuilt;
@@ -264,15 +272,16 @@ bool print_against(const reports::Sample& sample, double value) {
 /// True if the record does not contradict the observation.
 bool print_observation(const TestWork& work, const reports::Test& recorded, std::uint64_t index) {
   const Question& question = work.outcome.question;
-  if (index >= work.outcome.plan.most_secondaries()) {
-    throw InputError({}, fmt::format("observation {} was not drawn: the test used 0 to {}", index,
-                                     work.outcome.plan.most_secondaries() - 1));
+  const std::uint64_t drawn = most_recorded(recorded);
+  if (index >= drawn) {
+    throw InputError(
+        {}, fmt::format("observation {} was not drawn: the test used 0 to {}", index, drawn - 1));
   }
   bool same = true;
   for (std::size_t i = 0; i < work.pools.size(); ++i) {
     const Pool& pool = *work.pools[i];
     const Subject& side = question.subjects[i];
-    const bool taken = index < side.secondaries(work.outcome.plan.most_secondaries());
+    const bool taken = index < side.secondaries(drawn);
     if (pool.is_ready_made() || !taken) {
       fmt::print("{}  has {}\n", side.estimator->name,
                  taken ? "the moments of a run, not its observations" : "no such observation");

@@ -78,7 +78,9 @@ int badness(Verdict verdict) {
 std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const DrawnTest& test) {
   const Question& question = outcome.question;
   std::vector<ConstantVerdict> constants;
-  const double critical = critical_value(outcome.share().alpha, two_sided(question));
+  const double part = outcome.place.share.alpha / static_cast<double>(outcome.plan.looks.count());
+  const double critical =
+      critical_value(std::max(outcome.share().alpha, part), two_sided(question));
   const auto add = [&](std::size_t channel, ConstantVerdict constant) {
     if (question.channel_count() > 1) {
       constant.message = question.channel_name(channel) + ": " + constant.message;
@@ -125,9 +127,10 @@ void remember(TestOutcome& outcome, bool counts) {
       history.log_p_claimed.back() = channel.decision.log_p_claimed;
       history.log_p_forbidden.back() = channel.decision.log_p_forbidden;
     }
-    channel.decision = {
-        .log_p_claimed = stats::log_p_over_looks(outcome.plan.looks, history.log_p_claimed),
-        .log_p_forbidden = stats::log_p_over_looks(outcome.plan.looks, history.log_p_forbidden)};
+    channel.decision = {.log_p_claimed = stats::log_p_over_looks(
+                            outcome.plan.looks, history.log_p_claimed, channel.regions.two_sided()),
+                        .log_p_forbidden = stats::log_p_over_looks(outcome.plan.looks,
+                                                                   history.log_p_forbidden, false)};
     channel.decision.rejected =
         channel.decision.log_p_claimed <= std::log(outcome.place.share.alpha);
   }
@@ -291,7 +294,8 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   if (is_settled_beforehand(outcome)) return;
   judge_drawn_order(outcome, test);
   judge(outcome, test);
-  const bool last = outcome.look + 1 == outcome.plan.looks.sizes.size();
+  const bool last =
+      outcome.look == work.last_look || outcome.look + 1 == outcome.plan.looks.count();
   const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;
   if (may_go_on && !last && !settled && outcome.plan.invalid.empty()) {
     outcome.decided = false;

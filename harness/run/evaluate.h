@@ -16,6 +16,8 @@ struct TestWork {
   const Budget* suite_budget = nullptr;  ///< shared by the suite's tests; null: none
   TestOutcome outcome;
   std::vector<std::shared_ptr<Pool>> pools = {};
+  /// The look that a recorded run ended with.
+  std::optional<std::size_t> last_look = {};
   /// Skips the interval of the effect, the power and the sentence.
   bool verdict_only = false;
 

@@ -21,19 +21,15 @@ TestSize full_size(const TestOutcome& outcome) {
   const stats::LookSchedule& looks = outcome.plan.looks;
   const bool ended = outcome.verdict == Verdict::inconclusive;
   const std::size_t look = ended ? outcome.look : looks.sizes.size() - 1;
-  return {.share = {.alpha = outcome.place.share.alpha * looks.weights[look],
-                    .beta = outcome.place.share.beta * looks.weights[look]},
-          .secondaries = looks.sizes[look]};
+  return {.share = outcome.share_at(look), .secondaries = looks.sizes[look]};
 }
 
-/// Confidence of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
-double deciding_confidence(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const ErrorShare share = outcome.share();
-  if (outcome.verdict != Verdict::fail && channel.regions.has_forbidden()) {
-    return 1 - 2 * share.beta;
-  }
+/// Error of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
+double deciding_error(const TestOutcome& outcome, const ChannelOutcome& channel,
+                      const ErrorShare& share) {
+  if (outcome.verdict != Verdict::fail && channel.regions.has_forbidden()) return 2 * share.beta;
   const bool two_tails = channel.regions.two_sided() && !channel.evidence.distance;
-  return 1 - (two_tails ? 1 : 2) * share.alpha;
+  return (two_tails ? 1 : 2) * share.alpha;
 }
 
 /// With a factor the effect is relative to factor * second.
@@ -46,14 +42,17 @@ std::string quantity_of(const Evidence& evidence, double factor) {
   return evidence.ratio ? "ln(" + quantity + ")" : quantity;
 }
 
-/// The effect with the interval behind the verdict, at this look's shares. A fail shows the
-/// interval at alpha, which misses the claimed region. A pass that excludes the forbidden region
-/// shows the interval at 1 - 2 beta: one test at beta to each side. An undecided test shows that
-/// interval too.
+/// The effect with the interval behind the verdict. Its ends are at this look's levels, so it holds
+/// theta with the confidence shown wherever sampling stops (repeated confidence interval). A fail
+/// shows the interval at alpha, which misses the claimed region. A pass that excludes the forbidden
+/// region shows the interval at 1 - 2 beta: one test at beta to each side. An undecided test shows
+/// that interval too.
 reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const Evidence& evidence = channel.evidence;
-  const double confidence = deciding_confidence(outcome, channel);
-  const stats::Interval interval = evidence.interval(confidence);
+  // A smaller error is lost in 1 - error. A narrower interval shows the same verdict.
+  constexpr double least_error = 1e-12;
+  const double error = std::max(deciding_error(outcome, channel, outcome.share()), least_error);
+  const stats::Interval interval = evidence.interval(1 - error);
   const auto number = [](double value) {
     return std::isfinite(value) ? reports::Number(value) : reports::Number();
   };
@@ -61,7 +60,7 @@ reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& chan
           .estimate = number(evidence.estimate),
           .low = number(interval.low),
           .high = number(interval.high),
-          .confidence = confidence,
+          .confidence = 1 - deciding_error(outcome, channel, outcome.place.share),
           .relative = evidence.relative};
 }
 

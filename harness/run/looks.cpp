@@ -55,24 +55,28 @@ Clocks read_clocks(const std::vector<TestWork*>& tests) {
   return clocks;
 }
 
-/// True if a budget in seconds is spent, or a look of twice the size would spend it.
+/// True if a budget in seconds is spent, or the next look would spend it.
 bool is_spent(const TestWork& work, const Clocks& clocks) {
+  const std::vector<std::uint64_t>& sizes = work.outcome.plan.looks.sizes;
+  const std::size_t next = std::min(work.outcome.look + 1, sizes.size() - 1);
+  const double growth =
+      static_cast<double>(sizes[next]) / static_cast<double>(work.outcome.secondaries());
   const auto clock = clocks.find(work.suite_budget);
-  if (clock != clocks.end() && 2 * clock->second > *work.suite_budget->seconds) return true;
+  if (clock != clocks.end() && growth * clock->second > *work.suite_budget->seconds) return true;
   const std::optional<Budget>& budget = work.outcome.question.test->budget;
   if (!budget || !budget->seconds) return false;
   const std::optional<DrawnTest> test = drawn(work);
   if (!test) return false;
   double seconds = 0;
   for (const Drawn& sample : test->samples) seconds += sample.summary().seconds;
-  return 2 * seconds > *budget->seconds;
+  return growth * seconds > *budget->seconds;
 }
 
 bool take_next(TestWork& work, const Clocks& clocks) {
   TestOutcome& outcome = work.outcome;
   const bool spent = is_spent(work, clocks);
   take_look(work, !spent);
-  const bool ended_early = outcome.look + 1 < outcome.plan.looks.sizes.size() &&
+  const bool ended_early = outcome.look + 1 < outcome.plan.looks.count() &&
                            outcome.verdict == reports::Verdict::inconclusive;
   if (spent && ended_early) outcome.message += "; its budget in seconds ended here";
   if (!outcome.decided) ++outcome.look;

@@ -130,7 +130,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
       return fmt::format(
           "{}, nor could there be: in {} observations no difference that the range allows is found "
           "with probability {:g}",
-          text, outcome.secondaries(), 1 - outcome.share().beta);
+          text, outcome.secondaries(), 1 - outcome.place.share.beta);
     }
     if (const std::string all = outcome.question.theta->not_excluded(channel); !all.empty()) {
       return fmt::format(
@@ -142,7 +142,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
       const char* how = outcome.question.theta->detectable_text();
       text += fmt::format("; {}{} would have been found with probability {:g}",
                           reports::margin_text(*channel.detectable, channel.effect), how,
-                          1 - outcome.share().beta);
+                          1 - outcome.place.share.beta);
     }
     return text;
   }
@@ -178,6 +178,11 @@ std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
                      most_against ? most_against(edge_of_claimed(channel.regions)) : "");
 }
 
+/// Levels of the last look.
+ErrorShare last_levels(const TestOutcome& outcome) {
+  return outcome.share_at(outcome.plan.looks.count() - 1);
+}
+
 /// The room between margins in standard errors. An alarm needs z_alpha and z_beta of them, then any
 /// estimate decides. A proof needs the estimate's distance from the forbidden region, and one to
 /// spare.
@@ -191,7 +196,7 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
     return stats::normal_quantile({stats::Tail::upper, std::log(level)});
   };
   const Regions& regions = channel.regions;
-  const ErrorShare share = outcome.share();
+  const ErrorShare share = last_levels(outcome);
   const double estimate = channel.evidence.estimate;
   const double beyond = z(share.beta) + 1;
   switch (regions.relation) {
@@ -246,7 +251,7 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
     return fmt::format("about {} images would decide if the estimate stands",
                        reports::human(channel.image->wanted, 2));
   }
-  const double beta = outcome.share().beta;
+  const double beta = last_levels(outcome).beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);

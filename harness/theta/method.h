@@ -14,6 +14,7 @@
 #include "harness/theta/evidence.h"
 #include "stats/cells/sampled_cells.h"
 #include "stats/means/power_exact.h"
+#include "stats/planning/looks.h"
 #include "stats/variances/f_ratio.h"
 
 namespace assay::harness {
@@ -83,6 +84,7 @@ struct MethodTraits {
   bool of_distinct_values = false;  ///< Coarsely rounded values break its level.
   bool scores = false;              ///< The estimate does not show its standard error.
   bool joins_channels = false;      ///< compares all channels of two estimators together
+  stats::LookLaw over_looks = stats::LookLaw::unknown;  ///< Of its p-values at several looks.
   FromPilot from_pilot = FromPilot::nothing;
   const stats::ExactPlanning* plans = nullptr;  ///< Planning of an exact method of a mean.
 };

@@ -147,7 +147,8 @@ void fields(Archive& a, T& channel) {
 template <class Archive, maybe_const<Look> T>
 void fields(Archive& a, T& look) {
   a("secondaries", look.secondaries);
-  a("weight", look.weight);
+  a("alpha", look.alpha);
+  a("beta", look.beta);
   a("log10_p", look.log10_p);
   a("p_pass", look.p_pass);
   a("log10_p_pass", look.log10_p_pass);
@@ -187,6 +188,7 @@ void fields(Archive& a, T& test) {
   a("allow", test.allow);
   a("detectable", test.detectable);
   a("power", test.power);
+  a("planned_looks", test.planned_looks);
   a("looks", test.looks);
   a("gates", test.gates);
   a("samples", test.samples);

@@ -159,11 +159,13 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
-/// One look: what the first so many observations say by themselves. The test's own p-value is the
-/// smallest over the looks of p over the look's weight.
+/// One look: what the first so many observations say by themselves. It rejects the claim or the
+/// contrary at these levels. The test's own p-value is the least alpha of the test at which one of
+/// its looks would reject.
 struct Look {
   std::uint64_t secondaries = 0;
-  double weight = 1;  ///< its share of the test's alpha and beta
+  double alpha = 0;  ///< level of the claim's test at this look
+  double beta = 0;
   Number log10_p;
   Number p_pass;
   Number log10_p_pass;
@@ -190,7 +192,8 @@ struct Test {
   Number detect, allow;  ///< as margins on theta (same unit as effect)
   Number detectable;     ///< least effect found with probability 1 - beta at this n
   Number power;          ///< at `detect` (planned)
-  std::vector<Look> looks;
+  std::vector<std::uint64_t> planned_looks;  ///< sizes
+  std::vector<Look> looks;                   ///< those taken
   std::vector<Gate> gates;
   std::vector<Sample> samples;
   std::vector<Channel> channels;  ///< the worst first; never empty once tested

@@ -7,8 +7,8 @@
 #include "reports/viewer/html_parts.h"
 #include "reports/words/describe.h"
 #include "reports/words/number.h"
-#include "reports/words/text.h"
 #include "reports/words/summary.h"
+#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {
@@ -66,9 +66,9 @@ constexpr const char* reading_help =
 <dt>error</dt><dd>The claim could not be tested: a value that is not finite, a crash, a time-out.</dd>
 <dt>as expected</dt><dd>A mutant is a deliberately broken estimator: its claim is expected to fail, and the test is ok when it does.</dd>
 <dt>effect</dt><dd>How far the estimator is from its claim. Ratios are shown as per cent near one, else as factors (×0.07).</dd>
-<dt>interval</dt><dd>Holds the true effect with the confidence printed beside it. The interval shown is the one that the verdict rests on. A fail: at one minus the test's share of alpha, and it leaves out everything that is claimed or allowed. A pass with "detect", or of a proof (&lt;, &gt;, within): at one minus twice the test's share of beta, and it leaves out everything that must not pass. Where sampling went in looks, the shares are those of the look that decided. Of an image it is of the size of the difference over all pixels, and may begin at 0 where a fail rests on the sum that differs most.</dd>
+<dt>interval</dt><dd>Holds the true effect with the confidence printed beside it. The interval shown is the one that the verdict rests on. A fail: at one minus the test's share of alpha, and it leaves out everything that is claimed or allowed. A pass with "detect", or of a proof (&lt;, &gt;, within): at one minus twice the test's share of beta, and it leaves out everything that must not pass. Where sampling went in looks, it holds at whichever look sampling stopped. Of an image it is of the size of the difference over all pixels, and may begin at 0 where a fail rests on the sum that differs most.</dd>
 <dt>assumption</dt><dd>What the test takes for granted about the data, as measured. Green: it holds. Amber: it does not hold by itself, and the method chosen allows for it. Red: the test is invalid. A level factor says how much more often than its level one tail of the test errs because the data are skewed; 1 is exact.</dd>
-<dt>look</dt><dd>Sampling stops as soon as a claim is decided. Each look at the data may spend its part of the test's alpha and beta, so that all looks together keep them.</dd>
+<dt>look</dt><dd>Sampling stops as soon as a claim is decided. Each look at the data has levels of its own, such that all looks together keep the test's alpha and beta.</dd>
 <dt>p</dt><dd>Of the claim, unless another name stands below it. The claims with &lt;, &gt; and within are proofs: their verdict rests on p(contrary), the p-value of the contrary of the claim.</dd>
 </dl></details>
 )html";

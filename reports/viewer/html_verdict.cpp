@@ -133,7 +133,7 @@ std::string looks(const Test& test) {
   HtmlTable table(
       {{"look", true},
        {"observations", true},
-       {"share of alpha and beta", true},
+       {"level", true},
        {"p of the claim", true},
        {is_proof(test) ? "p of the contrary" : "p of an effect that must not pass", true}},
       "small cards");
@@ -141,7 +141,7 @@ std::string looks(const Test& test) {
     const Look& look = test.looks[i];
     table.row({{fmt::format("{}", i + 1)},
                {grouped(look.secondaries)},
-               {human(look.weight)},
+               {human(look.alpha)},
                {p_text({}, look.log10_p)},
                {p_text(look.p_pass, look.log10_p_pass)}});
   }

@@ -58,7 +58,7 @@ bool rests_on_contrary(const Test& test) {
   return is_proof(test) && test.verdict != Verdict::fail && least_excluded(test) != nullptr;
 }
 
-// " over 3 looks (0.79 at the last)": p is the smallest over the looks, each over its share.
+// " over 3 looks (0.79 at the last)".
 std::string over_looks(const Test& test, Number Look::*log10_p) {
   if (test.looks.size() < 2 || test.channels.size() > 1) return {};
   const Number at_last = test.looks.back().*log10_p;

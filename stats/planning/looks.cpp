@@ -3,38 +3,40 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "stats/basics/check.h"
+#include "stats/planning/boundary.h"
 #include "stats/planning/planning.h"
+#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
 
-// Weights such as 1/3 + 1/3 + 1/3 may miss 1 by rounding.
 constexpr double rounding = 1e-12;
 
-void check_schedule(const char* function, const LookSchedule& schedule) {
-  check::at_least({function, "looks"}, schedule.sizes.size(), 1);
-  if (schedule.weights.size() != schedule.sizes.size()) {
-    check::fail({function, "number of weights"}, schedule.weights.size(), "the number of looks");
-  }
-  const auto out_of_order = std::adjacent_find(schedule.sizes.begin(), schedule.sizes.end(),
-                                               [](auto a, auto b) { return a >= b; });
-  if (out_of_order != schedule.sizes.end()) {
+void check_sizes(const char* function, std::span<const std::uint64_t> sizes) {
+  check::at_least({function, "looks"}, sizes.size(), 1);
+  check::at_least({function, "size"}, sizes.front(), 1);
+  const auto out_of_order =
+      std::adjacent_find(sizes.begin(), sizes.end(), [](auto a, auto b) { return a >= b; });
+  if (out_of_order != sizes.end()) {
     check::fail({function, "size"}, *out_of_order, "below the next look's size");
   }
-  for (const double weight : schedule.weights) check::positive({function, "weight"}, weight);
-  const double sum = std::accumulate(schedule.weights.begin(), schedule.weights.end(), 0.0);
-  if (sum > 1 + rounding) check::fail({function, "sum of weights"}, sum, "at most 1");
 }
 
-void check_taken(const char* function, const LookSchedule& schedule, std::size_t taken) {
-  check_schedule(function, schedule);
-  check::at_least({function, "looks taken"}, taken, 1);
-  if (taken > schedule.sizes.size()) {
-    check::fail({function, "looks taken"}, taken, "at most the number scheduled");
+WangTsiatis boundary_of(std::span<const std::uint64_t> sizes) {
+  return WangTsiatis(std::vector<double>(sizes.begin(), sizes.end()));
+}
+
+std::vector<double> crossing_levels(const WangTsiatis& boundary, double error, double sides) {
+  const double constant = boundary.constant(error / sides);
+  std::vector<double> levels;
+  for (const double shape : boundary.shape()) {
+    levels.push_back(sides * std::exp(normal_upper(constant * shape)));
   }
+  return levels;
 }
 
 std::size_t number_of_looks(LookRange range, double growth) {
@@ -50,34 +52,70 @@ std::uint64_t size_at(LookRange range, double fraction) {
       std::round(static_cast<double>(range.first) * std::pow(ratio, fraction)));
 }
 
+double log_p_of_scores(const LookSchedule& schedule, std::span<const double> log_p,
+                       double log_sides) {
+  // A p-value of 0 has no quantile.
+  constexpr double least = -1e300;
+  const WangTsiatis boundary = boundary_of(schedule.sizes);
+  double largest = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < log_p.size(); ++k) {
+    if (log_p[k] >= log_sides) continue;
+    const double z = normal_quantile({Tail::upper, std::max(log_p[k] - log_sides, least)});
+    largest = std::max(largest, z / boundary.shape()[k]);
+  }
+  return std::isinf(largest) ? 0 : std::min(0.0, boundary.log_crossing(largest) + log_sides);
+}
+
 }  // namespace
 
-LookSchedule geometric_looks(LookRange range, double growth) {
-  check::at_least({"geometric_looks", "first"}, range.first, 1);
-  check::at_least({"geometric_looks", "last"}, range.last, range.first);
-  if (!(growth > 1) || std::isinf(growth)) {
-    check::fail({"geometric_looks", "growth"}, growth, "finite and above 1");
+LookSchedule schedule_looks(std::vector<std::uint64_t> sizes, LookLaw law, ErrorRates errors) {
+  check_sizes("schedule_looks", sizes);
+  planning::check_rates("schedule_looks", errors);
+  LookSchedule schedule{.sizes = std::move(sizes), .law = law};
+  const std::size_t looks = schedule.count();
+  if (law == LookLaw::independent_increments && looks > 1) {
+    const WangTsiatis boundary = boundary_of(schedule.sizes);
+    schedule.alpha = crossing_levels(boundary, errors.alpha, errors.two_sided ? 2 : 1);
+    schedule.beta = crossing_levels(boundary, errors.beta, 1);
+    return schedule;
   }
-  const std::size_t looks = number_of_looks(range, growth);
-  LookSchedule schedule;
-  for (std::size_t k = 0; k + 1 < looks; ++k) {
-    const auto size = size_at(range, static_cast<double>(k) / static_cast<double>(looks - 1));
-    if (size >= range.last) break;
-    if (schedule.sizes.empty() || size > schedule.sizes.back()) schedule.sizes.push_back(size);
-  }
-  schedule.sizes.push_back(range.last);
-  schedule.weights.assign(schedule.sizes.size(), 1 / static_cast<double>(schedule.sizes.size()));
+  const double parts = law == LookLaw::unknown ? static_cast<double>(looks) : 1;
+  schedule.alpha.assign(looks, errors.alpha / parts);
+  schedule.beta.assign(looks, errors.beta / parts);
   return schedule;
 }
 
-double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p) {
-  check_taken("log_p_over_looks", schedule, log_p.size());
-  double smallest = 0;
-  for (std::size_t k = 0; k < log_p.size(); ++k) {
-    check::log_probability({"log_p_over_looks", "log p"}, log_p[k]);
-    smallest = std::min(smallest, log_p[k] - std::log(schedule.weights[k]));
+std::vector<std::uint64_t> geometric_sizes(LookRange range, double growth) {
+  check::at_least({"geometric_sizes", "first"}, range.first, 1);
+  check::at_least({"geometric_sizes", "last"}, range.last, range.first);
+  if (!(growth > 1) || std::isinf(growth)) {
+    check::fail({"geometric_sizes", "growth"}, growth, "finite and above 1");
   }
-  return smallest;
+  const std::size_t looks = number_of_looks(range, growth);
+  std::vector<std::uint64_t> sizes;
+  for (std::size_t k = 0; k + 1 < looks; ++k) {
+    const auto size = size_at(range, static_cast<double>(k) / static_cast<double>(looks - 1));
+    if (size >= range.last) break;
+    if (sizes.empty() || size > sizes.back()) sizes.push_back(size);
+  }
+  sizes.push_back(range.last);
+  return sizes;
+}
+
+double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p,
+                        bool two_sided) {
+  check_sizes("log_p_over_looks", schedule.sizes);
+  check::at_least({"log_p_over_looks", "looks taken"}, log_p.size(), 1);
+  if (log_p.size() > schedule.count()) {
+    check::fail({"log_p_over_looks", "looks taken"}, log_p.size(), "at most the number scheduled");
+  }
+  for (const double each : log_p) check::log_probability({"log_p_over_looks", "log p"}, each);
+  if (schedule.law == LookLaw::independent_increments && schedule.count() > 1) {
+    return log_p_of_scores(schedule, log_p, two_sided ? std::numbers::ln2 : 0);
+  }
+  const double smallest = *std::min_element(log_p.begin(), log_p.end());
+  if (schedule.law != LookLaw::unknown) return smallest;
+  return std::min(0.0, smallest + std::log(static_cast<double>(schedule.count())));
 }
 
 }  // namespace assay::stats

@@ -5,33 +5,59 @@
 #include <span>
 #include <vector>
 
+#include "stats/planning/power.h"
+
 namespace assay::stats {
 
-// When a growing sample is looked at, and which share of the error each look may spend. The data
-// are cumulative: look k sees the first sizes[k] observations. Sizes ascend strictly. Weights are
-// positive and sum to at most 1. Both are fixed before the first observation.
+// A law says what is known of a method's p-values at the looks of one growing sample.
+enum class LookLaw {
+  unknown,                 // Each is valid at its own size.
+  independent_increments,  // Their normal scores are those of boundary.h.
+  anytime_valid,           // Each is valid whenever sampling stops.
+};
+
+// When a growing sample is looked at, and the levels at which each look rejects. The data are
+// cumulative: look k sees the first sizes[k] observations. All is fixed before the first
+// observation.
 struct LookSchedule {
   std::vector<std::uint64_t> sizes;
-  std::vector<double> weights;
+  LookLaw law = LookLaw::unknown;
+  // Nominal levels of each look: they keep the errors over all looks, each whether or not the other
+  // stops sampling.
+  std::vector<double> alpha;
+  std::vector<double> beta;
+
+  std::size_t count() const { return sizes.size(); }
 };
+
+// Errors over all looks. With two_sided, alpha is split over both sides. Beta has one side.
+//   unknown                 error / K
+//   independent_increments  Wang & Tsiatis's boundary with delta 1/4, times as parts of the last
+//   size anytime_valid           error
+// Throws std::domain_error: no size, sizes that do not ascend, errors outside (0, 1).
+LookSchedule schedule_looks(std::vector<std::uint64_t> sizes, LookLaw law, ErrorRates errors);
 
 struct LookRange {
   std::uint64_t first = 1;  // n_0
-  std::uint64_t last = 1;   // Called n_0 below.
+  std::uint64_t last = 1;
 };
 
-// n_k = n_0 r^k from range.first to range.last, rounded, with equal weights 1 / K. K is the
-// smallest number of looks whose ratio does not exceed `growth`. Then r is evened out so that the
-// last look is range.last exactly. Looks that round to the same size are one look. Ratios of 1.5 to
-// 4 are sensible: smaller ones spend level on looks that hardly differ. Throws std::domain_error:
-// first < 1, last < first, growth not finite and above 1.
-LookSchedule geometric_looks(LookRange range, double growth);
+// n_k = n_0 r^k from range.first to range.last, rounded. Their number is the smallest whose ratio
+// does not exceed `growth`. Then r is evened out so that the last size is range.last exactly. Sizes
+// that round to the same are one. Throws std::domain_error: first < 1, last < first, growth not
+// finite and above 1.
+std::vector<std::uint64_t> geometric_sizes(LookRange range, double growth);
 
-// Null hypothesis: that of every look. P = min over the looks taken of p_k / w_k, at most 1. P(P <=
-// a) <= sum w_k a <= a, whatever the dependence between looks and wherever one stops (Bonferroni
-// 1936, weighted). Every p_k must be valid for its own fixed size. `log_p` holds ln p_k of the
-// first looks, in order. Throws std::domain_error: no look or more than scheduled, a malformed
-// schedule, a log p above 0 or NaN.
-double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p);
+// Null hypothesis: that of every look. `log_p` holds ln p_k of the first looks, in order. A
+// two-sided p_k is twice the smaller tail. The p-value is the least error over all looks at which
+// one of those taken rejects (repeated p-value, Jennison & Turnbull 2000, ch. 9). So it is at most
+// an error exactly if a look rejects at that error's nominal level, and it is valid wherever
+// sampling stops.
+//   unknown                 K min p_k (Bonferroni 1936)
+//   independent_increments  P(some z_k t_k^(1/4) reaches the largest seen)
+//   anytime_valid           min p_k
+// Throws std::domain_error: no look or more than scheduled, a log p above 0 or NaN.
+double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p,
+                        bool two_sided);
 
 }  // namespace assay::stats

@@ -289,9 +289,10 @@ Test undecided() {
   t.channels[0].p_value = 0.064;
   t.channels[0].log10_p = -1.1938200260161129;
   t.gates[0] = {"skewness", 1.7, 1.25, "amber"};
-  t.looks = {{1024, 0.25, -0.31, 0.7, -0.155},
-             {4096, 0.25, -0.85, 0.45, -0.347},
-             {16384, 0.5, -1.19, std::nullopt, std::nullopt}};
+  t.planned_looks = {1024, 4096, 16384};
+  t.looks = {{1024, 1e-5, 8e-5, -0.31, 0.7, -0.155},
+             {4096, 0.0002, 0.002, -0.85, 0.45, -0.347},
+             {16384, 0.0012, 0.009, -1.19, std::nullopt, std::nullopt}};
   t.message = "the budget ended; about 2.3 M more observations would decide";
   return t;
 }

@@ -70,6 +70,7 @@ TEST(Json, KeysOfATestStandInTheDocumentedOrder) {
                                            "allow",
                                            "detectable",
                                            "power",
+                                           "planned_looks",
                                            "looks",
                                            "gates",
                                            "samples",

@@ -58,10 +58,12 @@ TEST(PlanTable, PlansWhatARunThenDoes) {
     const Plan& plan = planned.suites[0]->tests[i].outcome.plan;
     EXPECT_EQ(plan.method.name, test.method) << test.name;
     EXPECT_EQ(plan.primaries[0], test.samples[0].primaries) << test.name;
-    ASSERT_LE(test.looks.size(), plan.looks.sizes.size()) << test.name;
+    EXPECT_EQ(plan.looks.sizes, test.planned_looks) << test.name;
+    ASSERT_LE(test.looks.size(), plan.looks.count()) << test.name;
     for (std::size_t k = 0; k < test.looks.size(); ++k) {
       EXPECT_EQ(plan.looks.sizes[k], test.looks[k].secondaries) << test.name;
-      EXPECT_EQ(plan.looks.weights[k], test.looks[k].weight) << test.name;
+      EXPECT_EQ(plan.looks.alpha[k], test.looks[k].alpha) << test.name;
+      EXPECT_EQ(plan.looks.beta[k], test.looks[k].beta) << test.name;
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/plan/critical.h"
+#include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
@@ -51,7 +52,7 @@ std::string state_of(const std::string& test, ErrorShare share, std::span<const 
   TestOutcome outcome{.question = asked->question(test),
                       .place = {.inside = false, .share = share}};
   outcome.plan.method = methods_for(outcome.question).front();
-  outcome.plan.looks = {{1000}, {1}};
+  outcome.plan.looks = one_look(1000, outcome.place.share);
   const bool within = test == "within";
   outcome.plan.regions = {
       {.relation = within ? Relation::within : Relation::equal, .within = within ? 0.3 : 0}};

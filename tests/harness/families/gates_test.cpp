@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/plan/critical.h"
+#include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
@@ -23,7 +24,7 @@ tests: [{name: t, claim: )" + claim +
   TestOutcome outcome{.question = asked->question("t"),
                       .place = {.inside = false, .share = {.alpha = 0.01, .beta = 0.01}}};
   outcome.plan.method = methods_for(outcome.question).front();
-  outcome.plan.looks = {{1000}, {1}};
+  outcome.plan.looks = one_look(1000, outcome.place.share);
   std::vector<stats::JointMoments> sums(counted_costs);
   ChannelData data;
   for (int i = 0; i < 1000; ++i) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/plan/looks.h"
 #include "tests/harness/questions.h"
 
 namespace assay::harness {
@@ -20,7 +21,7 @@ tests:
   - {name: test, claim: mean(it) == 0}
 )");
   TestOutcome outcome{.question = asked->questions[0]};
-  outcome.plan.looks = {{1000}, {1}};
+  outcome.plan.looks = one_look(1000, outcome.place.share);
   outcome.gates = {
       gate_of(reports::Gate{.name = kind, .value = 4, .limit = 2, .state = "red"}, where)};
   return what_would_help(outcome);

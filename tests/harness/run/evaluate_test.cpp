@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "harness/families/families.h"
+#include "harness/plan/looks.h"
 #include "harness/run/holm.h"
 #include "tests/harness/normal_evidence.h"
 #include "tests/harness/running.h"
@@ -29,7 +30,7 @@ TestWork judged(double p, double weight, Verdict verdict, const TestEntry& test)
   outcome.question.subjects = {Subject{.channels = {0}}};
   outcome.place = {.inside = true, .weight = weight, .share = {alpha * weight, 0.01}};
   outcome.plan.regions = {Regions{.relation = Relation::equal}};
-  outcome.plan.looks = {{1000}, {1}};
+  outcome.plan.looks = one_look(1000, outcome.place.share);
   outcome.verdict = verdict;
   ChannelOutcome& channel = outcome.channels.emplace_back();
   channel.name = "value";

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "harness/plan/looks.h"
 #include "harness/suite/run_options.h"
 #include "reports/words/effect.h"
 #include "tests/harness/questions.h"
@@ -124,7 +125,7 @@ tests: [{name: t, claim: distribution(area.point) == density, detect: 0.05}]
 )");
   TestOutcome outcome{.question = asked->question("t")};
   outcome.verdict = Verdict::pass;
-  outcome.plan.looks = {{1000}, {1}};
+  outcome.plan.looks = one_look(1000, outcome.place.share);
   ChannelOutcome channel{.regions = {.detect = 0.05}};
   channel.evidence.distance = true;
   channel.decision.log_p_forbidden = std::log(0.0125);
