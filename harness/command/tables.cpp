@@ -54,7 +54,7 @@ std::string page_of(const MethodRow& row) {
   say(row.is.corrects_skewness, "It estimates the skewness from the data.");
   say(row.is.of_normal_values, "It takes the values for nearly normal.");
   say(row.is.of_distinct_values, "Coarsely rounded values are refused.");
-  say(row.is.anytime_valid, "Its p-value is valid at every look.");
+  say(row.is.over_looks == stats::LookLaw::anytime_valid, "Its p-value is valid at every look.");
   return page;
 }
 

@@ -76,7 +76,6 @@ enum class FromPilot { nothing, cells, weights };
 struct MethodTraits {
   bool exact = false;     ///< The level holds at every sample size; the reference must be exact.
   bool in_range = false;  ///< Rests on a channel's declared range.
-  bool anytime_valid = false;       ///< The p-value is valid at every look, however many are taken.
   bool of_observations = false;     ///< The moments of an earlier run are too little.
   bool of_batches = false;          ///< Tests means of consecutive observations.
   bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.

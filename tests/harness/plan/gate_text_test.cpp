@@ -49,7 +49,7 @@ TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
       "suite: gates\nestimators:\n  it: {plugin: analytic/normal}\ntests:\n"
       "  - {name: test, claim: mean(it) == 0}\n");
   TestOutcome outcome{.question = asked->questions[0]};
-  outcome.plan.looks = {{1000}, {1}};
+  outcome.plan.looks = one_look(1000, outcome.place.share);
   outcome.gates = {gate_of(reports::Gate{
       .name = "share of one observation", .value = 0.5, .limit = 0.5, .state = "red"})};
   EXPECT_THAT(what_would_help(outcome), HasSubstr("about 9000 `secondaries` would do"));
