@@ -163,17 +163,17 @@ void variances(const Facts& f, std::vector<Draft>& drafts) {
       {"chi-square", "variance <= number", against("<=", 1), against("<=", factor), detect});
   drafts.push_back({"F", "variance == variance", "variance(x) == variance(y)",
                     fmt::format("variance(x) == {:.17g} * variance(y)", factor), detect});
-  drafts.push_back({.method = "log-variance",
+  drafts.push_back({.method = "influence-t",
                     .question = "variance == number",
                     .true_claim = against("==", 1),
                     .is_default = false});
-  drafts.push_back({.method = "log-variance",
+  drafts.push_back({.method = "influence-t",
                     .question = "variance == variance",
                     .true_claim = "variance(x) == variance(y)",
                     .is_default = false});
-  drafts.push_back({"log-total-variance", "total variance == number", "total_" + against("==", 1),
+  drafts.push_back({"influence-t", "total variance == number", "total_" + against("==", 1),
                     "total_" + against("==", factor), detect});
-  drafts.push_back({"log-efficiency", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
+  drafts.push_back({"influence-t", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
                     "efficiency(y) == efficiency(scaled)", detect});
   const auto costly = [&](const char* method, const char* question, const std::string& true_claim,
                           const std::string& false_claim) {
@@ -184,11 +184,11 @@ void variances(const Facts& f, std::vector<Draft>& drafts) {
                       .detect = detect,
                       .cost = CostKind::rays});
   };
-  costly("log-efficiency", "efficiencies at random costs",
+  costly("influence-t", "efficiencies at random costs",
          "efficiency(costly) == efficiency(other_costly)", "");
-  costly("log-cost", "cost == cost", "cost(costly) == cost(other_costly)",
+  costly("influence-t", "cost == cost", "cost(costly) == cost(other_costly)",
          fmt::format("cost(costly) == {:.17g} * cost(other_costly)", factor));
-  costly("log-cost", "cost <= cost", "cost(costly) <= cost(other_costly)",
+  costly("influence-t", "cost <= cost", "cost(costly) <= cost(other_costly)",
          fmt::format("cost(costly) <= {:.17g} * cost(other_costly)", 1 / factor));
   drafts.push_back({"slope", "slope of variance", "slope(variance(x)) == 2",
                     fmt::format("slope(variance(x)) == {}", 2 - slope_effect),

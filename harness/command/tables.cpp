@@ -26,6 +26,8 @@ const char* kept_text(Keeps keeps) {
       return "the values of all channels together";
     case Keeps::cells:
       return "counts in the cells of the density";
+    case Keeps::powers:
+      return "eight moments of a channel";
     case Keeps::costs:
       return "moments of values and costs together";
     case Keeps::group_variances:

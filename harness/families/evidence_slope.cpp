@@ -8,7 +8,8 @@
 
 #include "harness/families/costs.h"
 #include "harness/theta/constant.h"
-#include "stats/variances/log_variance.h"
+#include "stats/gates/assumption_gates.h"
+#include "stats/variances/influence.h"
 #include "stats/variances/slope.h"
 
 namespace assay::harness {
@@ -24,18 +25,18 @@ constexpr double least_p_of_fit = 1e-5;
 /// Each point of a bias has a truth.
 bool of_biases(const Question& question) { return !question.truths.empty(); }
 
-SlopePoint logarithm_of_cost(const Question& question, std::size_t i, const ChannelData& data) {
-  const Moments& cost = counted_cost(question, data).cost;
-  return {.size = question.sizes[i],
-          .estimate = std::log(cost.mean / question.subjects[i].averaged(data.primaries)),
-          .standard_error = cost.standard_error() / cost.mean};
+bool of_logarithms(const Question& question) {
+  return question.is().of_spread || of_costs(question);
 }
 
-SlopePoint logarithm_of_variance(const Question& question, std::size_t i, const ChannelData& data) {
-  return {
-      .size = question.sizes[i],
-      .estimate = std::log(data.moments.variance() * question.subjects[i].averaged(data.primaries)),
-      .standard_error = stats::log_variance_standard_error(data.moments)};
+/// The cost or the variance of a primary at point i.
+stats::Influence influence_of(const Question& question, std::size_t i, const ChannelData& data) {
+  const double averaged = std::log(question.subjects[i].averaged(data.primaries));
+  stats::Influence influence = of_costs(question)
+                                   ? stats::influence_of_mean(counted_cost(question, data).cost())
+                                   : stats::influence_of_variance(powers_of_values(data));
+  influence.log_value += of_costs(question) ? -averaged : averaged;
+  return influence;
 }
 
 /// True if one reference serves all points: its error shifts them together.
@@ -66,13 +67,13 @@ SlopeData biases(const Question& question, std::size_t channel, std::span<const 
 
 SlopeData points_of(const Question& question, std::size_t channel,
                     std::span<const ChannelData> data) {
-  if (!question.is().of_spread && !of_costs(question)) {
-    return biases(question, channel, data);
-  }
+  if (!of_logarithms(question)) return biases(question, channel, data);
   SlopeData slope{.scale = stats::SlopeScale::logarithms};
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    slope.points.push_back(of_costs(question) ? logarithm_of_cost(question, i, data[i])
-                                              : logarithm_of_variance(question, i, data[i]));
+    const stats::Influence influence = influence_of(question, i, data[i]);
+    slope.points.push_back({.size = question.sizes[i],
+                            .estimate = influence.log_value,
+                            .standard_error = influence.relative.standard_error()});
   }
   return slope;
 }
@@ -147,6 +148,22 @@ Evidence evidence_of_slope(const Question& question, std::size_t channel,
           .at = at,
           .interval = interval,
           .quantity = "difference from the claimed slope"};
+}
+
+std::vector<Gate> skewness_gates(const Question& question, std::size_t channel,
+                                 std::span<const ChannelData> data, double critical) {
+  std::vector<Gate> gates;
+  // Channels share their costs: the first has the gates.
+  if (!of_logarithms(question) || (of_costs(question) && channel != 0)) return gates;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    Moments relative = influence_of(question, i, data[i]).relative;
+    if (!(relative.m2 > 0)) continue;
+    // The bend of the logarithm takes 3/2 of their standard deviation off the skewness g1.
+    relative.m3 -= 1.5 * relative.m2 * relative.m2 / static_cast<double>(relative.count);
+    gates.push_back(gate_of(stats::skewness_gate(relative, critical),
+                            " of " + question.subjects[i].estimator->name));
+  }
+  return gates;
 }
 
 Gate power_law_gate(const Question& question, std::size_t channel,

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "harness/theta/gate.h"
 #include "harness/theta/method.h"
@@ -17,6 +18,10 @@ Evidence evidence_of_slope(const Question& question, std::size_t channel,
 inline bool of_costs(const Question& question) {
   return question.test->claim.left.row->counts_cost;
 }
+
+/// Gates of the points whose logarithms are fitted, on the skewness of their influence values.
+std::vector<Gate> skewness_gates(const Question& question, std::size_t channel,
+                                 std::span<const ChannelData> data, double critical);
 
 /// Checks that the points lie on a power law, by p of the slope that fits best. The gate is red up
 /// to max(`level`, 1e-5); `level` is the largest at which a verdict rejects a slope. A red gate

@@ -4,53 +4,143 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
+#include "harness/plan/critical.h"
 #include "harness/plan/planned_rates.h"
 #include "harness/plan/sample_size.h"
 #include "harness/plan/secondaries.h"
+#include "harness/theta/inversion.h"
+#include "stats/gates/assumption_gates.h"
+#include "stats/means/skewness_corrected_t.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {
 namespace {
 
-double allocation(const stats::SampleSizes& sizes) { return sizes.y / sizes.x; }
+using stats::Influence;
+using stats::Interval;
+using stats::TestResult;
 
-/// Chi-square and F take flatter data for normal ones and find as little as in those, or in what
-/// they allow for. A value of 1 stands for no second subject or for two values.
-double kurtosis_for(const Method& method, double kurtosis, double allowed) {
-  return method.is.of_normal_values && kurtosis > 1 ? std::max(3 + allowed, kurtosis)
-                                                    : std::max(1.0, kurtosis);
+// ---- Evidence
+
+double sign_of(const LogRatio& ratio) { return ratio.inverse ? -1 : 1; }
+
+double truth_of(const LogRatio& ratio, std::size_t side, std::span<const double> truths) {
+  return truths[ratio.shares_truth ? 0 : side];
 }
 
-stats::LogVariancePlan variance_plan(const Method& method, const stats::ErrorRates& rates,
-                                     double allow, const PlannedChannel& channel,
-                                     double allocation = 1) {
-  const stats::ExcessKurtoses allowed = method.frozen.largest_excess_kurtosis();
-  return {.kurtosis_x = kurtosis_for(method, channel.kurtosis, allowed.x),
-          .kurtosis_y = kurtosis_for(method, channel.other_kurtosis, allowed.y),
-          .allocation = allocation,
-          .allow = std::exp(allow),
-          .rates = rates};
+TestResult test(const LogRatio& ratio, std::span<const Influence> sides, double theta) {
+  const double log_ratio = sign_of(ratio) * (theta + ratio.log_null);
+  TestResult result = sides.size() == 1 ? stats::influence_t(sides[0], log_ratio)
+                                        : stats::influence_t(sides[0], sides[1], log_ratio);
+  if (!ratio.inverse) return result;
+  result.statistic = -result.statistic;
+  std::swap(result.log_p_lower, result.log_p_upper);
+  return result;
 }
 
-std::optional<std::uint64_t> for_variances(const Method& method, const ErrorShare& share,
-                                           const PlannedChannel& channel) {
+TestResult over_truths(const LogRatio& ratio, TestResult as_known, double theta) {
+  std::vector<stats::UncertainReference> references;
+  for (const RatioSide& side : ratio.sides) references.push_back(side.truth);
+  if (ratio.shares_truth) references.resize(1);
+  const auto at = [&](std::span<const double> truths) {
+    std::vector<Influence> sides;
+    for (std::size_t i = 0; i < ratio.sides.size(); ++i) {
+      sides.push_back(ratio.sides[i].influence(truth_of(ratio, i, truths)));
+    }
+    return test(ratio, sides, theta);
+  };
+  as_known.log_p_lower = stats::log_p_over_references(
+      [&](std::span<const double> truths) { return at(truths).log_p_lower; }, references);
+  as_known.log_p_upper = stats::log_p_over_references(
+      [&](std::span<const double> truths) { return at(truths).log_p_upper; }, references);
+  return as_known;
+}
+
+// ---- Plans
+
+// Fewer observations do not show how heavy the tail of their squares is.
+constexpr std::uint64_t fewest_for_a_variance = usual_secondaries;
+
+bool varies(const PlannedChannel& channel) {
+  return channel.standard_deviation > 0 || channel.other_deviation > 0;
+}
+
+/// Chi-square and F take flatter data for normal ones and find as little as in those.
+double deviation_for(const Method& method, double deviation) {
+  return method.is.of_normal_values && deviation > 0 ? std::max(std::numbers::sqrt2, deviation)
+                                                     : deviation;
+}
+
+/// One mean as uncertain as theta, of as many observations as the smaller side.
+struct PlannedMean {
+  stats::MeanPlan plan;
+  double count;
+};
+PlannedMean mean_plan(const Method& method, const stats::ErrorRates& rates, double allow,
+                      const PlannedChannel& channel, const stats::SampleSizes& sizes) {
+  const double n = std::min(sizes.x, sizes.y);
+  const double x = deviation_for(method, channel.standard_deviation) * std::sqrt(n / sizes.x);
+  const double y = deviation_for(method, channel.other_deviation) * std::sqrt(n / sizes.y);
+  return {.plan = {.standard_deviation = std::hypot(x, y), .allow = allow, .rates = rates},
+          .count = n};
+}
+
+bool is_within(const Regions& regions) { return regions.relation == Relation::within; }
+
+std::optional<std::uint64_t> planned_size(const Method& method, const ErrorShare& share,
+                                          const PlannedChannel& channel) {
   const Regions& regions = channel.regions;
-  if (regions.relation == Relation::within) {
-    return stats::log_variance_sample_size(
-        variance_plan(method, planned_rates(share, regions), 0, channel), std::exp(regions.within));
-  }
-  return stats::log_variance_sample_size(
-      variance_plan(method, planned_rates(share, regions), regions.allow, channel),
-      std::exp(*regions.detect));
-}
-
-/// Numbers without spread, and variances of two observations (kurtosis 1), have no power.
-bool has_spread(const PlannedChannel& channel) {
-  return channel.kurtosis + channel.other_kurtosis > 2;
+  const bool within = is_within(regions);
+  return stats::student_t_sample_size(
+      mean_plan(method, planned_rates(share, regions), within ? 0 : regions.allow, channel, {})
+          .plan,
+      within ? regions.within : *regions.detect);
 }
 
 }  // namespace
+
+Evidence evidence_of(const LogRatio& ratio) {
+  std::vector<Influence> known;
+  double variance = 0;
+  bool uncertain = false;
+  for (const RatioSide& side : ratio.sides) {
+    known.push_back(side.influence(side.truth.known.value));
+    variance += std::pow(known.back().relative.standard_error(), 2);
+    uncertain = uncertain || side.truth.known.standard_error > 0;
+  }
+  const double second = known.size() == 1 ? 0 : known[1].log_value;
+  const double estimate = sign_of(ratio) * (known[0].log_value - second) - ratio.log_null;
+  const auto at = [=](double theta) {
+    const TestResult as_known = test(ratio, known, theta);
+    return uncertain ? over_truths(ratio, as_known, theta) : as_known;
+  };
+  const double error = std::sqrt(variance);
+  const auto interval = [=](double confidence) {
+    if (error == 0) return Interval{estimate, estimate, confidence};
+    return interval_by_inversion(at, {.estimate = estimate, .step = error}, confidence);
+  };
+  return {.estimate = estimate,
+          .at = at,
+          .interval = interval,
+          .quantity = ratio.quantity,
+          .ratio = true,
+          .exact = error == 0};
+}
+
+double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2) / averaged; }
+
+MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps,
+                        decltype(MethodRow::evidence) evidence) {
+  return {"influence-t",
+          "Student's t of influence values with Hall's correction: variances, costs, efficiencies",
+          answers,
+          keeps,
+          evidence,
+          {.scores = true, .over_looks = stats::LookLaw::independent_increments}};
+}
 
 void LogTheta::check_margin(const Question& question, const Margin& margin) const {
   Theta::check_margin(question, margin);
@@ -60,39 +150,153 @@ void LogTheta::check_margin(const Question& question, const Margin& margin) cons
       fmt::format("a margin on a ratio of {} is relative; give it in per cent", plural_));
 }
 
+std::optional<ThetaError> LogTheta::error(const Question& question, std::size_t channel,
+                                          std::span<const ChannelData> data) const {
+  ThetaError error;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const std::optional<double> spread = this->spread(question, i, channel, data);
+    if (!spread) return std::nullopt;
+    double& part = question.subjects[i].setup->observations() ? error.fixed : error.drawn;
+    part = std::hypot(part, std::sqrt(*spread / static_cast<double>(data[i].moments.count)));
+  }
+  if (!question.references.empty()) {
+    error.fixed = std::hypot(error.fixed, question.references[channel].standard_error);
+  }
+  return error;
+}
+
+std::uint64_t LogTheta::choose(const Question& question, const FamilyPlace&, const Pilots&,
+                               std::uint64_t, Plan& plan) const {
+  return std::max(usual_secondaries, secondaries_of_floor(question, plan));
+}
+
 std::optional<std::uint64_t> LogTheta::secondaries(const Question& question,
                                                    const ErrorShare& share, const Pilots& pilots,
                                                    const Plan& plan) const {
   if (!all_piloted(question, pilots)) return std::nullopt;
   return most_of_channels(question, [&](std::size_t i) -> std::optional<std::uint64_t> {
     const Regions& regions = plan.regions[i];
-    const std::optional<PlannedChannel> channel = from_pilots(question, i, pilots, plan);
-    if (!channel || (regions.relation != Relation::within && !regions.detect)) return std::nullopt;
-    return for_variances(plan.method, share, *channel).value_or(impossible_secondaries);
+    const auto channel = from_pilots(question, i, regions, pilots, plan);
+    if (!channel || (!is_within(regions) && !regions.detect)) return std::nullopt;
+    return planned_size(plan.method, share, *channel).value_or(impossible_secondaries);
   });
+}
+
+std::optional<PlannedChannel> LogTheta::planned(const Question& question, const Regions& regions,
+                                                const Pilots& pilots, const Plan& plan) const {
+  for (const Subject& side : question.subjects) {
+    if (side.setup->observations()) return std::nullopt;
+  }
+  return from_pilots(question, std::nullopt, regions, pilots, plan);
+}
+
+PlannedChannel LogTheta::observed(const Question& question, const Regions& regions,
+                                  std::size_t channel, std::span<const ChannelData> data) const {
+  PlannedChannel observed{.regions = regions};
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    double& deviation = i == 0 ? observed.standard_deviation : observed.other_deviation;
+    deviation = std::sqrt(spread(question, i, channel, data).value_or(0));
+  }
+  return observed;
 }
 
 std::optional<double> LogTheta::detectable(const Question& question, const TestSize& size,
                                            const Plan& plan, const PlannedChannel& channel) const {
-  if (!has_spread(channel)) return std::nullopt;
-  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
-  return std::log(stats::log_variance_detectable(
-      variance_plan(plan.method, planned_rates(size.share, channel.regions), channel.regions.allow,
-                    channel, allocation(sizes)),
-      sizes.x));
+  if (!varies(channel)) return std::nullopt;
+  const PlannedMean mean =
+      mean_plan(plan.method, planned_rates(size.share, channel.regions), channel.regions.allow,
+                channel, sizes_of(question, size.secondaries));
+  return stats::student_t_detectable(mean.plan, mean.count);
 }
 
 std::optional<double> LogTheta::power(const Question& question, const TestSize& size,
                                       const Plan& plan, const PlannedChannel& channel,
                                       double effect) const {
-  if (!has_spread(channel)) return std::nullopt;
-  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
-  const bool within = channel.regions.relation == Relation::within;
-  const double one_margin = stats::log_variance_power(
-      variance_plan(plan.method, planned_rates(size.share, channel.regions),
-                    within ? 0 : channel.regions.allow, channel, allocation(sizes)),
-      sizes.x, std::exp(within ? channel.regions.within : effect));
+  if (!varies(channel)) return std::nullopt;
+  const bool within = is_within(channel.regions);
+  const PlannedMean mean =
+      mean_plan(plan.method, planned_rates(size.share, channel.regions),
+                within ? 0 : channel.regions.allow, channel, sizes_of(question, size.secondaries));
+  const double one_margin =
+      stats::student_t_power(mean.plan, mean.count, within ? channel.regions.within : effect);
   return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
+}
+
+std::vector<Gate> LogTheta::gates(const TestOutcome& outcome, std::size_t channel,
+                                  std::span<const ChannelData> data, double critical) const {
+  const Question& question = outcome.question;
+  std::vector<Gate> gates;
+  if (outcome.plan.method.keeps == Keeps::blocks) return gates;
+  const std::string name = channel_suffix(question, channel);
+  std::vector<Influence> sides;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const std::string mine = name + " of " + question.subjects[i].estimator->name;
+    const std::uint64_t count = data[i].moments.count;
+    if (is.of_spread && count < fewest_for_a_variance) {
+      gates.push_back(gate_of(reports::Gate{.name = "observations of a variance",
+                                            .value = static_cast<double>(count),
+                                            .limit = static_cast<double>(fewest_for_a_variance),
+                                            .state = "red"},
+                              mine));
+    }
+    const std::optional<Influence> influence = this->influence(question, i, channel, data);
+    if (!influence) return gates;
+    sides.push_back(*influence);
+    if (influence->relative.m2 > 0) {
+      gates.push_back(gate_of(
+          stats::dominance_gate(influence->relative), mine));
+    }
+  }
+  const auto& x = sides[0].relative;
+  if (sides.size() == 1 && x.m2 > 0) {
+    gates.push_back(gate_of(stats::residual_skewness_gate(x, {.value = 1}, critical), name));
+  } else if (sides.size() == 2 && x.m2 + sides[1].relative.m2 > 0) {
+    gates.push_back(
+        gate_of(stats::residual_skewness_gate(x, sides[1].relative, 1, critical), name));
+  }
+  return gates;
+}
+
+std::optional<double> LogTheta::spread(const Question& question, std::size_t subject,
+                                       std::size_t channel,
+                                       std::span<const ChannelData> data) const {
+  const std::optional<Influence> influence = this->influence(question, subject, channel, data);
+  if (!influence) return std::nullopt;
+  const double error = influence->relative.standard_error();
+  return static_cast<double>(data[subject].moments.count) * error * error;
+}
+
+std::optional<double> LogTheta::pilot_spread(const Question& question, std::size_t subject,
+                                             std::optional<std::size_t> channel,
+                                             const Pilots& pilots, const Plan& plan) const {
+  const Subject& side = question.subjects[subject];
+  const Pilot& pilot = *pilot_of(question, subject, pilots);
+  const double averaged = side.averaged(plan.primaries[subject]);
+  std::optional<double> most;
+  for (std::size_t i = 0; i < side.channels.size(); ++i) {
+    if (channel && !is.joins_channels && i != *channel) continue;
+    const std::size_t index = side.channels[i];
+    const stats::Moments values = pilot.moments(index);
+    const PilotMoments seen{.values = values, .joint = joint_moments(pilot.sums->details(index))};
+    const auto spread = predicted_spread(question, seen, averaged);
+    if (spread) most = std::max(most.value_or(0), *spread);
+  }
+  return most;
+}
+
+std::optional<PlannedChannel> LogTheta::from_pilots(const Question& question,
+                                                    std::optional<std::size_t> channel,
+                                                    const Regions& regions, const Pilots& pilots,
+                                                    const Plan& plan) const {
+  if (!all_piloted(question, pilots)) return std::nullopt;
+  PlannedChannel planned{.regions = regions};
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const std::optional<double> spread = pilot_spread(question, i, channel, pilots, plan);
+    if (!spread) return std::nullopt;
+    (i == 0 ? planned.standard_deviation : planned.other_deviation) = std::sqrt(*spread);
+  }
+  if (!varies(planned)) return std::nullopt;
+  return planned;
 }
 
 }  // namespace assay::harness

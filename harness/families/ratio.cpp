@@ -1,104 +1,112 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "harness/families/costs.h"
-#include "harness/families/evidence_efficiency.h"
 #include "harness/families/log_theta.h"
 #include "harness/families/lost_to_rounding.h"
-#include "harness/families/spread_choice.h"
-#include "harness/plan/sample_size.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
-#include "harness/sampling/group_variance.h"
 #include "stats/means/student_t.h"
 #include "stats/means/welch_t.h"
-#include "stats/variances/cost_ratio.h"
-#include "stats/variances/log_efficiency.h"
 
 namespace assay::harness {
 namespace {
 
-using stats::Interval;
 using stats::JointMoments;
 using stats::Moments;
 
-Interval moved(const Interval& interval, double by) {
-  return {interval.low - by, interval.high - by, interval.confidence};
+/// Count times the variance of ln(mean squared error) that the truth's own error makes, to first
+/// and second order. More observations do not reduce it.
+double spread_of_truth(const Moments& x, const Constant& truth) {
+  const double n = static_cast<double>(x.count);
+  const double error = truth.standard_error;
+  const double bias = x.mean_less(truth.value);
+  const double squared = x.m2 / n + bias * bias;
+  const double of_truth = error * std::sqrt(4 * bias * bias + 2 * error * error) / squared;
+  return n * of_truth * of_truth;
 }
 
-/// Evidence on ln(mean x / (factor * mean y)); both means are positive.
-Evidence of_means(const Moments& x, const Moments& y, double factor) {
-  const double estimate = std::log(x.mean / (y.mean * factor));
-  const bool exact = x.m2 == 0 && y.m2 == 0;
-  return {.estimate = estimate,
-          .at = [=](double t) { return stats::log_cost_ratio(x, y, factor * std::exp(t)); },
-          .interval =
-              [=](double confidence) {
-                if (exact) return Interval{estimate, estimate, confidence};
-                return moved(stats::log_cost_ratio_interval(x, y, confidence), std::log(factor));
-              },
-          .quantity = "",
-          .ratio = true,
-          .exact = exact};
+double log_null(const Question& question, std::size_t channel) {
+  return std::log(question.of_two() ? question.factor : question.references[channel].value);
 }
 
-Evidence of_mean(const Moments& x, double null) {
-  return {
-      .estimate = std::log(x.mean / null),
-      .at = [=](double t) { return stats::log_cost(x, null * std::exp(t)); },
-      .interval = [=](double confidence) { return stats::log_cost_interval(x, null, confidence); },
-      .quantity = "",
-      .ratio = true,
-      .exact = x.m2 == 0};
+/// A quantity that no truth enters.
+RatioSide side_of(const stats::Influence& influence) {
+  return {.influence = [influence](double) { return influence; }};
 }
 
-/// Means per primary, of one subject or two.
-Evidence compare_means(const Question& question, std::span<const Moments> means,
-                       std::span<const double> divisors) {
-  if (!question.of_two()) {
-    return of_mean(means[0], question.references[0].value * divisors[0]);
-  }
-  return of_means(means[0], means[1], question.factor * divisors[0] / divisors[1]);
+stats::Influence cost_of(const Question& question, std::size_t subject, const ChannelData& data) {
+  stats::Influence cost = stats::influence_of_mean(counted_cost(question, data).cost());
+  cost.log_value -= std::log(question.subjects[subject].averaged(data.primaries));
+  return cost;
 }
 
-/// Asymptotic, valid from 1000 observations on.
-Evidence cost_evidence(const Method&, const Question& question, std::size_t,
+Evidence cost_evidence(const Method&, const Question& question, std::size_t channel,
                        std::span<const ChannelData> data) {
-  std::vector<Moments> costs;
-  std::vector<double> divisors;
+  LogRatio ratio{.sides = {}, .log_null = log_null(question, channel)};
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    costs.push_back(counted_cost(question, data[i]).cost);
-    divisors.push_back(question.subjects[i].averaged(data[i].primaries));
+    ratio.sides.push_back(side_of(cost_of(question, i, data[i])));
   }
-  Evidence evidence = compare_means(question, costs, divisors);
-  evidence.quantity = question.of_two() ? "ratio of costs" : "cost over the reference";
-  return evidence;
+  ratio.quantity = question.of_two() ? "ratio of costs" : "cost over the reference";
+  return evidence_of(ratio);
+}
+
+stats::Influence total_variance_of(const Question& question, std::size_t subject,
+                                   const ChannelData& data) {
+  if (!(data.group_variances.mean > 0)) {
+    throw std::domain_error("no channel of `" + question.subjects[subject].estimator->name +
+                            "` varies: it has no total variance");
+  }
+  stats::Influence total = stats::influence_of_mean(data.group_variances);
+  total.log_value += std::log(question.subjects[subject].averaged(data.primaries));
+  return total;
+}
+
+Evidence total_variance_evidence(const Method&, const Question& question, std::size_t channel,
+                                 std::span<const ChannelData> data) {
+  LogRatio ratio{.sides = {}, .log_null = log_null(question, channel)};
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    ratio.sides.push_back(side_of(total_variance_of(question, i, data[i])));
+  }
+  ratio.quantity =
+      question.of_two() ? "ratio of total variances" : "total variance over the reference";
+  return evidence_of(ratio);
+}
+
+/// The truth about which a subject's mean squared error stands for the variance; nullopt if none
+/// does.
+std::optional<Constant> truth_beside(const Question& question, std::size_t subject,
+                                     std::size_t channel, std::span<const ChannelData> data) {
+  if (question.truths[subject].empty()) return std::nullopt;
+  return truth_of(question, subject, channel, data);
+}
+
+/// Error times cost, the inverse of the efficiency.
+RatioSide inverse_efficiency(const Question& question, std::size_t subject, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  const JointMoments sample = counted_cost(question, data[subject]);
+  const auto truth = truth_beside(question, subject, channel, data);
+  if (!truth) return side_of(stats::influence_of_variance_and_cost(sample));
+  return {.influence = [sample](double t) { return stats::influence_of_error_and_cost(sample, t); },
+          .truth = {.known = {truth->value, truth->standard_error}, .turn = sample.x().mean}};
 }
 
 Evidence efficiency_evidence(const Method&, const Question& question, std::size_t channel,
                              std::span<const ChannelData> data) {
-  return evidence_of_efficiency(question, channel, data);
-}
-
-Evidence total_variance_evidence(const Method&, const Question& question, std::size_t,
-                                 std::span<const ChannelData> data) {
-  std::vector<Moments> totals;
-  std::vector<double> divisors;
+  LogRatio ratio{.sides = {}, .log_null = log_null(question, channel), .inverse = true};
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    totals.push_back(data[i].group_variances);
-    if (!(totals.back().mean > 0)) {
-      throw std::domain_error("no channel of `" + question.subjects[i].estimator->name +
-                              "` varies: it has no total variance");
-    }
-    divisors.push_back(1 / question.subjects[i].averaged(data[i].primaries));
+    ratio.sides.push_back(inverse_efficiency(question, i, channel, data));
   }
-  Evidence evidence = compare_means(question, totals, divisors);
-  evidence.quantity =
-      question.of_two() ? "ratio of total variances" : "total variance over the reference";
-  return evidence;
+  if (question.of_two()) {
+    const auto first = truth_beside(question, 0, channel, data);
+    const auto second = truth_beside(question, 1, channel, data);
+    ratio.shares_truth = first && second && first->value == second->value &&
+                         first->standard_error == second->standard_error;
+  }
+  ratio.quantity = question.of_two() ? "ratio of efficiencies" : "efficiency over the reference";
+  return evidence_of(ratio);
 }
 
 /// ln(seconds per primary) of each replicate; for efficiency -ln(seconds * variance of a primary).
@@ -118,8 +126,6 @@ Moments logarithms(const Question& question, std::size_t subject, const ChannelD
   }
   return logs;
 }
-
-double squared_variation(const Moments& x) { return x.variance() / x.mean / x.mean; }
 
 /// Costs and efficiencies in seconds, from replicates: Student's or Welch's t on the logarithms of
 /// their costs, or of cost x variance. The mean logarithm is off by about 1 / replicate size, alike
@@ -151,97 +157,26 @@ Evidence evidence_of_replicates(const Method&, const Question& question, std::si
 bool in_seconds(const Question& question) { return question.test->cost == CostKind::seconds; }
 bool in_counts(const Question& question) { return !in_seconds(question); }
 
-/// A pilot of single primaries.
-struct PilotMoments {
-  const Moments& values;
-  const std::vector<JointMoments>& with_cost;
-};
-
-/// The spread of ln s2 is 2 for a normal law. A mean's excess kurtosis falls like 1 / its size.
-double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2) / averaged; }
-
-/// Theta is the logarithm of a ratio: first over second, or over the claimed number. The spread of
-/// a side is the number of observations times the variance of its logarithm. In planning 1 + the
-/// spread stands for a kurtosis.
+/// Claims in counts go by influence values, claims in seconds by replicates.
 class RatioTheta : public LogTheta {
  public:
   using LogTheta::LogTheta;
 
-  std::optional<PlannedChannel> planned(const Question& question, const Regions& regions,
-                                        const Pilots& pilots, const Plan& plan) const override {
-    for (const Subject& side : question.subjects) {
-      if (side.setup->observations()) return std::nullopt;
-    }
-    return worst_channel(question, regions, pilots, plan);
-  }
-
-  PlannedChannel observed(const Question& question, const Regions& regions, std::size_t channel,
-                          std::span<const ChannelData> data) const override {
-    const std::optional<double> second =
-        question.of_two() ? spread_of(question, 1, channel, data) : std::optional(0.0);
-    return {.regions = regions,
-            .kurtosis = 1 + spread_of(question, 0, channel, data).value_or(0),
-            .other_kurtosis = 1 + second.value_or(0)};
-  }
-
-  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
-                          std::span<const ChannelData> data, double x) const override {
-    return log_mean_gates(outcome, channel, data, x);
-  }
-
  protected:
-  virtual std::optional<double> spread(const Question&, std::size_t subject, std::size_t channel,
-                                       std::span<const ChannelData>) const = 0;
-  /// The spread of secondaries of `averaged` of the pilot's primaries.
-  virtual std::optional<double> predicted_spread(const Question&, const PilotMoments&,
-                                                 double averaged) const = 0;
-
- private:
-  std::optional<PlannedChannel> from_pilots(const Question& question, std::size_t channel,
-                                            const Pilots& pilots, const Plan& plan) const override {
-    return worst_channel(question, plan.regions[channel], pilots, plan);
-  }
-
-  std::optional<double> spread_of(const Question& question, std::size_t subject,
-                                  std::size_t channel, std::span<const ChannelData> data) const {
+  std::optional<double> spread(const Question& question, std::size_t subject, std::size_t channel,
+                               std::span<const ChannelData> data) const override {
     const ChannelData& mine = data[subject];
-    if (mine.replicates.empty()) return spread(question, subject, channel, data);
+    if (mine.replicates.empty()) return LogTheta::spread(question, subject, channel, data);
     const double per_count =
         static_cast<double>(mine.moments.count) / static_cast<double>(mine.replicates.size());
     return per_count * logarithms(question, subject, mine).variance();
   }
 
-  /// The largest over the subject's channels: a sum of variances spreads no more than its worst
-  /// part.
-  std::optional<double> pilot_spread(const Question& question, std::size_t subject,
-                                     const Pilots& pilots, const Plan& plan) const {
-    const Subject& side = question.subjects[subject];
-    const Pilot& pilot = *pilot_of(question, subject, pilots);
-    const double averaged = side.averaged(plan.primaries[subject]);
-    std::optional<double> most;
-    for (const std::size_t channel : side.channels) {
-      const PilotMoments seen{.values = pilot.moments(channel),
-                              .with_cost = pilot.sums->channels[channel].details().with_cost};
-      std::optional<double> spread;
-      if (!in_seconds(question)) {
-        spread = predicted_spread(question, seen, averaged);
-      } else if (seen.values.m2 > 0) {
-        spread = averaged_spread(seen.values.kurtosis() - 1, averaged);
-      }
-      if (spread) most = std::max(most.value_or(0), *spread);
-    }
-    return most;
-  }
-
-  std::optional<PlannedChannel> worst_channel(const Question& question, const Regions& regions,
-                                              const Pilots& pilots, const Plan& plan) const {
-    if (!all_piloted(question, pilots)) return std::nullopt;
-    const auto first = pilot_spread(question, 0, pilots, plan);
-    const auto second =
-        question.of_two() ? pilot_spread(question, 1, pilots, plan) : std::optional(0.0);
-    if (!first || !second || !(*first + *second > 0)) return std::nullopt;
-    return PlannedChannel{
-        .regions = regions, .kurtosis = 1 + *first, .other_kurtosis = 1 + *second};
+  /// The spread of a variance stands for that of a cost in seconds too.
+  std::optional<double> predicted_spread(const Question&, const PilotMoments& pilot,
+                                         double averaged) const override {
+    if (!(pilot.values.m2 > 0)) return std::nullopt;
+    return averaged_spread(pilot.values.kurtosis() - 1, averaged);
   }
 };
 
@@ -250,30 +185,28 @@ class CostTheta final : public RatioTheta {
   CostTheta() : RatioTheta({.joins_channels = true, .rests_on_tails = true}, "costs") {}
 
   const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{{"log-cost", "normal law of the logarithm of a cost",
-                                               in_counts, Keeps::costs, cost_evidence},
+    static const std::vector<MethodRow> table{influence_row(in_counts, Keeps::costs, cost_evidence),
                                               {"replicates", "t of replicates: costs in seconds",
                                                in_seconds, Keeps::blocks, evidence_of_replicates}};
     return table;
   }
   const Theta* of_images() const override { return this; }
   std::string channel_name(const Question&, std::size_t) const override { return "cost"; }
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
-    return choose_for_costs(question, place, pilots, most, plan);
-  }
 
  protected:
-  std::optional<double> spread(const Question& question, std::size_t subject, std::size_t,
-                               std::span<const ChannelData> data) const override {
-    return squared_variation(by_its_cost(question, data[subject].with_cost).cost);
+  std::optional<stats::Influence> influence(const Question& question, std::size_t subject,
+                                            std::size_t,
+                                            std::span<const ChannelData> data) const override {
+    if (data[subject].joint.empty()) return std::nullopt;
+    return cost_of(question, subject, data[subject]);
   }
   std::optional<double> predicted_spread(const Question& question, const PilotMoments& pilot,
                                          double averaged) const override {
-    if (pilot.with_cost.empty()) return std::nullopt;
-    const JointMoments& sample = by_its_cost(question, pilot.with_cost);
-    if (!(sample.cost.mean > 0)) return std::nullopt;
-    return squared_variation(sample.cost) / averaged;
+    if (in_seconds(question)) return RatioTheta::predicted_spread(question, pilot, averaged);
+    if (pilot.joint.empty()) return std::nullopt;
+    const Moments cost = by_its_cost(question, pilot.joint).cost();
+    if (!(cost.mean > 0)) return std::nullopt;
+    return stats::influence_of_mean(cost).relative.variance() / averaged;
   }
 };
 
@@ -283,15 +216,10 @@ class EfficiencyTheta final : public RatioTheta {
 
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{
-        {"log-efficiency", "normal law of the logarithm of an efficiency", in_counts, Keeps::costs,
-         efficiency_evidence},
+        influence_row(in_counts, Keeps::costs, efficiency_evidence),
         {"replicates", "t of replicates: efficiencies in seconds", in_seconds, Keeps::blocks,
          evidence_of_replicates}};
     return table;
-  }
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
-    return choose_for_spread(question, place, pilots, most, plan);
   }
   std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
                               std::span<const ChannelData> data) const override {
@@ -300,17 +228,29 @@ class EfficiencyTheta final : public RatioTheta {
   }
 
  protected:
+  std::optional<stats::Influence> influence(const Question& question, std::size_t subject,
+                                            std::size_t channel,
+                                            std::span<const ChannelData> data) const override {
+    if (data[subject].joint.empty()) return std::nullopt;
+    const RatioSide side = inverse_efficiency(question, subject, channel, data);
+    return side.influence(side.truth.known.value);
+  }
   std::optional<double> spread(const Question& question, std::size_t subject, std::size_t channel,
                                std::span<const ChannelData> data) const override {
-    return efficiency_spread(question, subject, channel, data);
+    std::optional<double> spread = RatioTheta::spread(question, subject, channel, data);
+    const auto truth = truth_beside(question, subject, channel, data);
+    if (spread && truth) *spread += spread_of_truth(data[subject].moments, *truth);
+    return spread;
   }
   std::optional<double> predicted_spread(const Question& question, const PilotMoments& pilot,
                                          double averaged) const override {
-    if (pilot.with_cost.empty()) return std::nullopt;
-    const JointMoments& sample = by_its_cost(question, pilot.with_cost);
-    if (!(sample.cost.mean > 0) || !(sample.x.m2 > 0)) return std::nullopt;
+    if (in_seconds(question)) return RatioTheta::predicted_spread(question, pilot, averaged);
+    if (pilot.joint.empty()) return std::nullopt;
+    const JointMoments& sample = by_its_cost(question, pilot.joint);
+    if (!(sample.of_cost.mean > 0) || !(sample.sum(2, 0) > 0)) return std::nullopt;
     // The error's spread about the truth is at most that about the mean, unless bias dominates.
-    return averaged_spread(stats::log_efficiency_of(sample).spread, averaged);
+    return averaged_spread(stats::influence_of_variance_and_cost(sample).relative.variance(),
+                           averaged);
   }
 };
 
@@ -322,18 +262,13 @@ class TotalVarianceTheta final : public RatioTheta {
 
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{
-        {"log-total-variance", "normal law of the logarithm of the variances' sum", any_question,
-         Keeps::group_variances, total_variance_evidence}};
+        influence_row(any_question, Keeps::group_variances, total_variance_evidence)};
     return table;
   }
   const Theta* of_images() const override { return this; }
   std::string channel_name(const Question& question, std::size_t channel) const override {
     return question.subjects[0].channels.size() > 1 ? "all channels"
                                                     : Theta::channel_name(question, channel);
-  }
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
-    return choose_for_spread(question, place, pilots, most, plan);
   }
   std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
                               std::span<const ChannelData> data) const override {
@@ -351,14 +286,11 @@ class TotalVarianceTheta final : public RatioTheta {
   }
 
  protected:
-  std::optional<double> spread(const Question&, std::size_t subject, std::size_t,
-                               std::span<const ChannelData> data) const override {
-    return static_cast<double>(variance_group) * squared_variation(data[subject].group_variances);
-  }
-  std::optional<double> predicted_spread(const Question&, const PilotMoments& pilot,
-                                         double averaged) const override {
-    if (!(pilot.values.m2 > 0)) return std::nullopt;
-    return averaged_spread(pilot.values.kurtosis() - 1, averaged);
+  std::optional<stats::Influence> influence(const Question& question, std::size_t subject,
+                                            std::size_t,
+                                            std::span<const ChannelData> data) const override {
+    if (data[subject].group_variances.count < 2) return std::nullopt;
+    return total_variance_of(question, subject, data[subject]);
   }
 };
 

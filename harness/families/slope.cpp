@@ -9,7 +9,6 @@
 #include "harness/families/costs.h"
 #include "harness/families/evidence_slope.h"
 #include "harness/families/families.h"
-#include "harness/families/spread_choice.h"
 #include "harness/plan/critical.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/planned_rates.h"
@@ -136,8 +135,11 @@ class SlopeTheta final : public Theta {
     static const std::vector<MethodRow> table{
         {"slope", "weighted fit of a power law: costs over a parameter", of_costs, Keeps::costs,
          slope},
-        {"slope", "weighted fit of a power law: means, variances or biases over a parameter",
-         [](const Question& q) { return !of_costs(q); }, Keeps::moments, slope}};
+        {"slope", "weighted fit of a power law: variances over a parameter",
+         [](const Question& q) { return q.is().of_spread; }, Keeps::powers, slope},
+        {"slope", "weighted fit of a power law: means or biases over a parameter",
+         [](const Question& q) { return !of_costs(q) && !q.is().of_spread; }, Keeps::moments,
+         slope}};
     return table;
   }
 
@@ -148,8 +150,8 @@ class SlopeTheta final : public Theta {
 
   std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
-    if (is.of_spread) return choose_for_spread(question, place, pilots, most, plan);
-    return secondaries_of_floor(question, plan);
+    const std::uint64_t floor = secondaries_of_floor(question, plan);
+    return is.of_spread || of_costs(question) ? std::max(usual_secondaries, floor) : floor;
   }
 
   /// Size for each subject, from a pilot that shows the claimed power law: its constant at the
@@ -170,7 +172,7 @@ class SlopeTheta final : public Theta {
 
   std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
                           std::span<const ChannelData> data, double x) const override {
-    std::vector<Gate> gates = log_mean_gates(outcome, channel, data, x);
+    std::vector<Gate> gates = skewness_gates(outcome.question, channel, data, x);
     gates.push_back(power_law_gate(outcome.question, channel, data,
                                    largest_level(outcome.share(), outcome.plan.regions[channel])));
     return gates;

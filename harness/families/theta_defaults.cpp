@@ -73,6 +73,9 @@ std::string Theta::lack_of_numbers(const DrawnTest& test, std::size_t channel,
   for (std::size_t i = 0; i < data.size() && !is.of_single_values; ++i) {
     if (is_constant(question, i, channel, data[i].moments)) continue;
     std::string reason = beyond_doubles(data[i].moments, question.subjects[i].estimator->name);
+    for (const stats::JointMoments& powers : data[i].joint) {
+      if (reason.empty()) reason = beyond_doubles(powers, question.subjects[i].estimator->name);
+    }
     if (!reason.empty()) return reason;
   }
   return "";

@@ -2,95 +2,95 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "harness/families/costs.h"
 #include "harness/families/log_theta.h"
 #include "harness/families/lost_to_rounding.h"
-#include "harness/families/spread_choice.h"
+#include "harness/plan/critical.h"
+#include "harness/plan/pilot_shape.h"
 #include "harness/plan/rows.h"
+#include "harness/plan/secondaries.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/inversion.h"
+#include "harness/theta/methods.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
-#include "stats/variances/log_variance.h"
 
 namespace assay::harness {
 namespace {
 
 using stats::Moments;
 
-/// theta = ln(Var x per primary / v0).
-Evidence variance_against_number(bool chi_square, const Method& method, const Question& question,
-                                 std::size_t channel, const ChannelData& data) {
-  const Moments x = data.moments;
-  const double null =
-      question.references[channel].value / question.subjects[0].averaged(data.primaries);
-  const double excess = method.frozen.excess_kurtosis(channel).x;
-  const auto at = [=](double theta) {
-    const double variance = null * std::exp(theta);
-    return chi_square ? stats::chi_square_variance(x, variance, excess)
-                      : stats::log_variance(x, variance);
-  };
-  const auto interval = [=](double confidence) {
-    if (!chi_square) return stats::log_variance_interval(x, null, confidence);
-    return map_ends(stats::chi_square_variance_interval(x, confidence, excess),
-                    [=](double variance) { return std::log(variance / null); });
-  };
-  return {.estimate = std::log(x.variance() / null),
-          .at = at,
-          .interval = interval,
-          .quantity = "variance over the reference",
-          .ratio = true};
+/// The variance of the first over that of the second, or over the number, where theta is 0.
+double null_of(const Question& question, std::size_t channel, std::span<const ChannelData> data) {
+  const double x = question.subjects[0].averaged(data[0].primaries);
+  if (!question.of_two()) return question.references[channel].value / x;
+  return question.factor * question.subjects[1].averaged(data[1].primaries) / x;
 }
 
-/// theta = ln(Var x / (c Var y)), each per primary.
-Evidence variance_against_variance(bool f, const Method& method, const Question& question,
-                                   std::size_t channel, std::span<const ChannelData> data) {
+const char* quantity_of(const Question& question) {
+  return question.of_two() ? "ratio of variances" : "variance over the reference";
+}
+
+/// By chi-square or F, for normal values.
+Evidence of_normal_values(const Method&, const Question& question, std::size_t channel,
+                          std::span<const ChannelData> data) {
   const Moments x = data[0].moments;
-  const Moments y = data[1].moments;
-  const double null = question.factor * question.subjects[1].averaged(data[1].primaries) /
-                      question.subjects[0].averaged(data[0].primaries);
-  const stats::ExcessKurtoses excess = method.frozen.excess_kurtosis(channel);
+  const Moments y = question.of_two() ? data[1].moments : Moments{};
+  const bool two = question.of_two();
+  const double null = null_of(question, channel, data);
   const auto at = [=](double theta) {
-    const double ratio = null * std::exp(theta);
-    return f ? stats::f_ratio(x, y, ratio, excess) : stats::log_variance_ratio(x, y, ratio);
+    const double value = null * std::exp(theta);
+    return two ? stats::f_ratio(x, y, value) : stats::chi_square_variance(x, value);
   };
   const auto interval = [=](double confidence) {
-    if (f) {
-      return map_ends(stats::f_ratio_interval(x, y, confidence, excess),
-                      [=](double ratio) { return std::log(ratio / null); });
-    }
-    return map_ends(stats::log_variance_ratio_interval(x, y, confidence),
-                    [=](double ln_ratio) { return ln_ratio - std::log(null); });
+    return map_ends(two ? stats::f_ratio_interval(x, y, confidence)
+                        : stats::chi_square_variance_interval(x, confidence),
+                    [=](double value) { return std::log(value / null); });
   };
-  return {.estimate = std::log(x.variance() / y.variance() / null),
+  return {.estimate = std::log(x.variance() / (two ? y.variance() : 1) / null),
           .at = at,
           .interval = interval,
-          .quantity = "ratio of variances",
+          .quantity = quantity_of(question),
           .ratio = true};
 }
 
-/// Evidence about one or two variances, by the exact test of normal values or by logarithms.
-template <bool exact>
-Evidence of_variances(const Method& method, const Question& question, std::size_t channel,
-                      std::span<const ChannelData> data) {
-  if (question.of_two()) return variance_against_variance(exact, method, question, channel, data);
-  return variance_against_number(exact, method, question, channel, data[0]);
+Evidence of_any_values(const Method&, const Question& question, std::size_t channel,
+                       std::span<const ChannelData> data) {
+  LogRatio ratio{.sides = {},
+                 .log_null = std::log(null_of(question, channel, data)),
+                 .quantity = quantity_of(question)};
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const stats::Influence influence = stats::influence_of_variance(powers_of_values(data[i]));
+    ratio.sides.push_back({.influence = [influence](double) { return influence; }});
+  }
+  return evidence_of(ratio);
 }
 
-double secondary_kurtosis(const stats::Moments& pilot, double primaries) {
-  return 3 + (pilot.kurtosis() - 3) / primaries;
-}
-
-/// The kurtosis of a subject's secondaries; nullopt if its pilot has no spread.
-std::optional<double> planned_kurtosis(const Question& question, std::size_t subject,
-                                       std::size_t channel, const Pilots& pilots,
-                                       const Plan& plan) {
-  const Moments& pilot = pilot_channel(question, subject, channel, pilots).moments;
-  if (is_constant(question, subject, channel, pilot)) return std::nullopt;
-  return secondary_kurtosis(pilot, question.subjects[subject].averaged(plan.primaries[subject]));
+/// True if the pilot leaves no doubt that F and chi-square keep their level. Adds a gate for each
+/// channel.
+bool are_near_normal(const Question& question, const std::vector<Known>& channels, double critical,
+                     std::vector<stats::Gate>& gates) {
+  const double limit = shape_limits(critical).excess_kurtosis;
+  bool normal = channels.size() == question.subjects.size() * question.channel_count();
+  for (const Known& known : channels) {
+    constexpr std::uint64_t fewest_with_kurtosis = 4;
+    const bool shows = known.pilot.moments.count >= fewest_with_kurtosis;
+    const double upper = shows ? stats::kurtosis_upper_limit(known.pilot.moments) / known.averaged
+                               : std::numeric_limits<double>::infinity();
+    const bool green = upper <= limit;
+    normal = normal && !known.rows && green;
+    gates.push_back({.name = "upper limit of the excess kurtosis",
+                     .value = upper,
+                     .low = upper,
+                     .limit = limit,
+                     .state = green ? stats::GateState::green : stats::GateState::amber});
+  }
+  return normal;
 }
 
 /// Says that a row is held against a primary, if one side of two is a file; else "".
@@ -119,7 +119,7 @@ class VarianceTheta final : public LogTheta {
          "F: two variances of near-normal values",
          [](const Question& q) { return q.of_two(); },
          Keeps::moments,
-         of_variances<true>,
+         of_normal_values,
          {.of_normal_values = true,
           .scores = true,
           .over_looks = stats::LookLaw::independent_increments}},
@@ -127,42 +127,30 @@ class VarianceTheta final : public LogTheta {
          "chi-square: a variance of near-normal values",
          [](const Question& q) { return !q.of_two(); },
          Keeps::moments,
-         of_variances<true>,
+         of_normal_values,
          {.of_normal_values = true,
           .scores = true,
           .over_looks = stats::LookLaw::independent_increments}},
-        {"log-variance", "normal law of the logarithm of a variance: values of any shape",
-         any_question, Keeps::moments, of_variances<false>}};
+        influence_row(any_question, Keeps::powers, of_any_values)};
     return table;
-  }
-
-  std::optional<ThetaError> error(const Question& question, std::size_t channel,
-                                  std::span<const ChannelData> data) const override {
-    ThetaError error;
-    for (std::size_t i = 0; i < data.size(); ++i) {
-      double& part = question.subjects[i].setup->observations() ? error.fixed : error.drawn;
-      part = std::hypot(part, stats::log_variance_standard_error(data[i].moments));
-    }
-    if (!question.references.empty()) {
-      error.fixed = std::hypot(error.fixed, question.references[channel].standard_error);
-    }
-    return error;
   }
 
   std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
-    return choose_for_variance(question, place, pilots, most, plan);
+    const auto channels = known_channels(question, pilots, largest_look(question, most), plan);
+    const double x = critical_value(smallest_level(question, place), two_sided(question));
+    std::vector<stats::Gate> gates;
+    const bool normal = are_near_normal(question, channels, x, gates);
+    if (!question.test->method && !normal) plan.method = find_method(question, "influence-t");
+    if (!plan.method.is.of_normal_values) {
+      return LogTheta::choose(question, place, pilots, most, plan);
+    }
+    for (std::size_t i = 0; i < channels.size(); ++i) note(plan, channels[i], gates[i]);
+    return least_secondaries;
   }
 
   std::string hint(const Question& question) const override {
     return question.of_two() ? rows_beside_primaries(question) : "";
-  }
-
-  PlannedChannel observed(const Question& question, const Regions& regions, std::size_t,
-                          std::span<const ChannelData> data) const override {
-    PlannedChannel observed{.regions = regions, .kurtosis = data[0].moments.kurtosis()};
-    if (question.of_two()) observed.other_kurtosis = data[1].moments.kurtosis();
-    return observed;
   }
 
   std::optional<ConstantVerdict> settled(const Question& question, std::size_t channel,
@@ -179,15 +167,16 @@ class VarianceTheta final : public LogTheta {
   }
 
   std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
-                          std::span<const ChannelData> data, double) const override {
+                          std::span<const ChannelData> data, double critical) const override {
+    if (!outcome.plan.method.is.of_normal_values) {
+      return LogTheta::gates(outcome, channel, data, critical);
+    }
     std::vector<Gate> gates;
     const Question& question = outcome.question;
     for (std::size_t subject = 0; subject < data.size(); ++subject) {
       const Moments& moments = data[subject].moments;
       // Three values cannot show a kurtosis.
-      if (!outcome.plan.method.is.of_normal_values || !(moments.m2 > 0) || moments.count <= 3) {
-        continue;
-      }
+      if (!(moments.m2 > 0) || moments.count <= 3) continue;
       gates.push_back(gate_of(
           stats::kurtosis_gate(moments),
           channel_suffix(question, channel) + " of " + question.subjects[subject].estimator->name));
@@ -196,15 +185,16 @@ class VarianceTheta final : public LogTheta {
   }
 
  private:
-  std::optional<PlannedChannel> from_pilots(const Question& question, std::size_t channel,
-                                            const Pilots& pilots, const Plan& plan) const override {
-    PlannedChannel planned{.regions = plan.regions[channel]};
-    for (std::size_t i = 0; i < question.subjects.size(); ++i) {
-      const auto kurtosis = planned_kurtosis(question, i, channel, pilots, plan);
-      if (!kurtosis) return std::nullopt;
-      (i == 0 ? planned.kurtosis : planned.other_kurtosis) = *kurtosis;
-    }
-    return planned;
+  std::optional<stats::Influence> influence(const Question&, std::size_t subject, std::size_t,
+                                            std::span<const ChannelData> data) const override {
+    // Fewer do not tell a kurtosis.
+    if (data[subject].moments.count < 4) return std::nullopt;
+    return stats::influence_of_variance(powers_of_values(data[subject]));
+  }
+  std::optional<double> predicted_spread(const Question&, const PilotMoments& pilot,
+                                         double averaged) const override {
+    if (!(pilot.values.m2 > 0)) return std::nullopt;
+    return averaged_spread(pilot.values.kurtosis() - 1, averaged);
   }
 };
 

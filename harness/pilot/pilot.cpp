@@ -59,8 +59,9 @@ bool is_far_from_normal(const Pool& pool, const Summary& sums) {
   const std::vector<Channel> channels = pool.setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (!channels[i].diagnostic && is_far_from_normal(sums.moments(i))) return true;
-    for (const stats::JointMoments& joint : sums.details(i).with_cost) {
-      if (joint.cost.m2 > 0 && is_far_from_normal(joint.cost)) return true;
+    for (const stats::JointSums& joint : sums.details(i).joint) {
+      const stats::Moments cost = joint.moments().cost();
+      if (cost.m2 > 0 && is_far_from_normal(cost)) return true;
     }
   }
   return false;
@@ -288,7 +289,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
     names.push_back(estimator->name);
     pools.push_back(pilot_pool(*estimator, run));
     if (run.with_cost.contains(estimator->name)) {
-      for (ChannelPlan& channel : pools.back()->plans()) channel.with_cost = true;
+      for (ChannelPlan& channel : pools.back()->plans()) channel.powers = Powers::with_costs;
     }
   }
   for (const PreparedEstimator* estimator : estimators) {

@@ -10,6 +10,7 @@
 #include "harness/plan/critical.h"
 #include "harness/plan/rows.h"
 #include "harness/theta/ask.h"
+#include "harness/theta/methods.h"
 #include "reports/words/number.h"
 
 namespace assay::harness {
@@ -35,6 +36,17 @@ std::string median_of(const Question& question) {
   return fmt::format("quantile({}, 0.5) == …", to_string(question.test->claim.left.source));
 }
 
+/// Advice to force a method that takes values for normal; "" if there is none.
+std::string or_if_normal(const TestOutcome& outcome) {
+  if (outcome.plan.method.is.of_normal_values) return "";
+  for (const Method& method : methods_for(outcome.question)) {
+    if (!method.is.of_normal_values) continue;
+    return ", or, if the values are near normal, add " +
+           written_key(*outcome.question.test, "test", method.name);
+  }
+  return "";
+}
+
 /// Factor on the observations that would turn the gate green, with room for what more of them show.
 double wanted(const Gate& gate) {
   if (!gate.is_red() || !gate.value) return 1;
@@ -47,6 +59,8 @@ double wanted(const Gate& gate) {
       constexpr double wanted_share = 0.1;
       return (1 / wanted_share - 1) / (1 / *gate.value - 1);
     }
+    case Falls::inversely:
+      return *gate.limit / *gate.value;
     case Falls::not_known:
       break;
   }
@@ -113,11 +127,14 @@ std::string what_would_help(const TestOutcome& outcome) {
   }
   const std::string more =
       factor > 1 && std::isfinite(factor) ? "about " + sizes_text(outcome, factor) : "more";
-  if (rows) return fmt::format(": give {} rows, or rows that each average several", more);
+  if (rows) {
+    return fmt::format(": give {} rows, or rows that each average several{}", more,
+                       or_if_normal(outcome));
+  }
   return fmt::format(
       "; {} `secondaries` would do: no test knows of a rare bright value that it never drew, so "
-      "that without a declared range none decides on fewer than {} primaries",
-      more, floor_of_evidence);
+      "that without a declared range none decides on fewer than {} primaries{}",
+      more, floor_of_evidence, or_if_normal(outcome));
 }
 
 }  // namespace assay::harness

@@ -16,98 +16,6 @@
 #include "harness/theta/methods.h"
 
 namespace assay::harness {
-namespace {
-
-using stats::GateState;
-
-/// Gates of the last tails asked for. A fit is slow, and an estimator's tests ask for the same
-/// tails again.
-class KnownTails {
- public:
-  stats::Gate gate(std::span<const double> largest, std::size_t count, stats::TailClaim claim) {
-    for (const Entry& entry : entries_) {
-      if (entry.count == count && entry.claim == claim &&
-          std::equal(entry.largest.begin(), entry.largest.end(), largest.begin(), largest.end())) {
-        return entry.gate;
-      }
-    }
-    Entry& entry = entries_[next_++ % entries_.size()];
-    entry = {
-        {largest.begin(), largest.end()}, count, claim, stats::pareto_gate(largest, count, claim)};
-    return entry.gate;
-  }
-
- private:
-  struct Entry {
-    std::vector<double> largest = {};
-    std::size_t count = 0;
-    stats::TailClaim claim = {};
-    stats::Gate gate = {};
-  };
-  std::array<Entry, 16> entries_{};
-  std::size_t next_ = 0;
-};
-
-/// One tail's gate, from values signed so that it is the right one. Reorders them.
-stats::Gate right_tail_gate(std::vector<double>& values, stats::TailClaim claim) {
-  thread_local KnownTails known;
-  const std::size_t tail = stats::pareto_tail_size(values.size()) + 1;
-  const auto first = values.end() - static_cast<std::ptrdiff_t>(tail);
-  std::nth_element(values.begin(), first, values.end());
-  std::sort(first, values.end());
-  return known.gate(std::span<const double>(values).last(tail), values.size(), claim);
-}
-
-/// True if a tail is seen to its declared end, so that nothing heavier can hide in it.
-bool ends_in_sight(double farthest, double mean, double declared) {
-  return std::isfinite(declared) && std::abs(farthest - mean) >= std::abs(declared - mean) / 2;
-}
-
-// Fewest values for a tail's fit. A small pilot shows the index only roughly, so it is red only
-// with a large kurtosis.
-constexpr std::size_t least_of_a_tail = 500;
-bool is_small(std::uint64_t count) { return count < usual_secondaries; }
-
-/// State at the estimate. A lattice or a rare second part can look like a heavy tail. It is none
-/// while the variance of the variance, (kurtosis - 1) / n, is small. If that is large, the pilot
-/// does not know the variance yet.
-GateState tail_state(const stats::Gate& gate, const stats::Moments& moments) {
-  const double variance_of_variance = (moments.kurtosis() - 1) / static_cast<double>(moments.count);
-  // Only a surely light tail explains such a kurtosis.
-  if (variance_of_variance > (is_small(moments.count) ? 0.05 : 0.01) && gate.value > 0.1) {
-    return GateState::red;
-  }
-  if (gate.value <= gate.limit) return GateState::green;
-  if (is_small(moments.count)) return GateState::amber;
-  return variance_of_variance > 0.001 ? GateState::red : GateState::amber;
-}
-
-/// The heavier tail's gate, at the estimate: the pilot chooses, it does not accuse.
-std::optional<stats::Gate> tail_gate(const Question& question, const Known& known) {
-  constexpr stats::TailClaim claim = stats::TailClaim::variance;
-  const stats::Moments& moments = known.pilot.moments;
-  std::vector<double> values(known.pilot.values.begin(), known.pilot.values.end());
-  const bool finite =
-      std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  const bool few = is_small(values.size()) && known.rows;
-  if (few || values.size() < least_of_a_tail || !finite) return {};
-  std::optional<stats::Gate> heavier;
-  const stats::Range range = range_of(question, known.subject, known.channel, moments);
-  if (known.rows || !ends_in_sight(moments.maximum, moments.mean, range.high)) {
-    heavier = right_tail_gate(values, claim);
-  }
-  if (known.rows || !ends_in_sight(moments.minimum, moments.mean, range.low)) {
-    for (double& value : values) value = -value;
-    const stats::Gate left = right_tail_gate(values, claim);
-    if (!heavier || left.value > heavier->value) heavier = left;
-  }
-  if (!heavier) return {};
-  heavier->low = heavier->value;
-  heavier->state = tail_state(*heavier, moments);
-  return heavier;
-}
-
-}  // namespace
 
 std::string unusable_pilot(const Question& question, const Pilots& pilots) {
   if (question.is().of_single_values) return "";
@@ -162,28 +70,6 @@ std::vector<double> as_secondaries(const Subject& side, std::span<const double> 
 
 void note(Plan& plan, const Known& known, const stats::Gate& gate) {
   if (!known.rows) plan.gates.push_back(gate_of(gate, known.label));
-}
-
-std::string too_heavy(const Question& question, const std::vector<Known>& channels, Plan& plan) {
-  std::string reason;
-  for (const Known& known : channels) {
-    const std::optional<stats::Gate> gate = tail_gate(question, known);
-    if (!gate) continue;
-    note(plan, known, *gate);
-    if (gate->state != GateState::red) continue;
-    if (has_rows(question)) {
-      reason = fmt::format(
-          "the rows are too heavy-tailed for a variance: more of them may only show more of the "
-          "tail; claim a quantile, as `quantile({}, 0.5) == …`",
-          to_string(question.test->claim.left.source));
-      continue;
-    }
-    reason = fmt::format(
-        "its tail is too heavy (index {:.2g}, limit {:.2g}{}): the fourth moment that the test "
-        "rests on may not exist; clamp the estimator, or claim something of its distribution",
-        gate->value, gate->limit, known.label);
-  }
-  return reason;
 }
 
 stats::Gate near_normal_gate(const Known& known) {

@@ -11,7 +11,6 @@
 #include "harness/plan/critical.h"
 #include "harness/plan/outcome.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/gates/pareto_tail.h"
 
 namespace assay::harness {
 
@@ -40,9 +39,6 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
 
 /// Notes a gate of the pilot, but none of rows: they are judged with the test's own data.
 void note(Plan& plan, const Known& known, const stats::Gate& gate);
-
-/// Notes the tails' gates. Returns why a variance cannot be tested if a tail is too heavy, else "".
-std::string too_heavy(const Question& question, const std::vector<Known>& channels, Plan& plan);
 
 /// Skewness of a secondary. Student's t takes values for near normal where it is green.
 stats::Gate near_normal_gate(const Known& known);

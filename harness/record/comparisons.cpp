@@ -7,7 +7,7 @@
 #include "harness/sampling/beyond_doubles.h"
 #include "stats/means/welch_t.h"
 #include "stats/planning/holm.h"
-#include "stats/variances/log_variance.h"
+#include "stats/variances/influence.h"
 
 namespace assay::harness {
 namespace {
@@ -47,6 +47,11 @@ struct ComparedPair {
   double log_variance_p = 0;
 };
 
+/// Of a variance, by the four moments that are known.
+stats::Influence influence_of(const stats::Moments& x) {
+  return stats::influence_of_variance(stats::joint_of_four(x));
+}
+
 ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t channel) {
   const stats::Moments& x = first.channels[channel].moments;
   const stats::Moments& y = second.channels[channel].moments;
@@ -59,7 +64,8 @@ ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t 
   pair.row.log10_mean_p = pair.log_mean_p / std::log(10.0);
   // The variance of a primary and that of a secondary are two quantities.
   if (first.averages != second.averages) return pair;
-  pair.log_variance_p = stats::log_p_two_sided(stats::log_variance_ratio(x, y, null));
+  pair.log_variance_p =
+      stats::log_p_two_sided(stats::influence_t(influence_of(x), influence_of(y), std::log(null)));
   pair.row.variance_p = std::exp(pair.log_variance_p);
   pair.row.log10_variance_p = pair.log_variance_p / std::log(10.0);
   const double ratio = x.variance() / y.variance() / null;

@@ -28,7 +28,7 @@ struct Pictured {
 bool has_spread(const stats::Moments& moments);
 
 /// Compares every pair of estimators of one quantity: equal analytic means, or names paired in
-/// `claimed`. It uses Welch's test on means, the log-variance ratio on the variances of a primary,
+/// `claimed`. It uses Welch's test on means and on the squared deviations of a primary,
 /// and Holm over the pairs at level alpha. Empty for more than 40 estimators.
 std::vector<reports::Comparison> comparisons(const std::vector<Pictured>& estimators,
                                              const std::vector<std::vector<std::string>>& claimed,

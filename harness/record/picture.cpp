@@ -8,9 +8,10 @@
 #include "harness/base/numbers.h"
 #include "harness/plan/rows.h"
 #include "harness/record/image_record.h"
+#include "harness/theta/inversion.h"
 #include "stats/gates/independence_gates.h"
 #include "stats/means/student_t.h"
-#include "stats/variances/log_variance.h"
+#include "stats/variances/influence.h"
 
 namespace assay::harness {
 namespace {
@@ -51,7 +52,10 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
   if (moments.count < 2) return {};
   if (moments.m2 == 0) return {0.0, 0.0, 0.0};
   if (!has_spread(moments)) return {number(primaries * moments.variance()), {}, {}};
-  const stats::Interval log = stats::log_variance_interval(moments, 1, confidence);
+  const stats::Influence influence = stats::influence_of_variance(stats::joint_of_four(moments));
+  const stats::Interval log = interval_by_inversion(
+      [&](double theta) { return stats::influence_t(influence, theta); },
+      {.estimate = influence.log_value, .step = influence.relative.standard_error()}, confidence);
   return {number(primaries * moments.variance()), number(primaries * std::exp(log.low)),
           number(primaries * std::exp(log.high))};
 }

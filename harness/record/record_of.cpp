@@ -66,13 +66,13 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
   sample.cost = cost_of(summary);
   // A record must not show what another test on the same observations kept.
   const bool costs = outcome.plan.method.keeps == Keeps::costs;
-  for (std::size_t i = 0; costs && i < details.with_cost.size(); ++i) {
-    const stats::JointMoments& joint = details.with_cost[i];
+  for (std::size_t i = 0; costs && i < details.joint.size(); ++i) {
+    const stats::JointMoments joint = details.joint[i].moments();
     sample.with_cost.push_back({.kind = i == rays_cost ? "rays" : "samples",
-                                .mean = joint.cost.mean,
-                                .m2 = joint.cost.m2,
-                                .m11 = joint.m11,
-                                .m21 = joint.m21});
+                                .mean = joint.of_cost.mean,
+                                .m2 = joint.sum(0, 2),
+                                .m11 = joint.sum(1, 1),
+                                .m21 = joint.sum(2, 1)});
   }
   // A cell's number is a name, without a mean.
   if (outcome.plan.method.keeps == Keeps::cells) return sample;

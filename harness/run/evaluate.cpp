@@ -274,7 +274,9 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
                     .moments = as_tested(plan, subject, channel, values, summary.moments(index)),
                     .values = values,
                     .cells = summary.details(index).cells,
-                    .with_cost = summary.details(index).with_cost,
+                    .joint = powers_of(plan.method.keeps) == Powers::none
+                                 ? std::vector<stats::JointMoments>()
+                                 : joint_moments(summary.details(index)),
                     .group_variances = summary.group_variances});
     if (plan.method.keeps == Keeps::points) {
       for (const std::size_t each : channels) data.back().all_values.push_back(sample.values(each));

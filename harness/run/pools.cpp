@@ -97,8 +97,10 @@ void count_cells(const Subject& side, Pool& pool) {
 }
 
 void keep_for(const Method& method, const Subject& side, Pool& pool) {
-  if (method.keeps == Keeps::costs) {
-    for (const std::size_t channel : side.channels) pool.plans()[channel].with_cost = true;
+  for (const std::size_t channel : side.channels) {
+    if (powers_of(method.keeps) == Powers::none) break;
+    Powers& powers = pool.plans()[channel].powers;
+    powers = std::max(powers, powers_of(method.keeps));
   }
   if (method.keeps == Keeps::group_variances) pool.keep_group_variances(side.channels);
   if (method.keeps == Keeps::blocks) pool.keep_blocks();

@@ -231,7 +231,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   std::uint64_t index = first;
   GroupVariance groups(sums_later_ ? std::vector<std::size_t>() : grouped_channels_);
   const bool counts_costs = !sums_later_ && std::ranges::any_of(plan_, [](const ChannelPlan& each) {
-    return each.with_cost;
+    return each.powers == Powers::with_costs;
   });
   ObservationCost cost{};
   const FlushDenormals flush;

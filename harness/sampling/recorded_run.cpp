@@ -105,21 +105,18 @@ constexpr const char* kinds[] = {"rays", "samples"};
 
 /// Joint moments of values and one kind of cost; nullopt if unknown.
 std::optional<stats::JointMoments> joint_of(const reports::Sample& sample, CountedCost kind) {
-  stats::JointMoments joint{.x = moments_of(sample), .cost = {}};
-  joint.cost.count = sample.secondaries;
   for (const reports::CostMoments& kept : sample.with_cost) {
     if (kept.kind != kinds[kind]) continue;
-    joint.cost.mean = kept.mean;
-    joint.cost.m2 = kept.m2;
-    joint.m11 = kept.m11;
-    joint.m21 = kept.m21;
+    stats::JointMoments joint = stats::joint_of_four(moments_of(sample), kept.mean);
+    joint.sums[stats::JointMoments::place(0, 2)] = kept.m2;
+    joint.sums[stats::JointMoments::place(1, 1)] = kept.m11;
+    joint.sums[stats::JointMoments::place(2, 1)] = kept.m21;
     return joint;
   }
   const Cost cost = cost_of(sample.cost);
   const std::uint64_t total = kind == rays_cost ? cost.rays() : cost.samples;
-  joint.cost.mean = static_cast<double>(total) / static_cast<double>(sample.secondaries);
   if (total % sample.secondaries != 0) return std::nullopt;
-  return joint;
+  return stats::joint_of_four(moments_of(sample), static_cast<double>(total / sample.secondaries));
 }
 
 RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite) {
@@ -136,7 +133,7 @@ RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite)
     for (const CountedCost kind : {rays_cost, samples_cost}) {
       const auto joint = joint_of(*sample, kind);
       contents.knows_cost[kind] = contents.knows_cost[kind] && joint;
-      channel.rare.made().with_cost.push_back(joint.value_or(stats::JointMoments()));
+      channel.rare.made().joint.emplace_back(joint.value_or(stats::joint_of_four(channel.moments)));
     }
   }
   for (const reports::EstimatorSummary& row : suite.estimators) {

@@ -24,10 +24,14 @@ void count_in(std::vector<std::uint64_t>& cells, double cell) {
 
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost) {
   if (!details.histogram.counts.empty()) details.histogram.add(value);
-  for (std::size_t k = 0; k < details.with_cost.size(); ++k) {
-    details.with_cost[k].add(value, cost[k]);
-  }
+  for (std::size_t k = 0; k < details.joint.size(); ++k) details.joint[k].add(value, cost[k]);
   if (!details.cells.empty()) count_in(details.cells, value);
+}
+
+std::vector<stats::JointMoments> joint_moments(const ChannelDetails& details) {
+  std::vector<stats::JointMoments> moments;
+  for (const stats::JointSums& each : details.joint) moments.push_back(each.moments());
+  return moments;
 }
 
 Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> plan)
@@ -36,7 +40,9 @@ Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> pla
     if (!plan[i].has_details()) continue;
     ChannelDetails& details = channels[i].rare.made();
     details.cells.resize(plan[i].cells);
-    if (plan[i].with_cost) details.with_cost.resize(counted_costs);
+    if (plan[i].powers != Powers::none) {
+      details.joint.resize(plan[i].powers == Powers::with_costs ? std::size_t{counted_costs} : 1);
+    }
     if (plan[i].has_histogram()) {
       details.histogram.low = plan[i].histogram_low;
       details.histogram.high = plan[i].histogram_high;
@@ -52,9 +58,7 @@ void merge(ChannelDetails& ours, const ChannelDetails& theirs) {
   for (std::size_t cell = 0; cell < ours.cells.size(); ++cell) {
     ours.cells[cell] += theirs.cells[cell];
   }
-  for (std::size_t k = 0; k < ours.with_cost.size(); ++k) {
-    ours.with_cost[k].merge(theirs.with_cost[k]);
-  }
+  for (std::size_t k = 0; k < ours.joint.size(); ++k) ours.joint[k].merge(theirs.joint[k]);
 }
 
 }  // namespace

@@ -40,16 +40,19 @@ struct Histogram {
   void merge(const Histogram& other);
 };
 
+/// Joint moments that a channel keeps: of its values alone, or with each counted cost.
+enum class Powers { none, of_values, with_costs };
+
 struct ChannelPlan {
   double histogram_low = 0;  ///< Equal bounds: no histogram.
   double histogram_high = 0;
   std::uint64_t keep = 0;  ///< Stores the values of the first `keep` observations.
   std::size_t cells = 0;   ///< Counts values, which are cell numbers 0 … cells - 1.
-  bool with_cost = false;  ///< Keeps the joint moments of value and cost.
+  Powers powers = Powers::none;
 
   bool has_histogram() const { return histogram_low < histogram_high; }
   /// True if the channel's sums need more than moments.
-  bool has_details() const { return has_histogram() || cells != 0 || with_cost; }
+  bool has_details() const { return has_histogram() || cells != 0 || powers != Powers::none; }
 };
 
 inline constexpr std::size_t histogram_bins = 60;
@@ -58,7 +61,8 @@ inline constexpr std::size_t histogram_bins = 60;
 struct ChannelDetails {
   Histogram histogram = {};
   std::vector<std::uint64_t> cells = {};
-  std::vector<stats::JointMoments> with_cost = {};  ///< by CountedCost, if kept
+  /// By CountedCost. One entry, whose cost means nothing, if those of values alone are kept.
+  std::vector<stats::JointSums> joint = {};
 };
 
 inline const ChannelDetails& no_details() {
@@ -130,6 +134,8 @@ struct Summary {
     return elements ? no_details() : channels[channel].details();
   }
 };
+
+std::vector<stats::JointMoments> joint_moments(const ChannelDetails& details);
 
 /// Takes a finite value and its observation's cost.
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost);

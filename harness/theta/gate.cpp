@@ -12,15 +12,12 @@ const std::vector<GateKind>& gate_kinds() {
                    "{1}",
        .needs_more = true,
        .falls = Falls::by_its_logarithm},
-      {.name = "level factor of the mean cost",
+      {.name = "observations of a variance",
        .sentence =
-           "the costs are so skewed that one tail of the test is off by a factor of {0}, limit {1}",
-       .falls = Falls::by_its_logarithm},
-      {.name = "level factor of the mean variance",
-       .sentence = "the variances of groups of observations are so skewed that one tail of the "
-                   "test is off by a "
-                   "factor of {0}, limit {1}",
-       .falls = Falls::by_its_logarithm},
+           "{0} observations are too few to show how heavy the tail of their squares is: it "
+           "takes {1}",
+       .needs_more = true,
+       .falls = Falls::inversely},
       {.name = "level factor after correction",
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
                    "{0} even "
@@ -66,10 +63,6 @@ const std::vector<GateKind>& gate_kinds() {
       {.name = "longest repetition", .sentence = "a run of {0} values occurs twice"},
       {.name = "values that occur equally often",
        .sentence = "{0} values occur equally often, limit {1}: they are no independent draws"},
-      {.name = "tail index",
-       .sentence =
-           "the tail is too heavy for the moments that the claim needs: index {0}, limit {1}",
-       .heavy_tail = true},
   };
   return table;
 }

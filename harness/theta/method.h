@@ -15,7 +15,6 @@
 #include "stats/cells/sampled_cells.h"
 #include "stats/means/power_exact.h"
 #include "stats/planning/looks.h"
-#include "stats/variances/f_ratio.h"
 
 namespace assay::harness {
 
@@ -33,14 +32,19 @@ struct ChannelData {
   std::span<const double> values = {};                   ///< Set if the method needs them.
   std::vector<std::span<const double>> all_values = {};  ///< Every channel, for Keeps::points.
   std::span<const std::uint64_t> cells = {};
-  std::span<const stats::JointMoments> with_cost = {};  ///< Indexed by CountedCost.
+  std::vector<stats::JointMoments> joint = {};  ///< As ChannelDetails::joint.
   stats::Moments group_variances = {};
   ImageViews images = {};  ///< The subject's elements of each observation.
   std::vector<Replicate> replicates = {};
 };
 
 /// Data that a method needs kept. `points` are the values of all channels together.
-enum class Keeps { moments, values, points, cells, costs, group_variances, blocks, images };
+enum class Keeps { moments, values, points, cells, powers, costs, group_variances, blocks, images };
+
+inline Powers powers_of(Keeps keeps) {
+  if (keeps == Keeps::costs) return Powers::with_costs;
+  return keeps == Keeps::powers ? Powers::of_values : Powers::none;
+}
 
 /// Replicates of a method that keeps blocks: enough for Student's t to have near-normal tails.
 inline constexpr std::uint64_t replicate_count = 32;
@@ -56,15 +60,7 @@ struct RowAllowance {
 struct Frozen {
   std::shared_ptr<const stats::SampledCells> cells = nullptr;  ///< For chi-square-two-sample.
   std::vector<double> weights = {};                            ///< Weights of an image's elements.
-  /// Excess kurtoses that chi-square and F allow for, one entry a channel; 0 means none.
-  std::vector<stats::ExcessKurtoses> excess_kurtoses = {};
-  std::vector<RowAllowance> row_allowances = {};  ///< For means.
-
-  stats::ExcessKurtoses excess_kurtosis(std::size_t channel) const {
-    return excess_kurtoses.empty() ? stats::ExcessKurtoses{} : excess_kurtoses[channel];
-  }
-  /// The largest of each subject over the channels, to plan with.
-  stats::ExcessKurtoses largest_excess_kurtosis() const;
+  std::vector<RowAllowance> row_allowances = {};               ///< For means.
 };
 
 struct Method;
@@ -79,7 +75,7 @@ struct MethodTraits {
   bool of_observations = false;     ///< The moments of an earlier run are too little.
   bool of_batches = false;          ///< Tests means of consecutive observations.
   bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.
-  bool of_normal_values = false;    ///< Takes values for normal, with an allowance for kurtosis.
+  bool of_normal_values = false;    ///< Takes values for normal.
   bool of_distinct_values = false;  ///< Coarsely rounded values break its level.
   bool scores = false;              ///< The estimate does not show its standard error.
   bool joins_channels = false;      ///< compares all channels of two estimators together

@@ -76,14 +76,6 @@ std::vector<MethodRow> rows_of_families() {
 
 }  // namespace
 
-stats::ExcessKurtoses Frozen::largest_excess_kurtosis() const {
-  stats::ExcessKurtoses largest;
-  for (const stats::ExcessKurtoses& each : excess_kurtoses) {
-    largest = {.x = std::max(largest.x, each.x), .y = std::max(largest.y, each.y)};
-  }
-  return largest;
-}
-
 const std::vector<MethodRow>& method_table() {
   static const std::vector<MethodRow> table = rows_of_families();
   return table;

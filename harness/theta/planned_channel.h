@@ -9,14 +9,12 @@
 namespace assay::harness {
 
 /// A channel's law as planning takes it: a secondary's standard deviation, at the pilot's upper
-/// limit, its kurtosis, and the unit of margins.
+/// limit, and the unit of margins. A ratio has the deviations of relative influence values.
 struct PlannedChannel {
   Regions regions = {};
   double standard_deviation = 0;
   double other_deviation = 0;  ///< The second subject's, times the factor.
-  double kurtosis = 3;
-  double other_kurtosis = 1;  ///< 1 if there is no second subject.
-  double unit = 1;            ///< Theta times this is in the estimator's unit.
+  double unit = 1;             ///< Theta times this is in the estimator's unit.
   double reference_error = 0;
   bool unseen = false;      ///< The deviation is what a constant pilot may have missed.
   stats::Range range = {};  ///< Declared range of one mean's values.

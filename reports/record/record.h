@@ -237,7 +237,7 @@ struct EstimatorSummary {
 struct Comparison {
   std::string first, second, channel;
   Number mean_p;                          ///< Welch, two-sided
-  Number variance_p;                      ///< log-variance ratio, two-sided
+  Number variance_p;                      ///< of squared deviations, two-sided
   Number log10_mean_p, log10_variance_p;  ///< of the same, which may underflow
   bool means_differ = false;              ///< after Holm over the pairs of the suite
   bool variances_differ = false;

@@ -1,66 +1,233 @@
 #include "stats/basics/joint_moments.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "stats/basics/vector_copies.h"
+
 namespace assay::stats {
 namespace {
 
-// Distance of the common mean below a part's own mean, in both coordinates.
-struct Shift {
-  double x;
-  double cost;
-};
+constexpr std::size_t weight = JointMoments::weight;
+constexpr std::size_t powers_of_cost = JointMoments::powers_of_cost;
+constexpr auto at_powers = JointMoments::place;
+static_assert(at_powers(0, powers_of_cost) + 1 == JointMoments::count_of_sums);
 
-// The sum of (d + u)^2 (e + v) over a part. Its sums of d and e are 0, so it is m21 + v m2 + 2 u
-// m11 + n u^2 v.
-double moved_m21(const JointMoments& part, Shift shift) {
-  const double n = static_cast<double>(part.x.count);
-  return part.m21 + shift.cost * part.x.m2 + 2 * shift.x * part.m11 +
-         n * shift.x * shift.x * shift.cost;
+using Sums = std::array<double, JointMoments::count_of_sums>;
+
+// Binomial coefficients up to the weight.
+constexpr auto choose = [] {
+  std::array<std::array<double, weight + 1>, weight + 1> c{};
+  for (std::size_t n = 0; n <= weight; ++n) {
+    c[n][0] = 1;
+    for (std::size_t k = 1; k <= n; ++k) c[n][k] = c[n - 1][k - 1] + (k < n ? c[n - 1][k] : 0);
+  }
+  return c;
+}();
+
+// Sums of (d + u)^i e^j from those of d^i e^j, for each j.
+void move_x(Sums& sums, double u) {
+  if (u == 0) return;
+  std::array<double, weight + 1> power{1};
+  for (std::size_t i = 1; i <= weight; ++i) power[i] = power[i - 1] * u;
+  for (std::size_t j = 0; j <= powers_of_cost; ++j) {
+    // Higher powers first: each needs the lower ones as they were.
+    for (std::size_t i = weight - 2 * j; i > 0; --i) {
+      double moved = sums[at_powers(i, j)];
+      for (std::size_t k = 0; k < i; ++k)
+        moved += choose[i][k] * power[i - k] * sums[at_powers(k, j)];
+      sums[at_powers(i, j)] = moved;
+    }
+  }
 }
 
-double moved_m11(const JointMoments& part, Shift shift) {
-  return part.m11 + static_cast<double>(part.x.count) * shift.x * shift.cost;
+// Sums of d^i (e + v)^j from those of d^i e^j, for each i.
+void move_cost(Sums& sums, double v) {
+  if (v == 0) return;
+  std::array<double, powers_of_cost + 1> power{1};
+  for (std::size_t j = 1; j <= powers_of_cost; ++j) power[j] = power[j - 1] * v;
+  for (std::size_t j = powers_of_cost; j > 0; --j) {
+    for (std::size_t i = 0; i + 2 * j <= weight; ++i) {
+      double moved = sums[at_powers(i, j)];
+      for (std::size_t k = 0; k < j; ++k)
+        moved += choose[j][k] * power[j - k] * sums[at_powers(i, k)];
+      sums[at_powers(i, j)] = moved;
+    }
+  }
+}
+
+constexpr std::size_t most_at_once = 256;
+// Pairs that are summed side by side, in a fixed order whatever the machine.
+constexpr std::size_t lanes = 8;
+
+struct Deviations {
+  std::size_t count = 0;  // Zeros fill the last lanes.
+  alignas(64) std::array<double, most_at_once> d;
+  alignas(64) std::array<double, most_at_once> e;
+};
+
+template <std::size_t degree>
+void add_powers(const Deviations& of, std::array<double, most_at_once>& factor, double* sums) {
+  std::array<std::array<double, lanes>, degree + 1> parts{};
+  for (std::size_t first = 0; first < of.count; first += lanes) {
+    std::array<double, lanes> power;
+    for (std::size_t l = 0; l < lanes; ++l) power[l] = factor[first + l];
+    for (std::size_t l = 0; l < lanes; ++l) parts[0][l] += power[l];
+#pragma GCC unroll 8
+    for (std::size_t i = 1; i <= degree; ++i) {
+      for (std::size_t l = 0; l < lanes; ++l) power[l] *= of.d[first + l];
+      for (std::size_t l = 0; l < lanes; ++l) parts[i][l] += power[l];
+    }
+    for (std::size_t l = 0; l < lanes; ++l) factor[first + l] *= of.e[first + l];
+  }
+  for (std::size_t i = 0; i <= degree; ++i) {
+    double sum = 0;
+    for (const double part : parts[i]) sum += part;
+    sums[i] = sum;
+  }
+}
+
+ASSAY_VECTOR_COPIES void sum_powers(const Deviations& of, bool with_cost, Sums& sums) {
+  alignas(64) std::array<double, most_at_once> factor{};
+  std::fill_n(factor.begin(), of.count, 1.0);
+  add_powers<weight>(of, factor, &sums[at_powers(0, 0)]);
+  if (!with_cost) return;
+  add_powers<weight - 2>(of, factor, &sums[at_powers(0, 1)]);
+  add_powers<weight - 4>(of, factor, &sums[at_powers(0, 2)]);
+  add_powers<weight - 6>(of, factor, &sums[at_powers(0, 3)]);
+  add_powers<weight - 8>(of, factor, &sums[at_powers(0, 4)]);
+}
+
+Moments moments_of(const JointMoments& joint, const JointMoments::Coordinate& coordinate,
+                   const std::array<double, 3>& sums) {
+  return {.count = joint.count,
+          .mean = coordinate.mean,
+          .m2 = sums[0],
+          .m3 = sums[1],
+          .m4 = sums[2],
+          .minimum = coordinate.minimum,
+          .maximum = coordinate.maximum,
+          .nonzero = 0,
+          .rest = coordinate.rest};
+}
+
+double distance(const JointMoments::Coordinate& from, const JointMoments::Coordinate& to) {
+  return (to.mean - from.mean) + (to.rest - from.rest);
+}
+
+void merge_coordinate(JointMoments::Coordinate& ours, const JointMoments::Coordinate& theirs,
+                      double step) {
+  ours.move_mean(step);
+  ours.minimum = std::min(ours.minimum, theirs.minimum);
+  ours.maximum = std::max(ours.maximum, theirs.maximum);
 }
 
 }  // namespace
 
-void JointMoments::add(double value, double its_cost) {
-  if (x.count > 0 && cost.m2 == 0 && its_cost == cost.mean) {
-    // The cost has no spread so far, as with rays of an estimator that traces none. The sums of its
-    // deviations stay zero, which saves three fourths of the arithmetic.
-    x.add(value);
-    ++cost.count;
-    cost.nonzero += its_cost != 0;
-    return;
-  }
-  // One more pair. Its own part has no sums, only its distance from the common mean.
-  const double share = 1 / (static_cast<double>(x.count) + 1);
-  const double dx = x.count == 0 ? 0 : value - x.mean;
-  const double dc = x.count == 0 ? 0 : its_cost - cost.mean;
-  const Shift mine{-dx * share, -dc * share};
-  const Shift theirs{dx * (1 - share), dc * (1 - share)};
-  m21 = moved_m21(*this, mine) + theirs.x * theirs.x * theirs.cost;
-  m11 = moved_m11(*this, mine) + theirs.x * theirs.cost;
-  x.add(value);
-  cost.add(its_cost);
+void JointMoments::Coordinate::move_mean(double step) {
+  const double added = rest + step;
+  const double moved = mean + added;
+  rest = added - (moved - mean);
+  mean = moved;
 }
 
 void JointMoments::merge(const JointMoments& other) {
-  if (other.x.count == 0) return;
-  if (x.count == 0) {
+  if (other.count == 0) return;
+  if (count == 0) {
     *this = other;
     return;
   }
-  const double here = static_cast<double>(x.count);
-  const double there = static_cast<double>(other.x.count);
+  const double here = static_cast<double>(count);
+  const double there = static_cast<double>(other.count);
+  const double dx = distance(of_x, other.of_x);
+  const double dc = distance(of_cost, other.of_cost);
   const double share = there / (here + there);
-  const double dx = other.x.mean - x.mean;
-  const double dc = other.cost.mean - cost.mean;
-  const Shift mine{-dx * share, -dc * share};
-  const Shift theirs{dx * (1 - share), dc * (1 - share)};
-  m21 = moved_m21(*this, mine) + moved_m21(other, theirs);
-  m11 = moved_m11(*this, mine) + moved_m11(other, theirs);
-  x.merge(other.x);
-  cost.merge(other.cost);
+  Sums theirs = other.sums;
+  move_x(sums, -dx * share);
+  move_cost(sums, -dc * share);
+  move_x(theirs, dx * (1 - share));
+  move_cost(theirs, dc * (1 - share));
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += theirs[k];
+  // The deviations sum to zero by definition.
+  sums[at_powers(1, 0)] = 0;
+  sums[at_powers(0, 1)] = 0;
+  merge_coordinate(of_x, other.of_x, dx * share);
+  merge_coordinate(of_cost, other.of_cost, dc * share);
+  count += other.count;
+  known = std::min(known, other.known);
+}
+
+JointMoments joint_of_four(const Moments& x, double cost) {
+  JointMoments joint{.count = x.count,
+                     .known = 4,
+                     .of_x = {x.mean, x.rest, x.minimum, x.maximum},
+                     .of_cost = {cost, 0, cost, cost}};
+  joint.sums[at_powers(0, 0)] = static_cast<double>(x.count);
+  joint.sums[at_powers(2, 0)] = x.m2;
+  joint.sums[at_powers(3, 0)] = x.m3;
+  joint.sums[at_powers(4, 0)] = x.m4;
+  return joint;
+}
+
+Moments JointMoments::x() const {
+  return moments_of(*this, of_x, {sum(2, 0), sum(3, 0), sum(4, 0)});
+}
+
+Moments JointMoments::cost() const {
+  return moments_of(*this, of_cost, {sum(0, 2), sum(0, 3), sum(0, 4)});
+}
+
+JointMoments JointSums::of_waiting() const {
+  JointMoments part;
+  part.count = waiting_.size();
+  if (waiting_.empty()) return part;
+  const double n = static_cast<double>(waiting_.size());
+  const Pair first = waiting_[0];
+  double sum_x = 0;
+  double sum_cost = 0;
+  for (const Pair& pair : waiting_) {
+    sum_x += pair.x - first.x;
+    sum_cost += pair.cost - first.cost;
+    part.of_x.minimum = std::min(part.of_x.minimum, pair.x);
+    part.of_x.maximum = std::max(part.of_x.maximum, pair.x);
+    part.of_cost.minimum = std::min(part.of_cost.minimum, pair.cost);
+    part.of_cost.maximum = std::max(part.of_cost.maximum, pair.cost);
+  }
+  part.of_x.mean = first.x;
+  part.of_x.move_mean(sum_x / n);
+  part.of_cost.mean = first.cost;
+  part.of_cost.move_mean(sum_cost / n);
+  Deviations deviations;
+  deviations.count = (waiting_.size() + lanes - 1) / lanes * lanes;
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    deviations.d[k] = (waiting_[k].x - first.x) - sum_x / n;
+    deviations.e[k] = (waiting_[k].cost - first.cost) - sum_cost / n;
+  }
+  for (std::size_t k = waiting_.size(); k < deviations.count; ++k) {
+    deviations.d[k] = 0;
+    deviations.e[k] = 0;
+  }
+  sum_powers(deviations, part.of_cost.minimum < part.of_cost.maximum, part.sums);
+  part.sums[at_powers(0, 0)] = n;
+  part.sums[at_powers(1, 0)] = 0;
+  part.sums[at_powers(0, 1)] = 0;
+  return part;
+}
+
+void JointSums::sum_waiting() {
+  summed_.merge(of_waiting());
+  waiting_.clear();
+}
+
+void JointSums::merge(const JointSums& other) {
+  sum_waiting();
+  summed_.merge(other.moments());
+}
+
+JointMoments JointSums::moments() const {
+  JointMoments all = summed_;
+  all.merge(of_waiting());
+  return all;
 }
 
 }  // namespace assay::stats

@@ -7,7 +7,6 @@
 
 #include "stats/basics/check.h"
 #include "stats/basics/errors.h"
-#include "stats/gates/log_variance_level.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -155,15 +154,6 @@ std::uint64_t primaries_for_variance(PrimaryShape shape, ShapeLimits limits) {
   return whole_up("primaries_for_variance", shape.excess_kurtosis / limits.excess_kurtosis);
 }
 
-Gate predicted_kurtosis_gate(PrimaryShape shape, std::uint64_t primaries, ShapeLimits limits) {
-  check_shape("predicted_kurtosis_gate", shape);
-  check::at_least({"predicted_kurtosis_gate", "primaries"}, primaries, 1);
-  const double value = shape.excess_kurtosis / static_cast<double>(primaries);
-  Gate gate{"excess kurtosis", value, value, limits.excess_kurtosis, GateState::green};
-  gate.state = state_of(gate, limits.excess_kurtosis);
-  return gate;
-}
-
 Gate skewness_gate(const Moments& x, double critical_value) {
   check::at_least({"skewness_gate", "count"}, x.count, 2);
   if (x.m2 == 0) throw ZeroVariance("skewness_gate: zero variance");
@@ -180,23 +170,6 @@ Gate skewness_gate(const Moments& x, const Moments& y, double scale, double crit
   SkewnessPart of_y = skewness_part(y, vy / (vx + vy), cube);
   of_y.value = std::copysign(1, scale) * of_y.value;
   return skewness_gate_of(skewness_part(x, vx / (vx + vy), cube), of_y, cube);
-}
-
-Gate log_mean_gate(const Moments& positive, double critical_value, const std::string& of) {
-  check::at_least({"log_mean_gate", "count"}, positive.count, 2);
-  check::positive({"log_mean_gate", "mean"}, positive.mean);
-  check::positive({"log_mean_gate", "critical_value"}, critical_value);
-  if (positive.m2 == 0) throw ZeroVariance("log_mean_gate: zero variance");
-  const double cube = checked_cube(critical_value);
-  const LogMeanSlope slope =
-      log_mean_slope({.variation = positive.standard_deviation() / positive.mean,
-                      .skewness = positive.skewness()});
-  SkewnessPart part = skewness_part(positive, 1, cube);
-  part.value = slope.value / std::sqrt(static_cast<double>(positive.count));
-  part.allowance *= slope.share_of_skewness;
-  Gate gate = skewness_gate_of(part, {}, cube);
-  gate.name = "level factor of the mean " + of;
-  return gate;
 }
 
 Gate dominance_gate(const Moments& x) {

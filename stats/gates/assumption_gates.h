@@ -22,9 +22,6 @@ struct ShapeLimits {
 
 // Smallest m with excess_kurtosis / m <= limits.excess_kurtosis (1 for negative excess).
 std::uint64_t primaries_for_variance(PrimaryShape shape, ShapeLimits limits = {});
-// Prediction of what the gate reads with m primaries a secondary. It has no error of its own, so
-// low = value. Red above the planning bound.
-Gate predicted_kurtosis_gate(PrimaryShape shape, std::uint64_t primaries, ShapeLimits limits = {});
 // ---- On the test's own data
 
 // Value: exp(2 |a| x^3), 2 |a| = |g1| / (3 sqrt n). The worse tail of a Studentised mean departs
@@ -35,11 +32,6 @@ Gate predicted_kurtosis_gate(PrimaryShape shape, std::uint64_t primaries, ShapeL
 Gate skewness_gate(const Moments& x, double critical_value);
 // The same for the contrast mean x - scale mean y: a = sum psi^3 / (6 (sum psi^2)^1.5).
 Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value);
-// The same for ln of a mean of positive values, which `of` names ("cost"). log_mean_slope
-// (log_variance_level.h) takes the place of |g1| / 3. The confidence limit subtracts the error of
-// g1 alone. Of two sides each has its own gate, which is a bound. Throws std::domain_error if the
-// mean is not positive.
-Gate log_mean_gate(const Moments& positive, double critical_value, const std::string& of);
 
 // The |g1| that normal samples of n exceed with this probability (D'Agostino 1970, n >= 8).
 // Infinite for smaller n, whose g1 cannot exceed (n - 2) / sqrt(n - 1).

@@ -71,20 +71,6 @@ struct SampleSizes {
   double y = 2;
 };
 
-// ---- Variances: log-variance. Effects are ratios of variances; allow >= 1.
-// Normal approximation with SE^2 = (kurtosis_x - 1) / n_x [+ (kurtosis_y - 1) / n_y]. With
-// kurtosis_y = 1 it is the one-sample test. n is n_x, and n_y = n_x * allocation.
-struct LogVariancePlan {
-  double kurtosis_x = 3;
-  double kurtosis_y = 1;
-  double allocation = 1;
-  double allow = 1;  // Ratio.
-  ErrorRates rates;
-};
-double log_variance_power(const LogVariancePlan& plan, double n, double ratio);
-double log_variance_detectable(const LogVariancePlan& plan, double n);
-std::optional<std::uint64_t> log_variance_sample_size(const LogVariancePlan& plan, double detect);
-
 // ---- Distances between laws: Kolmogorov-Smirnov.
 // The power is a lower bound, by Hoeffding at the point of largest difference:
 //   P(D < d_alpha) <= exp(-2 n (distance - allow - d_alpha)^2).

@@ -17,28 +17,22 @@ void check_sample(const char* function, const Moments& x) {
 
 }  // namespace
 
-TestResult chi_square_variance(const Moments& x, double null_variance, double excess_kurtosis) {
+TestResult chi_square_variance(const Moments& x, double null_variance) {
   check_sample("chi_square_variance", x);
-  check::non_negative({"chi_square_variance", "excess_kurtosis"}, excess_kurtosis);
   check::positive({"chi_square_variance", "null_variance"}, null_variance);
-  const double spread = 1 + excess_kurtosis / 2;
-  const double degrees = static_cast<double>(x.count - 1) / spread;
-  const double statistic = x.m2 / null_variance / spread;
+  const double degrees = static_cast<double>(x.count - 1);
+  const double statistic = x.m2 / null_variance;
   const LogTails tails = chi_square_tails(statistic, degrees);
-  const Exactness exactness = excess_kurtosis == 0 ? Exactness::exact : Exactness::asymptotic;
-  return {statistic, {"chi-square", {degrees}}, tails.lower, tails.upper, exactness};
+  return {statistic, {"chi-square", {degrees}}, tails.lower, tails.upper, Exactness::exact};
 }
 
-Interval chi_square_variance_interval(const Moments& x, double confidence, double excess_kurtosis) {
+Interval chi_square_variance_interval(const Moments& x, double confidence) {
   check_sample("chi_square_variance_interval", x);
   check::inside_unit({"chi_square_variance_interval", "confidence"}, confidence);
-  check::non_negative({"chi_square_variance_interval", "excess_kurtosis"}, excess_kurtosis);
-  const double spread = 1 + excess_kurtosis / 2;
-  const double degrees = static_cast<double>(x.count - 1) / spread;
-  const double squares = x.m2 / spread;
+  const double degrees = static_cast<double>(x.count - 1);
   const double log_tail = std::log((1 - confidence) / 2);
-  return {squares / chi_square_quantile({Tail::upper, log_tail}, degrees),
-          squares / chi_square_quantile({Tail::lower, log_tail}, degrees), confidence};
+  return {x.m2 / chi_square_quantile({Tail::upper, log_tail}, degrees),
+          x.m2 / chi_square_quantile({Tail::lower, log_tail}, degrees), confidence};
 }
 
 }  // namespace assay::stats

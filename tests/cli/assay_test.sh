@@ -406,7 +406,7 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
     fail 'no JSON'
   expect 2 calibrate welsh
   contains err 'did you mean `welch`'
-  contains err 'log-variance'
+  contains err 'influence-t'
   expect 2 calibrate --law cauchy
   contains err 'student_t(5)'
   expect 2 calibrate --report junit=c.xml

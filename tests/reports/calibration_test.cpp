@@ -62,7 +62,7 @@ TEST(Calibration, ACellErrsWhereItsLowerLimitExceedsTheTolerance) {
 }
 
 TEST(Calibration, TablesFitAHundredColumns) {
-  CalibrationCell alone = cell("log-variance");
+  CalibrationCell alone = cell("influence-t");
   alone.mistaken = alone.found = alone.missed = {};
   alone.chosen.clear();
   CalibrationCell strict = cell("F");

@@ -149,7 +149,7 @@ Test proof() {
   Test t = base("variance(area) < variance(hemisphere)", 16);
   t.verdict = Verdict::pass;
   t.ok = true;
-  t.method = "log-variance";
+  t.method = "influence-t";
   t.tail = "upper";
   t.null_hypothesis = "variance(area) <= variance(hemisphere)";
   t.detect = 0.5;
@@ -258,7 +258,7 @@ Test caught_mutant() {
 Test unseen_mutant() {
   Test t = base("variance(no_cosine) == variance(area)", 23);
   t.name = "its variance does not show it";
-  t.method = "log-variance";
+  t.method = "influence-t";
   t.null_hypothesis = "variance(no_cosine) == variance(area)";
   t.verdict = Verdict::pass;
   t.ok = true;

@@ -15,7 +15,6 @@
 #include "stats/planning/holm.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
-#include "stats/variances/log_variance.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/multinomial.h"
 #include "tests/stats/samples.h"
@@ -86,24 +85,6 @@ TEST(Calibration, FRatioOnNormalValuesIsUniform) {
   expect_calibrated({10}, [](Philox& random) {
     const Moments x = normals(random, 20);
     return f_ratio(x, normals(random, 5), 1).log_p_upper;
-  });
-}
-
-TEST(Calibration, LogVarianceOfNormalAndExponentialSamplesIsUniform) {
-  expect_calibrated({11, 4000}, [](Philox& random) {
-    return log_p_two_sided(log_variance(normals(random, 3000), 1));
-  });
-  expect_calibrated({12, 3000}, [](Philox& random) {
-    const Moments x = draw_moments(4000, [&] { return random.exponential(); });
-    return log_p_two_sided(log_variance(x, 1));
-  });
-}
-
-TEST(Calibration, LogVarianceRatioOfDifferentShapesIsUniform) {
-  expect_calibrated({13, 3000}, [](Philox& random) {
-    const Moments x = draw_moments(3000, [&] { return random.exponential(); });
-    const Moments y = draw_moments(3000, [&] { return random.uniform(); });
-    return log_p_two_sided(log_variance_ratio(x, y, 12));
   });
 }
 

@@ -15,7 +15,6 @@
 #include "stats/planning/holm.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/tails.h"
-#include "stats/variances/log_variance.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
@@ -122,23 +121,6 @@ TEST(Mutants, FOnPrimariesIsCaught) {
     const Moments x = draw_moments(60, [&] { return random.exponential(); });
     const Moments y = draw_moments(60, [&] { return random.exponential(); });
     return two_sided(f_tails(x.variance() / y.variance(), {59, 59}));
-  });
-}
-
-TEST(Mutants, LogVarianceWithTheKurtosisIgnoredIsCaught) {
-  expect_caught({113, 3000}, [](Philox& random) {
-    const Moments x = draw_moments(2000, [&] { return random.exponential(); });
-    return two_sided(normal_tails(std::log(x.variance()) / std::sqrt(2 / 2000.0)));
-  });
-}
-
-TEST(Mutants, LogVarianceRatioWithPooledKurtosisOfUnequalSamplesIsCaught) {
-  expect_caught({114, 3000}, [](Philox& random) {
-    const Moments x = draw_moments(2000, [&] { return random.exponential(); });
-    const Moments y = normals(random, 400);
-    const double pooled = 2400 * (x.m4 + y.m4) / ((x.m2 + y.m2) * (x.m2 + y.m2)) - 1;
-    const double se = std::sqrt(pooled * (1 / 2000.0 + 1 / 400.0));
-    return two_sided(normal_tails(std::log(x.variance() / y.variance()) / se));
   });
 }
 

@@ -12,7 +12,6 @@
 #include "stats/means/student_t.h"
 #include "stats/means/welch_t.h"
 #include "stats/planning/power.h"
-#include "stats/variances/log_variance.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
@@ -80,18 +79,6 @@ TEST(PowerSimulation, WelchWithUnequalVariances) {
     return log_p_two_sided(welch_t(x, y, {}));
   });
   EXPECT_NEAR(rate, welch_power(plan, static_cast<double>(n), 1), bound(10000));
-}
-
-TEST(PowerSimulation, LogVarianceRatio) {
-  const LogVariancePlan plan{.kurtosis_x = 3, .kurtosis_y = 3, .rates = {.01, .2, true}};
-  const auto n = log_variance_sample_size(plan, 1.2).value();
-  const double rate = rate_of({207, 4000}, [&](Philox& random) {
-    const double sd = std::sqrt(1.2);
-    const Moments x = draw_moments(n, [&] { return sd * random.normal(); });
-    return log_p_two_sided(
-        log_variance_ratio(x, draw_moments(n, [&] { return random.normal(); }), 1));
-  });
-  EXPECT_NEAR(rate, log_variance_power(plan, static_cast<double>(n), 1.2), bound(4000));
 }
 
 TEST(PowerSimulation, KolmogorovSmirnovReachesItsBound) {

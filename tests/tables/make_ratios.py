@@ -30,38 +30,54 @@ def costs(k, size):
     return 2 + np.fmod(0.37 * k * i, 1.5) + 0.2 * np.abs(sample(k, size))
 
 
-def efficiency(x, c, truth=None):
-    """ln efficiency and its standard error from the influence of every observation."""
-    n = len(x)
-    if truth is None:
-        square = (x - x.mean()) ** 2
-        error = np.var(x, ddof=1)
-        psi = square / square.mean() + c / c.mean() - 2
-        # the n - 1 convention of Var(s2) and of Var(cost), written out term by term
-        joint = np.cov(square / square.mean(), c / c.mean(), ddof=0)[0, 1]
-        spread = (stats.kurtosis(x, fisher=False) - (n - 3) / (n - 1)
-                  + np.var(c, ddof=1) / c.mean() ** 2 + 2 * joint)
-        assert abs(spread - np.mean(psi**2)) < 8 / n
-        return -math.log(error * c.mean()), math.sqrt(spread / n)
-    square = (x - truth) ** 2
-    error = square.mean()
-    spread = (np.var(square, ddof=1) / error**2 + np.var(c, ddof=1) / c.mean() ** 2
-              + 2 * np.cov(square, c, ddof=0)[0, 1] / error / c.mean())
-    return -math.log(error * c.mean()), math.sqrt(spread / n)
+def influence(x, c=None, truth=None):
+    """ln of the variance or error (times the mean cost), and every observation's influence over it."""
+    square = (x - (x.mean() if truth is None else truth)) ** 2
+    value = np.var(x, ddof=1) if truth is None else square.mean()
+    psi = square / square.mean()
+    second = 2 / len(x) / (len(x) - 1) if truth is None else 0  # of the variance of s2
+    if c is None:
+        return math.log(value), psi, second
+    return math.log(value * c.mean()), psi + c / c.mean() - 1, second
 
 
-def efficiency_rows():
+def hall(parts, difference):
+    """Student's t of sum w mean(psi) with Hall's correction, and its upper p. `parts`: w, psi, second."""
+    variance = [w**2 * (np.var(psi, ddof=1) / len(psi) + second) for w, psi, second in parts]
+    t = difference / math.sqrt(sum(variance))
+    degrees = sum(variance) ** 2 / sum(v**2 / (len(p[1]) - 1) for v, p in zip(variance, parts))
+    third = sum(w**3 * np.sum((psi - psi.mean()) ** 3) / len(psi) ** 3 for w, psi, _ in parts)
+    plain = sum(w**2 * (np.var(psi) / len(psi) + second * (len(psi) - 1) / len(psi))
+                for w, psi, second in parts)
+    a = third / plain**1.5 / 6
+    corrected = ((1 + 2 * a * t) ** 3 - 1) / (6 * a) + a
+    return corrected, stats.t.sf(corrected, degrees)
+
+
+def of_one(x, distance):
+    return hall([(1, *x[1:])], 1 - math.exp(distance))
+
+
+def of_two(x, y, distance):
+    """The null is at this distance from the estimate."""
+    r = math.exp(distance)
+    return hall([(1, *x[1:]), (-r, *y[1:])], 1 - r)
+
+
+def influence_rows():
     for k in (1, 2, 3):
         n = 40 * k
         x, c = sample(k, n), costs(k, n)
-        value, se = efficiency(x, c)
-        biased, biased_se = efficiency(x, c, 0.1 * k)
         y, d = sample(k + 3, n), costs(k + 3, n)
-        other, other_se = efficiency(y, d)
-        z = (value - other - math.log(1.5)) / math.hypot(se, other_se)
-        cost_z = ((math.log(c.mean() / d.mean()) - math.log(1.1))
-                  / math.hypot(stats.sem(c) / c.mean(), stats.sem(d) / d.mean()))
-        yield [k, n, value, se, biased, biased_se, z, stats.norm.sf(z), cost_z]
+        cost = lambda v: (math.log(v.mean()), v / v.mean(), 0)
+        tests = [of_one(influence(x), -0.3),
+                 of_two(influence(x), influence(y), -0.2),
+                 of_one(influence(x, c), 0.2),
+                 of_one(influence(x, c, 0.1 * k), -0.25),
+                 of_two(influence(x, c), influence(y, d, 0.1), 0.1),
+                 of_two(cost(c), cost(d), -0.03)]
+        yield [k, n, influence(x)[0], influence(x, c)[0], influence(x, c, 0.1 * k)[0],
+               *[number for test in tests for number in test]]
 
 
 SLOPES = [  # sizes, biases, standard errors, error of the reference, slope held against them
@@ -209,8 +225,9 @@ def band_rows():
 
 
 if __name__ == "__main__":
-    write("log_efficiency", "k,n,value,error,biased,biased_error,ratio_z,ratio_upper,cost_z",
-          efficiency_rows())
+    names = ("variance", "variances", "efficiency", "biased", "efficiencies", "costs")
+    write("influence", "k,n,ln_variance,ln_product,ln_biased,"
+          + ",".join(f"{name}_t,{name}_upper" for name in names), influence_rows())
     write("slope", "case,logs,null,misfit,p,low,high,power", slope_rows())
     write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
     write("ledger", "k,nights,tau,u,log_e,night,change,share_2", ledger_rows())

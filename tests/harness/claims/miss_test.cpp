@@ -106,16 +106,16 @@ const std::vector<AtTheEdge> two_means{
 TEST(Misses, OfTwoMeansAreAtMostBeta) { expect_misses(two_means); }
 
 const std::vector<AtTheEdge> variances{
-    {"claim: variance(normal) == 0.8, detect: 25%", "150"},
-    {"claim: variance(normal) <= 0.8, detect: 25%", "150"},
-    {"claim: variance(normal) >= 1.25, detect: 25%", "150"},
-    {"claim: variance(normal) < 1", "150"},
-    {"claim: variance(normal) within 50% of 0.6666666666666666", "200"},
-    {"claim: variance(normal) == 0.8 * variance(again), detect: 25%", "200",
+    {"claim: variance(normal) == 0.8, detect: 25%, test: chi-square", "150"},
+    {"claim: variance(normal) <= 0.8, detect: 25%, test: chi-square", "150"},
+    {"claim: variance(normal) >= 1.25, detect: 25%, test: chi-square", "150"},
+    {"claim: variance(normal) < 1, test: chi-square", "150"},
+    {"claim: variance(normal) within 50% of 0.6666666666666666, test: chi-square", "200"},
+    {"claim: variance(normal) == 0.8 * variance(again), detect: 25%, test: F", "200",
      Shape::at_most_uniform},
-    {"claim: variance(normal) <= 0.8 * variance(again), detect: 25%", "200"},
-    {"claim: variance(normal) < variance(again)", "200"},
-    {"claim: variance(normal) within 50% of 0.6666666666666666 * variance(again)", "400"},
+    {"claim: variance(normal) <= 0.8 * variance(again), detect: 25%, test: F", "200"},
+    {"claim: variance(normal) < variance(again), test: F", "200"},
+    {"claim: variance(normal) within 50% of 0.6666666666666666 * variance(again), test: F", "400"},
 };
 
 TEST(Misses, OfVariancesAreAtMostBeta) { expect_misses(variances); }

@@ -12,7 +12,7 @@
 #include "harness/record/replay.h"
 #include "reports/formats/json.h"
 #include "stats/images/image.h"
-#include "stats/variances/log_variance.h"
+#include "stats/variances/influence.h"
 #include "tests/harness/recorded_rows.h"
 #include "tests/harness/refusal.h"
 #include "tests/lehmer.h"
@@ -110,9 +110,13 @@ TEST(UnequalRows, OfVariancesAreEachWeighedByTheirNumber) {
     EXPECT_EQ(test.verdict, Verdict::pass) << test.claim << ": " << test.message;
     EXPECT_EQ(sizes_of(test), (Sizes{4000, 2900}));
   }
-  EXPECT_EQ(suite.tests[0].method, "log-variance");
-  const stats::TestResult expected =
-      stats::log_variance_ratio(tests::moments_of(rows.a), tests::moments_of(rows.b), 1);
+  EXPECT_EQ(suite.tests[0].method, "influence-t");
+  const auto influence = [](const std::vector<double>& values) {
+    stats::JointSums sums;
+    for (const double value : values) sums.add(value, 0);
+    return stats::influence_of_variance(sums.moments());
+  };
+  const stats::TestResult expected = stats::influence_t(influence(rows.a), influence(rows.b), 0);
   EXPECT_NEAR(*suite.tests[0].channels.at(0).statistic, expected.statistic, 1e-9);
 }
 
@@ -121,10 +125,10 @@ TEST(UnequalRows, AreTooFewForAVarianceWhereOneFileHasTooFew) {
   const Workplace place;
   const reports::Suite suite =
       judged(place, lehmer_rows(8, 1200, 600), "  - {claim: variance(a) == variance(b)}\n");
-  EXPECT_EQ(suite.tests[0].verdict, Verdict::invalid);
+  EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
   EXPECT_THAT(suite.tests[0].message,
-              HasSubstr("600 rows are too few: a variance of values of this shape takes "
-                        "about 1000"));
+              AllOf(HasSubstr("600 observations are too few"), HasSubstr("it takes 1000"),
+                    HasSubstr("if they are near normal, add `test: F`")));
 }
 
 TEST(UnequalRows, OfDependentChainsAreAllAveragedInBatches) {

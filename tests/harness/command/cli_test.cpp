@@ -194,7 +194,7 @@ TEST(CommandLine, HelpIsACommandToo) {
 TEST(CommandLine, HelpNamesTheMethodsAndHowToSilenceTheConsole) {
   const std::string check = parsed<TextCommand>({"check", "--help"}).text;
   EXPECT_THAT(check, HasSubstr("welch"));
-  EXPECT_THAT(check, HasSubstr("log-total-variance"));
+  EXPECT_THAT(check, HasSubstr("influence-t"));
   EXPECT_THAT(check, HasSubstr("console=/dev/null"));
   EXPECT_THAT(refused({"check", "mean(a) == 1", "--test"}), HasSubstr("one of t, welch, "));
 }

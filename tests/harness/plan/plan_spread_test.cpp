@@ -1,89 +1,67 @@
-// Plans of variances and costs: how normal, how heavy and how skewed the pilot shows them to be.
+// Plans of variances and costs: methods, floors and sizes.
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "harness/plan/critical.h"
-#include "stats/gates/assumption_gates.h"
+#include "stats/planning/power.h"
 #include "tests/harness/planned.h"
 
 namespace assay::harness {
 namespace {
 
-// A ratio of sums over 4096 is near normal. One pilot of 512 in four shows a kurtosis beyond the
-// bound.
-TEST(Plan, OfFewNearNormalObservationsChiSquareStands) {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    const Planned few = plan_text("  - {claim: variance(ratio) <= 1, secondaries: 500}\n", seed);
-    EXPECT_EQ(few.plans[0].method.name, "chi-square") << seed;
-    EXPECT_EQ(few.plans[0].invalid, "") << seed;
+// A ratio of sums over 4096 is near normal, which a pilot of 512 leaves in doubt. Means of 64
+// normal values are normal by any pilot.
+TEST(Plan, TakesTheExactTestOnlyWhereThePilotLeavesNoDoubt) {
+  const Planned planned = plan_text(
+      "  - {name: few, claim: variance(ratio) <= 1}\n"
+      "  - {name: averaged, claim: variance(normal) <= 100}\n"
+      "  - {name: one of two, claim: variance(normal) < variance(ratio)}\n"
+      "  - {name: forced, claim: variance(ratio) <= 1, test: chi-square}\n");
+  EXPECT_EQ(planned.plans[0].method.name, "influence-t");
+  EXPECT_EQ(planned.plans[1].method.name, "chi-square");
+  EXPECT_EQ(planned.plans[2].method.name, "influence-t");
+  EXPECT_EQ(planned.plans[3].method.name, "chi-square");
+  for (const Plan& plan : planned.plans) EXPECT_EQ(plan.invalid, "");
+}
+
+// No first look lies below the floor, in primaries and in observations.
+TEST(Plan, OfInfluenceValuesTakesTheFloorOfEvidence) {
+  const Planned planned = plan_text(
+      "  - {name: single, claim: variance(heavier-single) <= 100, detect: 50%}\n"
+      "  - {name: many primaries, claim: variance(ratio) <= 1, detect: 50%}\n"
+      "  - {name: cost, claim: cost(multi) <= 2, detect: 50%}\n"
+      "  - {name: all together, claim: total_variance(single) <= 1, detect: 50%}\n");
+  for (const std::size_t test : {0UL, 2UL, 3UL}) {
+    EXPECT_GE(planned.plans[test].looks.sizes.front(), floor_of_evidence) << test;
   }
-  const Planned skewed = plan_text("  - {claim: variance(corners) <= 100, secondaries: 500}\n");
-  EXPECT_NE(skewed.plans[0].invalid, "");
+  EXPECT_GE(planned.plans[1].looks.sizes.front(), usual_secondaries);
+  EXPECT_LT(planned.plans[1].looks.sizes.front(), floor_of_evidence);
 }
 
-// Each plan allows for the kurtosis that the pilot cannot exclude, beyond what the test bears. That
-// is some .36 with 512 values, and next to nothing with 8192 primaries in means of 64. A forced
-// test does not allow for it.
-TEST(Plan, OfFewNearNormalObservationsTheirKurtosisIsAllowedFor) {
+// Given `secondaries` are a floor of their own.
+TEST(Plan, GivenSecondariesAreTaken) {
+  const Planned planned =
+      plan_text("  - {claim: variance(heavier-single) <= 100, secondaries: 2000}\n");
+  EXPECT_EQ(planned.plans[0].looks.sizes, std::vector<std::uint64_t>{2000});
+}
+
+// Normal values, by their relative influence values of variance 2.
+TEST(Plan, OfVariancesHasTheSizeOfTheirInfluenceValues) {
   const Planned planned = plan_text(
-      "  - {name: few, claim: variance(ratio) <= 1, secondaries: 500}\n"
-      "  - {name: forced, claim: variance(ratio) <= 1, secondaries: 500, test: chi-square}\n"
-      "  - {name: averaged, claim: variance(normal) <= 100, secondaries: 500}\n"
-      "  - {name: one of two, claim: variance(normal) < variance(ratio), secondaries: 500}\n");
-  const auto allowed = [&](std::size_t test) {
-    return planned.plans[test].method.frozen.excess_kurtosis(0);
+      "  - {name: one, claim: variance(single) <= 1, detect: 1%}\n"
+      "  - {name: two, claim: variance(single) <= variance(single), detect: 1%}\n");
+  const auto size = [&](std::size_t test, double variance) {
+    const ErrorShare share = planned.place[test].share;
+    const double looks = static_cast<double>(planned.plans[test].looks.sizes.size());
+    const double n = stats::normal_sample_size(
+        std::sqrt(variance), {.detect = std::log(1.01)},
+        {.alpha = share.alpha / looks, .beta = share.beta / looks, .two_sided = false});
+    return static_cast<double>(planned.plans[test].most_secondaries()) / n;
   };
-  const Pilot& pilot = *pilot_of(planned.asked->questions[0].subjects[0], planned.pilots);
-  const double limit = stats::kurtosis_upper_limit(pilot.sums->moments(0));
-  EXPECT_GT(limit, 0.2);
-  EXPECT_EQ(allowed(0).x, limit);
-  EXPECT_EQ(allowed(1).x, 0);
-  EXPECT_EQ(allowed(2).x, 0);
-  EXPECT_EQ(planned.plans[3].method.name, "F");
-  EXPECT_EQ(allowed(3).x, 0);
-  EXPECT_EQ(allowed(3).y, limit);
-}
-
-// Variances of eight fair coins are skewed to the left (-2.2), and so is the logarithm of their
-// mean. Variances of normal values are not.
-TEST(Plan, OfTotalVariancesTheGroupsAreNearNormal) {
-  const Planned planned = plan_text(
-      "  - {name: coin, claim: total_variance(coin) <= 0.25}\n"
-      "  - {name: normal, claim: total_variance(single) <= 1}\n");
-  EXPECT_GT(planned.plans[0].most_secondaries(), 10000);
-  EXPECT_LT(planned.plans[1].most_secondaries(), 2 * usual_secondaries);
-  EXPECT_EQ(planned.plans[0].invalid, "");
-}
-
-// The draws decide nothing, so there are no more than a test without `detect` takes.
-TEST(Plan, OfAClaimThatIsInvalidDrawsLittle) {
-  const Planned planned = plan_text(
-      "  - {claim: variance(heavier-single) <= 100, detect: 1%}\n"
-      "  - {name: as many as asked for, claim: variance(heavier-single) <= 100, secondaries: "
-      "2000}\n");
-  ASSERT_FALSE(planned.plans[0].invalid.empty());
-  EXPECT_EQ(planned.plans[0].looks.sizes, std::vector<std::uint64_t>{usual_secondaries});
-  EXPECT_EQ(planned.plans[1].looks.sizes, std::vector<std::uint64_t>{2000});
-}
-
-// Both pilots of 512 values show a heavy tail, with kurtoses of some 500 and of 23. In 400,000
-// values the second has a kurtosis of 24.
-TEST(Plan, OfFewValuesATailIsHeavyWhereTheKurtosisIsToo) {
-  const Planned heavy = plan_text("  - {claim: variance(corners) <= 100}\n");
-  EXPECT_NE(heavy.plans[0].invalid.find("tail is too heavy"), std::string::npos);
-  const Planned light = plan_text("  - {claim: variance(same-samples) <= 100}\n");
-  EXPECT_EQ(light.plans[0].invalid, "");
-}
-
-// Two rays, and one where the first finds nothing: a skewness of -6.5.
-TEST(Plan, SkewedCostsTakeMoreObservations) {
-  const Planned open = plan_text("  - {claim: cost(multi) <= 2}\n");
-  EXPECT_GT(open.plans[0].most_secondaries(), 5000);
-  EXPECT_EQ(open.plans[0].invalid, "");
-  const Planned fixed = plan_text("  - {claim: cost(multi) <= 2, secondaries: 1000}\n");
-  EXPECT_NE(fixed.plans[0].invalid.find("costs of this shape"), std::string::npos);
-  const Planned constant = plan_text("  - {claim: cost(hemisphere) <= 2, secondaries: 100}\n");
-  EXPECT_EQ(constant.plans[0].invalid, "");
+  EXPECT_NEAR(size(0, 2), 1, .1) << "by the pilot's kurtosis";
+  EXPECT_NEAR(size(1, 4), 1, .1);
 }
 
 }  // namespace

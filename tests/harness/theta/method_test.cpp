@@ -122,9 +122,9 @@ TEST(Method, VarianceOfARatioIsTheSecondarys) {
   EXPECT_NEAR(two.estimate, 0, 1e-12) << "0.5 against 4 * 0.125";
 }
 
-TEST(Method, LogVarianceAndChiSquareAgreeOnTheEstimate) {
+TEST(Method, InfluenceValuesAndChiSquareAgreeOnTheEstimate) {
   const std::vector<Side> data{{.moments = two_values(0, 5, 1000)}};
-  for (const char* method : {"chi-square", "log-variance"}) {
+  for (const char* method : {"chi-square", "influence-t"}) {
     const Evidence variance = evidence("variance", data, method);
     EXPECT_NEAR(variance.estimate, std::log(5.0 / 4), 1e-12) << method;
     const stats::Interval interval = variance.interval(0.99);
@@ -152,8 +152,8 @@ TEST(Method, IntervalsEndWhereTheTestBeginsToReject) {
   check(evidence("means", {{.moments = x}, {.moments = y}}), "means");
   check(evidence("variance", {{.moments = x}}), "chi-square");
   check(evidence("variances", {{.moments = x}, {.moments = y}}), "F");
-  check(evidence("variance", {{.moments = x}}, "log-variance"), "log-variance");
-  check(evidence("variances", {{.moments = x}, {.moments = y}}, "log-variance"), "of two");
+  check(evidence("variance", {{.moments = x}}, "influence-t"), "influence-t");
+  check(evidence("variances", {{.moments = x}, {.moments = y}}, "influence-t"), "of two");
 }
 
 // Probabilities 0.1, 0.2, …, 0.9 of the claimed law have the distance 0.1.
@@ -184,7 +184,7 @@ TEST(Method, NamesAreThoseOfTheDesign) {
 TEST(Method, ThatDoesNotAnswerTheClaimIsRefusedWithThoseThatDo) {
   const auto asked = ask_text(suite);
   const std::string text = refusal([&] { find_method(asked->question("variance"), "welch"); });
-  EXPECT_NE(text.find("`chi-square`, `log-variance`"), std::string::npos) << text;
+  EXPECT_NE(text.find("`chi-square`, `influence-t`"), std::string::npos) << text;
 }
 
 TEST(Method, NullHypothesisReadsAsAFormula) {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "stats/tails/tails.h"
-#include "stats/variances/log_efficiency.h"
+#include "stats/variances/influence.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/samples.h"
 
@@ -62,20 +62,21 @@ struct Case {
 };
 
 JointMoments sample_of(Philox& random, double bias) {
-  JointMoments x;
+  JointSums x;
   for (int i = 0; i < 2000; ++i) x.add(bias + random.normal(), 1);
-  return x;
+  return x.moments();
 }
 
 double log_p_of_truth(Philox& random, Case of, double claimed_error) {
   const JointMoments x = sample_of(random, of.bias);
-  const std::array reference{
-      UncertainReference{.known = {of.error * random.normal(), claimed_error}, .turn = x.x.mean}};
-  const double efficiency = 1 / (1 + of.bias * of.bias);
+  const std::array reference{UncertainReference{
+      .known = {of.error * random.normal(), claimed_error}, .turn = x.of_x.mean}};
+  const double log_error = std::log(1 + of.bias * of.bias);
   const auto p = [&](bool upper) {
     return log_p_over_references(
         [&](std::span<const double> truth) {
-          const TestResult result = log_efficiency(log_efficiency_of(x, truth[0]), efficiency);
+          const TestResult result =
+              influence_t(influence_of_error_and_cost(x, truth[0]), log_error);
           return upper ? result.log_p_upper : result.log_p_lower;
         },
         reference);

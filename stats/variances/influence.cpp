@@ -1,0 +1,189 @@
+#include "stats/variances/influence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "stats/basics/check.h"
+#include "stats/basics/errors.h"
+#include "stats/means/skewness_corrected_t.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr std::size_t weight = JointMoments::weight;
+constexpr std::size_t powers_of_cost = JointMoments::powers_of_cost;
+
+// A polynomial in d and e, by JointMoments::place.
+using Polynomial = std::array<double, JointMoments::count_of_sums>;
+
+Polynomial product(const Polynomial& f, const Polynomial& g) {
+  Polynomial result{};
+  for (std::size_t j = 0; j <= powers_of_cost; ++j) {
+    for (std::size_t i = 0; i + 2 * j <= weight; ++i) {
+      const double factor = f[JointMoments::place(i, j)];
+      if (factor == 0) continue;
+      for (std::size_t l = 0; j + l <= powers_of_cost; ++l) {
+        for (std::size_t k = 0; i + k + 2 * (j + l) <= weight; ++k) {
+          result[JointMoments::place(i + k, j + l)] += factor * g[JointMoments::place(k, l)];
+        }
+      }
+    }
+  }
+  return result;
+}
+
+double sum_of(const Polynomial& f, const JointMoments& sample) {
+  double sum = 0;
+  for (std::size_t k = 0; k < f.size(); ++k) sum += f[k] * sample.sums[k];
+  return sum;
+}
+
+// psi = square d^2 + linear d + cost e, but for a constant.
+struct Coefficients {
+  double square = 0;
+  double linear = 0;
+  double cost = 0;
+};
+
+double largest_square(const JointMoments& sample, const Coefficients& of) {
+  const auto value = [&](double d) { return of.square * d * d + of.linear * d; };
+  const double mean = sample.of_x.mean;
+  return std::max(value(sample.of_x.maximum - mean), value(sample.of_x.minimum - mean));
+}
+
+// Moments of 1 + psi less its mean. The extremes are bounds.
+Moments about_one(const JointMoments& sample, const Coefficients& of) {
+  const double n = static_cast<double>(sample.count);
+  const double mean = of.square * sample.sum(2, 0) / n;
+  Polynomial psi{};
+  psi[JointMoments::place(0, 0)] = -mean;
+  psi[JointMoments::place(1, 0)] = of.linear;
+  psi[JointMoments::place(2, 0)] = of.square;
+  psi[JointMoments::place(0, 1)] = of.cost;
+  const Polynomial square = product(psi, psi);
+  Moments moments{.count = sample.count, .mean = 1};
+  moments.m2 = std::max(0.0, sum_of(square, sample));
+  if (sample.known == weight) {
+    moments.m3 = sum_of(product(square, psi), sample);
+    moments.m4 = sum_of(product(square, square), sample);
+  }
+  const double dearest = of.cost * (sample.of_cost.maximum - sample.of_cost.mean);
+  const double cheapest = of.cost * (sample.of_cost.minimum - sample.of_cost.mean);
+  // The least square deviation is 0, or that of a truth between the values.
+  const double least = of.linear == 0 ? 0 : -of.linear * of.linear / (4 * of.square);
+  moments.maximum = 1 - mean + largest_square(sample, of) + dearest;
+  moments.minimum = 1 - mean + least + cheapest;
+  return moments;
+}
+
+void check_sample(const char* function, const JointMoments& sample) {
+  check::at_least({function, "count"}, sample.count, 4);
+  for (const double sum : sample.sums) check::finite({function, "sum of powers"}, sum);
+  if (sample.sum(2, 0) == 0) throw ZeroVariance(std::string(function) + ": zero variance");
+  // Denormal numbers have lost their digits.
+  constexpr double least =
+      std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+  const double highest = sample.sum(sample.known, 0);
+  if (!(highest > least)) {
+    check::fail({function, "sum of the highest powers"}, highest,
+                "within the numbers that a computer holds; give the observations in another unit");
+  }
+}
+
+double log_variance_of(const JointMoments& sample) {
+  return std::log(sample.sum(2, 0) / (static_cast<double>(sample.count) - 1));
+}
+
+// Makes the mean of the squared deviations 1.
+double per_mean_square(const JointMoments& sample) {
+  return static_cast<double>(sample.count) / sample.sum(2, 0);
+}
+
+// The second order of the variance of s2 / sigma^2 is 2 / n^2.
+constexpr double second_order = 2;
+
+// An exact comparison: no evidence against equal numbers, certainty against others.
+TestResult deterministic(double log_ratio) {
+  constexpr double impossible = std::numeric_limits<double>::lowest();
+  const double difference = std::abs(log_ratio) <= influence_rounding ? 0 : log_ratio;
+  return {difference,
+          {"bound", {}},
+          difference < 0 ? impossible : 0,
+          difference > 0 ? impossible : 0,
+          Exactness::exact};
+}
+
+// e to the distance from the estimate; beyond e^300 nothing changes.
+double ratio_of(const char* function, double log_ratio) {
+  check::finite({function, "logarithm"}, log_ratio);
+  return std::exp(std::clamp(log_ratio, -300.0, 300.0));
+}
+
+}  // namespace
+
+Influence influence_of_mean(const Moments& positive) {
+  check::at_least({"influence_of_mean", "count"}, positive.count, 2);
+  check::positive({"influence_of_mean", "mean"}, positive.mean);
+  const double scale = 1 / positive.mean;
+  const double square = scale * scale;
+  return {.log_value = std::log(positive.mean),
+          .relative = {.count = positive.count,
+                       .mean = 1,
+                       .m2 = positive.m2 * square,
+                       .m3 = positive.m3 * square * scale,
+                       .m4 = positive.m4 * square * square,
+                       .minimum = positive.minimum * scale,
+                       .maximum = positive.maximum * scale}};
+}
+
+Influence influence_of_variance(const JointMoments& sample) {
+  check_sample("influence_of_variance", sample);
+  Influence influence{.log_value = log_variance_of(sample),
+                      .relative = about_one(sample, {.square = per_mean_square(sample)})};
+  influence.relative.m2 += second_order;
+  return influence;
+}
+
+Influence influence_of_variance_and_cost(const JointMoments& sample) {
+  check_sample("influence_of_variance_and_cost", sample);
+  check::positive({"influence_of_variance_and_cost", "mean cost"}, sample.of_cost.mean);
+  Influence influence{.log_value = log_variance_of(sample) + std::log(sample.of_cost.mean),
+                      .relative = about_one(sample, {.square = per_mean_square(sample),
+                                                     .cost = 1 / sample.of_cost.mean})};
+  influence.relative.m2 += second_order;
+  return influence;
+}
+
+Influence influence_of_error_and_cost(const JointMoments& sample, double truth) {
+  check_sample("influence_of_error_and_cost", sample);
+  check::positive({"influence_of_error_and_cost", "mean cost"}, sample.of_cost.mean);
+  check::finite({"influence_of_error_and_cost", "truth"}, truth);
+  const double n = static_cast<double>(sample.count);
+  const double bias = sample.x().mean_less(truth);
+  const double error = sample.sum(2, 0) / n + bias * bias;
+  const Influence influence{.log_value = std::log(error) + std::log(sample.of_cost.mean),
+                            .relative = about_one(sample, {.square = 1 / error,
+                                                           .linear = 2 * bias / error,
+                                                           .cost = 1 / sample.of_cost.mean})};
+  if (!(influence.relative.m2 > 0)) {
+    throw ZeroVariance("influence_of_error_and_cost: the mean squared error has no spread");
+  }
+  return influence;
+}
+
+TestResult influence_t(const Influence& x, double log_value) {
+  const double null = ratio_of("influence_t", log_value - x.log_value);
+  if (x.relative.m2 == 0) return deterministic(x.log_value - log_value);
+  return skewness_corrected_t(x.relative, {.value = null});
+}
+
+TestResult influence_t(const Influence& x, const Influence& y, double log_ratio) {
+  const double distance = log_ratio - (x.log_value - y.log_value);
+  const double null = ratio_of("influence_t", distance);
+  if (x.relative.m2 == 0 && y.relative.m2 == 0) return deterministic(-distance);
+  return skewness_corrected_welch(x.relative, y.relative, {.scale = null});
+}
+
+}  // namespace assay::stats
