@@ -148,8 +148,8 @@ class SlopeTheta final : public Theta {
   }
   std::optional<double> known_size(const Question&) const override { return std::nullopt; }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
+  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots&, std::uint64_t,
+                       Plan& plan) const override {
     const std::uint64_t floor = secondaries_of_floor(question, plan);
     return is.of_spread || of_costs(question) ? std::max(usual_secondaries, floor) : floor;
   }

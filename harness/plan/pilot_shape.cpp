@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "harness/plan/critical.h"
@@ -87,7 +86,7 @@ stats::Gate near_normal_gate(const Known& known) {
           .value = value,
           .low = value,
           .limit = limit,
-          .state = value <= limit ? GateState::green : GateState::amber};
+          .state = value <= limit ? stats::GateState::green : stats::GateState::amber};
 }
 
 namespace {

@@ -45,12 +45,4 @@ std::uint64_t whole_secondaries(double count) {
   return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
 }
 
-void note_too_few(Plan& plan, std::uint64_t size, std::uint64_t needed) {
-  plan.gates.push_back(gate_of(
-      reports::Gate{.name = "number of observations (limit: the fewest that keep the level)",
-                    .value = static_cast<double>(size),
-                    .limit = static_cast<double>(needed),
-                    .state = "red"}));
-}
-
 }  // namespace assay::harness

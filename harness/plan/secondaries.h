@@ -27,7 +27,4 @@ std::uint64_t secondaries_of_floor(const Question& question, const Plan& plan);
 /// A computed count, rounded up; `impossible_secondaries` if it is too large or NaN.
 std::uint64_t whole_secondaries(double count);
 
-/// Notes a red gate: fewer observations than needed.
-void note_too_few(Plan& plan, std::uint64_t size, std::uint64_t needed);
-
 }  // namespace assay::harness
