@@ -84,31 +84,26 @@ constexpr std::uint64_t most_for_the_unseen = 1024 * usual_secondaries;
 // Fewer secondaries of a pilot do not show their law.
 constexpr std::size_t fewest_of_a_law = 64;
 
-/// The values of a secondary for planning bets. A constant pilot may have missed values at the ends
-/// of the range with probability .01: they take the mean to the claimed one, or leave it. Of few
-/// secondaries only mean and deviation are known.
+/// The values of a secondary for planning bets. At an end of the range before which the pilot saw
+/// few values there may be some that are worth half of the margin: more would be found, and fewer
+/// cost less. Their probability is one with which the pilot missed them at .01. Of few secondaries
+/// only mean and deviation are known.
 std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& planned,
-                                                     const stats::Moments& pilot,
+                                                     const PilotChannel& pilot,
                                                      std::span<const double> secondaries) {
-  const auto [low, high] = planned.range;
-  const double mean = pilot.mean;
-  if (planned.unseen) {
-    auto law = std::make_shared<stats::ValueCells>(std::vector<double>{mean});
-    const double most = std::log(100.0) / static_cast<double>(pilot.count);
-    const double shift = planned.null_value - mean;
-    const double width = high - low;
-    const double to_high = shift == 0 ? most * (mean - low) / width : shift / (high - mean);
-    const double to_low = shift == 0 ? most * (high - mean) / width : -shift / (mean - low);
-    if (to_high > 0 && std::isfinite(to_high)) law->add(high, std::min(most, to_high));
-    if (to_low > 0 && std::isfinite(to_low)) law->add(low, std::min(most, to_low));
-    return law;
-  }
-  if (secondaries.size() >= fewest_of_a_law) {
-    return std::make_shared<const stats::ValueCells>(secondaries);
-  }
+  const double mean = pilot.moments.mean;
   const double deviation = planned.standard_deviation;
-  return std::make_shared<const stats::ValueCells>(
-      std::vector<double>{mean - deviation, mean + deviation});
+  const std::vector<double> few{mean - deviation, mean + deviation};
+  auto law = std::make_shared<stats::ValueCells>(
+      secondaries.size() >= fewest_of_a_law ? secondaries : std::span<const double>(few));
+  const double count = law->count();
+  const double missed = std::log(100.0) / static_cast<double>(pilot.moments.count);
+  for (const double end : {planned.range.low, planned.range.high}) {
+    if (!std::isfinite(end) || !hides(pilot.values, mean, end)) continue;
+    const double worth = distance_of(planned.regions) * planned.unit / 2 / std::abs(end - mean);
+    if (worth > 0) law->add(end, count * std::min(missed, worth));
+  }
+  return law;
 }
 
 /// True if both samples of a comparison spread; else it is planned as one mean against a number.
@@ -275,8 +270,20 @@ bool are_two_valued(const Question& question, const std::vector<Known>& channels
          });
 }
 
-std::uint64_t choose_for_mean(const Question& question, const Pilots& pilots, std::uint64_t most,
-                              Plan& plan) {
+// Bets keep their values: half a gigabyte of them.
+constexpr std::uint64_t most_bets = std::uint64_t{1} << 26;
+
+/// True if bets decide within what can be kept, as far as the pilot tells.
+bool can_afford_bets(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                     const Plan& plan) {
+  Plan betting = plan;
+  betting.method = find_method(question, "betting");
+  return question.theta->secondaries(question, place.share, pilots, betting).value_or(0) <=
+         most_bets;
+}
+
+std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
+                              const Pilots& pilots, std::uint64_t most, Plan& plan) {
   const std::vector<Known> channels =
       known_channels(question, pilots, largest_look(question, most), plan);
   bool near_normal = true;
@@ -288,7 +295,7 @@ std::uint64_t choose_for_mean(const Question& question, const Pilots& pilots, st
   if (!question.test->method) {
     if (!channels.empty() && are_two_valued(question, channels, plan)) {
       plan.method = find_method(question, "binomial");
-    } else if (bets_on_range(question, pilots)) {
+    } else if (bets_on_range(question, pilots) && can_afford_bets(question, place, pilots, plan)) {
       plan.method = find_method(question, "betting");
     } else if (!near_normal) {
       plan.method = find_method(question, "skewness-corrected-t");
@@ -387,9 +394,9 @@ class MeanTheta : public Theta {
     return error;
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots& pilots,
+  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
-    return choose_for_mean(question, pilots, most, plan);
+    return choose_for_mean(question, place, pilots, most, plan);
   }
 
   std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
@@ -544,23 +551,13 @@ class MeanTheta : public Theta {
     PlannedChannel planned{.regions = plan.regions[channel]};
     const bool constant = is_constant(question, 0, channel, first);
     note_range(question, channel, first, planned);
-    planned.unseen = constant && plan.method.is.in_range;
-    if (planned.unseen && !question.of_two()) {
-      planned.law = planned_law(planned, first, {});
-      planned.unit = unit_of_theta(question, channel, 0);
-      return planned;
-    }
+    const bool bets = plan.method.is.in_range && !question.of_two();
+    planned.unseen = constant && bets;
     // A mean without spread may be compared with one that has some; nothing else can be planned.
-    if (constant && !question.of_two()) return std::nullopt;
+    if (constant && !bets && !question.of_two()) return std::nullopt;
     if (!constant) {
       planned.standard_deviation =
           std::sqrt(upper_variance(first) / question.subjects[0].averaged(plan.primaries[0]));
-    }
-    if (plan.method.is.in_range && !question.of_two()) {
-      planned.law = planned_law(
-          planned, first,
-          as_secondaries(question.subjects[0], pilot_channel(question, 0, channel, pilots).values,
-                         plan.primaries[0]));
     }
     double other_mean = 0;
     if (question.of_two()) {
@@ -583,6 +580,11 @@ class MeanTheta : public Theta {
           "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give "
           "the "
           "margin as a number");
+    }
+    if (bets) {
+      const PilotChannel pilot = pilot_channel(question, 0, channel, pilots);
+      planned.law = planned_law(
+          planned, pilot, as_secondaries(question.subjects[0], pilot.values, plan.primaries[0]));
     }
     return planned;
   }

@@ -117,15 +117,14 @@ NeededEnds needed_ends(const TestEntry& test) {
   return {.low = true, .high = true};
 }
 
-/// True if the values beyond half the way from their mean to an end are few.
+}  // namespace
+
 bool hides(std::span<const double> values, double mean, double end) {
   const double half = mean + (end - mean) / 2;
   return std::ranges::count_if(values, [&](double value) {
            return end > mean ? value >= half : value <= half;
          }) < few_values;
 }
-
-}  // namespace
 
 bool bets_on_range(const Question& question, const Pilots& pilots) {
   if (question.test->method) return find_method(question, *question.test->method).is.in_range;

@@ -43,6 +43,9 @@ void note(Plan& plan, const Known& known, const stats::Gate& gate);
 /// Skewness of a secondary. Student's t takes values for near normal where it is green.
 stats::Gate near_normal_gate(const Known& known);
 
+/// True if the values beyond half the way from their mean to an end are few: there may be more.
+bool hides(std::span<const double> values, double mean, double end);
+
 /// True if a claim on means rests on the range that its channels declare: bets are its method.
 /// Every end that a decision needs is finite, and a pilot saw few values in the outer half before
 /// one, or none that vary. Two means are bet on only if both are constant.
