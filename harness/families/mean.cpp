@@ -84,10 +84,9 @@ constexpr std::uint64_t most_for_the_unseen = 1024 * usual_secondaries;
 // Fewer secondaries of a pilot do not show their law.
 constexpr std::size_t fewest_of_a_law = 64;
 
-/// The values of a secondary for planning bets. At an end of the range before which the pilot saw
-/// few values there may be some that are worth half of the margin: more would be found, and fewer
-/// cost less. Their probability is one with which the pilot missed them at .01. Of few secondaries
-/// only mean and deviation are known.
+/// The values of a secondary for planning bets. The pilot may have seen few values before an end of
+/// the range, or none. Some there may be worth half of the margin, if the pilot missed them with
+/// probability .01 at least. Of few secondaries only mean and deviation are known.
 std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& planned,
                                                      const PilotChannel& pilot,
                                                      std::span<const double> secondaries) {

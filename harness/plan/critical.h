@@ -14,7 +14,7 @@ inline constexpr std::uint64_t least_secondaries = 100;
 // Size of a test without `detect`.
 inline constexpr std::uint64_t usual_secondaries = 1000;
 
-// Primaries below which no mean without a declared range is decided: no test knows of a rare bright
+// Primaries below which no mean without a declared range is decided. No test knows of a rare bright
 // value that it never drew (Bahadur & Savage 1956).
 inline constexpr std::uint64_t floor_of_evidence = std::uint64_t{1} << 14;
 

@@ -47,8 +47,8 @@ double bet(std::size_t index);
 // Under the null E is a non-negative supermartingale that begins at 1. So p = min(1, 1 / E) is
 // valid at every look, however the looks are chosen (Ville 1939; Waudby-Smith & Ramdas 2024, J. R.
 // Statist. Soc. B 86; Orabona & Jun 2024). The tail against "E x >= m" is the mirror image at high.
-// A tail whose end of the range is infinite has p = 1: a rare value may make up for any difference
-// (Bahadur & Savage 1956).
+// A tail whose end of the range is infinite has p = 1. A rare value may make up for any difference
+// there (Bahadur & Savage 1956).
 //
 // The logarithm of a bet's wealth is concave in the value. The chord between a cell's ends bounds
 // it from below, so p stays valid; it is exact where a cell has one value. (measurements.md has the
@@ -61,14 +61,12 @@ double bet(std::size_t index);
 // rounding, a non-finite null mean.
 TestResult betting_mean(const ValueCells& x, Range range, double null_mean);
 
-// Null hypothesis: E x - scale E y = offset, for values in declared ranges. Against "E x - scale E
-// y
-// <= d" both samples must speak on either side of one number s:
+// Null hypothesis: E x - scale E y = offset, for values in declared ranges. Both samples must speak
+// against "E x - scale E y <= d", on either side of one number s:
 //   p = 2 min_s max(p of "E x <= s", p of "scale E y + d >= s").
-// Under the null one of the two is false for each s, and each p grows towards its own truth: so the
-// minimum is at most as small as the smaller of two valid p-values. It is valid at every look, as
-// they are. Twenty halvings find s. The statistic is mean x - scale mean y - offset. Throws as
-// above.
+// Under the null, one of the two is true for each s. The p of each is smallest at its own truth. So
+// the minimum is no less than the smaller of two valid p-values, at every look. Twenty halvings
+// find s. The statistic is mean x - scale mean y - offset. Throws as above.
 TestResult betting_contrast(const ValueCells& x, Range of_x, const ValueCells& y, Range of_y,
                             Contrast null_value);
 

@@ -32,8 +32,9 @@ struct ExactPlanning {
 // no smooth function of n.)
 extern const ExactPlanning binomial_planning;
 
-// For betting_mean: the wealth of the bet that does best is taken for normal after n values of the
-// law, moved to the mean in question. An end of the range that is infinite has power 0.
+// For betting_mean: the logarithm of the best bet's wealth is taken for normal. The values are
+// those of the law, moved to the mean in question. An end of the range that is infinite has power
+// 0.
 extern const ExactPlanning betting_planning;
 
 // The least effect on this side (1 above, -1 below) with power 1 - beta. Nothing if the range ends
