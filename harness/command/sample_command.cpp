@@ -8,6 +8,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/command/commands.h"
 #include "harness/draws/sampler_setup.h"
+#include "harness/question/question_sources.h"
 #include "harness/sampling/pool.h"
 #include "harness/sampling/prepare.h"
 #include "harness/sampling/recorded_run.h"
@@ -60,7 +61,7 @@ void ask_for_cells(const Sampled& sampled, const Source& source) {
   }
 }
 
-Sampled sampled_by(const PreparedEstimator& estimator, const Source& source) {
+Sampled sampled_by(const PreparedEstimator& estimator, const Source& source, std::uint64_t seed) {
   Sampled sampled{.setup = estimator.setup};
   add_columns(sampled, source.part);
   if (!sampled.columns.empty()) return sampled;
@@ -71,7 +72,8 @@ Sampled sampled_by(const PreparedEstimator& estimator, const Source& source) {
     // A marginal of the only sampler needs no sampler's name.
     const bool by_marginal = samplers.size() == 1 && has_marginal(named, source.part);
     if (!by_name && !by_marginal) continue;
-    sampled = Sampled{.setup = sampler_setup(named, source.where), .purpose = named.name};
+    const StreamKey cells = stream_of_cells(estimator, named.name, seed);
+    sampled = Sampled{.setup = sampler_setup(named, source.where, cells), .purpose = named.name};
     const std::string rest = dot == std::string::npos ? "" : source.part.substr(dot + 1);
     add_columns(sampled, by_name ? rest : source.part);
   }
@@ -91,7 +93,7 @@ int sample(const SampleArguments& arguments) {
   const std::vector<EstimatorEntry> entries =
       estimators_of({source}, arguments.estimators, arguments.primaries);
   const PreparedEstimator estimator = prepare(entries.front(), ".");
-  const Sampled sampled = sampled_by(estimator, source);
+  const Sampled sampled = sampled_by(estimator, source, arguments.seed);
   const auto rows = sampled.setup->observations();
   if (recorded::is_reference(*sampled.setup)) {
     throw InputError(source.where, fmt::format("`{}` is a reference, a mean without observations",

@@ -76,7 +76,7 @@ double farthest(std::span<const std::size_t> cells, std::span<const std::optiona
 
 std::optional<CloseUp> close_up(const DensityCells& density, const Sampler& sampler,
                                 std::span<const std::optional<double>> z) {
-  const stats::PlaneGrid grid = measure_grid(sampler);
+  const stats::PlaneGrid& grid = density.cells.grid();
   const stats::PlaneCell domain{{grid.x_borders.front(), grid.x_borders.back()},
                                 {grid.y_borders.front(), grid.y_borders.back()}};
   const stats::PlaneCell box =

@@ -67,18 +67,6 @@ Compared compared(const Sampler& sampler, std::span<const SamplerDraw> draws) {
   return some;
 }
 
-/// Writes numbers at the first points, as many as can be had, and returns how many. Throws if the
-/// first has none.
-std::size_t write_some(std::span<const Point> points, std::span<double> out, auto numbers) {
-  std::size_t done = 0;
-  try {
-    while (done < points.size()) done += numbers(points.subspan(done), out.subspan(done));
-  } catch (const std::runtime_error&) {
-    if (done == 0) throw;
-  }
-  return done;
-}
-
 /// The number of leading draws whose declared numbers can be had. Throws if it is 0.
 std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
   if (some.points.empty()) return draws;
@@ -93,20 +81,6 @@ std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
     if (some.places[0] == 0) throw;
     return some.places[0];
   }
-}
-
-/// The draws before the first unsound one. Throws if the first is unsound.
-std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream> streams) {
-  std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    try {
-      sound(named, draws[i]);
-    } catch (const std::runtime_error&) {
-      if (i == 0) throw;
-      draws.resize(i);
-    }
-  }
-  return draws;
 }
 
 std::vector<JudgedDraw> judged(const NamedSampler& named, std::span<Stream> streams) {

@@ -1,5 +1,7 @@
 #include "harness/draws/declared_density.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -78,25 +80,63 @@ Densities densities_of_lobe(const NamedSampler& named, int lobe) {
   });
 }
 
-stats::LineDensity line_density(const Sampler& sampler, Densities densities) {
+stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,
+                                Densities densities) {
   const auto values = [densities = std::move(densities)](std::span<const double> x,
                                                          std::span<double> out) {
     std::vector<Point> points;
     for (const double each : x) points.push_back({each, 0, 0});
     write_all(densities, points, out);
   };
-  return {.values = values, .panels = sampler.panels().first};
+  std::vector<double> places;
+  for (const Point& point : drawn) places.push_back(point[0]);
+  const stats::Span whole{sampler.bounds()[0], sampler.bounds()[1]};
+  return {.values = values,
+          .panels = {.equal = sampler.panels().first,
+                     .borders = stats::borders_of_peaks(std::move(places), whole)}};
+}
+
+bool is_impossible(const Sampler& sampler, const Point& point, double density) {
+  if (density != 0) return false;
+  constexpr double least_reach = 1e-6;
+  const double reach = std::max(least_reach, sampler.rounding());
+  const auto moved = [&](double place, const stats::Span& span, int steps) {
+    return std::clamp(place + steps * reach * span.width(), span.low, span.high);
+  };
+  if (sampler.domain() == Domain::interval) {
+    const stats::Span span{sampler.bounds()[0], sampler.bounds()[1]};
+    return std::ranges::all_of(std::array{-1, 1}, [&](int steps) {
+      return sampler.density({moved(point[0], span, steps), 0, 0}) == 0;
+    });
+  }
+  const DomainChart chart = chart_by(sampler.domain(), 0);
+  const auto [first, second] = chart.coordinates(point);
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      const Point beside = chart.point(chart.coordinate(moved(first, chart.first, i)),
+                                       chart.coordinate(moved(second, chart.second, j)));
+      if (sampler.density(beside) != 0) return false;
+    }
+  }
+  return true;
 }
 
 stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
-                                  Densities densities) {
+                                  std::span<const Point> drawn, Densities densities) {
   const DomainChart chart = chart_by(sampler.domain(), marginal);
   const Panels panels = affordable(sampler.panels());
+  std::array<std::vector<double>, 2> places;
+  for (const Point& point : drawn) {
+    const auto at = chart.coordinates(point);
+    for (std::size_t i = 0; i < 2; ++i) places[i].push_back(at[i]);
+  }
   return {.x = chart.first,
           .y = chart.second,
           .values = OnChart(chart, std::move(densities)),
-          .x_panels = marginal == 0 ? panels.first : panels.second,
-          .y_panels = marginal == 0 ? panels.second : panels.first};
+          .x_panels = {.equal = marginal == 0 ? panels.first : panels.second,
+                       .borders = stats::borders_of_peaks(std::move(places[0]), chart.first)},
+          .y_panels = {.equal = marginal == 0 ? panels.second : panels.first,
+                       .borders = stats::borders_of_peaks(std::move(places[1]), chart.second)}};
 }
 
 }  // namespace assay::harness

@@ -19,12 +19,19 @@ using Densities = std::function<std::size_t(std::span<const Point>, std::span<do
 Densities densities_of(const NamedSampler& named);
 Densities densities_of_lobe(const NamedSampler& named, int lobe);
 
-stats::LineDensity line_density(const Sampler& sampler, Densities densities);
+/// Points that a sampler draws show the quadrature where its density has peaks.
+stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,
+                                Densities densities);
+
+/// True if the density is 0 at this point and around it, as no draw has it. A point that rounding
+/// moved across the edge of the support has some density within 1e-6 of the domain's size, or
+/// within the sampler's rounding() if that is more.
+bool is_impossible(const Sampler& sampler, const Point& point, double density);
 
 /// The density on a domain of two coordinates, in its chart by this marginal, 0 or 1. It asks for
 /// the sampler's panels, halved as often as they cost too much. Bisection then finds jumps inside
 /// panels.
 stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
-                                  Densities densities);
+                                  std::span<const Point> drawn, Densities densities);
 
 }  // namespace assay::harness

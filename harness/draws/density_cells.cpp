@@ -19,15 +19,16 @@ constexpr stats::QuadratureLimits limits{.tolerance = 1e-8, .deepest_bisection =
 constexpr double largest_share = 1.0 / 40;
 
 stats::AdaptiveCells cells_of_lobe(const NamedSampler& named, const stats::PlaneGrid& grid,
-                                   int lobe) {
+                                   std::span<const Point> drawn, int lobe) {
   const Sampler& sampler = *named.sampler;
   const Densities densities = densities_of_lobe(named, lobe);
   // A grid's own cells must not all be halved if they are slightly above the mean.
   const double share = std::max(largest_share, 2 / static_cast<double>(grid.size()));
   if (sampler.domain() == Domain::interval) {
-    return stats::adaptive_cells(grid.x_borders, line_density(sampler, densities), share, limits);
+    return stats::adaptive_cells(grid.x_borders, line_density(sampler, drawn, densities), share,
+                                 limits);
   }
-  return stats::adaptive_cells(grid, plane_density(sampler, 0, densities), share, limits);
+  return stats::adaptive_cells(grid, plane_density(sampler, 0, drawn, densities), share, limits);
 }
 
 void append(stats::CellProbabilities& all, const stats::CellProbabilities& more) {
@@ -41,7 +42,13 @@ void append(stats::CellProbabilities& all, const stats::CellProbabilities& more)
 
 double DensityCells::tolerance() const {
   const double parts = static_cast<double>(cells.size()) + 10;
-  return 2 * mass.total_error + parts * std::numeric_limits<double>::epsilon() * mass.total;
+  return 8 * mass.total_error + parts * std::numeric_limits<double>::epsilon() * mass.total;
+}
+
+std::vector<std::uint64_t> DensityCells::in_cells(std::span<const std::uint64_t> counts) const {
+  std::vector<std::uint64_t> all(counts.begin(), counts.begin() + std::ssize(impossible(counts)));
+  std::ranges::transform(all, impossible(counts), all.begin(), std::plus());
+  return all;
 }
 
 double DensityCells::missing() const {
@@ -49,13 +56,13 @@ double DensityCells::missing() const {
   return rest <= tolerance() ? 0 : rest;
 }
 
-DensityCells density_cells(const NamedSampler& named) {
+DensityCells density_cells(const NamedSampler& named, StreamKey key, std::span<const Point> drawn) {
   const Sampler& sampler = *named.sampler;
-  const stats::PlaneGrid grid = measure_grid(sampler);
+  const stats::PlaneGrid grid = shifted_grid(sampler, key);
   std::vector<stats::HalvedCells> of_lobes;
   stats::CellProbabilities mass;
   for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
-    stats::AdaptiveCells found = cells_of_lobe(named, grid, lobe);
+    stats::AdaptiveCells found = cells_of_lobe(named, grid, drawn, lobe);
     append(mass, found.mass);
     of_lobes.push_back(std::move(found.cells));
   }

@@ -115,11 +115,9 @@ double quantile(Domain domain, double share) {
   return share;
 }
 
-std::vector<double> borders(stats::Span span, std::size_t cells, auto quantile) {
+std::vector<double> borders(stats::Span span, std::span<const double> shares, auto quantile) {
   std::vector<double> all{span.low};
-  for (std::size_t k = 1; k < cells; ++k) {
-    all.push_back(quantile(static_cast<double>(k) / static_cast<double>(cells)));
-  }
+  for (const double share : shares) all.push_back(quantile(share));
   all.push_back(span.high);
   return all;
 }
@@ -145,11 +143,12 @@ DomainChart chart_by(Domain domain, std::size_t marginal) {
   return marginal == 0 ? straight() : turned(straight(), domain);
 }
 
-stats::PlaneGrid equal_measure_grid(Domain domain, std::array<std::size_t, 2> cells) {
+stats::PlaneGrid grid_between(Domain domain, std::span<const double> first,
+                              std::span<const double> second) {
   const DomainChart chart = chart_by(domain, 0);
-  const auto first = [&](double share) { return quantile(domain, share); };
-  const auto second = [&](double share) { return share * chart.second.width(); };
-  return {borders(chart.first, cells[0], first), borders(chart.second, cells[1], second)};
+  const auto below = [&](double share) { return quantile(domain, share); };
+  const auto beside = [&](double share) { return share * chart.second.width(); };
+  return {borders(chart.first, first, below), borders(chart.second, second, beside)};
 }
 
 }  // namespace assay::harness

@@ -61,7 +61,9 @@ class RememberedCoordinates {
 /// The chart whose first coordinate is this marginal, 0 or 1. Not for intervals.
 DomainChart chart_by(Domain domain, std::size_t marginal);
 
-/// Cells of equal measure (solid angle, area) in the chart by the first marginal.
-stats::PlaneGrid equal_measure_grid(Domain domain, std::array<std::size_t, 2> cells);
+/// Cells in the chart by the first marginal. These shares of the measure (solid angle, area) lie
+/// below their borders.
+stats::PlaneGrid grid_between(Domain domain, std::span<const double> first,
+                              std::span<const double> second);
 
 }  // namespace assay::harness

@@ -17,29 +17,53 @@ namespace {
 constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
 constexpr std::size_t interval_cells = 64;
 
+stats::PlaneGrid grid_of(const Sampler& sampler, const auto& shares) {
+  if (sampler.domain() != Domain::interval) {
+    const std::vector<double> first = shares(plane_cells[0]);
+    return grid_between(sampler.domain(), first, shares(plane_cells[1]));
+  }
+  const auto [low, high] = sampler.bounds();
+  stats::PlaneGrid grid{.x_borders = {low}, .y_borders = {0, 1}};
+  for (const double share : shares(interval_cells)) {
+    const double border = low + (high - low) * share;
+    if (border > grid.x_borders.back()) grid.x_borders.push_back(border);
+  }
+  if (grid.x_borders.back() == high) grid.x_borders.pop_back();
+  grid.x_borders.push_back(high);
+  return grid;
+}
+
+/// Shares of the measure below the borders between equal cells.
+std::vector<double> equal_shares(std::size_t cells) {
+  std::vector<double> shares;
+  for (std::size_t k = 1; k < cells; ++k) {
+    shares.push_back(static_cast<double>(k) / static_cast<double>(cells));
+  }
+  return shares;
+}
+
 }  // namespace
+
+stats::PlaneGrid measure_grid(const Sampler& sampler) { return grid_of(sampler, equal_shares); }
+
+stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key) {
+  Stream random(key, 0);
+  return grid_of(sampler, [&](std::size_t cells) {
+    std::vector<double> shares = equal_shares(cells);
+    for (double& share : shares) {
+      const double moved = share + (2 * random.uniform_open() - 1) / static_cast<double>(cells);
+      share = moved > 1 ? 2 - moved : std::abs(moved);
+    }
+    std::ranges::sort(shares);
+    return shares;
+  });
+}
 
 std::string range_text(const std::string& name, stats::Span span) {
   const double largest = std::max(std::abs(span.low), std::abs(span.high));
   // 17 digits tell any two doubles apart.
   const int digits = std::clamp(2 + static_cast<int>(std::log10(largest / span.width())), 3, 17);
   return fmt::format("{} {:.{}g} to {:.{}g}", name, span.low, digits, span.high, digits);
-}
-
-stats::PlaneGrid measure_grid(const Sampler& sampler) {
-  if (sampler.domain() != Domain::interval) {
-    return equal_measure_grid(sampler.domain(), plane_cells);
-  }
-  const auto [low, high] = sampler.bounds();
-  stats::PlaneGrid grid{.x_borders = {}, .y_borders = {0, 1}};
-  for (std::size_t k = 0; k < interval_cells; ++k) {
-    const double share = static_cast<double>(k) / static_cast<double>(interval_cells);
-    const double border = low + (high - low) * share;
-    if (grid.x_borders.empty() || border > grid.x_borders.back()) grid.x_borders.push_back(border);
-  }
-  if (grid.x_borders.back() == high) grid.x_borders.pop_back();
-  grid.x_borders.push_back(high);
-  return grid;
 }
 
 DrawCells::DrawCells(const Sampler& sampler)

@@ -13,6 +13,11 @@ namespace assay::harness {
 /// interval with fewer doubles has a cell for each.
 stats::PlaneGrid measure_grid(const Sampler& sampler);
 
+/// The same with each border moved at random, by one cell at most to either side. Borders
+/// beyond an end come back as far inside. A defect that
+/// repeats itself from cell to cell, such as a coarse rounding, would leave equal cells alone.
+stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key);
+
 /// The cells of all lobes in turn, then one for each point mass, then one for draws without a
 /// point.
 class DrawCells {
@@ -29,7 +34,9 @@ class DrawCells {
   std::string describe(std::size_t cell) const;
   /// The number of cells that are parts of a domain; they come first.
   std::size_t in_domain() const { return lobes_end_; }
-  /// The cell of measure_grid() that contains it.
+  /// The grid of all lobes.
+  const stats::PlaneGrid& grid() const { return of_lobes_.front().grid; }
+  /// The grid's cell that contains it.
   std::size_t grid_cell(std::size_t cell) const;
   /// The cell's bounds in cell_coordinates().
   stats::PlaneCell sides(std::size_t cell) const;

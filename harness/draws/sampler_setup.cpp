@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "harness/draws/declared_density.h"
+#include "estimators/core/flush_denormals.h"
 #include "harness/draws/sound_draw.h"
 #include "harness/sampling/fetched_ahead.h"
 #include "harness/sampling/sample.h"
@@ -19,27 +19,71 @@ constexpr std::size_t least_parts = 32;
 
 bool on_interval(const Sampler& sampler) { return sampler.domain() == Domain::interval; }
 
-stats::TabulatedLaw law_on_interval(const NamedSampler& named) {
+stats::TabulatedLaw law_on_interval(const NamedSampler& named, std::span<const Point> drawn) {
   const Sampler& sampler = *named.sampler;
   stats::AdaptiveQuadrature rule(table_limits);
   const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
-  const stats::LineDensity density = line_density(sampler, densities_of(named));
-  const auto parts = stats::cut(range, range, std::max(density.panels, least_parts));
+  const stats::LineDensity density = line_density(sampler, drawn, densities_of(named));
+  stats::Panelling panels = density.panels;
+  panels.equal = std::max(panels.equal, least_parts);
+  const auto parts = stats::cut(range, range, panels);
   return stats::tabulate(rule.of(density.values), parts, rule);
 }
 
-stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal) {
-  if (on_interval(*named.sampler)) return law_on_interval(named);
-  const stats::PlaneDensity density = plane_density(*named.sampler, marginal, densities_of(named));
+stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
+                           std::span<const Point> drawn) {
+  if (on_interval(*named.sampler)) return law_on_interval(named, drawn);
+  const stats::PlaneDensity density =
+      plane_density(*named.sampler, marginal, drawn, densities_of(named));
   stats::AdaptiveQuadrature rule(table_limits);
   // A multiple of the panels keeps their borders.
-  const std::size_t each = (least_parts + density.x_panels - 1) / density.x_panels;
-  const auto parts = stats::cut(density.x, density.x, each * density.x_panels);
+  stats::Panelling panels = density.x_panels;
+  panels.equal *= (least_parts + panels.equal - 1) / panels.equal;
+  const auto parts = stats::cut(density.x, density.x, panels);
   return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
 }
 
 bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
   return draw.valid && sampler.point_mass(draw.lobe) == 0;
+}
+
+/// A draw, and whether its sampler declares that there is none.
+struct CheckedDraw {
+  SamplerDraw draw;
+  bool impossible = false;
+};
+
+CheckedDraw checked_draw(const NamedSampler& named, const SamplerDraw& draw) {
+  const Sampler& sampler = *named.sampler;
+  if (!has_density(sampler, draw)) return {draw};
+  const Point point = sound(named, draw).point;
+  return {draw, is_impossible(sampler, point, sampler.density(point))};
+}
+
+std::vector<CheckedDraw> checked_draws(const NamedSampler& named, std::span<Stream> streams) {
+  const Sampler& sampler = *named.sampler;
+  std::vector<CheckedDraw> all;
+  std::vector<std::size_t> places;
+  std::vector<Point> points;
+  for (const SamplerDraw& draw : sound_draws(named, streams)) {
+    if (has_density(sampler, draw)) {
+      places.push_back(all.size());
+      points.push_back(draw.point);
+    }
+    all.push_back({draw});
+  }
+  std::vector<double> densities(points.size());
+  std::size_t known = 0;
+  try {
+    known = write_some(points, densities, densities_of(named));
+  } catch (const std::runtime_error&) {
+    if (places.front() == 0) throw;
+  }
+  for (std::size_t i = 0; i < known; ++i) {
+    all[places[i]].impossible = is_impossible(sampler, points[i], densities[i]);
+  }
+  if (known < places.size()) all.resize(places[known]);
+  return all;
 }
 
 /// A sampler whose draws are the observations of an estimator.
@@ -52,26 +96,41 @@ class SamplerEstimator final : public Estimator {
   double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
 
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const Sampler& sampler = setup_.sampler();
-    const SamplerDraw draw =
-        sound(setup_.named(),
-              sampler.is_elsewhere()
-                  ? ahead_.of(random, [&](auto streams) { return draws_of(sampler, streams); })
-                  : sampler.sample(random));
+    const CheckedDraw checked = next(random);
+    const SamplerDraw draw = sound(setup_.named(), checked.draw);
     const bool point = has_density(setup_.sampler(), draw);
     for (std::size_t i = 0; i < marginals_.size(); ++i) {
       out[i] = point ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
     }
-    out[marginals_.size()] =
-        density_cells_ ? static_cast<double>(density_cells_->cells.index(draw)) : no_cell;
+    out[marginals_.size()] = density_cells_ ? number_of(checked, draw) : no_cell;
     cost.samples += 1;
   }
 
  private:
+  /// Only a claim that counts in cells asks for the density at each draw.
+  CheckedDraw next(Stream& random) {
+    const Sampler& sampler = setup_.sampler();
+    if (!sampler.is_elsewhere()) {
+      const SamplerDraw draw = sampler.sample(random);
+      return density_cells_ ? checked_draw(setup_.named(), draw) : CheckedDraw{draw};
+    }
+    return ahead_.of(random, [&](auto streams) {
+      if (density_cells_) return checked_draws(setup_.named(), streams);
+      std::vector<CheckedDraw> all;
+      for (const SamplerDraw& draw : draws_of(sampler, streams)) all.push_back({draw});
+      return all;
+    });
+  }
+
+  double number_of(const CheckedDraw& checked, const SamplerDraw& draw) const {
+    const DrawCells& cells = density_cells_->cells;
+    return static_cast<double>(cells.index(draw) + (checked.impossible ? cells.size() : 0));
+  }
+
   const SamplerSetup& setup_;
   std::vector<Marginal> marginals_;
   std::shared_ptr<const DensityCells> density_cells_;
-  FetchedAhead<SamplerDraw> ahead_;
+  FetchedAhead<CheckedDraw> ahead_;
 };
 
 }  // namespace
@@ -80,6 +139,30 @@ std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<Stream> stre
   std::vector<SamplerDraw> draws(streams.size());
   draws.resize(sampler.samples(streams, draws));
   return draws;
+}
+
+std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream> streams) {
+  std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    try {
+      sound(named, draws[i]);
+    } catch (const std::runtime_error&) {
+      if (i == 0) throw;
+      draws.resize(i);
+    }
+  }
+  return draws;
+}
+
+std::size_t write_some(std::span<const Point> points, std::span<double> out,
+                       const Densities& numbers) {
+  std::size_t done = 0;
+  try {
+    while (done < points.size()) done += numbers(points.subspan(done), out.subspan(done));
+  } catch (const std::runtime_error&) {
+    if (done == 0) throw;
+  }
+  return done;
 }
 
 void require_sound(const NamedSampler& named, const Location& where) {
@@ -98,7 +181,8 @@ void require_sound(const NamedSampler& named, const Location& where) {
 
 double no_point(const Marginal& marginal) { return marginal.low - 1; }
 
-SamplerSetup::SamplerSetup(NamedSampler named) : named_(std::move(named)) {}
+SamplerSetup::SamplerSetup(NamedSampler named, StreamKey key)
+    : named_(std::move(named)), key_(key) {}
 
 std::vector<Marginal> SamplerSetup::marginals() const { return marginals_of(sampler()); }
 
@@ -128,11 +212,34 @@ auto SamplerSetup::integrated(auto table) const {
   }
 }
 
+/// Points of a few draws. A sampler that cannot draw them says so when a test draws.
+const std::vector<Point>& SamplerSetup::drawn() const {
+  constexpr std::uint64_t count = 4096;
+  if (drawn_) return *drawn_;
+  drawn_.emplace();
+  std::vector<Stream> streams;
+  for (std::uint64_t i = 1; i <= count; ++i) streams.emplace_back(key_, i);
+  const FlushDenormals flush;
+  try {
+    for (std::span<Stream> rest = streams; !rest.empty();) {
+      const std::vector<SamplerDraw> draws = draws_of(sampler(), rest);
+      for (const SamplerDraw& draw : draws) {
+        if (has_density(sampler(), draw)) drawn_->push_back(sound(named_, draw).point);
+      }
+      rest = rest.subspan(draws.size());
+    }
+  } catch (const std::exception&) {
+    drawn_->clear();
+  }
+  return *drawn_;
+}
+
 const DensityCells& SamplerSetup::density_cells() const {
   const std::scoped_lock lock(once_);
   if (!cells_) {
-    cells_ = integrated(
-        [&] { return std::make_shared<const DensityCells>(harness::density_cells(named_)); });
+    cells_ = integrated([&] {
+      return std::make_shared<const DensityCells>(harness::density_cells(named_, key_, drawn()));
+    });
   }
   return *cells_;
 }
@@ -149,21 +256,22 @@ const stats::TabulatedLaw& SamplerSetup::marginal_law(const std::string& margina
   const std::vector<Marginal> all = marginals();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].name != marginal) continue;
-    auto law = integrated([&] { return law_of(named_, i); });
+    auto law = integrated([&] { return law_of(named_, i, drawn()); });
     return laws_.emplace(marginal, std::move(law)).first->second;
   }
   throw std::logic_error("no marginal " + marginal);
 }
 
-std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named,
-                                                  const Location& where) {
+std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where,
+                                                  StreamKey key) {
   require_sound(named, where);
   static std::mutex once;
-  static std::map<const Sampler*, std::weak_ptr<const SamplerSetup>> known;
+  static std::map<std::pair<const Sampler*, std::uint64_t>, std::weak_ptr<const SamplerSetup>>
+      known;
   const std::scoped_lock lock(once);
-  std::weak_ptr<const SamplerSetup>& place = known[named.sampler.get()];
+  std::weak_ptr<const SamplerSetup>& place = known[{named.sampler.get(), key.bits}];
   if (const auto setup = place.lock()) return setup;
-  const auto setup = std::make_shared<const SamplerSetup>(named);
+  const auto setup = std::make_shared<const SamplerSetup>(named, key);
   place = setup;
   return setup;
 }

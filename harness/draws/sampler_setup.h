@@ -6,12 +6,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "estimators/estimator.h"
+#include "harness/draws/declared_density.h"
 #include "harness/draws/density_cells.h"
 #include "stats/tails/tabulated_law.h"
 
@@ -34,10 +36,17 @@ class NoDensity : public std::runtime_error {
 
 /// Draws of the first few streams.
 std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<Stream> streams);
+/// The same before the first unsound draw. Throws if the first is unsound.
+std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream> streams);
+/// Writes numbers at the first points, as many as can be had, and returns how many. Throws if the
+/// first has none. `numbers` writes some and returns how many.
+std::size_t write_some(std::span<const Point> points, std::span<double> out,
+                       const Densities& numbers);
 
 class SamplerSetup : public Setup {
  public:
-  explicit SamplerSetup(NamedSampler named);
+  /// The key is that of the cells' borders and of the draws that show peaks of the density.
+  explicit SamplerSetup(NamedSampler named, StreamKey key = {});
 
   std::vector<Channel> channels() const override;
   std::unique_ptr<Estimator> make() const override;
@@ -58,8 +67,11 @@ class SamplerSetup : public Setup {
 
  private:
   auto integrated(auto table) const;
+  const std::vector<Point>& drawn() const;
 
   NamedSampler named_;
+  StreamKey key_;
+  mutable std::optional<std::vector<Point>> drawn_;
   mutable std::mutex once_;
   mutable std::shared_ptr<const DensityCells> cells_;
   mutable std::map<std::string, stats::TabulatedLaw> laws_;
@@ -70,8 +82,9 @@ class SamplerSetup : public Setup {
 /// and ascending.
 void require_sound(const NamedSampler& named, const Location& where);
 
-/// The set-up of a sampler, shared by all callers so that tables are made once. Throws as
-/// require_sound.
-std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where);
+/// The set-up of a sampler with this key, shared by all callers so that tables are made once.
+/// Throws as require_sound.
+std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where,
+                                                  StreamKey key = {});
 
 }  // namespace assay::harness

@@ -77,10 +77,10 @@ Evidence integral(const Method&, const Question& question, std::size_t,
   const ChannelData& data = sides[0];
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
   const DensityCells& cells = draws.density_cells();
-  Evidence evidence =
-      from_probability({.seen = {.successes = data.cells.back(), .trials = sum(data.cells)},
-                        .offset = cells.mass.total - question.references[0].value,
-                        .error = cells.tolerance()});
+  Evidence evidence = from_probability(
+      {.seen = {.successes = cells.in_cells(data.cells).back(), .trials = sum(data.cells)},
+       .offset = cells.mass.total - question.references[0].value,
+       .error = cells.tolerance()});
   evidence.quantity = fmt::format(
       "integral of the density ({:.10g}, quadrature error {:.1g}) and the mass without a point, "
       "less "

@@ -86,7 +86,7 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Sub
 Evidence cells_against_density(const Question& question, const ChannelData& data) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
   const stats::CellProbabilities& mass = draws.density_cells().mass;
-  stats::CellCounts counts{.observed = {data.cells.begin(), data.cells.end()},
+  stats::CellCounts counts{.observed = draws.density_cells().in_cells(data.cells),
                            .probability = mass.probability,
                            .error = mass.error};
   counts.probability.push_back(draws.density_cells().missing());

@@ -200,6 +200,24 @@ class DensityTheta final : public LawTheta {
  public:
   using LawTheta::LawTheta;
 
+  /// One draw where the density is 0 refutes the claim, whatever its margins.
+  std::optional<ConstantVerdict> settled(const Question& question, std::size_t,
+                                         std::span<const ChannelData> data, const Regions&,
+                                         const ErrorShare&) const override {
+    if (!of_whole_draws(question)) return std::nullopt;
+    const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+    const auto counts = draws.density_cells().impossible(data[0].cells);
+    const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+    if (all == 0) return std::nullopt;
+    const auto most = static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin());
+    return ConstantVerdict{
+        reports::Verdict::fail,
+        fmt::format("{} of {} draws lie where the declared density is 0, {} of them in {}: no "
+                    "sampler of this density draws there",
+                    all, data[0].moments.count, counts[most],
+                    draws.density_cells().cells.describe(most))};
+  }
+
   std::string claimed_value(const Question&, std::size_t) const override {
     return "its declared density";
   }

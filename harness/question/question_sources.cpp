@@ -218,6 +218,11 @@ StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
       key_of(*subject.estimator, seed, subject.copy, subject.purpose));
 }
 
+StreamKey stream_of_cells(const PreparedEstimator& estimator, const std::string& sampler,
+                          std::uint64_t seed) {
+  return key_of(estimator, seed, 0, sampler + " cells");
+}
+
 void require_moments_suffice(const Question& question) {
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const Subject& side = question.subjects[i];

@@ -38,6 +38,10 @@ std::string image_name(const ImageShape& shape);
 /// The stream of a subject's observations.
 StreamKey stream_of(const Subject& subject, std::uint64_t seed);
 
+/// The stream of a sampler's cells (SamplerSetup): of the suite's seed, and the same in a replay.
+StreamKey stream_of_cells(const PreparedEstimator& estimator, const std::string& sampler,
+                          std::uint64_t seed);
+
 /// InputError at the claim if it needs more of a recorded run than moments.
 void require_moments_suffice(const Question& question);
 

@@ -55,10 +55,11 @@ constexpr double least_shown = 5;
 std::vector<std::optional<double>> residuals_of(const DensityCells& density,
                                                 const ChannelData& data, double least) {
   const auto total = static_cast<double>(data.moments.count);
+  const std::vector<std::uint64_t> counts = density.in_cells(data.cells);
   std::vector<std::optional<double>> residuals;
   for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
     const double expected = total * density.mass.probability[i];
-    const auto observed = static_cast<double>(data.cells[i]);
+    const auto observed = static_cast<double>(counts[i]);
     residuals.push_back(expected >= least ? std::optional(residual(observed, expected))
                                           : std::nullopt);
   }
@@ -68,8 +69,8 @@ std::vector<std::optional<double>> residuals_of(const DensityCells& density,
 /// Counts in the grid's cells, summed over lobes and parts of halved cells. The residual is the
 /// largest of the parts that are tested alone, else that of the sum.
 Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
-  const stats::PlaneGrid grid = measure_grid(draws.sampler());
   const DensityCells& density = draws.density_cells();
+  const stats::PlaneGrid& grid = density.cells.grid();
   const auto total = static_cast<double>(data.moments.count);
   Cells cells{.axes = axes_of(draws, grid),
               .width = grid.columns(),
@@ -80,9 +81,10 @@ Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
   const std::vector<std::optional<double>> tested =
       residuals_of(density, data, stats::FitOptions{}.minimum_expected);
   std::vector<std::optional<double>> farthest(grid.size());
+  const std::vector<std::uint64_t> counts = density.in_cells(data.cells);
   for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
     const std::size_t place = density.cells.grid_cell(i);
-    cells.observed[place] += static_cast<double>(data.cells[i]);
+    cells.observed[place] += static_cast<double>(counts[i]);
     cells.expected[place] += total * density.mass.probability[i];
     if (std::abs(tested[i].value_or(0)) > std::abs(farthest[place].value_or(0))) {
       farthest[place] = tested[i];

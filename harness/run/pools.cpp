@@ -90,7 +90,7 @@ void count_cells(const Subject& side, Pool& pool) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*pool.setup());
   if (dynamic_cast<const ConsistencySetup*>(&draws) != nullptr) return;
   try {
-    pool.plans()[side.channels[0]].cells = draws.density_cells().cells.size();
+    pool.plans()[side.channels[0]].cells = draws.density_cells().numbers();
   } catch (const NoDensity&) {
   } catch (const std::domain_error&) {
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "stats/basics/check.h"
@@ -272,19 +273,72 @@ std::vector<Integral> AdaptiveQuadrature::along(const PlaneValues& density,
   return integrals;
 }
 
-std::vector<Span> cut(Span span, Span whole, std::size_t panels) {
+std::vector<Span> cut(Span span, Span whole, const Panelling& panels) {
+  const double slack = 1e-12 * whole.width();
+  const auto is_inside = [&](double border) {
+    return border > span.low + slack && border < span.high - slack;
+  };
+  std::vector<double> borders;
+  std::ranges::copy_if(panels.borders, std::back_inserter(borders), is_inside);
+  const double width = whole.width() / static_cast<double>(panels.equal);
+  for (std::size_t k = 1; k < panels.equal; ++k) {
+    const double border = whole.low + width * static_cast<double>(k);
+    if (is_inside(border)) borders.push_back(border);
+  }
+  std::ranges::sort(borders);
   std::vector<Span> parts;
   double low = span.low;
-  const double width = whole.width() / static_cast<double>(panels);
-  const double slack = 1e-12 * whole.width();
-  for (std::size_t k = 1; k < panels; ++k) {
-    const double border = whole.low + width * static_cast<double>(k);
-    if (border <= span.low + slack || border >= span.high - slack) continue;
+  for (const double border : borders) {
+    if (border <= low + slack) continue;
     parts.push_back({low, border});
     low = border;
   }
   parts.push_back({low, span.high});
   return parts;
+}
+
+namespace {
+
+// Borders from `from` on toward `to`, in gaps that double, up to the middle between them.
+void grade(double from, double to, double gap, std::vector<double>& borders) {
+  const double sign = to > from ? 1 : -1;
+  const double reach = std::abs(to - from) / 2;
+  double distance = 0;
+  while (distance + 2 * gap < reach) {
+    gap *= 2;
+    distance += gap;
+    borders.push_back(from + sign * distance);
+  }
+}
+
+}  // namespace
+
+std::vector<double> borders_of_peaks(std::vector<double> values, Span whole) {
+  constexpr std::size_t quantiles = 32;
+  constexpr double close = 1.0 / 1024;
+  if (values.size() <= quantiles) return {};
+  std::ranges::sort(values);
+  std::vector<double> all;
+  for (std::size_t k = 0; k <= quantiles; ++k) {
+    const double value = values[k * (values.size() - 1) / quantiles];
+    if (all.empty() || value > all.back()) all.push_back(value);
+  }
+  std::vector<double> near;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!(all[i] > whole.low && all[i] < whole.high)) continue;
+    const bool below = i > 0 && all[i] - all[i - 1] < close * whole.width();
+    const bool above = i + 1 < all.size() && all[i + 1] - all[i] < close * whole.width();
+    if (below || above) near.push_back(all[i]);
+  }
+  std::vector<double> borders = near;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const double before = i > 0 ? near[i - 1] : whole.low;
+    const double after = i + 1 < near.size() ? near[i + 1] : whole.high;
+    grade(near[i], after, near[i] - before, borders);
+    grade(near[i], before, after - near[i], borders);
+  }
+  std::ranges::sort(borders);
+  return borders;
 }
 
 }  // namespace assay::stats

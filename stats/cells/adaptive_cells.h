@@ -36,7 +36,7 @@ AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
 // A density of one coordinate at many places, with its panels (see PlaneDensity).
 struct LineDensity {
   std::function<void(std::span<const double> x, std::span<double> values)> values;
-  std::size_t panels = 1;
+  Panelling panels = {};
 };
 
 // The same for an interval between these borders. The y of its cells is [0, 1].

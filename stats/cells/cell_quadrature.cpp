@@ -79,11 +79,11 @@ Integral CellQuadrature::beside_support(const PlaneCell& cell) {
   const PlaneDensity closer{.x = cell.x,
                             .y = cell.y,
                             .values = density_.values,
-                            .x_panels = panels_of_a_corner,
-                            .y_panels = panels_of_a_corner};
+                            .x_panels = {panels_of_a_corner},
+                            .y_panels = {panels_of_a_corner}};
   Integral sum;
   const auto strip = marginal_density(closer, rule_);
-  for (const Span& part : cut(cell.x, cell.x, panels_of_a_corner)) {
+  for (const Span& part : cut(cell.x, cell.x, closer.x_panels)) {
     sum = sum + rule_.over(strip, part);
   }
   densest_ = std::max(densest_, rule_.largest());

@@ -13,8 +13,8 @@ struct PlaneDensity {
   Span x;
   Span y;
   PlaneValues values;
-  std::size_t x_panels = 1;
-  std::size_t y_panels = 1;
+  Panelling x_panels = {};
+  Panelling y_panels = {};
 };
 
 // The density at x, integrated over part of the other coordinate. `density` must outlive the

@@ -54,8 +54,8 @@ AdaptiveCells cells_of(const Peak& peak, double share) {
       .x = {0, 1},
       .y = {0, 1},
       .values = peak.at_pole ? point_by_point(about) : point_by_point(beside),
-      .x_panels = 100,
-      .y_panels = peak.at_pole ? 1U : 100U};
+      .x_panels = {100},
+      .y_panels = {peak.at_pole ? 1U : 100U}};
   return adaptive_cells({even(16), even(32)}, density, share);
 }
 

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 #include "tests/harness/questions.h"
 #include "tests/harness/refusal.h"
@@ -149,17 +153,115 @@ TEST(SamplerSetup, EndsOfACellAreToldApart) {
   EXPECT_EQ(grid.describe(64), "the draws without a point");
 }
 
-TEST(SamplerSetup, CellsOfEveryDomainHaveEqualMeasure) {
+TEST(SamplerSetup, CellsOfEveryDomainHaveNearlyEqualMeasure) {
   for (const Domain domain :
        {Domain::interval, Domain::square, Domain::triangle, Domain::hemisphere, Domain::sphere}) {
     const Uniform uniform(domain);
     const auto setup = setup_around(uniform);
-    const stats::CellProbabilities& cells = setup->density_cells().mass;
-    for (const double p : cells.probability) {
-      ASSERT_NEAR(p * static_cast<double>(cells.probability.size()), 1, 1e-9);
+    const DensityCells& density = setup->density_cells();
+    const stats::PlaneGrid& grid = density.cells.grid();
+    // Each border has moved by one cell at most.
+    std::vector<double> of_row(grid.rows());
+    for (std::size_t cell = 0; cell < density.cells.in_domain(); ++cell) {
+      const std::size_t row = density.cells.grid_cell(cell) / grid.columns();
+      of_row[row] += density.mass.probability[cell];
     }
-    EXPECT_EQ(setup->density_cells().missing(), 0);
+    double below = 0;
+    const double rows = static_cast<double>(grid.rows());
+    for (std::size_t row = 0; row < grid.rows(); ++row) {
+      below += of_row[row];
+      ASSERT_NEAR(below, static_cast<double>(row + 1) / rows, 1.001 / rows);
+    }
+    EXPECT_NEAR(below, 1, 1e-9);
+    EXPECT_EQ(density.missing(), 0);
   }
+}
+
+TEST(SamplerSetup, BordersOfCellsAreThoseOfTheKey) {
+  for (const Domain domain : {Domain::interval, Domain::square, Domain::sphere}) {
+    const Uniform uniform(domain);
+    const stats::PlaneGrid one = shifted_grid(uniform, {1});
+    EXPECT_EQ(one.x_borders, shifted_grid(uniform, {1}).x_borders);
+    EXPECT_EQ(one.y_borders, shifted_grid(uniform, {1}).y_borders);
+    const stats::PlaneGrid other = shifted_grid(uniform, {2});
+    EXPECT_EQ(one.size(), other.size());
+    for (std::size_t i = 1; i + 1 < one.x_borders.size(); ++i) {
+      EXPECT_NE(one.x_borders[i], other.x_borders[i]);
+    }
+  }
+}
+
+/// Uniform below .4, and nothing beyond. It draws on the edge as single precision rounds it.
+class HalfEmpty final : public Uniform {
+ public:
+  explicit HalfEmpty(double leak) : Uniform(Domain::interval), leak_(leak) {}
+  double density(const Point& p) const override { return p[0] < .4 ? 2.5 : 0; }
+  SamplerDraw sample(Stream& random) const override {
+    const double u = random.uniform();
+    const bool beyond = random.uniform() < leak_;
+    const double x = beyond ? .4 + .6 * u : double{static_cast<float>(.4 * u)};
+    return {.point = {u < 1e-3 && !beyond ? .4 + 1e-8 : x, 0, 0}, .density = 2.5, .weight = 1};
+  }
+
+ private:
+  double leak_;
+};
+
+TEST(SamplerSetup, DrawsWhereTheDensityIs0HaveNumbersOfTheirOwn) {
+  const HalfEmpty sound(0);
+  const HalfEmpty leaking(.01);
+  for (const HalfEmpty* sampler : {&sound, &leaking}) {
+    const auto setup = setup_around(*sampler);
+    const DensityCells& density = setup->density_cells();
+    std::vector<std::uint64_t> counts(density.numbers());
+    const auto estimator = setup->make();
+    std::uint64_t beyond = 0;
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+      std::array<double, 2> out{};
+      Cost cost;
+      Stream random({7}, i);
+      estimator->secondary(random, 1, out, cost);
+      ++counts.at(static_cast<std::size_t>(out[1]));
+      beyond += out[0] > .4 + 1e-6 ? 1 : 0;
+    }
+    const auto impossible = density.impossible(counts);
+    EXPECT_EQ(std::accumulate(impossible.begin(), impossible.end(), std::uint64_t{0}), beyond);
+    EXPECT_EQ(beyond > 0, sampler == &leaking);
+    const std::vector<std::uint64_t> in_cells = density.in_cells(counts);
+    EXPECT_EQ(std::accumulate(in_cells.begin(), in_cells.end(), std::uint64_t{0}), 20000u);
+  }
+}
+
+/// Two normal peaks of 2e-5 and 1e-4 of the interval.
+class Peaks final : public Uniform {
+ public:
+  Peaks() : Uniform(Domain::interval) {}
+  double density(const Point& p) const override {
+    return (normal(p[0], .3456789, 2e-5) + normal(p[0], .9, 1e-4)) / 2;
+  }
+  SamplerDraw sample(Stream& random) const override {
+    const bool first = random.uniform() < .5;
+    const double z =
+        std::sqrt(-2 * std::log(random.uniform_open())) * std::cos(2 * pi * random.uniform());
+    return {.point = {first ? .3456789 + 2e-5 * z : .9 + 1e-4 * z, 0, 0}, .weight = 1};
+  }
+
+ private:
+  static double normal(double x, double mean, double deviation) {
+    const double z = (x - mean) / deviation;
+    return std::exp(-z * z / 2) / (deviation * std::sqrt(2 * pi));
+  }
+};
+
+TEST(SamplerSetup, PeaksAreIntegratedWhereTheyAreDrawn) {
+  const Peaks sampler;
+  const auto setup = setup_around(sampler);
+  EXPECT_NEAR(setup->density_cells().mass.total, 1, 1e-7);
+  const double most = *std::ranges::max_element(setup->density_cells().mass.probability);
+  EXPECT_LE(most, 1.0 / 32);
+  const stats::TabulatedLaw& law = setup->marginal_law("x");
+  EXPECT_NEAR(law(.3456789), .25, 1e-5);
+  EXPECT_NEAR(law(.9), .75, 1e-5);
 }
 
 // In a triangle of area 1/2 both barycentric coordinates have P(u <= x) = 1 - (1 - x)^2.
@@ -200,14 +302,21 @@ TEST(SamplerSetup, LobesAndPointMassesAreCellsOfTheirOwn) {
   const auto p = [&](const SamplerDraw& draw) {
     return setup->density_cells().mass.probability[setup->density_cells().cells.index(draw)];
   };
-  EXPECT_NEAR(p({.point = {.1, .1, 0}, .lobe = 0}), .8 / 512, 1e-9);
+  const auto area = [&](const SamplerDraw& draw) {
+    const DrawCells& cells = setup->density_cells().cells;
+    const stats::PlaneCell sides = cells.sides(cells.index(draw));
+    return sides.x.width() * sides.y.width();
+  };
+  const SamplerDraw left{.point = {.1, .1, 0}, .lobe = 0};
+  const SamplerDraw right{.point = {.9, .1, 0}, .lobe = 1};
+  EXPECT_NEAR(p(left), .8 * area(left), 1e-9);
   EXPECT_NEAR(p({.point = {.1, .1, 0}, .lobe = 1}), 0, 1e-9);
-  EXPECT_NEAR(p({.point = {.9, .1, 0}, .lobe = 1}), .4 / 512, 1e-9);
+  EXPECT_NEAR(p(right), .4 * area(right), 1e-9);
   EXPECT_NEAR(p({.point = {.9, .1, 0}, .lobe = 2}), .3, 1e-9);
   EXPECT_EQ(setup->density_cells().cells.index({.valid = false}),
             setup->density_cells().cells.size() - 1);
-  EXPECT_NEAR(setup->density_cells().missing(), .1, 1e-9);
-  EXPECT_NEAR(setup->density_cells().without_density(), .4, 1e-9);
+  EXPECT_NEAR(setup->density_cells().missing(), .1, 1e-8);
+  EXPECT_NEAR(setup->density_cells().without_density(), .4, 1e-8);
 }
 
 constexpr const char* estimators = R"(suite: samplers

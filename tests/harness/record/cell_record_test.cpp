@@ -19,6 +19,7 @@ constexpr const char* suite = R"(suite: s
 estimators:
   ward: {plugin: brdf/ward}
   quadrant: {plugin: mutants/ashikhmin_shirley_single_quadrant}
+  cosine: {plugin: luminaire/cosine, scene: triangle}
   disk: {plugin: luminaire/area, scene: triangle}
   normal: {plugin: analytic/exponential_importance}
   narrow: {plugin: mutants/ward_uniform_azimuth, alpha_x: 0.02, alpha_y: 0.03}
@@ -34,7 +35,8 @@ double sum(const reports::Map& map) {
 }
 
 TEST(CellRecord, HasWhatWasDrawnExpectedAndTheDifferenceInEveryCell) {
-  const reports::Test test = tested("distribution(ward.direction) == density");
+  // No cell of this density is halved.
+  const reports::Test test = tested("distribution(cosine.direction) == density");
   ASSERT_EQ(test.maps.size(), 3u);
   for (const reports::Map& map : test.maps) {
     EXPECT_EQ(map.width, 32u);
@@ -63,22 +65,22 @@ double density_of(const Sampler& ward, double theta, double phi) {
 // are binomial: 32 columns within 5.5 standard deviations, false alarm 2e-6.
 TEST(CellRecord, HasAzimuthsFromLeftToRight) {
   const reports::Test test = tested("distribution(ward.direction) == density");
-  ASSERT_EQ(test.maps.size(), 3u);
+  ASSERT_GE(test.maps.size(), 3u);
   const auto setup = setup_of("{plugin: brdf/ward}", "direction");
   const Sampler& ward = setup->sampler();
+  const std::vector<double>& borders = setup->density_cells().cells.grid().y_borders;
   double least = 1;
   double most = 0;
   for (std::size_t column = 0; column < 32; ++column) {
     double share = 0;
+    const double width = borders[column + 1] - borders[column];
     for (int i = 0; i < 64 * 400; ++i) {
       const double theta = (i % 400 + 0.5) / 400 * std::numbers::pi / 2;
-      const double phi =
-          (static_cast<double>(column) + (i / 400 + 0.5) / 64) / 32 * 2 * std::numbers::pi;
-      share += density_of(ward, theta, phi) * std::sin(theta) * std::numbers::pi / 800 *
-               std::numbers::pi / 1024;
+      const double phi = borders[column] + (i / 400 + 0.5) / 64 * width;
+      share += density_of(ward, theta, phi) * std::sin(theta) * std::numbers::pi / 800 * width / 64;
     }
-    least = std::min(least, share);
-    most = std::max(most, share);
+    least = std::min(least, share / width);
+    most = std::max(most, share / width);
     double drawn = 0;
     double expected = 0;
     for (std::size_t row = 0; row < 16; ++row) {
@@ -123,7 +125,7 @@ TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
     shown = std::max(shown, std::abs(double{test.maps[2].texels.values[i]}));
   }
   EXPECT_LT(of_sums, 5);
-  EXPECT_GT(shown, 10);
+  EXPECT_GT(shown, of_sums + 3);
 }
 
 TEST(CellRecord, ShowsTheCellsOfANarrowLobeAsLargeAsTheyAre) {

@@ -103,7 +103,7 @@ constexpr Peak narrow{.x = .4, .y = .7, .deviation = .004};
 
 PlaneDensity density_of(const Peak& peak) {
   PlaneDensity density = on_unit_square(peak);
-  density.x_panels = density.y_panels = 100;
+  density.x_panels = density.y_panels = {100};
   return density;
 }
 
@@ -167,7 +167,7 @@ TEST(AdaptiveCells, ARidgeIsCutAcross) {
     return std::exp(-(x - .3) * (x - .3) / 2e-4) / std::sqrt(2e-4 * std::numbers::pi);
   };
   PlaneDensity density = on_unit_square(ridge);
-  density.x_panels = 100;
+  density.x_panels = {100};
   const auto found = adaptive_cells(unit_grid(2, 4), density, 1.0 / 16);
   for (std::size_t i = 0; i < found.cells.size(); ++i) {
     EXPECT_GE(found.cells.cells[i].y.width(), 1.0 / 16) << "in turn it would be 1/64";
@@ -201,7 +201,7 @@ TEST(AdaptiveCells, AJumpAlongACurveStaysWithinItsErrors) {
     return std::hypot(x - .43, y - .57) < r ? 1 / (std::numbers::pi * r * r) : 0.0;
   };
   PlaneDensity density = on_unit_square(disc);
-  density.x_panels = density.y_panels = 32;
+  density.x_panels = density.y_panels = {32};
   const auto found = adaptive_cells(unit_grid(16, 16), density, 1.0 / 64, {.tolerance = 1e-6});
   EXPECT_NEAR(found.mass.total, 1, found.mass.total_error);
   EXPECT_LT(found.mass.total_error, 1e-3);
@@ -216,7 +216,7 @@ TEST(AdaptiveCells, WithoutEvaluationsACellStaysWhole) {
     return narrow(x, y);
   };
   PlaneDensity density = on_unit_square(counted);
-  density.x_panels = density.y_panels = 100;
+  density.x_panels = density.y_panels = {100};
   const QuadratureLimits enough{.tolerance = 1e-8};
   adaptive_cells(unit_grid(4, 4), density, 1, enough);
   const QuadratureLimits limits{.tolerance = 1e-8, .evaluations = evaluations + 20000};

@@ -124,10 +124,13 @@ TEST(PlaneCells, ASupportIsFollowedFromCellToCell) {
         along >= 0 && along < 1 && std::abs(y - y0 + .00113 * (x - .25)) < half_width * (1 - along);
     return x < .25 || spike ? 1.0 : 0.0;
   };
-  const CellProbabilities cells = cell_probabilities(
-      unit_grid(8),
-      {.x = {0, 1}, .y = {0, 1}, .values = point_by_point(density), .x_panels = 8, .y_panels = 8},
-      {.tolerance = 1e-8});
+  const CellProbabilities cells = cell_probabilities(unit_grid(8),
+                                                     {.x = {0, 1},
+                                                      .y = {0, 1},
+                                                      .values = point_by_point(density),
+                                                      .x_panels = {8},
+                                                      .y_panels = {8}},
+                                                     {.tolerance = 1e-8});
   EXPECT_NEAR(cells.total, .25 + half_width * length, cells.total_error);
   EXPECT_LT(cells.total_error, 2e-4);
 }
@@ -138,7 +141,7 @@ TEST(PlaneCells, WhatUnderflowsHidesNoPeak) {
   const PlaneGrid grid = unit_grid(8);
   const auto peak = [](double x, double) { return 1500 * std::exp(-1500 * x); };
   const CellProbabilities cells = cell_probabilities(
-      grid, {.x = {0, 1}, .y = {0, 1}, .values = point_by_point(peak), .x_panels = 8});
+      grid, {.x = {0, 1}, .y = {0, 1}, .values = point_by_point(peak), .x_panels = {8}});
   ASSERT_EQ(cells.probability[grid.index(.7, .1)], 0);
   EXPECT_NEAR(cells.total, 1, 1e-8);
   EXPECT_LT(cells.total_error, 1e-7);
@@ -166,8 +169,8 @@ TEST(PlaneCells, JumpsOnPanelBordersCostNothing) {
                              ++evaluations;
                              return int(x * 10) % 2 == int(y * 6) % 2 ? 2.0 : 0;
                            }),
-                           .x_panels = 10,
-                           .y_panels = 6};
+                           .x_panels = {10},
+                           .y_panels = {6}};
   const CellProbabilities cells = cell_probabilities(unit_grid(4), board);
   EXPECT_NEAR(cells.total, 1, 1e-12);
   EXPECT_LT(evaluations, 400'000U);

@@ -29,7 +29,7 @@ double largest_distance(const TabulatedLaw& table, Span range, Law law) {
 template <class Density>
 TabulatedLaw table_of(Density density, Span range, QuadratureLimits limits = {}) {
   AdaptiveQuadrature rule(limits);
-  return tabulate(rule.of(density), cut(range, range, 32), rule);
+  return tabulate(rule.of(density), cut(range, range, {32}), rule);
 }
 
 // A lobe of standard deviation 1e-3 in a range of 1: as narrow as a part's 7 nodes can still see.
@@ -99,7 +99,7 @@ TEST(TabulatedLaw, OfAMarginalAcrossAJumpIsItsClosedForm) {
                                              : 0;
                                 })};
   AdaptiveQuadrature rule({.tolerance = 1e-7});
-  const auto table = tabulate(marginal_density(disc, rule), cut({0, 1}, {0, 1}, 32), rule);
+  const auto table = tabulate(marginal_density(disc, rule), cut({0, 1}, {0, 1}, {32}), rule);
   const auto law = [](double x) {
     const double t = std::clamp((x - .5) / r, -1.0, 1.0);
     return .5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / std::numbers::pi;
