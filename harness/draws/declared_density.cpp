@@ -125,10 +125,11 @@ stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
                                   std::span<const Point> drawn, Densities densities) {
   const DomainChart chart = chart_by(sampler.domain(), marginal);
   const Panels panels = affordable(sampler.panels());
+  std::vector<std::array<double, 2>> at;
   std::array<std::vector<double>, 2> places;
   for (const Point& point : drawn) {
-    const auto at = chart.coordinates(point);
-    for (std::size_t i = 0; i < 2; ++i) places[i].push_back(at[i]);
+    at.push_back(chart.coordinates(point));
+    for (std::size_t i = 0; i < 2; ++i) places[i].push_back(at.back()[i]);
   }
   return {.x = chart.first,
           .y = chart.second,
@@ -136,7 +137,8 @@ stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
           .x_panels = {.equal = marginal == 0 ? panels.first : panels.second,
                        .borders = stats::borders_of_peaks(std::move(places[0]), chart.first)},
           .y_panels = {.equal = marginal == 0 ? panels.second : panels.first,
-                       .borders = stats::borders_of_peaks(std::move(places[1]), chart.second)}};
+                       .borders = stats::borders_of_peaks(std::move(places[1]), chart.second)},
+          .drawn = std::move(at)};
 }
 
 }  // namespace assay::harness

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <queue>
 #include <span>
 
 #include "stats/basics/check.h"
+#include "stats/basics/moments.h"
 
 namespace assay::stats {
 namespace {
@@ -22,6 +24,8 @@ struct Questions {
   std::function<Integral(const PlaneCell&)> integral;
   std::function<std::optional<Along>(const PlaneCell&, int halvings)> side;
   std::function<bool()> exhausted;
+  /// Share of the drawn values in a cell.
+  std::function<double(const PlaneCell&)> drawn_share = [](const PlaneCell&) { return 0.0; };
 };
 
 bool can_be_halved(const Span& span) {
@@ -44,6 +48,7 @@ class Halving {
   }
 
   void halve_until(double most) {
+    most_ = most;
     while (!heaviest_.empty() && heaviest_.top().mass > most) {
       const std::size_t number = heaviest_.top().number;
       heaviest_.pop();
@@ -66,6 +71,7 @@ class Halving {
     int halvings = 0;
     Along along = Along::x;
     std::size_t halves = 0;  // Number of its halves, 0 if it has none.
+    bool guessed = false;    // The mass is the share of draws.
   };
   struct Candidate {
     double mass;
@@ -88,14 +94,25 @@ class Halving {
     const std::optional<Along> along = ask_.side(whole.cell, whole.halvings);
     if (!along) return true;
     const auto [lower, upper] = halves_of(whole.cell, *along);
-    const Integral one = ask_.integral(lower);
-    const Integral two = ask_.integral(upper);
+    const Known one = half_of(whole, lower);
+    const Known two = half_of(whole, upper);
     if (ask_.exhausted()) return false;
     known_[number].along = *along;
     known_[number].halves = known_.size();
-    add({.cell = lower, .mass = one, .grid_cell = whole.grid_cell, .halvings = whole.halvings + 1});
-    add({.cell = upper, .mass = two, .grid_cell = whole.grid_cell, .halvings = whole.halvings + 1});
+    add(one);
+    add(two);
     return true;
+  }
+
+  // Draws tell which halves will be halved again. Those need no integral.
+  Known half_of(const Known& whole, const PlaneCell& cell) const {
+    const double share = ask_.drawn_share(cell);
+    const bool guessed = share > 2 * most_;
+    return {.cell = cell,
+            .mass = guessed ? Integral{.value = share} : ask_.integral(cell),
+            .grid_cell = whole.grid_cell,
+            .halvings = whole.halvings + 1,
+            .guessed = guessed};
   }
 
   HalvedCells::Part number(std::size_t cell, AdaptiveCells& found) const {
@@ -112,14 +129,15 @@ class Halving {
     return {.whole = false, .number = number_of_it};
   }
 
-  static HalvedCells::Part whole(const Known& known, AdaptiveCells& found) {
+  HalvedCells::Part whole(const Known& known, AdaptiveCells& found) const {
     const HalvedCells::Part part{.whole = true, .number = found.cells.size()};
+    const Integral mass = known.guessed ? ask_.integral(known.cell) : known.mass;
     found.cells.cells.push_back(known.cell);
     found.cells.grid_cells.push_back(known.grid_cell);
-    found.mass.probability.push_back(known.mass.value);
-    found.mass.error.push_back(known.mass.error);
-    found.mass.total += known.mass.value;
-    found.mass.total_error += known.mass.error;
+    found.mass.probability.push_back(mass.value);
+    found.mass.error.push_back(mass.error);
+    found.mass.total += mass.value;
+    found.mass.total_error += mass.error;
     return part;
   }
 
@@ -127,6 +145,7 @@ class Halving {
   const Questions& ask_;
   std::vector<Known> known_;
   std::priority_queue<Candidate> heaviest_;
+  double most_ = 1;
 };
 
 AdaptiveCells halved(const PlaneGrid& grid, std::span<const Integral> masses, double largest_share,
@@ -155,9 +174,34 @@ double spread(std::span<const double, looks_a_side> masses) {
   return std::sqrt(sum / total) / static_cast<double>(masses.size());
 }
 
+using Drawn = std::vector<std::array<double, 2>>;
+
+Drawn drawn_in(const PlaneDensity& density, const PlaneCell& cell) {
+  Drawn inside;
+  std::ranges::copy_if(density.drawn, std::back_inserter(inside), [&](const auto& at) {
+    return at[0] >= cell.x.low && at[0] < cell.x.high && at[1] >= cell.y.low && at[1] < cell.y.high;
+  });
+  return inside;
+}
+
+std::optional<Along> narrower(double of_x, double of_y) {
+  if (of_x < .9 * of_y) return Along::x;
+  if (of_y < .9 * of_x) return Along::y;
+  return std::nullopt;
+}
+
 // The side along which the mass of a cell lies closer together, as a share of the side. Nothing if
-// the two are nearly equal.
+// the two are nearly equal. Draws tell it, if there are enough, or the density at some places.
 std::optional<Along> narrower_along(const PlaneDensity& density, const PlaneCell& cell) {
+  constexpr std::size_t enough_draws = 64;
+  if (const Drawn inside = drawn_in(density, cell); inside.size() >= enough_draws) {
+    std::array<Moments, 2> places;
+    for (const auto& at : inside) {
+      for (std::size_t i = 0; i < 2; ++i) places[i].add(at[i]);
+    }
+    return narrower(std::sqrt(places[0].variance()) / cell.x.width(),
+                    std::sqrt(places[1].variance()) / cell.y.width());
+  }
   constexpr std::size_t n = looks_a_side;
   std::vector<double> x;
   std::vector<double> y;
@@ -176,11 +220,7 @@ std::optional<Along> narrower_along(const PlaneDensity& density, const PlaneCell
     along_x[i / n] += values[i];
     along_y[i % n] += values[i];
   }
-  const double of_x = spread(along_x);
-  const double of_y = spread(along_y);
-  if (of_x < .9 * of_y) return Along::x;
-  if (of_y < .9 * of_x) return Along::y;
-  return std::nullopt;
+  return narrower(spread(along_x), spread(along_y));
 }
 
 void check_share(double largest_share) {
@@ -213,9 +253,16 @@ AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
     if (x || y) return x ? Along::x : Along::y;
     return std::nullopt;
   };
-  return halved(grid, masses, largest_share, {.integral = integral, .side = side, .exhausted = [&] {
-                                                return rule.exhausted();
-                                              }});
+  const auto share = [&](const PlaneCell& cell) {
+    return density.drawn.empty() ? 0
+                                 : static_cast<double>(drawn_in(density, cell).size()) /
+                                       static_cast<double>(density.drawn.size());
+  };
+  return halved(grid, masses, largest_share,
+                {.integral = integral,
+                 .side = side,
+                 .exhausted = [&] { return rule.exhausted(); },
+                 .drawn_share = share});
 }
 
 AdaptiveCells adaptive_cells(const std::vector<double>& borders, const LineDensity& density,

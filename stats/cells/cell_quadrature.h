@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <vector>
 
 #include "stats/basics/adaptive_quadrature.h"
 
@@ -15,6 +17,7 @@ struct PlaneDensity {
   PlaneValues values;
   Panelling x_panels = {};
   Panelling y_panels = {};
+  std::vector<std::array<double, 2>> drawn = {};  // Values of the law, which show its peaks.
 };
 
 // The density at x, integrated over part of the other coordinate. `density` must outlive the
