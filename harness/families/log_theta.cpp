@@ -139,7 +139,7 @@ MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps,
           answers,
           keeps,
           evidence,
-          {.scores = true, .over_looks = stats::LookLaw::independent_increments}};
+          {.over_looks = stats::LookLaw::independent_increments}};
 }
 
 void LogTheta::check_margin(const Question& question, const Margin& margin) const {
@@ -243,8 +243,7 @@ std::vector<Gate> LogTheta::gates(const TestOutcome& outcome, std::size_t channe
     if (!influence) return gates;
     sides.push_back(*influence);
     if (influence->relative.m2 > 0) {
-      gates.push_back(gate_of(
-          stats::dominance_gate(influence->relative), mine));
+      gates.push_back(gate_of(stats::dominance_gate(influence->relative), mine));
     }
   }
   const auto& x = sides[0].relative;

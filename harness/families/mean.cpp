@@ -382,13 +382,25 @@ class MeanTheta : public Theta {
     const double unit =
         unit_of_theta(question, channel, question.of_two() ? data[1].moments.mean : 0);
     ThetaError error;
+    double squares = 0;  // of the observations' parts of the variance
     for (std::size_t i = 0; i < data.size(); ++i) {
+      const stats::Moments& x = data[i].moments;
       const double factor = i == 0 ? 1 : std::abs(question.factor);
-      double& part = question.subjects[i].setup->observations() ? error.fixed : error.drawn;
-      part = std::hypot(part, factor * data[i].moments.standard_error() / unit);
+      const double own = factor * x.standard_error() / unit;
+      if (question.subjects[i].setup->observations()) {
+        error.fixed = std::hypot(error.fixed, own);
+      } else {
+        error.drawn = std::hypot(error.drawn, own);
+        if (own > 0) squares += std::pow(own, 4) * x.kurtosis() / static_cast<double>(x.count);
+      }
     }
+    if (squares > 0) error.effective = std::pow(error.drawn, 4) / squares;
     if (!question.references.empty()) {
       error.fixed = std::hypot(error.fixed, question.references[channel].standard_error / unit);
+      error.estimate = (data[0].moments.mean - question.references[channel].value) / unit;
+    } else if (question.of_two()) {
+      const stats::Contrast null{.scale = question.factor, .offset = question.offset};
+      error.estimate = stats::contrast_of_means(data[0].moments, data[1].moments, null) / unit;
     }
     return error;
   }
@@ -661,19 +673,19 @@ const std::vector<MethodRow>& MeanTheta::rows() {
        [](const Question& q) { return !q.of_two() && !is_within(q); },
        Keeps::moments,
        mean_by_t,
-       {.scores = true, .over_looks = stats::LookLaw::independent_increments}},
+       {.over_looks = stats::LookLaw::independent_increments}},
       {"welch",
        "Welch's t: two means, whatever their variances",
        [](const Question& q) { return q.of_two() && !is_within(q); },
        Keeps::moments,
        mean_by_t,
-       {.scores = true, .over_looks = stats::LookLaw::independent_increments}},
+       {.over_looks = stats::LookLaw::independent_increments}},
       {"tost",
        "two one-sided t tests: a mean lies within a margin",
        [](const Question& q) { return is_within(q); },
        Keeps::moments,
        mean_by_t,
-       {.scores = true, .over_looks = stats::LookLaw::independent_increments}},
+       {.over_looks = stats::LookLaw::independent_increments}},
       {"skewness-corrected-t",
        "t or Welch with Hall's correction for the skewness of the values",
        any_question,

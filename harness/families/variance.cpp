@@ -120,17 +120,13 @@ class VarianceTheta final : public LogTheta {
          [](const Question& q) { return q.of_two(); },
          Keeps::moments,
          of_normal_values,
-         {.of_normal_values = true,
-          .scores = true,
-          .over_looks = stats::LookLaw::independent_increments}},
+         {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
         {"chi-square",
          "chi-square: a variance of near-normal values",
          [](const Question& q) { return !q.of_two(); },
          Keeps::moments,
          of_normal_values,
-         {.of_normal_values = true,
-          .scores = true,
-          .over_looks = stats::LookLaw::independent_increments}},
+         {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
         influence_row(any_question, Keeps::powers, of_any_values)};
     return table;
   }

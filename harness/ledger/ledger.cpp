@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <variant>
 
 #include "harness/base/locked_file.h"
 #include "harness/base/text_file.h"
@@ -12,6 +13,7 @@
 #include "harness/ledger/ledger_reading.h"
 #include "harness/ledger/night_evidence.h"
 #include "harness/theta/theta.h"
+#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
@@ -36,36 +38,50 @@ struct Added {
   std::string note;
 };
 
+/// Adds a night to the open series, or to one that it opens.
 Added add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
-                const LedgerSeries& series, const NightEvidence& night) {
-  if (!night.missing.empty()) return {false, "nothing added: " + night.missing};
+                const LedgerSeries& series, const NightValue& value) {
   if (book.has_seed(series, entry.run.seed)) {
     return {false,
             fmt::format("nothing added: seed {} is in the ledger already and its numbers are "
                         "no news; run with --seed random",
                         entry.run.seed)};
   }
-  const std::size_t before = book.series().size();
+  const LedgerSeries* open = book.open_series(series);
+  if (open != nullptr && open->has_estimates() != series.has_estimates()) {
+    return {false, "nothing added: its method this time gives evidence of another kind"};
+  }
+  const bool begins = open == nullptr;
   const std::size_t index = book.open(series);
   book.add({.date = ledger.date,
             .seed = entry.run.seed,
             .commit = ledger.commit,
             .series = index,
-            .evidence = night.evidence,
-            .log_e = night.log_e});
-  const bool begins = book.series().size() > before && book.generation(index) > 1;
-  return {true, begins ? "the claim, its margins or parameters are new, or it was begun anew: a "
-                         "new series"
-                       : ""};
+            .value = value});
+  return {true, begins && book.generation(index) > 1
+                    ? "the claim, its margins or parameters are new, or it was begun anew: a new "
+                      "series"
+                    : ""};
 }
 
 void read_moved(reports::LedgerSeries& result, const LedgerSeries& series,
-                const std::vector<LedgerNight>& nights) {
-  const Moved change = moved(series, nights);
+                const std::vector<LedgerNight>& nights, const ClaimedRange& claimed) {
+  const Moved change = moved(series, nights, claimed);
   result.moved = nights[change.night].date;
   result.moved_commit = nights[change.night].commit;
   result.moved_from = nights[change.from].date;
   result.moved_to = nights[change.to].date;
+}
+
+/// A night as the report shows it.
+void read_value(reports::LedgerNight& result, const stats::NightEstimate& night) {
+  const double reach = stats::upper_normal_quantile(0.025) * night.standard_error;
+  result.estimate = night.difference;
+  result.low = night.difference - reach;
+  result.high = night.difference + reach;
+}
+void read_value(reports::LedgerNight& result, const NightPValue& night) {
+  result.log_p = night.log_p;
 }
 
 void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::size_t index,
@@ -73,57 +89,61 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
   const LedgerSeries& series = book.series()[index];
   const std::vector<LedgerNight> nights = book.nights_of(index);
   if (nights.empty()) return;
-  const TestOutcome& test = entry.work.outcome;
-  const std::vector<double> path =
-      log_e_path(series, nights, claimed_range(test.plan.regions[entry.channel]));
+  const ClaimedRange claimed = claimed_range(entry.work.outcome.plan.regions[entry.channel]);
+  const std::vector<double> path = log_e_path(series, nights, claimed);
   // The weight stays as it was at the beginning: else a change of the suite would raise and lower
   // alarms of past nights.
-  const double weight = series.weight > 0 ? series.weight : test.place.weight;
-  const double alpha = book.budget() * weight * generation_share(book.generation(index));
-  result.nights = nights.size();
-  result.first = nights.front().date;
-  result.last = nights.back().date;
-  result.log_e = path.back();
+  const double alpha = book.budget() * series.weight * generation_share(book.generation(index));
+  for (std::size_t i = 0; i < nights.size(); ++i) {
+    reports::LedgerNight& night = result.nights.emplace_back();
+    night.date = nights[i].date;
+    night.commit = nights[i].commit;
+    night.log_e = path[i];
+    std::visit([&](const auto& value) { read_value(night, value); }, nights[i].value);
+  }
   result.limit = -std::log(alpha);
-  if (series.kind == EvidenceKind::score) {
-    stats::Evidence total;
-    for (const LedgerNight& night : nights) total += night.evidence;
-    result.score = total.score;
-    result.information = total.information;
-    result.reference_error = series.prior.reference_error;
+  if (series.has_estimates()) {
+    stats::PooledNights pooled;
+    for (const stats::NightEstimate& night : estimates_of(nights)) pooled.add(night);
+    result.estimate = pooled.difference();
+    result.standard_error = std::sqrt(pooled.variance());
+    result.reference_error = *series.reference_error;
   }
   if (const auto alarm = stats::first_alarm(path, alpha)) {
     result.alarm = true;
     result.since = nights[*alarm].date;
-    read_moved(result, series, nights);
+    read_moved(result, series, nights, claimed);
   }
+}
+
+/// The name of theta, if the test has one.
+std::string quantity_of(const TestOutcome& test) {
+  if (test.channels.empty() || test.channels[0].evidence.distance) return "";
+  return test.channels[0].effect.quantity;
 }
 
 reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entry& entry) {
   const TestOutcome& test = entry.work.outcome;
-  NightEvidence night = night_evidence(entry.work, entry.channel, entry.run.pilots);
-  const EvidenceKind kind = evidence_kind(test);
-  const bool of_moments = kind == EvidenceKind::score;
   LedgerSeries series{.hash = series_hash(entry.work, entry.channel),
-                      .kind = kind,
-                      .prior = night.prior,
                       .weight = test.place.weight,
                       .test = test.question.test->id,
                       .channel = test.question.channel_name(entry.channel)};
-  // The pilot chose the method, so leaving the night out does not bias the series.
-  LedgerSeries other = series;
-  other.kind = of_moments ? EvidenceKind::log_e : EvidenceKind::score;
-  if (book.open_series(series) == nullptr && book.open_series(other) != nullptr) {
-    night.missing = fmt::format("its method this time, {}, gives evidence of another kind",
-                                test.plan.method.name);
-    series.kind = other.kind;
+  Added added;
+  const auto night = night_evidence(entry.work, entry.channel);
+  if (const auto* none = std::get_if<NoEvidence>(&night)) {
+    added.note = "nothing added: " + none->why;
+  } else {
+    const auto& evidence = std::get<NightEvidence>(night);
+    if (std::holds_alternative<stats::NightEstimate>(evidence.value)) {
+      series.reference_error = evidence.reference_error;
+    }
+    added = add_night(book, ledger, entry, series, evidence.value);
   }
-  const Added added = add_night(book, ledger, entry, series, night);
   reports::LedgerSeries result{
       .test = series.test,
       .channel = series.channel,
       .series = series.hash,
-      .quantity = of_moments ? test.channels.empty() ? "" : test.channels[0].effect.quantity : "",
+      .quantity = quantity_of(test),
       .relative = test.question.theta->is_relative(test.question, entry.channel),
       .added = added.added,
       .note = added.note};

@@ -13,44 +13,46 @@
 namespace assay::harness {
 namespace {
 
-constexpr const char* version_words = "assay-ledger 1 budget ";
+constexpr const char* version_words = "assay-ledger 2 budget ";
+constexpr const char* earlier_words = "assay-ledger 1 ";
 
 constexpr const char* introduction[] = {
     "# Evidence of nights with fresh seeds about each claim (harness/README.md, \"The ledger\").",
     "# An alarm: E >= 1.202 k^3 / (budget x the test's share) in a test's k-th series, where E is "
     "the",
-    "# likelihood ratio of all nights of the series. Score and information add up also over nights "
-    "that",
-    "# stopped early, and E is a martingale while the claim holds: the budget is kept however "
-    "often,",
-    "# and whenever, one looks.",
+    "# likelihood ratio of all nights of the series. Nights are pooled by the observations they "
+    "drew,",
+    "# also those that stopped early. E is a martingale while the claim holds: the budget is kept "
+    "however",
+    "# often, and whenever, one looks.",
     "# Lines are checked: do not edit them. A line  begin \"suite/test\"  starts that test anew.",
     "#"};
 
 std::string header_of(double budget) { return version_words + reports::round_trip(budget); }
 
-std::string kind_text(EvidenceKind kind) { return kind == EvidenceKind::score ? "score" : "log-e"; }
-
 std::string line_of(const LedgerSeries& series) {
-  std::string prior;
-  if (series.kind == EvidenceKind::score) {
-    prior = fmt::format(" effect {} reference {}", reports::round_trip(series.prior.effect),
-                        reports::round_trip(series.prior.reference_error));
-  }
-  const std::string weight =
-      series.weight > 0 ? " weight " + reports::round_trip(series.weight) : "";
-  return fmt::format("series {} {}{}{} {} {}", series.hash, kind_text(series.kind), prior, weight,
-                     in_quotes(series.test), in_quotes(series.channel));
+  const std::string kind =
+      series.has_estimates() ? "estimates reference " + reports::round_trip(*series.reference_error)
+                             : "p-values";
+  return fmt::format("series {} {} weight {} {} {}", series.hash, kind,
+                     reports::round_trip(series.weight), in_quotes(series.test),
+                     in_quotes(series.channel));
+}
+
+std::string text_of(const stats::NightEstimate& night) {
+  return fmt::format("estimate {} error {} observations {} effective {}",
+                     reports::round_trip(night.difference),
+                     reports::round_trip(night.standard_error),
+                     reports::round_trip(night.observations), reports::round_trip(night.effective));
+}
+std::string text_of(const NightPValue& night) {
+  return "log-p " + reports::round_trip(night.log_p);
 }
 
 std::string line_of(const LedgerNight& night, const LedgerSeries& series) {
-  const std::string evidence =
-      series.kind == EvidenceKind::score
-          ? fmt::format("score {} information {}", reports::round_trip(night.evidence.score),
-                        reports::round_trip(night.evidence.information))
-          : fmt::format("log-e {}", reports::round_trip(night.log_e));
+  const std::string value = std::visit([](const auto& each) { return text_of(each); }, night.value);
   return fmt::format("night {} seed {} commit {} series {} {} {} {}", night.date, night.seed,
-                     night.commit, series.hash, evidence, in_quotes(series.test),
+                     night.commit, series.hash, value, in_quotes(series.test),
                      in_quotes(series.channel));
 }
 
@@ -59,10 +61,6 @@ bool same_place(const LedgerSeries& a, const LedgerSeries& b) {
 }
 
 }  // namespace
-
-bool LedgerSeries::operator==(const LedgerSeries& other) const {
-  return hash == other.hash && kind == other.kind && same_place(*this, other);
-}
 
 LedgerBook::LedgerBook(double budget) : budget_(budget), check_(text_hash(header_of(budget))) {
   keep(header_of(budget));
@@ -79,7 +77,8 @@ std::vector<LedgerNight> LedgerBook::nights_of(std::size_t series) const {
 
 const LedgerSeries* LedgerBook::open_series(const LedgerSeries& wanted) const {
   for (std::size_t i = 0; i < series_.size(); ++i) {
-    if (!closed_[i] && series_[i] == wanted) return &series_[i];
+    const bool same = series_[i].hash == wanted.hash && same_place(series_[i], wanted);
+    if (same && !closed_[i]) return &series_[i];
   }
   return nullptr;
 }
@@ -135,9 +134,16 @@ class LedgerReader {
       : file_(std::move(file)), lines_(lines_of(text)) {}
 
   LedgerBook read() {
+    if (!lines_.empty() && lines_[0].starts_with(earlier_words)) {
+      refuse(
+          fmt::format("an earlier version of assay wrote this ledger, whose nights do not pool "
+                      "with new ones; keep it under another name, and the next run begins anew: "
+                      "mv {0} {0}.1",
+                      file_));
+    }
     if (lines_.empty() || !lines_[0].starts_with(version_words)) {
       refuse(
-          "this is no ledger of this version: its first line must be `assay-ledger 1 budget B`; "
+          "this is no ledger of this version: its first line must be `assay-ledger 2 budget B`; "
           "name another file for the ledger");
     }
     LineFields fields(lines_[0].substr(std::string_view(version_words).size()));
@@ -216,12 +222,6 @@ class LedgerReader {
     ended_ = true;
   }
 
-  EvidenceKind kind_of(LineFields& fields) const {
-    if (fields.word("score")) return EvidenceKind::score;
-    if (fields.word("log-e")) return EvidenceKind::log_e;
-    changed();
-  }
-
   template <class Value>
   Value required(std::optional<Value> value) const {
     if (!value) changed();
@@ -236,20 +236,35 @@ class LedgerReader {
     LedgerSeries series;
     fields.word("series");
     series.hash = required(fields.any_word());
-    series.kind = kind_of(fields);
-    if (series.kind == EvidenceKind::score) {
-      series.prior.effect = named(fields, "effect");
-      series.prior.reference_error = named(fields, "reference");
-      if (!(series.prior.effect > 0) || !(series.prior.reference_error >= 0)) changed();
+    if (fields.word("estimates")) {
+      series.reference_error = named(fields, "reference");
+      if (!(*series.reference_error >= 0)) changed();
+    } else if (!fields.word("p-values")) {
+      changed();
     }
-    if (fields.word("weight")) {
-      series.weight = required(fields.number());
-      if (!(series.weight > 0 && series.weight <= 1)) changed();
-    }
+    series.weight = named(fields, "weight");
+    if (!(series.weight > 0 && series.weight <= 1)) changed();
     series.test = required(fields.text());
     series.channel = required(fields.text());
     book_.series_.push_back(series);
     book_.closed_.push_back(false);
+  }
+
+  NightValue value(LineFields& fields) const {
+    if (fields.word("log-p")) {
+      const NightPValue night{.log_p = required(fields.number())};
+      if (!(night.log_p <= 0)) changed();
+      return night;
+    }
+    stats::NightEstimate night;
+    night.difference = named(fields, "estimate");
+    night.standard_error = named(fields, "error");
+    night.observations = named(fields, "observations");
+    night.effective = named(fields, "effective");
+    const bool possible =
+        night.standard_error >= 0 && night.observations > 0 && night.effective >= 1;
+    if (!possible) changed();
+    return night;
   }
 
   void take_night(LineFields& fields) {
@@ -262,18 +277,14 @@ class LedgerReader {
     night.commit = required(fields.any_word());
     if (!fields.word("series")) changed();
     LedgerSeries of{.hash = required(fields.any_word())};
-    of.kind = kind_of(fields);
-    if (of.kind == EvidenceKind::score) {
-      night.evidence.score = required(fields.number());
-      night.evidence.information = named(fields, "information");
-      if (!(night.evidence.information > 0)) changed();
-    } else {
-      night.log_e = required(fields.number());
-    }
+    night.value = value(fields);
     of.test = required(fields.text());
     of.channel = required(fields.text());
     const LedgerSeries* series = book_.open_series(of);
     if (series == nullptr) refuse("no open series above has this night's hash and test" + mend());
+    if (series->has_estimates() != std::holds_alternative<stats::NightEstimate>(night.value)) {
+      changed();
+    }
     night.series = static_cast<std::size_t>(series - book_.series_.data());
     book_.nights_.push_back(night);
   }

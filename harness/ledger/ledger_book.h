@@ -2,11 +2,11 @@
 
 // The ledger as data and as text: the evidence of nights with fresh seeds on each claim.
 //
-//   assay-ledger 1 budget 0.003
-//   series 5f2a… score effect 0.0012 reference 0 weight 0.25 "suite/test" "channel" | 1a2b3c4d
-//   night 2026-11-21T02:00:01Z seed 17 commit 14467a0 series 5f2a… score 12.2 information 3e4
-//         "suite/test" "channel" | 5d6e7f80                                    (one line)
-//   night … series 77aa… log-e -0.69 "suite/other" "channel" | …
+//   assay-ledger 2 budget 0.003
+//   series 5f2a… estimates reference 0 weight 0.25 "suite/test" "channel" | 1a2b3c4d
+//   night 2026-11-21T02:00:01Z seed 17 commit 14467a0 series 5f2a… estimate 0.0004 error 0.0012
+//         observations 4096 effective 1365 "suite/test" "channel" | 5d6e7f80   (one line)
+//   night … series 77aa… log-p -0.69 "suite/other" "channel" | …
 //   begin "suite/test"                                      written by hand: a new series
 //   # a comment, by hand, anywhere
 //   end 2                                                   nights in the file
@@ -16,8 +16,9 @@
 // `end` reveals missing lines at the end. Neither protects against intent.
 
 #include <cstdint>
-#include <map>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "stats/planning/evidence_ledger.h"
@@ -27,22 +28,23 @@ namespace assay::harness {
 /// The default error budget of a new ledger, over all its nights.
 inline constexpr double default_ledger_budget = 3e-3;
 
-enum class EvidenceKind {
-  score,  ///< Score and information on theta: means and variances.
-  log_e   ///< The ln of an e-value: distances between laws.
+/// The p-value of a night on a claim without an estimate: a distance between laws or images.
+struct NightPValue {
+  double log_p = 0;
+  friend bool operator==(const NightPValue&, const NightPValue&) = default;
 };
+using NightValue = std::variant<stats::NightEstimate, NightPValue>;
 
-/// The nights of one channel of one claim, as long as neither changes. The e-value's prior is fixed
-/// before the first night.
+/// The nights of one channel of one claim, as long as neither changes.
 struct LedgerSeries {
   std::string hash;  ///< hash of claim, margins and parameters
-  EvidenceKind kind = EvidenceKind::score;
-  stats::LedgerPrior prior = {};  ///< if it is a score
-  /// The test's share of the budget when the series began; 0 in files that do not keep it.
-  double weight = 0;
-  std::string test;  ///< the test's id
+  /// The error that all nights share; nullopt if nights have p-values.
+  std::optional<double> reference_error = {};
+  double weight = 0;  ///< The test's share of the budget when the series began.
+  std::string test;   ///< the test's id
   std::string channel;
-  bool operator==(const LedgerSeries& other) const;
+
+  bool has_estimates() const { return reference_error.has_value(); }
 };
 
 /// The evidence that one run with a fresh seed added to a series.
@@ -50,9 +52,8 @@ struct LedgerNight {
   std::string date;  ///< UTC, ISO 8601
   std::uint64_t seed = 0;
   std::string commit;
-  std::size_t series = 0;         ///< index in the book
-  stats::Evidence evidence = {};  ///< if a score
-  double log_e = 0;               ///< if a log_e
+  std::size_t series = 0;  ///< index in the book
+  NightValue value = {};
   bool operator==(const LedgerNight&) const = default;
 };
 
@@ -66,14 +67,14 @@ class LedgerBook {
   const std::vector<LedgerNight>& nights() const { return nights_; }
   std::vector<LedgerNight> nights_of(std::size_t series) const;
 
-  /// The open series of a test's channel with this hash; null if there is none.
+  /// The open series of its test's channel and hash; null if there is none.
   const LedgerSeries* open_series(const LedgerSeries& wanted) const;
   /// The number of the series among those of its test's channel, from 1.
   int generation(std::size_t series) const;
   /// True if this seed has added to any series of the test's channel.
   bool has_seed(const LedgerSeries& of, std::uint64_t seed) const;
 
-  /// The index of the open series like `wanted`. It opens one with that prior if there is none.
+  /// The index of the open series like `wanted`. It opens one if there is none.
   std::size_t open(const LedgerSeries& wanted);
   void add(const LedgerNight& night);
   /// Closes every series of a test: its next night begins a new one.

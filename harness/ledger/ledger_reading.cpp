@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 namespace assay::harness {
 namespace {
@@ -10,30 +11,18 @@ namespace {
 constexpr double zeta_3 = 1.2020569031595942;
 constexpr double credibility = 0.9;
 
-std::vector<stats::Evidence> evidence_of(const std::vector<LedgerNight>& nights) {
-  std::vector<stats::Evidence> all;
-  for (const LedgerNight& night : nights) all.push_back(night.evidence);
-  return all;
+template <class Value>
+std::vector<Value> values_of(const std::vector<LedgerNight>& nights) {
+  std::vector<Value> values;
+  for (const LedgerNight& night : nights) values.push_back(std::get<Value>(night.value));
+  return values;
 }
 
-/// The score about the nearest value that the claim allows.
-stats::Evidence about(const ClaimedRange& claimed, const stats::Evidence& total) {
-  const double nearest = std::clamp(total.score / total.information, claimed.low, claimed.high);
-  return {total.score - total.information * nearest, total.information};
-}
-
-Moved moved_by_e(const std::vector<LedgerNight>& nights) {
-  double since = 0;
-  double best = -std::numeric_limits<double>::infinity();
-  std::size_t start = 0;
-  for (std::size_t i = nights.size(); i-- > 0;) {
-    since += nights[i].log_e;
-    if (since > best) {
-      best = since;
-      start = i;
-    }
-  }
-  return {start, start, start};
+/// The null hypothesis at the nearest value that the claim allows.
+stats::NullTheta nearest(const ClaimedRange& claimed, const stats::PooledNights& pooled,
+                         const LedgerSeries& series) {
+  return {.value = std::clamp(pooled.difference(), claimed.low, claimed.high),
+          .reference_error = *series.reference_error};
 }
 
 }  // namespace
@@ -55,26 +44,44 @@ ClaimedRange claimed_range(const Regions& regions) {
   return {-regions.allow, regions.allow};
 }
 
+std::vector<stats::NightEstimate> estimates_of(const std::vector<LedgerNight>& nights) {
+  return values_of<stats::NightEstimate>(nights);
+}
+
+std::vector<double> log_p_values_of(const std::vector<LedgerNight>& nights) {
+  std::vector<double> log_p;
+  for (const NightPValue& night : values_of<NightPValue>(nights)) log_p.push_back(night.log_p);
+  return log_p;
+}
+
 std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
                                const ClaimedRange& claimed) {
   std::vector<double> path;
-  stats::Evidence total;
-  double log_e = 0;
-  for (const LedgerNight& night : nights) {
-    if (series.kind == EvidenceKind::log_e) {
-      log_e += night.log_e;
-    } else {
-      total += night.evidence;
-      log_e = stats::log_e_value(about(claimed, total), series.prior);
+  if (series.has_estimates()) {
+    stats::PooledNights pooled;
+    for (const stats::NightEstimate& night : estimates_of(nights)) {
+      pooled.add(night);
+      path.push_back(stats::log_e_value(pooled, nearest(claimed, pooled, series)));
     }
-    path.push_back(log_e);
+    return path;
+  }
+  stats::PooledPValues pooled;
+  for (const double log_p : log_p_values_of(nights)) {
+    pooled.add(log_p);
+    path.push_back(stats::log_e_value(pooled));
   }
   return path;
 }
 
-Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights) {
-  if (series.kind == EvidenceKind::log_e) return moved_by_e(nights);
-  const stats::ChangePoint change = stats::change_point(evidence_of(nights), series.prior);
+Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+            const ClaimedRange& claimed) {
+  const auto change = [&] {
+    if (!series.has_estimates()) return stats::change_point(log_p_values_of(nights));
+    const std::vector<stats::NightEstimate> estimates = estimates_of(nights);
+    stats::PooledNights pooled;
+    for (const stats::NightEstimate& night : estimates) pooled.add(night);
+    return stats::change_point(estimates, nearest(claimed, pooled, series));
+  }();
   const std::vector<std::size_t> credible = stats::credible_nights(change, credibility);
   return {change.night, credible.front(), credible.back()};
 }

@@ -6,17 +6,11 @@
 #include <cmath>
 
 #include "harness/base/text_hash.h"
-#include "harness/plan/forecast.h"
 #include "harness/plan/rows.h"
 #include "harness/theta/theta.h"
-#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
-
-// (effect / a night's standard error)^2. It suits a bias of one standard error a night, and loses
-// little at a third or three times of that.
-constexpr double prior_variance = 0.2;
 
 const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
   for (const ChannelOutcome& outcome : test.channels) {
@@ -25,55 +19,58 @@ const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
   return nullptr;
 }
 
-/// Why a test gives nothing that nights could add up; "" if it does.
-std::string obstacle(const TestWork& work, std::size_t channel) {
-  const TestOutcome& test = work.outcome;
-  if (test.verdict == reports::Verdict::error || test.verdict == reports::Verdict::invalid) {
-    return fmt::format("its verdict is {}", reports::to_string(test.verdict));
-  }
+/// Why a test gives nothing that nights could pool; "" if it does.
+std::string obstacle(const TestOutcome& test) {
+  if (test.verdict == reports::Verdict::error) return "its verdict is error";
+  if (!test.plan.invalid.empty()) return "its pilots leave it invalid";
   const std::vector<Subject>& sides = test.question.subjects;
   if (std::all_of(sides.begin(), sides.end(), is_recorded)) {
     return "its data are recorded: the same in every run";
   }
-  const bool laws = !test.question.is().of_moments;
-  if (laws && std::any_of(sides.begin(), sides.end(), is_recorded)) {
-    return "one side is recorded, the same in every run, and distances from it do not add up";
-  }
-  const bool scored = evidence_kind(test) == EvidenceKind::score;
-  if (scored && outcome_of(test, channel) == nullptr) return "its observations have no spread";
   return "";
 }
 
-/// The normal quantile of the p-value of theta = 0, with theta's sign; 0 if a conservative method
-/// finds neither side likelier.
-double z_of(const stats::TestResult& at_null) {
-  const double log_p = std::min(at_null.log_p_upper, at_null.log_p_lower);
-  if (log_p >= std::log(0.5)) return 0;
-  const double z = stats::normal_quantile({stats::Tail::upper, log_p});
-  return at_null.log_p_upper < at_null.log_p_lower ? z : -z;
+// The kurtosis of squared normal values, for families that do not tell.
+constexpr double usual_kurtosis = 15;
+
+/// The night's weight and number, by the first side that is drawn in this run.
+stats::NightEstimate sized(const TestOutcome& test, const ThetaError& error) {
+  const std::vector<Subject>& sides = test.question.subjects;
+  const auto drawn = std::find_if_not(sides.begin(), sides.end(), is_recorded);
+  const auto i = static_cast<std::size_t>(drawn - sides.begin());
+  const double secondaries = static_cast<double>(test.secondaries(i));
+  return {.difference = *error.estimate,
+          .standard_error = error.drawn,
+          .observations = secondaries * static_cast<double>(test.plan.primaries[i]),
+          .effective = std::max(1.0, error.effective.value_or(secondaries / usual_kurtosis))};
 }
 
-/// The effect that a series looks for, from the pilot; nullopt without spread.
-std::optional<double> prior_effect(const TestOutcome& test, std::size_t channel,
-                                   const Pilots& pilots) {
-  const auto data = expected_data(test, channel, pilots, expected_secondaries(test, pilots));
-  if (!data) return std::nullopt;
-  const std::optional<ThetaError> error = test.question.theta->error(test.question, channel, *data);
-  if (!error || !(error->drawn > 0)) return std::nullopt;
-  return std::sqrt(prior_variance) * error->drawn;
+/// The error that an interval shows; nullopt without two ends, or if it holds more than one run's.
+std::optional<ThetaError> error_of_interval(const Question& question, std::size_t channel,
+                                            const Evidence& evidence) {
+  const bool shares =
+      std::any_of(question.subjects.begin(), question.subjects.end(), is_recorded) ||
+      (!question.references.empty() && question.references[channel].standard_error > 0);
+  if (shares) return std::nullopt;
+  constexpr double one_standard_deviation = 0.6826894921370859;
+  const stats::Interval interval = evidence.interval(one_standard_deviation);
+  const double half = (interval.high - interval.low) / 2;
+  if (!std::isfinite(half)) return std::nullopt;
+  return ThetaError{.drawn = half};
 }
 
-NightEvidence of_score(const DrawnTest& drawn, std::size_t channel, const Pilots& pilots) {
-  const TestOutcome& test = drawn.outcome;
-  const std::optional<double> effect = prior_effect(test, channel, pilots);
-  if (!effect) return {.missing = "its pilot has no spread to expect a night's error from"};
+std::variant<NightEvidence, NoEvidence> of_estimate(const DrawnTest& drawn, std::size_t channel) {
+  const Question& question = drawn.outcome.question;
   const std::vector<ChannelData> data = data_of(drawn, channel);
-  const ThetaError error = test.question.theta->error(test.question, channel, data).value();
-  if (!(error.drawn > 0)) return {.missing = "its observations have no spread"};
-  const double total = std::hypot(error.drawn, error.fixed);
-  const double difference = z_of(outcome_of(test, channel)->at_null) * total;
-  return {.evidence = stats::evidence_of({difference, error.drawn}),
-          .prior = {.effect = *effect, .reference_error = error.fixed}};
+  std::optional<ThetaError> error = question.theta->error(question, channel, data);
+  const ChannelOutcome* outcome = outcome_of(drawn.outcome, channel);
+  if (outcome != nullptr) {
+    if (!error) error = error_of_interval(question, channel, outcome->evidence);
+    if (error) error->estimate = outcome->evidence.estimate;
+  }
+  if (!error) return NoEvidence{"no error of its estimate is known"};
+  if (!error->estimate) return NoEvidence{"its observations have no spread"};
+  return NightEvidence{.value = sized(drawn.outcome, *error), .reference_error = error->fixed};
 }
 
 std::string margin_text(const std::optional<Margin>& margin) {
@@ -97,23 +94,19 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
 
 }  // namespace
 
-EvidenceKind evidence_kind(const TestOutcome& test) {
-  const bool moments = test.question.is().of_moments;
-  return moments && test.plan.method.is.scores ? EvidenceKind::score : EvidenceKind::log_e;
-}
-
-NightEvidence night_evidence(const TestWork& work, std::size_t channel, const Pilots& pilots) {
-  if (std::string missing = obstacle(work, channel); !missing.empty()) {
-    return {.missing = std::move(missing)};
-  }
+std::variant<NightEvidence, NoEvidence> night_evidence(const TestWork& work, std::size_t channel) {
   const TestOutcome& test = work.outcome;
+  if (std::string why = obstacle(test); !why.empty()) return NoEvidence{std::move(why)};
   const std::optional<DrawnTest> numbers = drawn(work);
-  if (!numbers) return {.missing = "it was not drawn"};
-  if (evidence_kind(test) == EvidenceKind::score) return of_score(*numbers, channel, pilots);
-  // Without spread there is no test: p = 1, which counts against an alarm.
+  if (!numbers) return NoEvidence{"it was not drawn"};
   const ChannelOutcome* outcome = outcome_of(test, channel);
-  const double log_p = outcome != nullptr ? outcome->decision.log_p_claimed : 0;
-  return {.kind = EvidenceKind::log_e, .log_e = stats::log_e_from_log_p(log_p)};
+  if (outcome == nullptr || !outcome->evidence.distance) return of_estimate(*numbers, channel);
+  const std::vector<Subject>& sides = test.question.subjects;
+  if (std::any_of(sides.begin(), sides.end(), is_recorded)) {
+    return NoEvidence{
+        "one side is recorded, the same in every run, and distances from it do not add up"};
+  }
+  return NightEvidence{.value = NightPValue{.log_p = outcome->decision.log_p_claimed}};
 }
 
 std::string series_hash(const TestWork& work, std::size_t channel) {

@@ -77,7 +77,6 @@ struct MethodTraits {
   bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.
   bool of_normal_values = false;    ///< Takes values for normal.
   bool of_distinct_values = false;  ///< Coarsely rounded values break its level.
-  bool scores = false;              ///< The estimate does not show its standard error.
   bool joins_channels = false;      ///< compares all channels of two estimators together
   stats::LookLaw over_looks = stats::LookLaw::unknown;  ///< Of its p-values at several looks.
   FromPilot from_pilot = FromPilot::nothing;

@@ -30,6 +30,11 @@ struct TestOutcome;
 struct ThetaError {
   double drawn = 0;
   double fixed = 0;
+  /// Theta's estimate, if values without spread have one.
+  std::optional<double> estimate = {};
+  /// Observations of equal size that would give the error `drawn`: n over the kurtosis of their
+  /// influence on the estimate. Unset if the family does not tell.
+  std::optional<double> effective = {};
 };
 
 /// An object has no data of a claim: every function takes the question. `""` and nullopt stand for

@@ -12,8 +12,8 @@
 #include "reports/words/effect.h"
 #include "reports/words/evidence.h"
 #include "reports/words/number.h"
-#include "reports/words/text.h"
 #include "reports/words/summary.h"
+#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {
@@ -212,10 +212,10 @@ std::string series_case(const Ledger& ledger, const LedgerSeries& series, Unique
   std::string out = "  <testcase" + attribute("classname", group) + attribute("name", name) +
                     time_attribute(0) + ">\n   <properties>\n";
   add(out, "series", series.series);
-  add(out, "nights", fmt::format("{}", series.nights));
-  add(out, "score", series.score);
-  add(out, "information", series.information);
-  add(out, "log_e", series.log_e);
+  add(out, "nights", fmt::format("{}", series.nights.size()));
+  add(out, "estimate", series.estimate);
+  add(out, "standard_error", series.standard_error);
+  add(out, "log_e", series.log_e());
   add(out, "limit", series.limit);
   add(out, "since", series.since);
   add(out, "moved", series.moved);

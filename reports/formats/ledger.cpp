@@ -19,12 +19,11 @@ std::string day(const std::string& date) { return date.substr(0, date.find('T'))
 
 /// theta and its standard error from the sums.
 std::string theta_sentence(const LedgerSeries& series) {
-  if (!series.score || !series.information || !(*series.information > 0)) return {};
-  const double theta = *series.score / *series.information;
+  if (!series.estimate || !series.standard_error) return {};
   const double shared = series.reference_error.value_or(0);
   return fmt::format("{} {}, standard error {}{}, ", series.quantity,
-                     with_sign(theta, series.relative),
-                     magnitude(1 / std::sqrt(*series.information), series.relative),
+                     with_sign(*series.estimate, series.relative),
+                     magnitude(*series.standard_error, series.relative),
                      shared > 0 ? fmt::format(" of the nights and {} of the reference",
                                               magnitude(shared, series.relative))
                                 : "");
@@ -36,7 +35,7 @@ bool several_channels(const Ledger& ledger, const std::string& test) {
 }
 
 double distance(const LedgerSeries& series) {
-  return series.limit.value_or(0) - series.log_e.value_or(0);
+  return series.limit.value_or(0) - series.log_e().value_or(0);
 }
 
 }  // namespace
@@ -65,10 +64,17 @@ std::string e_text(const Number& log_e) {
 }
 
 std::string series_sentence(const LedgerSeries& series) {
-  if (series.nights == 0) return "no night yet";
-  return fmt::format("{} since {}: {}e-value E = {}, alarm at {}", plural(series.nights, "night"),
-                     day(series.first), theta_sentence(series), e_text(series.log_e),
-                     e_text(series.limit));
+  if (series.nights.empty()) return "no night yet";
+  return fmt::format("{} since {}: {}e-value E = {}, alarm at {}",
+                     plural(series.nights.size(), "night"), day(series.nights.front().date),
+                     theta_sentence(series), e_text(series.log_e()), e_text(series.limit));
+}
+
+std::string night_value(const LedgerSeries& series, const LedgerNight& night) {
+  if (!night.estimate || !night.low || !night.high) return e_text(night.log_p);
+  return fmt::format("{} [{}, {}]", with_sign(*night.estimate, series.relative),
+                     with_sign(*night.low, series.relative),
+                     with_sign(*night.high, series.relative));
 }
 
 std::string alarm_sentence(const LedgerSeries& series) {
@@ -86,11 +92,11 @@ std::string alarm_sentence(const LedgerSeries& series) {
 std::string quiet_sentence(const Ledger& ledger) {
   const LedgerSeries* highest = nullptr;
   std::uint64_t count = 0;
-  std::uint64_t nights = 0;
+  std::size_t nights = 0;
   for (const LedgerSeries& series : ledger.series) {
-    if (series.alarm || series.nights == 0) continue;
+    if (series.alarm || series.nights.empty()) continue;
     ++count;
-    nights = std::max(nights, series.nights);
+    nights = std::max(nights, series.nights.size());
     if (highest == nullptr || distance(series) < distance(*highest)) highest = &series;
   }
   if (highest == nullptr) return {};
@@ -98,7 +104,7 @@ std::string quiet_sentence(const Ledger& ledger) {
       "{} of up to {} without an alarm; nearest to one is {}, e-value "
       "E = {}, alarm at {}",
       plural(count, "series"), plural(nights, "night"), series_name(ledger, *highest),
-      e_text(highest->log_e), e_text(highest->limit));
+      e_text(highest->log_e()), e_text(highest->limit));
 }
 
 std::vector<std::string> ledger_notes(const Ledger& ledger) {

@@ -266,6 +266,17 @@ void fields(Archive& a, T& suite) {
   a.repeated("answers", answers(suite));
 }
 
+template <class Archive, maybe_const<LedgerNight> T>
+void fields(Archive& a, T& night) {
+  a("date", night.date);
+  a("commit", night.commit);
+  a("estimate", night.estimate);
+  a("low", night.low);
+  a("high", night.high);
+  a("log_p", night.log_p);
+  a("log_e", night.log_e);
+}
+
 template <class Archive, maybe_const<LedgerSeries> T>
 void fields(Archive& a, T& series) {
   a("test", series.test);
@@ -274,12 +285,9 @@ void fields(Archive& a, T& series) {
   a("quantity", series.quantity);
   a("relative", series.relative);
   a("nights", series.nights);
-  a("first", series.first);
-  a("last", series.last);
-  a("score", series.score);
-  a("information", series.information);
+  a("estimate", series.estimate);
+  a("standard_error", series.standard_error);
   a("reference_error", series.reference_error);
-  a("log_e", series.log_e);
   a("limit", series.limit);
   a("alarm", series.alarm);
   a("since", series.since);

@@ -10,18 +10,26 @@
 
 namespace assay::reports {
 
+/// What one night said, and all nights up to it.
+struct LedgerNight {
+  std::string date;  ///< UTC, ISO 8601
+  std::string commit;
+  Number estimate, low, high;  ///< Of theta, with the night's own 95 % interval.
+  Number log_p;                ///< ln of the p-value of a night without an estimate.
+  Number log_e;                ///< ln of the e-value of all nights up to it.
+  bool operator==(const LedgerNight&) const = default;
+};
+
 /// One channel of one claim in the ledger: what all nights with fresh seeds say together.
 struct LedgerSeries {
   std::string test;  ///< id
   std::string channel;
   std::string series;    ///< hash of claim, margins and parameters: another one is another series
-  std::string quantity;  ///< theta, as in Effect; empty where nights add up as e-values
+  std::string quantity;  ///< theta, as in Effect; empty where nights have p-values
   bool relative = false;
-  std::uint64_t nights = 0;
-  std::string first, last;           ///< Dates of the first and last night, UTC, ISO 8601.
-  Number score, information;         ///< Sums over nights; theta is about score / information.
+  std::vector<LedgerNight> nights;   ///< In their order.
+  Number estimate, standard_error;   ///< Of theta, by all nights.
   Number reference_error;            ///< The standard error of theta that all nights share.
-  Number log_e;                      ///< ln of the e-value of all nights.
   Number limit;                      ///< The ln E that is an alarm.
   bool alarm = false;                ///< ln E reached the limit after some night.
   std::string since;                 ///< The first such night.
@@ -30,6 +38,9 @@ struct LedgerSeries {
   std::string moved_from, moved_to;  ///< First and last of the nights that hold 90 % of it.
   bool added = false;                ///< This run is one of the nights.
   std::string note;                  ///< Why it is not, or that a new series began.
+
+  /// ln of the e-value of all nights.
+  Number log_e() const { return nights.empty() ? Number() : nights.back().log_e; }
   bool operator==(const LedgerSeries&) const = default;
 };
 

@@ -9,6 +9,20 @@
 namespace assay::reports {
 namespace {
 
+std::string nights_table(const LedgerSeries& series) {
+  const bool estimates = series.estimate.has_value();
+  HtmlTable table(
+      {{"night"}, {estimates ? "estimate [95 %]" : "p", true}, {"E so far", true}, {"commit"}});
+  for (const LedgerNight& night : series.nights) {
+    table.row({{escape_xml(night.date)},
+               {escape_xml(night_value(series, night))},
+               {escape_xml(e_text(night.log_e))},
+               {escape_xml(night.commit)}});
+  }
+  return fmt::format("<details><summary>{}</summary>\n{}</details>", series.nights.size(),
+                     table.finish());
+}
+
 void add(HtmlTable& table, const Ledger& ledger, const LedgerSeries& series) {
   const std::string name = escape_xml(one_line(series_name(ledger, series)));
   const std::string words = series.alarm ? alarm_sentence(series) : series.note;
@@ -16,8 +30,8 @@ void add(HtmlTable& table, const Ledger& ledger, const LedgerSeries& series) {
                            : "<span class=\"badge\">✓ no alarm</span>",
               "verdict"},
              {name, "name"},
-             {fmt::format("{}", series.nights)},
-             {escape_xml(e_text(series.log_e))},
+             {series.nights.empty() ? "0" : nights_table(series)},
+             {escape_xml(e_text(series.log_e()))},
              {escape_xml(e_text(series.limit))},
              {fmt::format("<span>{}{}{}</span>", escape_xml(one_line(series_sentence(series))),
                           words.empty() ? "" : "<br/>", escape_xml(one_line(words)))}},

@@ -6,26 +6,22 @@
 
 #include "stats/basics/check.h"
 #include "stats/tails/special.h"
+#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
 
-void check_prior(const LedgerPrior& prior) {
-  check::positive({"evidence_ledger", "effect"}, prior.effect);
-  check::non_negative({"evidence_ledger", "reference_error"}, prior.reference_error);
-}
+constexpr double prior_ratio = 0.2;  // (tau / a first night's standard error)^2
+// Larger -ln p are taken for this one, so that sums stay finite. A larger p is valid.
+constexpr double largest_minus_log_p = 1e9;
 
-void check_evidence(const Evidence& evidence) {
-  check::finite({"evidence_ledger", "score"}, evidence.score);
-  check::non_negative({"evidence_ledger", "information"}, evidence.information);
-}
-
-// ln of normal(r; 0, wide) / normal(r; 0, narrow), wide = narrow + added.
+// ln of normal(r; 0, narrow + added) / normal(r; 0, narrow).
 struct Widening {
   double narrow;
   double added;
 };
 double log_ratio(double r, Widening variance) {
+  if (!(variance.narrow > 0)) return 0;
   const double wide = variance.narrow + variance.added;
   const double curvature = variance.added / variance.narrow / wide;
   return -std::log1p(variance.added / variance.narrow) / 2 + r * r / 2 * curvature;
@@ -33,55 +29,96 @@ double log_ratio(double r, Widening variance) {
 
 double square(double x) { return x * x; }
 
-// The score's variance for a given information, and the part that the effect adds to it.
-Widening score_variance(double information, const LedgerPrior& prior) {
-  const double v = information;
-  return {v + square(v * prior.reference_error), square(v * prior.effect)};
+double prior_variance(const PooledNights& all) { return prior_ratio * all.time() * all.variance(); }
+
+PooledNights pooled(std::span<const NightEstimate> nights) {
+  PooledNights all;
+  for (const NightEstimate& night : nights) all.add(night);
+  return all;
 }
 
-// ln likelihood ratio of a change between two series. Given the estimate before, that after is
+// ln likelihood ratio of a change between two series. Given the difference before, that after is
 // normal about the value that the common error of the reference predicts.
-double log_change(const Evidence& before, const Evidence& after, const LedgerPrior& prior) {
-  const double u2 = square(prior.reference_error);
-  double expected = 0;
-  double variance = 1 / after.information + u2;
-  if (before.information > 0) {
-    const double slope = u2 / (1 / before.information + u2);
-    expected = slope * before.score / before.information;
+double log_change(const PooledNights& before, const PooledNights& after, const NullTheta& null,
+                  double effect_variance) {
+  const double u2 = square(null.reference_error);
+  double expected = null.value;
+  double variance = after.variance() + u2;
+  if (before.time() > 0 && before.variance() + u2 > 0) {
+    const double slope = u2 / (before.variance() + u2);
+    expected += slope * (before.difference() - null.value);
     variance -= slope * u2;
   }
-  return log_ratio(after.score / after.information - expected, {variance, square(prior.effect)});
+  return log_ratio(after.difference() - expected, {variance, effect_variance});
 }
 
-Evidence sum_of(std::span<const Evidence> nights) {
-  Evidence total;
-  for (const Evidence& night : nights) {
-    check_evidence(night);
-    total += night;
+ChangePoint change_point_of(const std::vector<double>& logs) {
+  ChangePoint change;
+  const auto best = std::max_element(logs.begin(), logs.end());
+  change.night = static_cast<std::size_t>(best - logs.begin());
+  change.log_likelihood_ratio = *best;
+  const double total = special::log_sum_of(logs);
+  for (const double value : logs) change.share.push_back(std::exp(value - total));
+  return change;
+}
+
+// ln of the sum of t^j / ((k + 1) ... (k + 1 + j)) over j >= 0, for t <= k + 1.
+double log_series(double k, double t) {
+  double term = 1 / (k + 1);
+  double sum = 0;
+  for (double next = k + 2; term > 1e-17 * sum; ++next) {
+    sum += term;
+    term *= t / next;
   }
-  return total;
+  return std::log(sum);
 }
 
 }  // namespace
 
-Evidence& Evidence::operator+=(const Evidence& other) {
-  score += other.score;
-  information += other.information;
-  return *this;
+void PooledNights::add(const NightEstimate& night) {
+  check::finite({"PooledNights", "difference"}, night.difference);
+  check::non_negative({"PooledNights", "standard_error"}, night.standard_error);
+  check::positive({"PooledNights", "observations"}, night.observations);
+  check::non_negative({"PooledNights", "effective - 1"}, night.effective - 1);
+  if (observations_ == 0) first_ = night.observations;
+  observations_ += night.observations;
+  sum_ += night.observations * night.difference;
+  const double part = square(night.observations * night.standard_error);
+  variance_ += part;
+  squares_ += square(part) / night.effective;
 }
 
-Evidence evidence_of(NightEstimate night) {
-  check::finite({"evidence_of", "difference"}, night.difference);
-  check::positive({"evidence_of", "standard_error"}, night.standard_error);
-  const double information = 1 / square(night.standard_error);
-  return {night.difference * information, information};
+double PooledNights::difference() const { return observations_ > 0 ? sum_ / observations_ : 0; }
+
+double PooledNights::variance() const {
+  return observations_ > 0 ? variance_ / square(observations_) : 0;
 }
 
-double log_e_value(const Evidence& total, const LedgerPrior& prior) {
-  check_prior(prior);
-  check_evidence(total);
-  if (total.information == 0) return 0;
-  return log_ratio(total.score, score_variance(total.information, prior));
+double PooledNights::time() const { return first_ > 0 ? observations_ / first_ : 0; }
+
+bool PooledNights::speaks() const {
+  return variance_ > 0 && square(variance_) >= fewest_effective * squares_;
+}
+
+double log_e_value(const PooledNights& nights, const NullTheta& null) {
+  check::finite({"log_e_value", "value"}, null.value);
+  check::non_negative({"log_e_value", "reference_error"}, null.reference_error);
+  if (!nights.speaks()) return 0;
+  return log_ratio(nights.difference() - null.value,
+                   {nights.variance() + square(null.reference_error), prior_variance(nights)});
+}
+
+void PooledPValues::add(double log_p) {
+  check::log_probability({"PooledPValues", "log_p"}, log_p);
+  ++nights;
+  minus_log_p += std::min(-log_p, largest_minus_log_p);
+}
+
+double log_e_value(const PooledPValues& p_values) {
+  const double k = static_cast<double>(p_values.nights);
+  const double t = p_values.minus_log_p;
+  if (t <= k + 1) return log_series(k, t);
+  return t + std::lgamma(k + 1) - (k + 1) * std::log(t) + gamma_tails(t, k + 1).lower;
 }
 
 std::optional<std::size_t> first_alarm(std::span<const double> log_e, double alpha) {
@@ -92,23 +129,25 @@ std::optional<std::size_t> first_alarm(std::span<const double> log_e, double alp
   return static_cast<std::size_t>(found - log_e.begin());
 }
 
-ChangePoint change_point(std::span<const Evidence> nights, const LedgerPrior& prior) {
+ChangePoint change_point(std::span<const NightEstimate> nights, const NullTheta& null) {
   check::at_least({"change_point", "nights"}, nights.size(), 1);
-  check_prior(prior);
-  for (const Evidence& night : nights) {
-    check::positive({"change_point", "information"}, night.information);
-  }
+  const double effect_variance = prior_variance(pooled(nights));
   std::vector<double> logs(nights.size());
   for (std::size_t k = 0; k < nights.size(); ++k) {
-    logs[k] = log_change(sum_of(nights.first(k)), sum_of(nights.subspan(k)), prior);
+    logs[k] = log_change(pooled(nights.first(k)), pooled(nights.subspan(k)), null, effect_variance);
   }
-  ChangePoint change;
-  const auto best = std::max_element(logs.begin(), logs.end());
-  change.night = static_cast<std::size_t>(best - logs.begin());
-  change.log_likelihood_ratio = *best;
-  const double total = special::log_sum_of(logs);
-  for (const double value : logs) change.share.push_back(std::exp(value - total));
-  return change;
+  return change_point_of(logs);
+}
+
+ChangePoint change_point(std::span<const double> log_p) {
+  check::at_least({"change_point", "nights"}, log_p.size(), 1);
+  std::vector<double> logs(log_p.size());
+  PooledPValues since;
+  for (std::size_t k = log_p.size(); k-- > 0;) {
+    since.add(log_p[k]);
+    logs[k] = log_e_value(since);
+  }
+  return change_point_of(logs);
 }
 
 std::vector<std::size_t> credible_nights(const ChangePoint& change, double credibility) {
@@ -123,20 +162,6 @@ std::vector<std::size_t> credible_nights(const ChangePoint& change, double credi
   order.resize(taken);
   std::sort(order.begin(), order.end());
   return order;
-}
-
-double log_e_from_log_p(double log_p) {
-  check::log_probability({"log_e_from_log_p", "log_p"}, log_p);
-  // With x = -ln p the e-value is (e^x - 1 - x) / x^2.
-  const double x = -log_p;
-  if (x > 1) return x - 2 * std::log(x) + std::log1p(-(1 + x) * std::exp(-x));
-  double term = 0.5;
-  double sum = 0;
-  for (int k = 3; term > 1e-18; ++k) {
-    sum += term;
-    term *= x / k;
-  }
-  return std::log(sum);
 }
 
 }  // namespace assay::stats

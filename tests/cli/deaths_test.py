@@ -839,7 +839,7 @@ tests:
   - {name: a, claim: mean(a) == 0.5}
   - {name: sound, claim: mean(sound) == 0}
 """
-LEDGER = "assay-ledger 1 budget 0.01\nend 0\n"
+LEDGER = "assay-ledger 2 budget 0.01\nend 0\n"
 
 
 def new_folder(bench, name):

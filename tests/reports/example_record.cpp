@@ -200,13 +200,10 @@ Ledger nights() {
                            .series = "17ab1f5b7c630505",
                            .quantity = "relative difference from the reference",
                            .relative = true,
-                           .nights = 12,
-                           .first = "2026-11-09T02:00:00Z",
-                           .last = "2026-11-20T02:00:00Z",
-                           .score = 15625,
-                           .information = 15625000,
+                           .nights = {},
+                           .estimate = 0.001,
+                           .standard_error = 0.00025298,
                            .reference_error = 0.0001,
-                           .log_e = 9.5,
                            .limit = 6.5,
                            .alarm = true,
                            .since = "2026-11-18T02:00:00Z",
@@ -216,17 +213,26 @@ Ledger nights() {
                            .moved_to = "2026-11-15T02:00:00Z",
                            .added = true,
                            .note = ""});
+  for (int i = 9; i <= 20; ++i) {
+    ledger.series[0].nights.push_back(
+        {.date = (i < 10 ? "2026-11-0" : "2026-11-") + std::to_string(i) + "T02:00:00Z",
+         .commit = "14467a0bbe61",
+         .estimate = 0.001,
+         .low = -0.0007,
+         .high = 0.0027,
+         .log_e = i == 20 ? 9.5 : i / 2.0 - 1});
+  }
   ledger.series.push_back(ledger.series[0]);
   ledger.series[1].channel = "<b>|shadow|";
   ledger.series[1].alarm = false;
-  ledger.series[1].log_e = -1.5;
+  ledger.series[1].nights.back().log_e = -1.5;
+  ledger.series[1].nights[0].log_p = -2;
   ledger.series[1].since = ledger.series[1].moved = ledger.series[1].moved_commit = "";
   ledger.series[1].moved_from = ledger.series[1].moved_to = "";
   ledger.series.push_back({.test = "triangle/a law",
                            .channel = "theta",
                            .series = "a0",
                            .quantity = "",
-                           .log_e = {},
                            .note = "nothing added: its verdict is invalid"});
   return ledger;
 }

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Reference values for efficiencies, slopes, quantiles and laws of distances, from numpy, scipy and
-mpmath by other formulas than those of stats/. Run in this folder: /usr/bin/python3 make_ratios.py."""
+"""Reference values for efficiencies, slopes, quantiles and laws of distances, from numpy and scipy
+by other formulas than those of stats/. Run in this folder: /usr/bin/python3 make_ratios.py."""
 import math
 
-import mpmath as mp
 import numpy as np
-from scipy import optimize, stats
+from scipy import integrate, optimize, stats
 
 COMMAND = "# /usr/bin/python3 tests/tables/make_ratios.py"
 
@@ -156,22 +155,55 @@ def quantile_rows():
 
 
 def ledger_rows():
-    """Likelihood ratios of the multivariate normal laws of all nights at once."""
-    for k, count, tau, u in ((1, 6, 0.5, 0.0), (1, 9, 0.5, 0.2), (2, 12, 1.0, 0.3)):
+    """Laws of the pooled difference by quadrature over theta and the reference's error."""
+    for k, count, u in ((1, 48, 0.0), (1, 50, 0.1), (2, 60, 0.2)):
         i = np.arange(1, count + 1)
-        y = 0.5 * np.cos(1.3 * i * k) + np.where(i > 4, 0.4 * k, 0.0)
-        null = np.diag((0.5 + 0.1 * (i % 3)) ** 2) + u**2
+        y = 0.5 * np.cos(1.3 * i * k) + np.where(i > 14, 0.2 * k, 0.0)
+        e = 0.5 + 0.1 * (i % 3)
+        n = 100.0 + 50 * (i % 2)
 
-        def ratio(first, start=0):
-            """Changed from night `first` on, of the nights from `start` on."""
-            moved = (np.arange(count) >= first).astype(float)[start:]
-            base = null[start:, start:]
-            law = lambda c: stats.multivariate_normal(np.zeros(count - start), c).logpdf(y[start:])
-            return law(base + tau**2 * np.outer(moved, moved)) - law(base)
+        def pooled(part):
+            weight = n[part].sum()
+            return (n * y)[part].sum() / weight, (n**2 * e**2)[part].sum() / weight**2
 
-        changes = np.array([ratio(j) for j in range(count)])
+        d, v = pooled(slice(None))
+        tau = np.sqrt(0.2 * n.sum() / n[0] * v)
+
+        def law(mean):
+            if u == 0:
+                return stats.norm.pdf(d, mean, np.sqrt(v))
+            inner = lambda r: stats.norm.pdf(d, mean + r, np.sqrt(v)) * stats.norm.pdf(r, 0, u)
+            return integrate.quad(inner, -8 * u, 8 * u, epsabs=0, epsrel=1e-12, limit=200)[0]
+
+        mixed = integrate.quad(lambda theta: law(theta) * stats.norm.pdf(theta, 0, tau),
+                               -9 * tau, 9 * tau, epsabs=0, epsrel=1e-11, limit=400)[0]
+
+        def change(first):
+            after = pooled(slice(first, None))
+            if first == 0:
+                laws = [stats.norm(0, np.sqrt(after[1] + u**2 + w)) for w in (0, tau**2)]
+                return laws[1].logpdf(after[0]) - laws[0].logpdf(after[0])
+            before = pooled(slice(first))
+            base = np.diag([before[1], after[1]]) + u**2
+            at = [before[0], after[0]]
+            null = stats.multivariate_normal([0, 0], base).logpdf(at)
+            return stats.multivariate_normal([0, 0], base + np.diag([0, tau**2])).logpdf(at) - null
+
+        changes = np.array([change(j) for j in range(count)])
         share = np.exp(changes) / np.exp(changes).sum()
-        yield [k, count, tau, u, ratio(0), int(changes.argmax()), changes.max(), share[2]]
+        yield [k, count, u, np.log(mixed / law(0)), int(changes.argmax()), changes.max(), share[2]]
+
+
+def ledger_p_rows():
+    """Mixtures of products of kappa p^(kappa - 1) by quadrature over kappa."""
+    for count, total in ((1, 0.0), (1, 2.5), (3, 40.0), (10, 4.0), (55, 55.0), (55, 120.0),
+                         (400, 390.0), (400, 402.0), (1000, 0.0), (1000, 1100.0), (20, 5000.0)):
+        log = lambda kappa: count * np.log(kappa) + (1 - kappa) * total
+        top = min(1.0, count / total) if total else 1.0
+        cut = sorted({0.0, max(0.0, top - 0.05), top, min(1.0, top + 0.05), 1.0})
+        parts = [integrate.quad(lambda kappa: np.exp(log(kappa) - log(top)), a, b, epsabs=0,
+                                epsrel=1e-12, limit=400)[0] for a, b in zip(cut, cut[1:])]
+        yield [count, total, np.log(sum(parts)) + log(top)]
 
 
 def leaving(start, steps, low, high):
@@ -230,5 +262,6 @@ if __name__ == "__main__":
           + ",".join(f"{name}_t,{name}_upper" for name in names), influence_rows())
     write("slope", "case,logs,null,misfit,p,low,high,power", slope_rows())
     write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
-    write("ledger", "k,nights,tau,u,log_e,night,change,share_2", ledger_rows())
+    write("ledger", "k,nights,u,log_e,night,change,share_2", ledger_rows())
+    write("ledger_p", "nights,minus_log_p,log_e", ledger_p_rows())
     write("band", "case,confidence,step,next_step,coverage", band_rows())

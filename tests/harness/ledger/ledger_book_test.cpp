@@ -15,25 +15,22 @@ namespace {
 using testing::HasSubstr;
 
 const LedgerSeries score{.hash = "00ff",
-                         .kind = EvidenceKind::score,
-                         .prior = {.effect = 0.1, .reference_error = 1e-9},
+                         .reference_error = 1e-9,
+                         .weight = 0.25,
                          .test = "suite/mean(a) == \"x\" \\ |",
                          .channel = "red\tand\nblue"};
 const LedgerSeries distance{
-    .hash = "0a0b", .kind = EvidenceKind::log_e, .test = "suite/law", .channel = "value"};
+    .hash = "0a0b", .weight = 0.75, .test = "suite/law", .channel = "value"};
 
 LedgerBook example() {
   LedgerBook book;
   const std::size_t a = book.open(score);
-  book.add({"2026-11-01T02:00:00Z", 7, "abc", a, {0.1 + 0.2, 1.0 / 3}, 0});
+  book.add({"2026-11-01T02:00:00Z", 7, "abc", a,
+            stats::NightEstimate{0.1 + 0.2, 1.0 / 3, 4096, 1365.5}});
   const std::size_t b = book.open(distance);
-  book.add({"2026-11-01T02:00:00Z", 7, "abc", b, {}, -0.69});
-  book.add({"2026-11-02T02:00:00Z",
-            std::numeric_limits<std::uint64_t>::max(),
-            "abd",
-            a,
-            {-1e-300, 1e300},
-            0});
+  book.add({"2026-11-01T02:00:00Z", 7, "abc", b, NightPValue{-0.69}});
+  book.add({"2026-11-02T02:00:00Z", std::numeric_limits<std::uint64_t>::max(), "abd", a,
+            stats::NightEstimate{-1e-300, 0, 1e300}});
   return book;
 }
 
@@ -69,15 +66,16 @@ TEST(LedgerBook, ReadsBackWhatItWrote) {
   ASSERT_EQ(again.series().size(), 2U);
   EXPECT_EQ(again.series()[0].test, score.test);
   EXPECT_EQ(again.series()[0].channel, score.channel);
-  EXPECT_EQ(again.series()[0].prior.effect, score.prior.effect);
-  EXPECT_EQ(again.series()[0].prior.reference_error, score.prior.reference_error);
+  EXPECT_EQ(again.series()[0].reference_error, score.reference_error);
+  EXPECT_EQ(again.series()[0].weight, score.weight);
+  EXPECT_FALSE(again.series()[1].has_estimates());
   EXPECT_EQ(again.budget(), default_ledger_budget);
 }
 
 TEST(LedgerBook, GrowsAsIfItHadNeverBeenWritten) {
   LedgerBook whole = example();
   LedgerBook again = LedgerBook::parse(example().text(), "n.ledger");
-  const LedgerNight night{"2026-11-03T02:00:00Z", 9, "abe", 0, {1, 2}, 0};
+  const LedgerNight night{"2026-11-03T02:00:00Z", 9, "abe", 0, stats::NightEstimate{1, 2, 3}};
   whole.add(night);
   again.add(night);
   EXPECT_EQ(again.text(), whole.text());
@@ -103,7 +101,7 @@ TEST(LedgerBook, ABeginLineWrittenByHandStartsANewSeries) {
   const std::size_t fresh = book.open(score);
   EXPECT_EQ(fresh, 2U);
   EXPECT_EQ(book.generation(fresh), 2);
-  book.add({"2026-11-03T02:00:00Z", 9, "abe", fresh, {1, 2}, 0});
+  book.add({"2026-11-03T02:00:00Z", 9, "abe", fresh, stats::NightEstimate{1, 2, 3}});
   const LedgerBook again = LedgerBook::parse(book.text(), "n.ledger");
   EXPECT_EQ(again.nights_of(2).size(), 1U);
   EXPECT_EQ(again.nights_of(0).size(), 2U);
@@ -111,7 +109,7 @@ TEST(LedgerBook, ABeginLineWrittenByHandStartsANewSeries) {
 
 TEST(LedgerBook, AcceptsCommentsAndABudgetWrittenByHandBeforeTheFirstNight) {
   const LedgerBook book =
-      LedgerBook::parse("assay-ledger 1 budget 0.01\n# of the renderer\n\nend 0\n", "n.ledger");
+      LedgerBook::parse("assay-ledger 2 budget 0.01\n# of the renderer\n\nend 0\n", "n.ledger");
   EXPECT_EQ(book.budget(), 0.01);
   EXPECT_THAT(book.text(), HasSubstr("# of the renderer"));
 }
@@ -154,8 +152,10 @@ TEST(LedgerBook, FindsEveryFileCutShort) {
 
 TEST(LedgerBook, RefusesWhatIsNoLedger) {
   EXPECT_THAT(refused("suite: a\n"), HasSubstr("n.ledger:1:1"));
-  EXPECT_THAT(refused("assay-ledger 1 budget 0\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
-  EXPECT_THAT(refused("assay-ledger 1 budget nan\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
+  EXPECT_THAT(refused("assay-ledger 2 budget 0\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
+  EXPECT_THAT(refused("assay-ledger 2 budget nan\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
+  EXPECT_THAT(refused("assay-ledger 1 budget 0.01\nend 0\n"),
+              HasSubstr("begins anew: mv n.ledger n.ledger.1"));
   std::vector<std::string> lines = lines_in(example().text());
   lines.push_back("begin \"suite/other\"");
   EXPECT_THAT(refused(joined(lines)), HasSubstr("has no test \"suite/other\""));
@@ -169,7 +169,7 @@ TEST(LedgerBook, AnyTextAsNameReadsBack) {
     LedgerSeries series = score;
     series.test = test;
     series.channel = channel;
-    book.add({"d", 1, "c", book.open(series), {1, 1}, 0});
+    book.add({"d", 1, "c", book.open(series), stats::NightEstimate{1, 1, 1}});
     const LedgerBook again = LedgerBook::parse(book.text(), "n.ledger");
     RC_ASSERT(again.series()[0].test == test);
     RC_ASSERT(again.series()[0].channel == channel);

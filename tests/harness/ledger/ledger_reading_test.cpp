@@ -4,51 +4,62 @@
 
 #include <cmath>
 #include <limits>
+#include <variant>
 
 namespace assay::harness {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::vector<LedgerNight> nights_of(const std::vector<stats::Evidence>& evidence) {
+std::vector<LedgerNight> nights_of(const std::vector<double>& differences) {
   std::vector<LedgerNight> nights;
-  for (const stats::Evidence& each : evidence) nights.push_back({.evidence = each});
+  for (const double each : differences) {
+    nights.push_back({.value = stats::NightEstimate{each, 0.5, 100, 33}});
+  }
   return nights;
 }
 
-const LedgerSeries series{.prior = {.effect = 0.5, .reference_error = 0.1}};
+/// As many nights as speak.
+std::vector<LedgerNight> enough(double difference) {
+  return nights_of(std::vector<double>(25, difference));
+}
 
-TEST(LedgerReading, ThePathIsTheEValueOfTheSums) {
-  const auto path = log_e_path(series, nights_of({{2, 1}, {-1, 3}, {4, 2}}), {0, 0});
-  ASSERT_EQ(path.size(), 3U);
-  EXPECT_EQ(path[0], stats::log_e_value({2, 1}, series.prior));
-  EXPECT_EQ(path[1], stats::log_e_value({1, 4}, series.prior));
-  EXPECT_EQ(path[2], stats::log_e_value({5, 6}, series.prior));
+const LedgerSeries series{.reference_error = 0.1};
+
+double last_e(const std::vector<LedgerNight>& nights, const ClaimedRange& claimed) {
+  return log_e_path(series, nights, claimed).back();
+}
+
+TEST(LedgerReading, ThePathIsTheEValueOfAllNightsSoFar) {
+  const auto nights = enough(0.2);
+  const auto path = log_e_path(series, nights, {0, 0});
+  ASSERT_EQ(path.size(), nights.size());
+  stats::PooledNights pooled;
+  for (std::size_t i = 0; i < nights.size(); ++i) {
+    pooled.add(std::get<stats::NightEstimate>(nights[i].value));
+    EXPECT_EQ(path[i], stats::log_e_value(pooled, {.reference_error = 0.1})) << i;
+  }
 }
 
 // The least E over the claimed values, found here on a grid of them.
 TEST(LedgerReading, TheEValueOfARangeIsTheLeastOverIt) {
-  for (const double score : {-9.0, -2.0, 0.5, 3.0, 40.0}) {
-    const double information = 4;
+  for (const double difference : {-2.25, -0.5, 0.125, 0.75, 10.0}) {
     double least = infinity;
     for (int i = -100; i <= 100; ++i) {
       const double theta = 0.7 * i / 100;
-      least = std::min(
-          least, stats::log_e_value({score - information * theta, information}, series.prior));
+      least = std::min(least, last_e(enough(difference), {theta, theta}));
     }
-    const double found = log_e_path(series, nights_of({{score, information}}), {-0.7, 0.7})[0];
-    EXPECT_LE(found, least + 1e-12) << score;
-    EXPECT_NEAR(found, least, 1e-2) << score;
+    const double found = last_e(enough(difference), {-0.7, 0.7});
+    EXPECT_LE(found, least + 1e-12) << difference;
+    EXPECT_NEAR(found, least, 1e-2) << difference;
   }
 }
 
 TEST(LedgerReading, AnInequalityHasOneSide) {
-  const auto e = [](double score, const ClaimedRange& range) {
-    return log_e_path(series, nights_of({{score, 4}}), range)[0];
-  };
-  EXPECT_EQ(e(-9, {-infinity, 0}), e(0, {0, 0}));
-  EXPECT_EQ(e(9, {-infinity, 0}), e(9, {0, 0}));
-  EXPECT_EQ(e(9, {0, infinity}), e(0, {0, 0}));
+  const double at_none = last_e(enough(0), {0, 0});
+  EXPECT_EQ(last_e(enough(-2), {-infinity, 0}), at_none);
+  EXPECT_EQ(last_e(enough(2), {-infinity, 0}), last_e(enough(2), {0, 0}));
+  EXPECT_EQ(last_e(enough(2), {0, infinity}), at_none);
 }
 
 TEST(LedgerReading, ClaimedRangesFollowTheRelation) {
@@ -62,17 +73,22 @@ TEST(LedgerReading, ClaimedRangesFollowTheRelation) {
   EXPECT_EQ(range(Relation::within), std::pair(-0.3, 0.3));
 }
 
-TEST(LedgerReading, EValuesMultiply) {
-  const LedgerSeries law{.kind = EvidenceKind::log_e};
-  const std::vector<LedgerNight> nights{{.log_e = -0.5}, {.log_e = 2}, {.log_e = 1}};
-  EXPECT_EQ(log_e_path(law, nights, {0, 0}), (std::vector<double>{-0.5, 1.5, 2.5}));
-  EXPECT_EQ(moved(law, nights).night, 1U);
+TEST(LedgerReading, PValuesKnowNoRange) {
+  const LedgerSeries law;
+  std::vector<LedgerNight> nights;
+  stats::PooledPValues pooled;
+  for (const double log_p : {-0.5, -9.0, -7.0}) {
+    nights.push_back({.value = NightPValue{log_p}});
+    pooled.add(log_p);
+  }
+  EXPECT_EQ(log_e_path(law, nights, {0, infinity}).back(), stats::log_e_value(pooled));
+  EXPECT_EQ(moved(law, nights, {0, infinity}).night, 1U);
 }
 
 TEST(LedgerReading, TellsWhenThetaMoved) {
-  std::vector<stats::Evidence> evidence(10, {0, 1});
-  evidence.resize(30, {1.5, 1});
-  const Moved change = moved(series, nights_of(evidence));
+  std::vector<double> differences(10, 0);
+  differences.resize(30, 1.5);
+  const Moved change = moved(series, nights_of(differences), {0, 0});
   EXPECT_EQ(change.night, 10U);
   EXPECT_LE(change.from, 10U);
   EXPECT_GE(change.to, 10U);

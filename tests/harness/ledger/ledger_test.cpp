@@ -39,6 +39,12 @@ class Ledger : public testing::Test {
     const std::string suite = place_.write("nights.yaml", estimators + tests);
     return run_files({suite}, {.seed = seed, .selection = {.filters = filters}, .ledger = file()});
   }
+  /// Nights with the seeds 11, 12, ….
+  reports::Record nights(const std::string& tests, std::uint64_t count) {
+    reports::Record last;
+    for (std::uint64_t seed = 11; seed < 11 + count; ++seed) last = night(tests, seed);
+    return last;
+  }
   std::string file() const { return place_.file("n.ledger"); }
   LedgerBook book() const { return LedgerBook::parse(read_text_file(file()), file()); }
 
@@ -60,8 +66,8 @@ TEST_F(Ledger, AddsANightOfEachTestInsideTheFamily) {
   ASSERT_EQ(record.ledger.series.size(), 2U);  // the mutant stands outside
   const reports::LedgerSeries& one = series_of(record, "nights/one");
   EXPECT_TRUE(one.added);
-  EXPECT_EQ(one.nights, 1U);
-  EXPECT_EQ(one.first, record.started);
+  ASSERT_EQ(one.nights.size(), 1U);
+  EXPECT_EQ(one.nights[0].date, record.started);
   EXPECT_NEAR(one.limit.value(), -std::log(default_ledger_budget / 2 / 1.2020569), 1e-6);
   EXPECT_EQ(book().nights()[0].seed, 11U);
   EXPECT_EQ(book().nights()[0].commit, record.tool.commit);
@@ -77,15 +83,19 @@ TEST_F(Ledger, LimitsDoNotMoveWithTheSuite) {
   EXPECT_NE(record.note.find("outside the ledger"), std::string::npos) << record.note;
 }
 
-TEST_F(Ledger, ScoresAddUpOverNights) {
+TEST_F(Ledger, NightsArePooledByTheirObservations) {
   night(two_tests, 11);
   night(two_tests, 12);
   const reports::Record record = night(two_tests, 13);
   const reports::LedgerSeries& one = series_of(record, "nights/one");
-  EXPECT_EQ(one.nights, 3U);
-  double score = 0;
-  for (const LedgerNight& each : book().nights_of(0)) score += each.evidence.score;
-  EXPECT_EQ(one.score.value(), score);
+  ASSERT_EQ(one.nights.size(), 3U);
+  double sum = 0;
+  for (const reports::LedgerNight& each : one.nights) {
+    sum += each.estimate.value();
+    EXPECT_NEAR(each.high.value() - each.low.value(), 2 * 1.96 * 0.1 / 2, 0.03);
+  }
+  EXPECT_NEAR(one.estimate.value(), sum / 3, 1e-12);
+  EXPECT_NEAR(one.standard_error.value(), 0.1 / 2 / std::sqrt(3), 0.005);
 }
 
 TEST_F(Ledger, ASeedSeenBeforeAddsNothingAndSaysSo) {
@@ -95,7 +105,7 @@ TEST_F(Ledger, ASeedSeenBeforeAddsNothingAndSaysSo) {
   EXPECT_EQ(read_text_file(file()), before);
   EXPECT_FALSE(series_of(record, "nights/one").added);
   EXPECT_THAT(series_of(record, "nights/one").note, HasSubstr("seed 11 is in the ledger"));
-  EXPECT_EQ(series_of(record, "nights/one").nights, 1U);
+  EXPECT_EQ(series_of(record, "nights/one").nights.size(), 1U);
 }
 
 TEST_F(Ledger, AFilterAddsItsTestsAlone) {
@@ -114,14 +124,14 @@ TEST_F(Ledger, AChangedClaimStartsANewSeriesAndKeepsTheOldLines) {
   const std::string before = read_text_file(file());
   const reports::Record record =
       night("  - {name: one, claim: mean(normal) == 2.001, secondaries: 100}\n", 12);
-  EXPECT_EQ(record.ledger.series[0].nights, 1U);
+  EXPECT_EQ(record.ledger.series[0].nights.size(), 1U);
   EXPECT_THAT(record.ledger.series[0].note, HasSubstr("new series"));
   EXPECT_GT(record.ledger.series[0].limit.value(), -std::log(default_ledger_budget / 1.3));
   EXPECT_THAT(read_text_file(file()), HasSubstr(before.substr(0, before.find("end "))));
   // Back to the first claim: its series goes on.
   EXPECT_EQ(night("  - {name: one, claim: mean(normal) == 2, secondaries: 100}\n", 13)
                 .ledger.series[0]
-                .nights,
+                .nights.size(),
             2U);
   // A seed is news once, whatever was claimed when it was seen.
   EXPECT_FALSE(night("  - {name: one, claim: mean(normal) == 2.002, secondaries: 100}\n", 12)
@@ -130,13 +140,12 @@ TEST_F(Ledger, AChangedClaimStartsANewSeriesAndKeepsTheOldLines) {
 }
 
 TEST_F(Ledger, AlarmsFailTheRunAndSaySinceWhen) {
-  // Twenty standard errors: every night alarms, from the first on.
+  // Twenty standard errors a night: as soon as their spread is known.
   const std::string wrong = "  - {name: one, claim: mean(normal) == 4, secondaries: 100}\n";
-  const reports::Record first = night(wrong, 11);
-  const reports::Record second = night(wrong, 12);
+  const reports::Record second = nights(wrong, 5);
   const reports::LedgerSeries& one = second.ledger.series[0];
   EXPECT_TRUE(one.alarm);
-  EXPECT_EQ(one.since, first.started);
+  EXPECT_FALSE(one.since.empty());
   EXPECT_FALSE(one.moved.empty());
   reports::Record passed = second;
   for (reports::Test& test : passed.suites[0].tests) {
@@ -153,7 +162,7 @@ TEST_F(Ledger, AnAlarmStaysUntilTheTestIsBegunAnew) {
     return std::string("  - {name: one, claim: mean(normal) == ") + number +
            ", detect: 20%, secondaries: 100}\n";
   };
-  EXPECT_TRUE(night(claim("4"), 11).ledger.series[0].alarm);
+  EXPECT_TRUE(nights(claim("4"), 5).ledger.series[0].alarm);
   EXPECT_TRUE(night(claim("4"), 11).ledger.series[0].alarm);
   std::ofstream(file(), std::ios::app) << "begin \"nights/one\"  # mended\n";
   EXPECT_THROW(book(), InputError);  // nothing but the id stands there
@@ -162,8 +171,8 @@ TEST_F(Ledger, AnAlarmStaysUntilTheTestIsBegunAnew) {
   std::ofstream(file()) << text << "\n# mended in 4f1c2ab\n";
   const reports::Record record = night(claim("4"), 11);
   EXPECT_FALSE(record.ledger.series[0].alarm);
-  EXPECT_EQ(record.ledger.series[0].nights, 0U);
-  EXPECT_EQ(night(claim("4"), 12).ledger.series[0].nights, 1U);
+  EXPECT_EQ(record.ledger.series[0].nights.size(), 0U);
+  EXPECT_EQ(night(claim("4"), 99).ledger.series[0].nights.size(), 1U);
 }
 
 TEST_F(Ledger, IsReadBeforeAnythingIsSampled) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <variant>
 
 #include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
@@ -19,7 +20,13 @@ struct Ran {
 
   const TestWork& test(std::size_t i) const { return planned.suites[0]->tests[i]; }
   NightEvidence night(std::size_t i) const {
-    return night_evidence(test(i), 0, planned.suites[0]->pilots);
+    return std::get<NightEvidence>(night_evidence(test(i), 0));
+  }
+  stats::NightEstimate estimate(std::size_t i) const {
+    return std::get<stats::NightEstimate>(night(i).value);
+  }
+  std::string missing(std::size_t i) const {
+    return std::get<NoEvidence>(night_evidence(test(i), 0)).why;
   }
   stats::Moments moments(std::size_t i, std::size_t subject = 0) const {
     return data_of(*drawn(test(i)), 0)[subject].moments;
@@ -33,6 +40,7 @@ estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
   other: {plugin: analytic/normal, mean: 3, primaries: 1}
   mine: {plugin: recorded, file: mine.txt}
+  rare: {plugin: analytic/law, law: bernoulli(0.0001), primaries: 1}
 tests:
 )" + tests))};
   Silence silence;
@@ -50,21 +58,16 @@ void write_data(const Workplace& place) {
   place.write("mine.txt", rows);
 }
 
-TEST(NightEvidence, OfAMeanIsItsScoreAndInformation) {
+TEST(NightEvidence, OfAMeanIsItsEstimateAndError) {
   const Workplace place;
   write_data(place);
   const Ran ran = run_nights(place, "  - {claim: mean(normal) == 2, detect: 0.1}\n");
   const stats::Moments x = ran.moments(0);
-  const NightEvidence night = ran.night(0);
-  ASSERT_EQ(night.missing, "");
-  const double n = static_cast<double>(x.count);
-  EXPECT_NEAR(night.evidence.information, n / x.variance(), 1e-9 * n);
-  // Student's t of n - 1 degrees made normal: within (t^3 + t) / (4 n) of t.
-  const double score = n * (x.mean - 2) / x.variance();
-  const double t = score / std::sqrt(night.evidence.information);
-  EXPECT_NEAR(night.evidence.score / std::sqrt(night.evidence.information), t,
-              (std::abs(t * t * t) + std::abs(t)) / (2 * n));
-  EXPECT_EQ(night.prior.reference_error, 0);
+  EXPECT_NEAR(ran.estimate(0).difference, x.mean - 2, 1e-15);
+  EXPECT_DOUBLE_EQ(ran.estimate(0).standard_error, x.standard_error());
+  EXPECT_EQ(ran.estimate(0).observations, static_cast<double>(x.count));
+  EXPECT_NEAR(ran.estimate(0).effective, static_cast<double>(x.count) / x.kurtosis(), 1e-6);
+  EXPECT_EQ(ran.night(0).reference_error, 0);
 }
 
 TEST(NightEvidence, OfARelativeMeanIsInUnitsOfTheReference) {
@@ -72,36 +75,49 @@ TEST(NightEvidence, OfARelativeMeanIsInUnitsOfTheReference) {
   write_data(place);
   const Ran ran = run_nights(place, "  - {claim: mean(normal) == 2 +- 0.1}\n");
   const stats::Moments x = ran.moments(0);
-  const NightEvidence night = ran.night(0);
-  const double n = static_cast<double>(x.count);
-  EXPECT_NEAR(night.evidence.information, 4 * n / x.variance(), 1e-9 * n);
-  EXPECT_NEAR(night.prior.reference_error, 0.05, 1e-15);
-  EXPECT_NEAR(night.evidence.score / night.evidence.information, (x.mean - 2) / 2, 1e-4);
+  EXPECT_NEAR(ran.estimate(0).difference, (x.mean - 2) / 2, 1e-15);
+  EXPECT_DOUBLE_EQ(ran.estimate(0).standard_error, x.standard_error() / 2);
+  EXPECT_NEAR(ran.night(0).reference_error, 0.05, 1e-15);
 }
 
-// The effect is fixed before the first night: by the pilot, whatever the test's own data are.
-TEST(NightEvidence, ThePriorsEffectIsAShareOfAnExpectedNight) {
-  const Workplace place;
-  write_data(place);
-  const Ran ran = run_nights(place, "  - {claim: mean(normal) == 2}\n");
-  // 16384 secondaries of standard deviation 1, 2 the unit; the pilot knows it to within 5 %.
-  EXPECT_NEAR(ran.night(0).prior.effect, std::sqrt(0.2 / 16384) / 2,
-              0.05 * std::sqrt(0.2 / 16384) / 2);
-}
-
-TEST(NightEvidence, OfTwoMeansAndVariancesHasTheDeltaMethodsInformation) {
+TEST(NightEvidence, OfTwoMeansAndVariancesHasTheDeltaMethodsError) {
   const Workplace place;
   write_data(place);
   const Ran ran = run_nights(place,
                              "  - {claim: mean(normal) == mean(other), detect: 0.1}\n"
                              "  - {claim: variance(normal) == variance(other)}\n");
-  const auto error = [](const stats::Moments& x) { return x.variance() / double(x.count); };
-  EXPECT_NEAR(ran.night(0).evidence.information,
-              1 / (error(ran.moments(0, 0)) + error(ran.moments(0, 1))),
-              1e-9 / error(ran.moments(0, 0)));
+  EXPECT_NEAR(ran.estimate(0).standard_error,
+              std::hypot(ran.moments(0, 0).standard_error(), ran.moments(0, 1).standard_error()),
+              1e-12);
+  const double each = static_cast<double>(ran.moments(0).count) / 3;
+  EXPECT_NEAR(ran.estimate(0).effective, 2 * each, 0.2 * each) << "normal values of two sides";
   // ln of a normal sample's variance has variance 2 / n.
   const double n = static_cast<double>(ran.moments(1).count);
-  EXPECT_NEAR(ran.night(1).evidence.information, n / 4, 0.2 * n / 4);
+  EXPECT_NEAR(ran.estimate(1).standard_error, std::sqrt(4 / n), 0.1 * std::sqrt(4 / n));
+}
+
+// Three families that tell no error of theirs. Half their interval of 68.3 % is near the error of
+// the normal limit, which for the median of a normal law is sqrt(pi / 2n).
+TEST(NightEvidence, WithoutAnErrorIsHalfTheIntervalOfOneStandardDeviation) {
+  const Workplace place;
+  write_data(place);
+  const Ran ran = run_nights(place,
+                             "  - {claim: 'quantile(normal, 0.5) == 2', secondaries: 1000}\n"
+                             "  - {claim: cost(normal) == cost(other), cost: seconds}\n");
+  const double expected = std::sqrt(std::acos(-1.0) / 2 / 1000);
+  EXPECT_NEAR(ran.estimate(0).standard_error, expected, 0.3 * expected);
+  EXPECT_LT(std::abs(ran.estimate(0).difference), 5 * expected);
+  EXPECT_GT(ran.estimate(1).standard_error, 0);
+}
+
+// Rare values are missing from most nights, which must not be left out for it.
+TEST(NightEvidence, ValuesWithoutSpreadHaveAnEstimate) {
+  const Workplace place;
+  write_data(place);
+  const Ran ran =
+      run_nights(place, "  - {claim: mean(rare) == 0.0001, detect: 50%, secondaries: 100}\n");
+  EXPECT_DOUBLE_EQ(ran.estimate(0).difference, -1);
+  EXPECT_EQ(ran.estimate(0).standard_error, 0);
 }
 
 TEST(NightEvidence, RecordedDataAreTheSameInEveryRun) {
@@ -111,24 +127,18 @@ TEST(NightEvidence, RecordedDataAreTheSameInEveryRun) {
                              "  - {claim: mean(mine) == 2}\n"
                              "  - {claim: mean(normal) == mean(mine), detect: 0.1}\n"
                              "  - {claim: distribution(normal) == distribution(mine)}\n");
-  EXPECT_NE(ran.night(0).missing, "");
-  EXPECT_NE(ran.night(2).missing, "");
-  const NightEvidence night = ran.night(1);
-  ASSERT_EQ(night.missing, "");
-  EXPECT_NEAR(night.prior.reference_error, ran.moments(1, 1).standard_error(), 1e-12);
-  const stats::Moments x = ran.moments(1);
-  EXPECT_NEAR(night.evidence.information, 1 / (x.standard_error() * x.standard_error()),
-              1e-9 * night.evidence.information);
+  EXPECT_NE(ran.missing(0), "");
+  EXPECT_NE(ran.missing(2), "");
+  EXPECT_NEAR(ran.night(1).reference_error, ran.moments(1, 1).standard_error(), 1e-12);
+  EXPECT_NEAR(ran.estimate(1).standard_error, ran.moments(1).standard_error(), 1e-12);
 }
 
-TEST(NightEvidence, OfADistanceIsTheEValueOfItsPValue) {
+TEST(NightEvidence, OfADistanceIsItsPValue) {
   const Workplace place;
   write_data(place);
   const Ran ran = run_nights(place, "  - {claim: 'distribution(normal) == normal(2, 1)'}\n");
-  const NightEvidence night = ran.night(0);
-  EXPECT_EQ(night.kind, EvidenceKind::log_e);
-  EXPECT_EQ(night.log_e,
-            stats::log_e_from_log_p(ran.test(0).outcome.channels[0].decision.log_p_claimed));
+  EXPECT_EQ(std::get<NightPValue>(ran.night(0).value).log_p,
+            ran.test(0).outcome.channels[0].decision.log_p_claimed);
 }
 
 TEST(NightEvidence, TheHashFollowsClaimMarginsAndParametersAlone) {
