@@ -157,7 +157,12 @@ std::optional<ThetaError> LogTheta::error(const Question& question, std::size_t 
     const std::optional<double> spread = this->spread(question, i, channel, data);
     if (!spread) return std::nullopt;
     double& part = question.subjects[i].setup->observations() ? error.fixed : error.drawn;
-    part = std::hypot(part, std::sqrt(*spread / static_cast<double>(data[i].moments.count)));
+    const double count = static_cast<double>(data[i].moments.count);
+    part = std::hypot(part, std::sqrt(*spread / count));
+    // A drawn reference is new in every run.
+    double& of_truth = question.has_reference_subject ? error.drawn : error.fixed;
+    of_truth =
+        std::hypot(of_truth, std::sqrt(spread_of_truth(question, i, channel, data) / count));
   }
   if (!question.references.empty()) {
     error.fixed = std::hypot(error.fixed, question.references[channel].standard_error);
@@ -195,7 +200,8 @@ PlannedChannel LogTheta::observed(const Question& question, const Regions& regio
   PlannedChannel observed{.regions = regions};
   for (std::size_t i = 0; i < question.compared(); ++i) {
     double& deviation = i == 0 ? observed.standard_deviation : observed.other_deviation;
-    deviation = std::sqrt(spread(question, i, channel, data).value_or(0));
+    deviation = std::sqrt(spread(question, i, channel, data).value_or(0) +
+                          spread_of_truth(question, i, channel, data));
   }
   return observed;
 }

@@ -78,6 +78,11 @@ class LogTheta : public Theta {
   /// The same from the test's own data.
   virtual std::optional<double> spread(const Question&, std::size_t subject, std::size_t channel,
                                        std::span<const ChannelData>) const;
+  /// Count times the variance that the truth's own error makes.
+  virtual double spread_of_truth(const Question&, std::size_t, std::size_t,
+                                 std::span<const ChannelData>) const {
+    return 0;
+  }
 
  private:
   static ThetaTraits with_logarithm(ThetaTraits traits) {

@@ -235,12 +235,10 @@ class EfficiencyTheta final : public RatioTheta {
     const RatioSide side = inverse_efficiency(question, subject, channel, data);
     return side.influence(side.truth.known.value);
   }
-  std::optional<double> spread(const Question& question, std::size_t subject, std::size_t channel,
-                               std::span<const ChannelData> data) const override {
-    std::optional<double> spread = RatioTheta::spread(question, subject, channel, data);
+  double spread_of_truth(const Question& question, std::size_t subject, std::size_t channel,
+                         std::span<const ChannelData> data) const override {
     const auto truth = truth_beside(question, subject, channel, data);
-    if (spread && truth) *spread += spread_of_truth(data[subject].moments, *truth);
-    return spread;
+    return truth ? harness::spread_of_truth(data[subject].moments, *truth) : 0;
   }
   std::optional<double> predicted_spread(const Question& question, const PilotMoments& pilot,
                                          double averaged) const override {
