@@ -18,20 +18,21 @@
 namespace assay::harness {
 namespace {
 
-constexpr int table_width = 100;
+constexpr int table_width = 80;
 constexpr std::size_t most_gates = 3;
 constexpr const char* unknown = "-";
 
-// Method, primaries, looks, first, last, in all, rays, CPU time, effect, share.
-constexpr std::size_t column_count = 10;
+// Method, primaries, looks, last, in all, rays, CPU time, effect.
+constexpr std::size_t column_count = 8;
 using Cells = std::array<std::string, column_count>;
-const Cells headings{"method", "primaries", "looks",    "first",  "last",
-                     "in all", "rays",      "CPU time", "effect", "if true"};
+const Cells headings{"method", "primaries", "looks",    "last",
+                     "in all", "rays",      "CPU time", "effect"};
 
 struct Row {
   std::string name;
   Cells cells;
   std::vector<std::string> notes;
+  double not_ok = 0;
 };
 
 std::string plain(const std::string& text) {
@@ -142,6 +143,29 @@ std::vector<std::string> gate_notes(const std::vector<Gate>& gates) {
   return notes;
 }
 
+std::string per_cent(double probability) {
+  return fmt::format("{} %", reports::human(100 * std::round(1e6 * probability) / 1e6, 3));
+}
+
+std::string outlook_text(const char* when, const Outlook& outlook) {
+  std::string text =
+      fmt::format("{}: pass {}, fail {}, inconclusive {}", when, per_cent(outlook.pass),
+                  per_cent(outlook.fail), per_cent(outlook.inconclusive));
+  if (outlook.invalid > 0) return fmt::format("{}: invalid {}", when, per_cent(outlook.invalid));
+  return text + fmt::format("; draws {:.0f} % of the last look", 100 * outlook.drawn);
+}
+
+/// Upper bound on the probability that the test ends otherwise than the suite expects: the claim
+/// holds, or is off by its effect where it is expected to fail. Without an outlook it errs as often
+/// as planned.
+double not_ok(const TestOutcome& test, const Forecast& foreseen) {
+  const bool fails = test.question.test->expect == Expectation::fail;
+  const std::optional<Outlook>& outlook = fails ? foreseen.if_off : foreseen.if_true;
+  if (outlook) return 1 - (fails ? outlook->fail : outlook->pass);
+  const auto channels = static_cast<double>(test.question.channel_count());
+  return channels * (test.place.share.alpha + test.place.share.beta);
+}
+
 /// Why the test will be an error: it has no plan, or an estimator stopped while its cost was
 /// measured; "" if unknown.
 std::string trouble_of(const TestWork& work, const UnitCosts& costs) {
@@ -166,13 +190,20 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
   row.cells = {plan.method.name,
                primaries_text(plan),
                fmt::format("{}", plan.looks.sizes.size()),
-               count_of(static_cast<double>(plan.looks.sizes.front())),
                count_of(static_cast<double>(plan.most_secondaries())),
                count_of(total.primaries),
                total.known ? count_of(total.rays) : unknown,
                total.known ? plain(reports::duration(total.seconds)) : unknown,
-               effect_text(test, expected),
-               expected.share ? fmt::format("{:.0f} %", 100 * *expected.share) : unknown};
+               effect_text(test, expected)};
+  if (plan.invalid.empty()) {
+    if (expected.if_off) {
+      row.notes.insert(row.notes.begin(), outlook_text("off by the effect", *expected.if_off));
+    }
+    if (expected.if_true) {
+      row.notes.insert(row.notes.begin(), outlook_text("if the claim holds", *expected.if_true));
+    }
+  }
+  row.not_ok = not_ok(test, expected);
   if (!plan.caution.empty()) row.notes.push_back(plan.caution);
   if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid);
   if (const std::string trouble = trouble_of(work, costs); !trouble.empty()) {
@@ -254,6 +285,13 @@ void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
     page.line(line_of(row.cells, widths));
     for (const std::string& note : row.notes) page.paragraph(note, "      ");
   }
+  double not_ok = 0;
+  for (const Row& row : rows) not_ok += row.not_ok;
+  page.blank();
+  page.paragraph(
+      fmt::format("Not ok with probability {} at most, if every claim holds exactly and "
+                  "every expected failure is off by its effect.",
+                  per_cent(std::min(1.0, not_ok))));
   page.blank();
 }
 
@@ -305,16 +343,16 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
   page.paragraph(fmt::format(
       "Tests of one estimator share observations, and every estimator is drawn for its picture: at "
       "most {} in all. Most tests end at an earlier look: about {} if every claim holds exactly "
-      "(tests whose share is not known counted in full).",
+      "(tests whose mean is not known counted in full).",
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(
-      "primaries: of one secondary estimate. first, last: secondaries of each source at these "
-      "looks, of a file all its rows where these are fewer. in all, rays, CPU time: primaries of "
+      "primaries: of one secondary estimate. last: secondaries of each source at the last look, of "
+      "a file all its rows where these are fewer. in all, rays, CPU time: primaries of "
       "all sources up to the last look, of images those of every pixel and component, and what "
       "they cost. "
       "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
-      "beta. if true: the share of the last look that is drawn on average if the claim holds "
-      "exactly, at most.");
+      "beta. pass, fail, inconclusive: probabilities by the normal law, with the pilot's spread; "
+      "gates on the test's own data come on top.");
 }
 
 }  // namespace

@@ -6,58 +6,106 @@
 #include "harness/plan/sample_size.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/theta.h"
+#include "stats/planning/boundary.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
 
-/// Edge of the forbidden region, if theta = 0 is claimed and lies outside it.
-std::optional<double> margin_of(const Regions& regions) {
+/// Edge of the forbidden region on the side that speaks against the claim.
+std::optional<double> edge_of_forbidden(const Regions& regions) {
   if (regions.relation == Relation::within) return regions.within;
-  if (regions.proof()) return std::nullopt;
-  return regions.detect;
+  return regions.proof() ? std::optional(0.0) : regions.detect;
 }
 
-/// P(look `k` does not pass this channel) where theta = 0.
-std::optional<double> not_passed(const TestOutcome& test, std::size_t channel, std::size_t k,
-                                 const Pilots& pilots) {
-  const Regions& regions = test.plan.regions[channel];
-  const std::optional<double> margin = margin_of(regions);
-  if (!margin) return std::nullopt;
-  const auto data = expected_data(test, channel, pilots, test.plan.looks.sizes[k]);
-  if (!data) return std::nullopt;
-  const std::optional<ThetaError> error = test.question.theta->error(test.question, channel, *data);
-  if (!error) return std::nullopt;
-  const double beta = test.plan.looks.beta[k];
-  const double z = stats::normal_quantile({stats::Tail::upper, std::log(beta)});
-  const double room = *margin / std::hypot(error->drawn, error->fixed) - z;
-  const double tail = std::exp(stats::normal_tails(room).upper);
-  return std::min(1.0, regions.two_sided() ? 2 * tail : tail);
+/// The scores at which a look stops. Scores against the claim are positive.
+stats::StoppingLook stopping_look(const Regions& regions, double error, const ErrorShare& levels) {
+  const auto z = [](double level) {
+    constexpr double least = 1e-300;
+    return stats::upper_normal_quantile(std::max(level, least));
+  };
+  const bool two = regions.two_sided();
+  stats::StoppingLook look{
+      .time = 1 / (error * error),
+      .above = edge_of_claimed(regions) / error + z(two ? levels.alpha / 2 : levels.alpha)};
+  const std::optional<double> forbidden = edge_of_forbidden(regions);
+  const double passes = forbidden ? *forbidden / error - z(levels.beta) : look.above;
+  if (two) look.below = -look.above;
+  if (two && passes <= 0) return look;
+  look.from = two ? std::max(-passes, look.below) : look.below;
+  look.to = std::min(passes, look.above);
+  return look;
 }
 
-/// P(still open after look k), at most.
-std::optional<double> open_after(const TestOutcome& test, std::size_t k, const Pilots& pilots) {
-  double sum = 0;
+using StoppingLooks = std::vector<stats::StoppingLook>;
+
+std::optional<StoppingLooks> stopping_looks(const TestOutcome& test, std::size_t channel,
+                                            const Pilots& pilots) {
+  StoppingLooks looks;
+  for (std::size_t k = 0; k < test.plan.looks.count(); ++k) {
+    const auto data = expected_data(test, channel, pilots, test.plan.looks.sizes[k]);
+    if (!data) return std::nullopt;
+    const std::optional<ThetaError> error =
+        test.question.theta->error(test.question, channel, *data);
+    if (!error || !(error->drawn > 0)) return std::nullopt;
+    looks.push_back(stopping_look(test.plan.regions[channel],
+                                  std::hypot(error->drawn, error->fixed), test.share_at(k)));
+  }
+  return looks;
+}
+
+/// One channel's outlook if the distance against the claim is theta.
+Outlook outlook_at(const StoppingLooks& looks, double theta,
+                   const std::vector<std::uint64_t>& sizes) {
+  Outlook outlook{.inconclusive = 1, .drawn = 0};
+  std::uint64_t before = 0;
+  const std::vector<stats::StopProbabilities> stops = stats::stop_probabilities(looks, theta);
+  for (std::size_t k = 0; k < stops.size(); ++k) {
+    outlook.drawn += outlook.inconclusive * static_cast<double>(sizes[k] - before);
+    before = sizes[k];
+    outlook.fail += stops[k].above + stops[k].below;
+    outlook.pass += stops[k].between;
+    outlook.inconclusive = std::max(0.0, 1 - outlook.fail - outlook.pass);
+  }
+  outlook.drawn /= static_cast<double>(sizes.back());
+  return outlook;
+}
+
+/// All channels' outlook from those of each.
+Outlook together(const std::vector<Outlook>& channels) {
+  Outlook all{.drawn = 0};
+  for (const Outlook& each : channels) {
+    all.fail += each.fail;
+    all.inconclusive += each.inconclusive;
+    all.drawn = std::max(all.drawn, each.drawn);
+  }
+  all.fail = std::min(1.0, all.fail);
+  all.inconclusive = std::min(1 - all.fail, all.inconclusive);
+  all.pass = 1 - all.fail - all.inconclusive;
+  return all;
+}
+
+/// Adds the outlooks, where the pilots give every channel a standard error.
+void foresee(const TestOutcome& test, const Pilots& pilots, Forecast& found) {
+  if (test.plan.looks.law == stats::LookLaw::anytime_valid) return;
+  std::vector<Outlook> if_true;
+  std::optional<Outlook> if_off;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
-    const std::optional<double> share = not_passed(test, channel, k, pilots);
-    if (!share) return std::nullopt;
-    sum += *share;
+    const auto looks = stopping_looks(test, channel, pilots);
+    if (!looks) return;
+    const Regions& regions = test.plan.regions[channel];
+    const bool one_sided_proof = regions.proof() && !regions.two_sided();
+    if (!one_sided_proof || regions.detect) {
+      if_true.push_back(
+          outlook_at(*looks, one_sided_proof ? -*regions.detect : 0, test.plan.looks.sizes));
+    }
+    if (const std::optional<double> edge = edge_of_forbidden(regions)) {
+      const Outlook off = outlook_at(*looks, *edge, test.plan.looks.sizes);
+      if (!if_off || off.pass > if_off->pass) if_off = off;
+    }
   }
-  return std::min(1.0, sum);
-}
-
-std::optional<double> share_of(const TestOutcome& test, const Pilots& pilots) {
-  const std::vector<std::uint64_t>& sizes = test.plan.looks.sizes;
-  if (sizes.size() < 2) return std::nullopt;
-  double open = 1;
-  double drawn = static_cast<double>(sizes[0]);
-  for (std::size_t k = 1; k < sizes.size(); ++k) {
-    const std::optional<double> left = open_after(test, k - 1, pilots);
-    if (!left) return std::nullopt;
-    open = std::min(open, *left);
-    drawn += open * static_cast<double>(sizes[k] - sizes[k - 1]);
-  }
-  return drawn / static_cast<double>(sizes.back());
+  if (!if_true.empty()) found.if_true = together(if_true);
+  found.if_off = if_off;
 }
 
 /// The expected channel; nullopt if the pilots say nothing of it.
@@ -139,14 +187,22 @@ stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_
 }  // namespace
 
 Forecast forecast(const TestOutcome& test, const Pilots& pilots) {
-  if (!test.plan.invalid.empty() || !test.plan.error.empty()) return {};
-  return {.detectable = detectable_of(test, pilots), .share = share_of(test, pilots)};
+  if (!test.plan.error.empty()) return {};
+  if (!test.plan.invalid.empty()) {
+    const Outlook invalid{.invalid = 1};
+    return {.if_true = invalid, .if_off = invalid};
+  }
+  Forecast found{.detectable = detectable_of(test, pilots)};
+  foresee(test, pilots, found);
+  return found;
 }
 
 std::uint64_t expected_secondaries(const TestOutcome& test, const Pilots& pilots) {
-  const double share = share_of(test, pilots).value_or(1);
+  Forecast found;
+  foresee(test, pilots, found);
+  const double drawn = found.if_true ? found.if_true->drawn : 1;
   return static_cast<std::uint64_t>(
-      std::ceil(share * static_cast<double>(test.plan.most_secondaries())));
+      std::ceil(drawn * static_cast<double>(test.plan.most_secondaries())));
 }
 
 std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, std::size_t channel,

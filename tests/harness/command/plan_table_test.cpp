@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -168,20 +169,21 @@ TEST(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
   EXPECT_EQ(cost.seconds, pilot.seconds / static_cast<double>(pilot.count));
 }
 
-TEST(PlanTable, ShowsEveryTestInAHundredColumns) {
+TEST(PlanTable, ShowsEveryTestInEightyColumns) {
   const Workplace place;
   const std::vector<Suite> suites = suites_of(place);
   const PlannedRun planned = planned_of(suites);
   const std::string text = plan_text(planned, costs_of(planned));
   for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
-  for (const char* heading : {"method", "primaries", "looks", "CPU time", "effect", "if true"}) {
+  for (const char* heading :
+       {"method", "primaries", "looks", "CPU time", "effect", "if the claim holds"}) {
     EXPECT_THAT(text, HasSubstr(heading));
   }
   EXPECT_THAT(text, HasSubstr("0.5 %"));
   EXPECT_THAT(text, HasSubstr("green"));
   EXPECT_THAT(text, HasSubstr("share observations"));
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(reports::columns(line), 100) << line;
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(reports::columns(line), 80) << line;
   EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 0);
 }
 
@@ -216,32 +218,74 @@ TEST(PlanTable, NothingSelectedIsNothingPlanned) {
   EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 4);
 }
 
-// The bound on the share must hold for the mean of 40 seeds; data are normal and theta = 0. A share
-// lies in (0, 1], so its mean has a standard error below 0.05. It exceeds the bound by 0.2, four
-// errors, with probability 3e-5 at most.
-TEST(Forecast, BoundsTheMeanShareOfALastLook) {
+// Data are normal, and theta is 0 or `detect`. A part drawn lies in (0, 1], so the mean of 40 seeds
+// has a standard error below 0.05, and is off by four of them with probability 6e-5.
+TEST(Forecast, TellsTheErrorsAndWhatIsDrawn) {
   const Workplace place;
   const std::vector<Suite> suites = {load_suite(place.write("share.yaml", R"(suite: share
+alpha: 0.02
 estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
 tests:
-  - {claim: mean(normal) == 2, detect: 0.4%}
+  - {name: true, claim: mean(normal) == 2, detect: 0.3%}
+  - {name: off, claim: mean(normal) == 2.006, detect: 0.006}
 )"))};
-  double bound = 0;
-  double share = 0;
+  std::array<double, 2> foretold{};
+  std::array<double, 2> drawn{};
   constexpr int seeds = 40;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     PlannedRun planned = planned_of(suites, {.seed = seed});
-    TestWork& work = planned.suites[0]->tests[0];
-    bound += forecast(work.outcome, planned.suites[0]->pilots).share.value() / seeds;
+    std::vector<TestWork*> works;
+    for (TestWork& work : planned.suites[0]->tests) {
+      const Forecast found = forecast(work.outcome, planned.suites[0]->pilots);
+      EXPECT_NEAR(found.if_true->fail, 0.01, 0.001);
+      EXPECT_LE(found.if_true->fail, 0.01 + 1e-6);
+      EXPECT_NEAR(found.if_off->pass, 0.009, 0.001);
+      EXPECT_LT(found.if_true->inconclusive, 0.001);
+      EXPECT_NEAR(found.if_off->pass + found.if_off->fail + found.if_off->inconclusive, 1, 1e-12);
+      const std::size_t which = works.size();
+      foretold[which] += (which == 0 ? found.if_true : found.if_off)->drawn / seeds;
+      works.push_back(&work);
+    }
     Silence silence;
-    sample_in_looks({&work}, planned.pools.all(), 1, silence);
-    share += static_cast<double>(work.outcome.secondaries()) /
-             static_cast<double>(work.outcome.plan.most_secondaries()) / seeds;
+    sample_in_looks(works, planned.pools.all(), 1, silence);
+    for (std::size_t i = 0; i < works.size(); ++i) {
+      drawn[i] += static_cast<double>(works[i]->outcome.secondaries()) /
+                  static_cast<double>(works[i]->outcome.plan.most_secondaries()) / seeds;
+    }
   }
-  EXPECT_LT(share, bound + 0.2);
-  EXPECT_GT(bound, share / 2);
-  EXPECT_LT(bound, 0.9);
+  for (std::size_t i = 0; i < drawn.size(); ++i) EXPECT_NEAR(drawn[i], foretold[i], 0.2);
+}
+
+TEST(Forecast, OfProofsHoldsByTheAdvantageOrStandsAtTheBorder) {
+  const Workplace place;
+  const std::vector<Suite> suites = {load_suite(place.write("proofs.yaml", R"(suite: proofs
+estimators:
+  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+tests:
+  - {name: less, claim: mean(normal) < 3, detect: 0.01}
+  - {name: within, claim: mean(normal) within 0.01 of 2}
+)"))};
+  const PlannedRun planned = planned_of(suites);
+  for (const TestWork& work : planned.suites[0]->tests) {
+    const Forecast found = forecast(work.outcome, planned.suites[0]->pilots);
+    EXPECT_GE(found.if_true->pass, 0.99) << work.outcome.question.test->name;
+    EXPECT_NEAR(found.if_off->pass, 0.0095, 0.0006) << work.outcome.question.test->name;
+    EXPECT_LE(found.if_off->pass, 0.01 + 1e-6) << work.outcome.question.test->name;
+  }
+}
+
+TEST(PlanTable, BoundsTheProbabilityThatASuiteIsNotOk) {
+  const Workplace place;
+  const std::vector<Suite> suites = {load_suite(place.write("two.yaml", R"(suite: two
+estimators:
+  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
+tests:
+  - {name: a, claim: mean(normal) == 2, detect: 0.01}
+  - {name: b, claim: mean(normal) <= 2, detect: 0.01}
+)"))};
+  const PlannedRun planned = planned_of(suites);
+  EXPECT_THAT(plan_text(planned, costs_of(planned)), HasSubstr("Not ok with probability 1 % at"));
 }
 
 TEST(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
