@@ -148,22 +148,19 @@ std::string per_cent(double probability) {
 }
 
 std::string outlook_text(const char* when, const Outlook& outlook) {
-  std::string text =
-      fmt::format("{}: pass {}, fail {}, inconclusive {}", when, per_cent(outlook.pass),
-                  per_cent(outlook.fail), per_cent(outlook.inconclusive));
-  if (outlook.invalid > 0) return fmt::format("{}: invalid {}", when, per_cent(outlook.invalid));
-  return text + fmt::format("; draws {:.0f} % of the last look", 100 * outlook.drawn);
+  return fmt::format("{}: pass {}, fail {}, inconclusive {}, draws {:.0f} %", when,
+                     per_cent(outlook.pass), per_cent(outlook.fail), per_cent(outlook.inconclusive),
+                     100 * outlook.drawn);
 }
 
-/// Upper bound on the probability that the test ends otherwise than the suite expects: the claim
-/// holds, or is off by its effect where it is expected to fail. Without an outlook it errs as often
-/// as planned.
+/// Probability that the test ends otherwise than the suite expects: the claim holds, or is off by
+/// its effect where it is expected to fail. Without an outlook it errs as often as planned.
 double not_ok(const TestOutcome& test, const Forecast& foreseen) {
   const bool fails = test.question.test->expect == Expectation::fail;
   const std::optional<Outlook>& outlook = fails ? foreseen.if_off : foreseen.if_true;
   if (outlook) return 1 - (fails ? outlook->fail : outlook->pass);
-  const auto channels = static_cast<double>(test.question.channel_count());
-  return channels * (test.place.share.alpha + test.place.share.beta);
+  const double beta = test.plan.regions[0].has_forbidden() ? test.place.share.beta : 0;
+  return static_cast<double>(test.question.channel_count()) * (test.place.share.alpha + beta);
 }
 
 /// Why the test will be an error: it has no plan, or an estimator stopped while its cost was
@@ -197,10 +194,10 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
                effect_text(test, expected)};
   if (plan.invalid.empty()) {
     if (expected.if_off) {
-      row.notes.insert(row.notes.begin(), outlook_text("off by the effect", *expected.if_off));
+      row.notes.insert(row.notes.begin(), outlook_text("is off", *expected.if_off));
     }
     if (expected.if_true) {
-      row.notes.insert(row.notes.begin(), outlook_text("if the claim holds", *expected.if_true));
+      row.notes.insert(row.notes.begin(), outlook_text("holds", *expected.if_true));
     }
   }
   row.not_ok = not_ok(test, expected);
@@ -289,8 +286,9 @@ void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
   for (const Row& row : rows) not_ok += row.not_ok;
   page.blank();
   page.paragraph(
-      fmt::format("Not ok with probability {} at most, if every claim holds exactly and "
-                  "every expected failure is off by its effect.",
+      fmt::format("Not ok with probability about {} if every claim holds exactly and every "
+                  "expected failure is off by its effect. A test without a forecast counts with "
+                  "its alpha and beta.",
                   per_cent(std::min(1.0, not_ok))));
   page.blank();
 }
@@ -351,8 +349,9 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
       "all sources up to the last look, of images those of every pixel and component, and what "
       "they cost. "
       "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
-      "beta. pass, fail, inconclusive: probabilities by the normal law, with the pilot's spread; "
-      "gates on the test's own data come on top.");
+      "beta. holds, is off: probabilities if the claim holds exactly, or is off by the effect, and "
+      "the mean part of the last look that is drawn; by the normal law and the pilot's spread, "
+      "without gates on the test's own data.");
 }
 
 }  // namespace

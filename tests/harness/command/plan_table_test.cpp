@@ -176,7 +176,7 @@ TEST(PlanTable, ShowsEveryTestInEightyColumns) {
   const std::string text = plan_text(planned, costs_of(planned));
   for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
   for (const char* heading :
-       {"method", "primaries", "looks", "CPU time", "effect", "if the claim holds"}) {
+       {"method", "primaries", "looks", "CPU time", "effect", "holds: pass", "is off: pass"}) {
     EXPECT_THAT(text, HasSubstr(heading));
   }
   EXPECT_THAT(text, HasSubstr("0.5 %"));
@@ -238,9 +238,10 @@ tests:
     std::vector<TestWork*> works;
     for (TestWork& work : planned.suites[0]->tests) {
       const Forecast found = forecast(work.outcome, planned.suites[0]->pilots);
-      EXPECT_NEAR(found.if_true->fail, 0.01, 0.001);
+      EXPECT_GE(found.if_true->fail, 0.0085);
       EXPECT_LE(found.if_true->fail, 0.01 + 1e-6);
-      EXPECT_NEAR(found.if_off->pass, 0.009, 0.001);
+      EXPECT_GE(found.if_off->pass, 0.005) << "the pilot's upper limit of the variance leaves room";
+      EXPECT_LE(found.if_off->pass, 0.01 + 1e-6);
       EXPECT_LT(found.if_true->inconclusive, 0.001);
       EXPECT_NEAR(found.if_off->pass + found.if_off->fail + found.if_off->inconclusive, 1, 1e-12);
       const std::size_t which = works.size();
@@ -270,7 +271,7 @@ tests:
   for (const TestWork& work : planned.suites[0]->tests) {
     const Forecast found = forecast(work.outcome, planned.suites[0]->pilots);
     EXPECT_GE(found.if_true->pass, 0.99) << work.outcome.question.test->name;
-    EXPECT_NEAR(found.if_off->pass, 0.0095, 0.0006) << work.outcome.question.test->name;
+    EXPECT_GE(found.if_off->pass, 0.008) << work.outcome.question.test->name;
     EXPECT_LE(found.if_off->pass, 0.01 + 1e-6) << work.outcome.question.test->name;
   }
 }
@@ -285,7 +286,8 @@ tests:
   - {name: b, claim: mean(normal) <= 2, detect: 0.01}
 )"))};
   const PlannedRun planned = planned_of(suites);
-  EXPECT_THAT(plan_text(planned, costs_of(planned)), HasSubstr("Not ok with probability 1 % at"));
+  EXPECT_THAT(plan_text(planned, costs_of(planned)),
+              HasSubstr("Not ok with probability about 0.9"));
 }
 
 TEST(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
