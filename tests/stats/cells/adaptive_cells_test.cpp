@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <numbers>
@@ -206,6 +207,30 @@ TEST(AdaptiveCells, AJumpAlongACurveStaysWithinItsErrors) {
   EXPECT_NEAR(found.mass.total, 1, found.mass.total_error);
   EXPECT_LT(found.mass.total_error, 1e-3);
   EXPECT_LE(*std::ranges::max_element(found.mass.probability), 1.0 / 64);
+  expect_a_partition(found.cells);
+}
+
+// A peak of 2e-5 by 3e-5 lies between the nodes of every cell, and between its looks for the side.
+TEST(AdaptiveCells, DrawsLeadToPeaksThatNoNodeMeets) {
+  const auto normal = [](double x, double mean, double deviation) {
+    const double z = (x - mean) / deviation;
+    return std::exp(-z * z / 2) / (deviation * std::sqrt(2 * std::numbers::pi));
+  };
+  PlaneDensity density = on_unit_square(
+      [&](double x, double y) { return normal(x, .3456789, 2e-5) * normal(y, .7, 3e-5); });
+  const QuadratureLimits limits{.tolerance = 1e-8};
+  EXPECT_LT(adaptive_cells(unit_grid(16, 32), density, 1.0 / 40, limits).mass.total, 1e-6);
+  Philox random(31);
+  std::array<std::vector<double>, 2> places;
+  for (int i = 0; i < 4096; ++i) {
+    density.drawn.push_back({.3456789 + 2e-5 * random.normal(), .7 + 3e-5 * random.normal()});
+    for (std::size_t k = 0; k < 2; ++k) places[k].push_back(density.drawn.back()[k]);
+  }
+  density.x_panels.borders = borders_of_peaks(places[0], density.x);
+  density.y_panels.borders = borders_of_peaks(places[1], density.y);
+  const auto found = adaptive_cells(unit_grid(16, 32), density, 1.0 / 40, limits);
+  EXPECT_NEAR(found.mass.total, 1, 1e-6);
+  EXPECT_LE(*std::ranges::max_element(found.mass.probability), 1.0 / 40);
   expect_a_partition(found.cells);
 }
 
