@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <numbers>
