@@ -118,7 +118,7 @@ class AdaptiveQuadrature {
   double largest_ = 0;
 };
 
-// Where a quadrature looks closely: a number of equal panels, and borders of its own.
+// Panels tell where a quadrature looks closely. They have equal borders, and borders of their own.
 struct Panelling {
   std::size_t equal = 1;
   std::vector<double> borders = {};  // Ascending.
