@@ -60,10 +60,11 @@ bool rests_on_contrary(const Test& test) {
 
 // " over 3 looks (0.79 at the last)".
 std::string over_looks(const Test& test, Number Look::*log10_p) {
-  if (test.looks.size() < 2 || test.channels.size() > 1) return {};
+  if (test.planned_looks.size() < 2 || test.looks.empty() || test.channels.size() > 1) return {};
   const Number at_last = test.looks.back().*log10_p;
   if (!at_last) return {};
-  return fmt::format(" over {} looks ({} at the last)", test.looks.size(), p_text({}, at_last));
+  return fmt::format(" over {} look{} ({} at the last)", test.looks.size(),
+                     test.looks.size() == 1 ? "" : "s", p_text({}, at_last));
 }
 
 // ", 1 after Holm", where the family changes what is written: of a single test it does not.

@@ -65,10 +65,10 @@ TEST(Plan, FindsDetectWithTheSuitesErrorRates) {
 // z_b/2). The variance of ln s2 is (kurtosis - 1) / n. A pilot of 8192 has a kurtosis of 3 +- .054;
 // four of these are 11 % of n, 1e-4.
 TEST(Plan, OfWithinGivesBothMarginsTheirShareOfBeta) {
-  const Planned planned = plan_text("  - {claim: variance(single) within 25% of 1}\n");
+  const Planned planned = plan_text("  - {claim: variance(single) within 2% of 1}\n");
   const double share = planned.plans[0].looks.beta.back();
   const auto z = [](double p) { return stats::normal_quantile({stats::Tail::upper, std::log(p)}); };
-  const double wanted = std::log(1.25) / (z(share) + z(share / 2));
+  const double wanted = std::log(1.02) / (z(share) + z(share / 2));
   const auto n = static_cast<double>(planned.plans[0].most_secondaries());
   EXPECT_NEAR(n * wanted * wanted / 2, 1, 0.11);
 }
