@@ -128,7 +128,7 @@ TEST(UnequalRows, AreTooFewForAVarianceWhereOneFileHasTooFew) {
   EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
   EXPECT_THAT(suite.tests[0].message,
               AllOf(HasSubstr("600 observations are too few"), HasSubstr("it takes 1000"),
-                    HasSubstr("if they are near normal, add `test: F`")));
+                    HasSubstr("if the values are near normal, add `test: F`")));
 }
 
 TEST(UnequalRows, OfDependentChainsAreAllAveragedInBatches) {

@@ -47,21 +47,21 @@ TEST(Plan, GivenSecondariesAreTaken) {
   EXPECT_EQ(planned.plans[0].looks.sizes, std::vector<std::uint64_t>{2000});
 }
 
-// Normal values, by their relative influence values of variance 2.
+// Normal values, by their relative influence values of variance 2. Looks take some 8 % more than
+// one, and a pilot of 8192 knows the kurtosis to 11 % of n, 1e-4.
 TEST(Plan, OfVariancesHasTheSizeOfTheirInfluenceValues) {
   const Planned planned = plan_text(
       "  - {name: one, claim: variance(single) <= 1, detect: 1%}\n"
       "  - {name: two, claim: variance(single) <= variance(single), detect: 1%}\n");
   const auto size = [&](std::size_t test, double variance) {
     const ErrorShare share = planned.place[test].share;
-    const double looks = static_cast<double>(planned.plans[test].looks.sizes.size());
-    const double n = stats::normal_sample_size(
-        std::sqrt(variance), {.detect = std::log(1.01)},
-        {.alpha = share.alpha / looks, .beta = share.beta / looks, .two_sided = false});
+    const double n =
+        stats::normal_sample_size(std::sqrt(variance), {.detect = std::log(1.01)},
+                                  {.alpha = share.alpha, .beta = share.beta, .two_sided = false});
     return static_cast<double>(planned.plans[test].most_secondaries()) / n;
   };
-  EXPECT_NEAR(size(0, 2), 1, .1) << "by the pilot's kurtosis";
-  EXPECT_NEAR(size(1, 4), 1, .1);
+  EXPECT_NEAR(size(0, 2), 1.08, .14);
+  EXPECT_NEAR(size(1, 4), 1.08, .14);
 }
 
 }  // namespace
