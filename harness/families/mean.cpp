@@ -282,9 +282,8 @@ bool can_afford_bets(const Question& question, const FamilyPlace& place, const P
 }
 
 std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
-                              const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  const std::vector<Known> channels =
-      known_channels(question, pilots, largest_look(question, most), plan);
+                              const Pilots& pilots, Plan& plan) {
+  const std::vector<Known> channels = known_channels(question, pilots, plan);
   bool near_normal = true;
   for (const Known& known : channels) {
     const stats::Gate gate = near_normal_gate(known);
@@ -406,8 +405,8 @@ class MeanTheta : public Theta {
   }
 
   std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
-    return choose_for_mean(question, place, pilots, most, plan);
+                       std::uint64_t, Plan& plan) const override {
+    return choose_for_mean(question, place, pilots, plan);
   }
 
   std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,

@@ -133,7 +133,7 @@ class VarianceTheta final : public LogTheta {
 
   std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
-    const auto channels = known_channels(question, pilots, largest_look(question, most), plan);
+    const auto channels = known_channels(question, pilots, plan);
     const double x = critical_value(smallest_level(question, place), two_sided(question));
     std::vector<stats::Gate> gates;
     const bool normal = are_near_normal(question, channels, x, gates);

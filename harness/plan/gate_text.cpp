@@ -116,6 +116,9 @@ std::string what_would_help(const TestOutcome& outcome) {
     factor = std::max(factor, wanted(gate));
   }
   if (says_it_all) return "";
+  // A sample that one observation makes up tells no more.
+  constexpr double most = 100;
+  factor = std::min(factor, most);
   const bool rows = has_rows(outcome.question);
   // If the tail's moment does not exist, more observations only make the gate redder.
   if (heavy) {

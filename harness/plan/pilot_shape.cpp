@@ -32,7 +32,7 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
 }
 
 std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
-                                  std::uint64_t look, const Plan& plan) {
+                                  const Plan& plan) {
   std::vector<Known> all;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
@@ -47,7 +47,6 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
                      .channel = channel,
                      .pilot = data,
                      .averaged = side.averaged(plan.primaries[subject]),
-                     .times = times_the_fewest(question, subject, look),
                      .rows = side.setup->observations().has_value(),
                      .label = fmt::format(", pilot of {}{}", side.estimator->name, part)});
     }

@@ -20,7 +20,6 @@ struct Known {
   std::size_t channel;
   PilotChannel pilot;
   double averaged;  ///< The pilot's values in a secondary.
-  double times;     ///< Secondaries over those of the subject with fewest.
   bool rows;        ///< The test's own data, not a pilot's.
   std::string label;
 };
@@ -33,9 +32,8 @@ std::vector<double> as_secondaries(const Subject& side, std::span<const double> 
 /// Why the pilot cannot choose: powers of its values are beyond doubles. Empty if none are.
 std::string unusable_pilot(const Question& question, const Pilots& pilots);
 
-/// The channels that pilots or rows show; `look` is the largest possible look.
-std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
-                                  std::uint64_t look, const Plan& plan);
+/// The channels that pilots or rows show, without those that never vary.
+std::vector<Known> known_channels(const Question& question, const Pilots& pilots, const Plan& plan);
 
 /// Notes a gate of the pilot, but none of rows: they are judged with the test's own data.
 void note(Plan& plan, const Known& known, const stats::Gate& gate);

@@ -47,12 +47,4 @@ std::optional<double> power_at(const Question& question, const TestSize& size, c
   return question.theta->power(question, size, plan, channel, effect);
 }
 
-std::uint64_t intended_secondaries(const Question& question, const FamilyPlace& place,
-                                   const Pilots& pilots, std::uint64_t most, const Plan& plan) {
-  if (question.test->secondaries) return std::min(*question.test->secondaries, most);
-  if (has_rows(question)) return most;
-  const auto planned = question.theta->secondaries(question, place.share, pilots, plan);
-  return std::min(most, planned.value_or(usual_secondaries));
-}
-
 }  // namespace assay::harness

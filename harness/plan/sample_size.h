@@ -27,11 +27,6 @@ std::optional<std::uint64_t> most_over_channels(const Question& question,
 std::optional<std::uint64_t> most_of_channels(const Question& question,
                                               const SizeOfChannel& of_channel);
 
-/// Secondaries that the test asks for or is worth; all rows of a file. `most` is how many there can
-/// be.
-std::uint64_t intended_secondaries(const Question& question, const FamilyPlace& place,
-                                   const Pilots& pilots, std::uint64_t most, const Plan& plan);
-
 /// The least theta that a test of that size finds with probability 1 - beta. Nullopt if no formula
 /// tells, and `within`.
 std::optional<double> detectable_effect(const Question& question, const TestSize& size,
