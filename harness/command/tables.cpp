@@ -48,7 +48,7 @@ std::string page_of(const MethodRow& row) {
   };
   say(true, fmt::format("Force it by `test: {0}` in a suite, or by `--test {0}`.", row.name));
   say(true, fmt::format("It keeps {}.", kept_text(row.keeps)));
-  say(row.is.exact, "Its level holds at every sample size. A reference must be exact.");
+  say(row.is.exact, "Its level holds at every sample size.");
   say(!row.is.exact, "Its level is asymptotic; gates refuse data of too unusual a shape.");
   say(row.is.in_range, "The channel must declare the range of its values.");
   say(row.is.of_observations, "The moments of an earlier run are not enough for it.");

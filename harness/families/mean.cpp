@@ -255,8 +255,6 @@ std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& quest
 bool are_two_valued(const Question& question, const std::vector<Known>& channels,
                     const Plan& plan) {
   if (question.of_two() && question.factor <= 0) return false;
-  const auto uncertain = [](const Constant& reference) { return reference.standard_error > 0; };
-  if (std::any_of(question.references.begin(), question.references.end(), uncertain)) return false;
   return channels.size() == question.subjects.size() * question.channel_count() &&
          std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
            const stats::Range range =
@@ -616,8 +614,8 @@ class MeanTheta : public Theta {
     } else {
       count = for_means(question, planned_rates(share, regions), regions, *channel);
     }
-    if (channel->unseen && count.value_or(impossible_secondaries) > most_for_the_unseen) return {};
-    return count.value_or(impossible_secondaries);
+    const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
+    return std::min(count.value_or(impossible_secondaries), most);
   }
 
   /// The probability of showing `within` where theta is 0.

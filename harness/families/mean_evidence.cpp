@@ -1,6 +1,7 @@
 #include "harness/families/mean_evidence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
 #include "stats/means/two_valued.h"
+#include "stats/means/uncertain_reference.h"
 #include "stats/means/welch_t.h"
 
 namespace assay::harness {
@@ -64,10 +66,23 @@ ContrastTest corrected_of_two(const Side& x, const Side& y) {
   };
 }
 
-OneMeanTest binomial_of_one(const Side& x) {
-  return [x = stats::two_valued(x.data.moments, x.range)](const stats::Reference& null) {
-    return stats::two_valued_mean(x, null.value);
+/// An exact test of "E x = value" where the value is known up to an error.
+OneMeanTest over_reference(std::function<TestResult(double)> at) {
+  return [at = std::move(at)](const stats::Reference& null) {
+    TestResult result = at(null.value);
+    const std::array<stats::UncertainReference, 1> references{{{null, null.value}}};
+    result.log_p_lower = stats::log_p_over_references(
+        [&](auto values) { return at(values[0]).log_p_lower; }, references);
+    result.log_p_upper = stats::log_p_over_references(
+        [&](auto values) { return at(values[0]).log_p_upper; }, references);
+    return result;
   };
+}
+
+OneMeanTest binomial_of_one(const Side& x) {
+  return over_reference([x = stats::two_valued(x.data.moments, x.range)](double value) {
+    return stats::two_valued_mean(x, value);
+  });
 }
 
 ContrastTest binomial_of_two(const Side& x, const Side& y) {
@@ -93,12 +108,11 @@ TestResult within_rounding(const std::function<TestResult(double)>& at, double r
 }
 
 OneMeanTest bets_of_one(const Side& x) {
-  return
-      [cells = cells_of(x), range = x.range, rounding = x.rounding](const stats::Reference& null) {
-        return within_rounding(
-            [&](double shift) { return stats::betting_mean(*cells, range, null.value + shift); },
-            rounding);
-      };
+  return over_reference([cells = cells_of(x), range = x.range,
+                         rounding = x.rounding](double value) {
+    return within_rounding(
+        [&](double shift) { return stats::betting_mean(*cells, range, value + shift); }, rounding);
+  });
 }
 
 ContrastTest bets_of_two(const Side& x, const Side& y) {

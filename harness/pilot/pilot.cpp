@@ -12,12 +12,11 @@
 namespace assay::harness {
 namespace {
 
-// The pilot of an estimator that does not average, which may be a chain or an image, has 512
-// observations, and up to 2048 if they have few primaries: so many show that neighbours share an
-// offset of half a standard deviation. It grows if the observations are far from normal. The larger
-// number, many_observations, tells a light-tailed skewness and kurtosis to a few per cent.
+// The pilot of an estimator that does not average, which may be a chain, has as many primaries as
+// the floor of evidence, but 512 observations at least and many_observations at most. It grows if
+// the observations are far from normal. The larger number tells a light-tailed skewness and
+// kurtosis to a few per cent.
 constexpr std::uint64_t few_observations = 512;
-constexpr std::uint64_t most_of_few = 2048;
 constexpr std::uint64_t primaries_of_few = std::uint64_t{1} << 14;
 // Most primaries of a larger pilot: a chain's observation may have millions.
 constexpr std::uint64_t most_primaries_of_larger = std::uint64_t{1} << 27;
@@ -31,7 +30,7 @@ const std::string averages_purpose = "(averages)";
 
 std::uint64_t few_of(const PreparedEstimator& estimator) {
   return std::clamp(primaries_of_few / estimator.primaries.value_or(1), few_observations,
-                    most_of_few);
+                    many_observations);
 }
 
 /// Observations of the larger pilot. Images and files have no larger one, since each observation

@@ -19,6 +19,8 @@ namespace {
 constexpr double most_planned_primaries = 1e12;
 // Looks cost at most twice one look's observations, unless a reference has an error.
 constexpr std::uint64_t dearest_looks = 4;
+// A test may draw so many times its first look, although it needs less, while a gate is red.
+constexpr std::uint64_t waiting_looks = 4;
 // Fewest secondaries that have a spread.
 constexpr std::uint64_t fewest_tested = 2;
 
@@ -127,26 +129,29 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   const std::uint64_t classical = question.theta->usual_size();
   if (!alone) return one_look(std::min(std::max(first, classical), most), place.share);
   if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
-  if (*alone <= first) return one_look(std::min(first, most), place.share);
   const stats::LookLaw law = plan.method.is.over_looks;
+  const bool may_wait = law == stats::LookLaw::independent_increments;
+  const std::uint64_t least = may_wait ? waiting_looks * first : first;
+  const std::uint64_t needed = std::max(*alone, least);
+  if (needed <= first) return one_look(std::min(first, most), place.share);
   const Growth growth = growth_of(law);
   const stats::ErrorRates errors{
       .alpha = place.share.alpha, .beta = place.share.beta, .two_sided = two_sided(question)};
   const std::size_t whole =
-      stats::geometric_sizes({.first = first, .last = *alone}, growth.factor).size();
+      stats::geometric_sizes({.first = first, .last = needed}, growth.factor).size();
   for (std::size_t count = std::min(growth.most, whole); count > 1; --count) {
     const stats::LookSchedule trial =
-        stats::schedule_looks(sizes_up_to(*alone, first, growth.factor, count), law, errors);
+        stats::schedule_looks(sizes_up_to(needed, first, growth.factor, count), law, errors);
     const ErrorShare share{.alpha = trial.alpha.back(), .beta = trial.beta.back()};
     const std::uint64_t last =
-        std::min(most, question.theta->secondaries(question, share, pilots, plan)
-                           .value_or(impossible_secondaries));
+        std::min(most, std::max(least, question.theta->secondaries(question, share, pilots, plan)
+                                           .value_or(impossible_secondaries)));
     // A reference's error may put smaller levels beyond any number: try fewer looks.
-    if (last > dearest_looks * *alone) continue;
+    if (last > dearest_looks * needed) continue;
     if (last <= first) return one_look(last, place.share);
     return stats::schedule_looks(sizes_up_to(last, first, growth.factor, count), law, errors);
   }
-  return one_look(std::min(*alone, most), place.share);
+  return one_look(std::min(std::max(first, *alone), most), place.share);
 }
 
 stats::LookSchedule look_for_its_picture(const Question& question, const FamilyPlace& place,

@@ -127,8 +127,6 @@ bool hides(std::span<const double> values, double mean, double end) {
 
 bool bets_on_range(const Question& question, const Pilots& pilots) {
   if (question.test->method) return find_method(question, *question.test->method).is.in_range;
-  const auto uncertain = [](const Constant& reference) { return reference.standard_error > 0; };
-  if (std::ranges::any_of(question.references, uncertain)) return false;
   const NeededEnds ends = question.of_two() ? NeededEnds{true, true} : needed_ends(*question.test);
   bool hidden = false;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {

@@ -70,8 +70,8 @@ enum class FromPilot { nothing, cells, weights };
 
 /// Other properties of a method.
 struct MethodTraits {
-  bool exact = false;     ///< The level holds at every sample size; the reference must be exact.
-  bool in_range = false;  ///< Rests on a channel's declared range.
+  bool exact = false;               ///< The level holds at every sample size.
+  bool in_range = false;            ///< Rests on a channel's declared range.
   bool of_observations = false;     ///< The moments of an earlier run are too little.
   bool of_batches = false;          ///< Tests means of consecutive observations.
   bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.

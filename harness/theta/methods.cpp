@@ -38,11 +38,6 @@ std::string relation_text(const TestEntry& test) {
 
 /// Throws InputError if the data do not suit the method.
 void require_data(const Method& method, const Question& question) {
-  for (const Constant& reference : question.references) {
-    if (!method.is.exact || reference.standard_error == 0) continue;
-    refuse(question, method.name,
-           "takes the reference for exact, but it has a standard error; leave `test` out");
-  }
   for (const Subject& subject : question.subjects) {
     if (method.is.of_observations && as_recorded_run(*subject.setup) != nullptr) {
       refuse(question, method.name,

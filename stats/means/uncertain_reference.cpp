@@ -14,6 +14,8 @@ namespace {
 constexpr double share_of_references = 0.1;
 constexpr int places_a_reference = 9;
 constexpr double precision = 1e-9;  // In ln p.
+// Smaller levels, in ln p, are not told apart.
+constexpr double smallest_level = -1e9;
 
 using LogP = std::function<double(std::span<const double>)>;
 
@@ -73,7 +75,7 @@ double log_p_over_references(const LogP& log_p, std::span<const UncertainReferen
     return largest_at(log_p, references, log_level) <= log_level + for_sample;
   };
   double rejected = 0;
-  double kept = std::min(at_known - for_sample, 0.0);
+  double kept = std::clamp(at_known - for_sample, smallest_level, 0.0);
   if (!rejects(rejected)) return 0;
   while (rejected - kept > precision * std::max(1.0, -kept)) {
     const double middle = kept + (rejected - kept) / 2;

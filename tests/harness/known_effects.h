@@ -3,8 +3,14 @@
 // Entries of suites whose effects have closed forms, for claims at the edge of a margin.
 
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
+
+#include "harness/draws/sampler_setup.h"
+#include "stats/cells/chi_square_fit.h"
+#include "tests/harness/questions.h"
 
 namespace assay::harness {
 
@@ -29,15 +35,27 @@ inline std::map<std::string, std::string> with_known_effects(
   return entries;
 }
 
-/// The effect w of the triangle's draws over its cells. Draws of u and v / (1 - u) are uniform.
-/// The declared density, 2, has P(u <= x) = 1 - (1 - x)^2. The grid has 16 rows of equal area.
-inline double effect_of_triangle() {
-  double w2 = 0;
-  for (int row = 0; row < 16; ++row) {
-    const double drawn = std::sqrt(1 - row / 16.0) - std::sqrt(1 - (row + 1) / 16.0);
-    w2 += 16 * (drawn - 1 / 16.0) * (drawn - 1 / 16.0);
+/// The effect w of the triangle's draws over its cells, pooled as for so many draws. Counts of many
+/// more draws tell it to a thousandth.
+inline double effect_of_triangle(std::uint64_t draws) {
+  const auto setup = setup_of("{plugin: mutants/nonuniform_triangle}", "point");
+  const DensityCells& declared = setup->density_cells();
+  stats::CellCounts counts{.observed = std::vector<std::uint64_t>(declared.cells.size()),
+                           .probability = declared.mass.probability};
+  counts.probability.push_back(declared.missing());
+  constexpr std::uint64_t many = 2'000'000;
+  constexpr std::uint64_t batch = 1000;
+  for (std::uint64_t first = 0; first < many; first += batch) {
+    std::vector<Stream> streams;
+    for (std::uint64_t i = first; i < first + batch; ++i) streams.emplace_back(StreamKey{77}, i);
+    for (const SamplerDraw& draw : draws_of(setup->sampler(), streams)) {
+      ++counts.observed[declared.cells.index(draw)];
+    }
   }
-  return std::sqrt(w2);
+  const double scale = static_cast<double>(many) / static_cast<double>(draws);
+  return stats::chi_square_fit(counts, {.minimum_expected = 20 * scale,
+                                        .probability_tolerance = declared.tolerance()})
+      .effect;
 }
 
 /// w of three in ten against a half, over 0 and 1: sqrt(sum (p - q)^2 / ((p + q) / 2)).

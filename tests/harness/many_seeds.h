@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/plan/frozen.h"
 #include "harness/pilot/pilot_run.h"
+#include "harness/plan/frozen.h"
 #include "harness/plan/plan.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/pools.h"
@@ -66,7 +66,7 @@ struct Prepared {
 };
 
 inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
-  Prepared prepared{.asked = ask_text(text)};
+  Prepared prepared{.asked = ask_text(text, seed)};
   prepared.place = places(prepared.asked->suite, prepared.asked->questions);
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : prepared.asked->estimators) all.push_back(&estimator);

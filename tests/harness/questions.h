@@ -27,13 +27,13 @@ struct Asked {
 };
 
 /// On the heap: questions point into the suite and its estimators.
-inline std::unique_ptr<Asked> ask_text(const std::string& text) {
+inline std::unique_ptr<Asked> ask_text(const std::string& text, std::uint64_t seed = 1) {
   const Workplace place;
   auto asked = std::make_unique<Asked>();
   asked->suite = load_suite(place.write("suite.yaml", text));
   asked->estimators = prepare_all(asked->suite);
   for (TestEntry& test : asked->suite.tests) {
-    asked->questions.push_back(ask_as_written(test, asked->estimators, 1));
+    asked->questions.push_back(ask_as_written(test, asked->estimators, seed));
   }
   return asked;
 }

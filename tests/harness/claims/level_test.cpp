@@ -22,6 +22,7 @@ struct TrueClaim {
 };
 
 const std::map<std::string, std::string> estimators = with_known_effects({
+    {"darts", "plugin: analytic/dart_throwing, primaries: 1"},
     {"normal", "plugin: analytic/normal, mean: 2, primaries: 1"},
     {"again", "plugin: analytic/normal, mean: 2, primaries: 1"},
     {"wide", "plugin: analytic/normal, mean: 4, deviation: 3, primaries: 1"},
@@ -140,15 +141,21 @@ TEST(Level, AgainstAnUncertainReferenceIsWhatThePValuesSay) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     tests::Philox random(401, static_cast<std::uint32_t>(seed));
     const std::string reference = fmt::format("{:.17g} +- 0.1", 2 + 0.1 * random.normal());
+    const double pi = std::numbers::pi;
+    const std::string of_darts = fmt::format("{:.17g} +- 0.1", pi + 0.1 * random.normal());
     const std::string text =
         suite_of({{"claim: mean(normal) == " + reference + ", secondaries: 100"},
                   {"claim: mean(normal) <= " + reference + ", secondaries: 100"},
-                  {"claim: mean(normal) == " + reference + ", allow: 5%, secondaries: 100"}});
+                  {"claim: mean(normal) == " + reference + ", allow: 5%, secondaries: 100"},
+                  {"claim: mean(darts) == " + of_darts + ", test: binomial, secondaries: 400"},
+                  {"claim: mean(darts) <= " + of_darts + ", test: betting, secondaries: 400"}});
     take_first_looks(prepare_text(text, seed), seed, outcomes);
   }
   expect_p_value("==", outcomes.at("0").log_p, Shape::uniform);
   expect_p_value("<=", outcomes.at("1").log_p, Shape::uniform);
   expect_p_value("== up to 5 %", outcomes.at("2").log_p, Shape::at_most_uniform);
+  expect_p_value("binomial", outcomes.at("3").log_p, Shape::at_most_uniform);
+  expect_p_value("betting", outcomes.at("4").log_p, Shape::at_most_uniform);
 }
 
 // x is nearly noiseless and E y lies .78 standard errors from 0. The side of 0 that y falls on is
@@ -200,7 +207,7 @@ TEST(Level, OfSlopesAtTheirMarginIsWhatThePValuesSay) {
 TEST(Level, OfCellsAtTheirMarginIsWhatThePValuesSay) {
   expect_level(1000, {{fmt::format("claim: distribution(triangle.point) == density, "
                                    "allow: {:.17g}, secondaries: 20000",
-                                   effect_of_triangle())},
+                                   effect_of_triangle(20000))},
                       {"claim: distribution(narrow.direction) == density, secondaries: 5000"},
                       {fmt::format("claim: distribution(three_in_ten) == distribution(half), "
                                    "test: chi-square-two-sample, allow: {:.17g}, secondaries: 1000",

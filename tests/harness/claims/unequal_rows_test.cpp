@@ -213,6 +213,17 @@ TEST(UnequalRows, AreReplayedWhileTheyAreAsManyAsTheyWere) {
   }
 }
 
+/// The values in the order of their keys.
+std::vector<double> in_order_of(const std::vector<double>& keys,
+                                const std::vector<double>& values) {
+  std::vector<std::pair<double, double>> pairs;
+  for (std::size_t i = 0; i < values.size(); ++i) pairs.emplace_back(keys[i], values[i]);
+  std::ranges::sort(pairs);
+  std::vector<double> ordered;
+  for (const auto& pair : pairs) ordered.push_back(pair.second);
+  return ordered;
+}
+
 // The mean is known to half its last digit alone, which is 3e-7 of the difference.
 TEST(UnequalRows, OfALargeMeanLoseNoDigitOfIt) {
   Rows rows{{10000000.2}, {1000000.2}};
@@ -220,6 +231,9 @@ TEST(UnequalRows, OfALargeMeanLoseNoDigitOfIt) {
     rows.a.insert(rows.a.end(), {10000000.1, 10000000.3});
     rows.b.insert(rows.b.end(), {1000000.1, 1000000.3});
   }
+  // Rows that alternate depend on each other.
+  rows.a = in_order_of(tests::lehmer_sums(2001, rows.a.size()), rows.a);
+  rows.b = in_order_of(tests::lehmer_sums(2002, rows.b.size()), rows.b);
   const Workplace place;
   const reports::Suite suite =
       judged(place, rows,

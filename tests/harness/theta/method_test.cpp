@@ -204,19 +204,5 @@ TEST(Method, MarginOnARatioIsItsLogarithm) {
   EXPECT_DOUBLE_EQ(margin_on_theta(asked->question("mean"), 0, tenth), 0.1);
 }
 
-// Their p-values are exact: an error of the reference's own has no place in them.
-TEST(Method, ThatIsExactRefusesAReferenceWithAnError) {
-  for (const char* claim :
-       {"mean(darts) == 3.1 +- 0.1, test: binomial", "mean(darts) <= 3.1 +- 0.1, test: betting"}) {
-    const std::string text = refusal([&] {
-      run_text(
-          "suite: s\nestimators:\n  darts: {plugin: analytic/dart_throwing}\n"
-          "tests:\n  - {claim: " +
-          std::string(claim) + "}\n");
-    });
-    EXPECT_NE(text.find("takes the reference for exact"), text.npos) << text;
-  }
-}
-
 }  // namespace
 }  // namespace assay::harness
