@@ -138,8 +138,9 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
       const stats::Range range = range_of(question, subject, channel, seen.moments);
       const bool low = ends.low && !std::isfinite(range.low);
       const bool high = ends.high && !std::isfinite(range.high);
-      if (low || high || !(range.low < range.high) || seen.values.empty()) return false;
       const bool constant = is_constant(question, subject, channel, seen.moments);
+      if (low || high || !(range.low < range.high)) return false;
+      if (seen.values.empty() && !constant) return false;
       if (question.of_two() && !constant) return false;
       const double mean = seen.moments.mean;
       hidden = hidden || constant || (ends.low && hides(seen.values, mean, range.low)) ||

@@ -68,6 +68,10 @@ std::string no_averages(const Subject& subject, const Pilot& single, const Pilot
         primaries.moments.count < primaries.values.size()) {
       continue;  // not finite: another fault
     }
+    constexpr double rounding = 1e-12;  // relative, of sums of primaries
+    if (primaries.moments.standard_deviation() <= rounding * std::abs(primaries.moments.mean)) {
+      continue;
+    }
     const std::uint64_t each = averaged.primaries;
     if (stats::averages_gate(primaries.values, means.values, each).state != stats::GateState::red) {
       continue;
@@ -135,9 +139,10 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
       .method = test.method ? find_method(question, *test.method) : methods_for(question).front(),
       .regions = regions_of(question),
       .gates_invalidate = !test.method};
+  const bool single = takes_single_primaries(question, pilots);
   for (const Subject& subject : question.subjects) {
-    const bool single = question.is().of_single_values && !subject.estimator->primaries;
-    plan.primaries.push_back(single ? 1 : primaries_of(subject, primaries));
+    const bool chosen = !single || subject.estimator->primaries;
+    plan.primaries.push_back(chosen ? primaries_of(subject, primaries) : 1);
   }
   plan.pilot_error = not_finite_in_pilot(question, pilots);
   plan.error = where_pilots_stopped(question, pilots);

@@ -21,12 +21,9 @@ bool chooses_primaries(const Subject& subject) {
   return subject.averages && subject.purpose.empty() && !subject.estimator->primaries;
 }
 
-/// Primaries that one question wants of one estimator. Bets are placed on single values: what a
-/// rare one takes, they win back from each.
+/// Primaries that one question wants of one estimator.
 std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& place,
                                std::size_t subject, const Pilots& pilots) {
-  if (question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots))
-    return 1;
   std::uint64_t wanted = least_primaries;
   if (!question.is().of_spread) return wanted;
   const double x = critical_value(smallest_level(question, place), two_sided(question));
@@ -42,12 +39,17 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
 
 }  // namespace
 
+bool takes_single_primaries(const Question& question, const Pilots& pilots) {
+  if (question.is().of_single_values) return true;
+  return question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots);
+}
+
 Primaries choose_primaries(const std::vector<Question>& questions,
                            const std::vector<FamilyPlace>& places, const Pilots& pilots) {
   Primaries chosen;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Question& question = questions[i];
-    if (question.is().of_single_values) continue;
+    if (takes_single_primaries(question, pilots)) continue;
     for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
       const Subject& side = question.subjects[subject];
       if (!chooses_primaries(side) || pilot_of(side, pilots) == nullptr) continue;

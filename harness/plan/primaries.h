@@ -21,4 +21,8 @@ Primaries choose_primaries(const std::vector<Question>& questions,
 /// Primaries of one subject: 1 for a sampler's draws, the suite's number, or the chosen one.
 std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen);
 
+/// True if an observation of the claim is a single primary. Bets take single values: what a rare
+/// one loses, they win back from each.
+bool takes_single_primaries(const Question& question, const Pilots& pilots);
+
 }  // namespace assay::harness
