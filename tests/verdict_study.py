@@ -28,7 +28,7 @@ from study import lower_limit, record_of
 
 ALPHA = BETA = 0.01
 NEVER = math.inf
-BASE = 1.0  # is added to every law, so that no margin is larger than its reference
+BASE = 10.0  # is added to every law, so that no margin is larger than its reference
 LAWS_OF_A_SUITE = 20  # alpha of a suite is 0.5 at most
 
 
@@ -200,7 +200,7 @@ def study(quantity, kind, arguments, library, folder, pool):
 def costs(arguments, library, folder, pool):
     """Observations of normal means to the verdict, over the fixed size of a known law."""
     z = statistics.NormalDist().inv_cdf
-    detect = 0.01
+    detect = 0.005
     fixed = ((z(1 - ALPHA / 2) + z(1 - BETA)) / detect) ** 2
     biases = (0, 0.5, 1, 5)
     lines = [estimator(f"x{i}", library, "raw", "normal", 1e-9 * i) for i in range(len(biases))]

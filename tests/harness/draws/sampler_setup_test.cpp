@@ -222,7 +222,7 @@ TEST(SamplerSetup, DrawsWhereTheDensityIs0HaveNumbersOfTheirOwn) {
       Stream random({7}, i);
       estimator->secondary(random, 1, out, cost);
       ++counts.at(static_cast<std::size_t>(out[1]));
-      beyond += out[0] > .4 + 1e-6 ? 1 : 0;
+      beyond += out[0] > .4 + 1e-6 ? 1U : 0U;
     }
     const auto impossible = density.impossible(counts);
     EXPECT_EQ(std::accumulate(impossible.begin(), impossible.end(), std::uint64_t{0}), beyond);
