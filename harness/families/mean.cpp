@@ -92,9 +92,11 @@ std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& plann
                                                      std::span<const double> secondaries) {
   const double mean = pilot.moments.mean;
   const double deviation = planned.standard_deviation;
-  const std::vector<double> few{mean - deviation, mean + deviation};
-  auto law = std::make_shared<stats::ValueCells>(
-      secondaries.size() >= fewest_of_a_law ? secondaries : std::span<const double>(few));
+  std::vector<double> values(secondaries.begin(), secondaries.end());
+  // The plan reports values that are not finite.
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.size() < fewest_of_a_law) values = {mean - deviation, mean + deviation};
+  auto law = std::make_shared<stats::ValueCells>(values);
   const double count = law->count();
   const double missed = std::log(100.0) / static_cast<double>(pilot.moments.count);
   for (const double end : {planned.range.low, planned.range.high}) {

@@ -28,7 +28,9 @@ constexpr std::uint64_t least_images = 2 * stats::least_replicates;
 /// Separates the observations that show whether an estimator averages. No sampler has this name.
 const std::string averages_purpose = "(averages)";
 
+/// A program that renders each observation is dear.
 std::uint64_t few_of(const PreparedEstimator& estimator) {
+  if (recorded::keeps_files(*estimator.setup)) return few_observations;
   return std::clamp(primaries_of_few / estimator.primaries.value_or(1), few_observations,
                     many_observations);
 }
