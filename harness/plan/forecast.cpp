@@ -187,7 +187,7 @@ stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_
 }  // namespace
 
 Forecast forecast(const TestOutcome& test, const Pilots& pilots) {
-  if (!test.plan.error.empty()) return {};
+  if (!test.plan.error.empty() || !test.plan.pilot_error.empty()) return {};
   if (!test.plan.invalid.empty()) {
     const Outlook invalid{.invalid = 1};
     return {.if_true = invalid, .if_off = invalid};

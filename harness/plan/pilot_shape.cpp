@@ -140,7 +140,8 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
       const bool high = ends.high && !std::isfinite(range.high);
       const bool constant = is_constant(question, subject, channel, seen.moments);
       if (low || high || !(range.low < range.high)) return false;
-      if (seen.values.empty() && !constant) return false;
+      // A pilot without finite values shows no mean.
+      if (seen.moments.count == 0 || (seen.values.empty() && !constant)) return false;
       if (question.of_two() && !constant) return false;
       const double mean = seen.moments.mean;
       hidden = hidden || constant || (ends.low && hides(seen.values, mean, range.low)) ||
