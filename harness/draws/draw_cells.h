@@ -13,9 +13,9 @@ namespace assay::harness {
 /// interval with fewer doubles has a cell for each.
 stats::PlaneGrid measure_grid(const Sampler& sampler);
 
-/// The same with each border moved at random, by one cell at most to either side. Borders
-/// beyond an end come back as far inside. A defect that
-/// repeats itself from cell to cell, such as a coarse rounding, would leave equal cells alone.
+/// The same with each border moved at random, by one cell at most to either side. Borders beyond an
+/// end come back as far inside. A defect that repeats itself from cell to cell, such as a coarse
+/// rounding, would leave equal cells alone.
 stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key);
 
 /// The cells of all lobes in turn, then one for each point mass, then one for draws without a

@@ -102,6 +102,10 @@ std::optional<std::uint64_t> planned_size(const Method& method, const ErrorShare
 
 }  // namespace
 
+RatioSide without_truth(const stats::Influence& influence) {
+  return {.influence = [influence](double) { return influence; }};
+}
+
 Evidence evidence_of(const LogRatio& ratio) {
   std::vector<Influence> known;
   double variance = 0;
@@ -161,8 +165,7 @@ std::optional<ThetaError> LogTheta::error(const Question& question, std::size_t 
     part = std::hypot(part, std::sqrt(*spread / count));
     // A drawn reference is new in every run.
     double& of_truth = question.has_reference_subject ? error.drawn : error.fixed;
-    of_truth =
-        std::hypot(of_truth, std::sqrt(spread_of_truth(question, i, channel, data) / count));
+    of_truth = std::hypot(of_truth, std::sqrt(spread_of_truth(question, i, channel, data) / count));
   }
   if (!question.references.empty()) {
     error.fixed = std::hypot(error.fixed, question.references[channel].standard_error);

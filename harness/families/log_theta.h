@@ -19,6 +19,9 @@ struct RatioSide {
   stats::UncertainReference truth = {};
 };
 
+/// A side that no truth enters.
+RatioSide without_truth(const stats::Influence& influence);
+
 /// Theta is ln(first / second / null), or ln(first / null), or minus that.
 struct LogRatio {
   std::vector<RatioSide> sides;

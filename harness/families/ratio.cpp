@@ -32,11 +32,6 @@ double log_null(const Question& question, std::size_t channel) {
   return std::log(question.of_two() ? question.factor : question.references[channel].value);
 }
 
-/// A quantity that no truth enters.
-RatioSide side_of(const stats::Influence& influence) {
-  return {.influence = [influence](double) { return influence; }};
-}
-
 stats::Influence cost_of(const Question& question, std::size_t subject, const ChannelData& data) {
   stats::Influence cost = stats::influence_of_mean(counted_cost(question, data).cost());
   cost.log_value -= std::log(question.subjects[subject].averaged(data.primaries));
@@ -47,7 +42,7 @@ Evidence cost_evidence(const Method&, const Question& question, std::size_t chan
                        std::span<const ChannelData> data) {
   LogRatio ratio{.sides = {}, .log_null = log_null(question, channel)};
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    ratio.sides.push_back(side_of(cost_of(question, i, data[i])));
+    ratio.sides.push_back(without_truth(cost_of(question, i, data[i])));
   }
   ratio.quantity = question.of_two() ? "ratio of costs" : "cost over the reference";
   return evidence_of(ratio);
@@ -68,7 +63,7 @@ Evidence total_variance_evidence(const Method&, const Question& question, std::s
                                  std::span<const ChannelData> data) {
   LogRatio ratio{.sides = {}, .log_null = log_null(question, channel)};
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    ratio.sides.push_back(side_of(total_variance_of(question, i, data[i])));
+    ratio.sides.push_back(without_truth(total_variance_of(question, i, data[i])));
   }
   ratio.quantity =
       question.of_two() ? "ratio of total variances" : "total variance over the reference";
@@ -88,7 +83,7 @@ RatioSide inverse_efficiency(const Question& question, std::size_t subject, std:
                              std::span<const ChannelData> data) {
   const JointMoments sample = counted_cost(question, data[subject]);
   const auto truth = truth_beside(question, subject, channel, data);
-  if (!truth) return side_of(stats::influence_of_variance_and_cost(sample));
+  if (!truth) return without_truth(stats::influence_of_variance_and_cost(sample));
   return {.influence = [sample](double t) { return stats::influence_of_error_and_cost(sample, t); },
           .truth = {.known = {truth->value, truth->standard_error}, .turn = sample.x().mean}};
 }

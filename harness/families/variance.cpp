@@ -65,8 +65,7 @@ Evidence of_any_values(const Method&, const Question& question, std::size_t chan
                  .log_null = std::log(null_of(question, channel, data)),
                  .quantity = quantity_of(question)};
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    const stats::Influence influence = stats::influence_of_variance(powers_of_values(data[i]));
-    ratio.sides.push_back({.influence = [influence](double) { return influence; }});
+    ratio.sides.push_back(without_truth(stats::influence_of_variance(powers_of_values(data[i]))));
   }
   return evidence_of(ratio);
 }

@@ -47,11 +47,6 @@ struct ComparedPair {
   double log_variance_p = 0;
 };
 
-/// Of a variance, by the four moments that are known.
-stats::Influence influence_of(const stats::Moments& x) {
-  return stats::influence_of_variance(stats::joint_of_four(x));
-}
-
 ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t channel) {
   const stats::Moments& x = first.channels[channel].moments;
   const stats::Moments& y = second.channels[channel].moments;
@@ -64,8 +59,8 @@ ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t 
   pair.row.log10_mean_p = pair.log_mean_p / std::log(10.0);
   // The variance of a primary and that of a secondary are two quantities.
   if (first.averages != second.averages) return pair;
-  pair.log_variance_p =
-      stats::log_p_two_sided(stats::influence_t(influence_of(x), influence_of(y), std::log(null)));
+  pair.log_variance_p = stats::log_p_two_sided(stats::influence_t(
+      stats::influence_of_variance(x), stats::influence_of_variance(y), std::log(null)));
   pair.row.variance_p = std::exp(pair.log_variance_p);
   pair.row.log10_variance_p = pair.log_variance_p / std::log(10.0);
   const double ratio = x.variance() / y.variance() / null;

@@ -52,7 +52,7 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
   if (moments.count < 2) return {};
   if (moments.m2 == 0) return {0.0, 0.0, 0.0};
   if (!has_spread(moments)) return {number(primaries * moments.variance()), {}, {}};
-  const stats::Influence influence = stats::influence_of_variance(stats::joint_of_four(moments));
+  const stats::Influence influence = stats::influence_of_variance(moments);
   const stats::Interval log = interval_by_inversion(
       [&](double theta) { return stats::influence_t(influence, theta); },
       {.estimate = influence.log_value, .step = influence.relative.standard_error()}, confidence);

@@ -124,12 +124,7 @@ void merge_coordinate(JointMoments::Coordinate& ours, const JointMoments::Coordi
 
 }  // namespace
 
-void JointMoments::Coordinate::move_mean(double step) {
-  const double added = rest + step;
-  const double moved = mean + added;
-  rest = added - (moved - mean);
-  mean = moved;
-}
+void JointMoments::Coordinate::move_mean(double step) { move_compensated(step, mean, rest); }
 
 void JointMoments::merge(const JointMoments& other) {
   if (other.count == 0) return;

@@ -52,12 +52,15 @@ struct Moments {
   void move_mean(double step);
 };
 
-inline void Moments::move_mean(double step) {
+// Moves a mean that keeps in `rest` what rounding takes from it (Kahan 1965).
+inline void move_compensated(double step, double& mean, double& rest) {
   const double added = rest + step;
   const double moved = mean + added;
   rest = added - (moved - mean);
   mean = moved;
 }
+
+inline void Moments::move_mean(double step) { move_compensated(step, mean, rest); }
 
 inline void Moments::add(double value) {
   const double before = static_cast<double>(count);

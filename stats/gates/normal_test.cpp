@@ -12,10 +12,4 @@ TestResult normal_test(NormalEstimate estimate) {
   return {z, {"normal", {}}, tails.lower, tails.upper, Exactness::asymptotic};
 }
 
-Interval normal_interval(NormalEstimate estimate, double confidence) {
-  const double half =
-      normal_quantile({Tail::upper, std::log((1 - confidence) / 2)}) * estimate.standard_error;
-  return {estimate.value - half, estimate.value + half, confidence};
-}
-
 }  // namespace assay::stats

@@ -13,7 +13,4 @@ struct NormalEstimate {
 // Null hypothesis: theta = 0 (<= 0, >= 0), by z = value / standard_error. Asymptotic.
 TestResult normal_test(NormalEstimate estimate);
 
-// Central interval of theta.
-Interval normal_interval(NormalEstimate estimate, double confidence);
-
 }  // namespace assay::stats

@@ -143,8 +143,6 @@ void ValueCells::add(double value, double weight) {
   mean_ += (value - mean_) * weight / count_;
 }
 
-double bet(std::size_t index) { return bets.at(index); }
-
 TestResult betting_mean(const ValueCells& x, Range range, double null_mean) {
   check_arguments(x, range, null_mean);
   return {x.mean() - null_mean,

@@ -39,10 +39,9 @@ class ValueCells {
 
 // Fixed bets: 1 - 2^-10, 7/8, 11/16 of the wealth, then 2^-1 to 2^-20 of it.
 inline constexpr std::size_t bet_count = 23;
-double bet(std::size_t index);
 
 // Null hypothesis: E (x_i | past) = null_mean, for values in a declared range and any n. It assumes
-// nothing of their law. Against "E x <= m" the wealth of constant bets l_k (bet()) is mixed:
+// nothing of their law. Against "E x <= m" the wealth of constant bets l_k is mixed:
 //   E = (1 / 23) sum_k prod_i (1 + l_k (x_i - m) / (m - low)).
 // Under the null E is a non-negative supermartingale that begins at 1. So p = min(1, 1 / E) is
 // valid at every look, however the looks are chosen (Ville 1939; Waudby-Smith & Ramdas 2024, J. R.

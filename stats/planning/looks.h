@@ -32,8 +32,8 @@ struct LookSchedule {
 
 // Errors over all looks. With two_sided, alpha is split over both sides. Beta has one side.
 //   unknown                 error / K
-//   independent_increments  Wang & Tsiatis's boundary with delta 1/4, times as parts of the last
-//   size anytime_valid           error
+//   independent_increments  Wang & Tsiatis's boundary with delta 1/4; sizes are the times
+//   anytime_valid           error
 // Throws std::domain_error: no size, sizes that do not ascend, errors outside (0, 1).
 LookSchedule schedule_looks(std::vector<std::uint64_t> sizes, LookLaw law, ErrorRates errors);
 

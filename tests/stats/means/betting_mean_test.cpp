@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -40,6 +41,12 @@ std::vector<double> fractions(int k, int n) {
 
 TestResult betting(const std::vector<double>& values, Range range, double null) {
   return betting_mean(ValueCells(values), range, null);
+}
+
+// The bets that the header names.
+double bet(std::size_t index) {
+  const std::array<double, 3> large{1 - 1 / 1024.0, 0.875, 0.6875};
+  return index < large.size() ? large[index] : std::pow(2.0, 2 - static_cast<double>(index));
 }
 
 // The products of the definition, value by value.
