@@ -13,5 +13,11 @@ if [ "${1-}" = --all ]; then
   shift
 fi
 install_packages suites/packages.txt tests/packages.txt
+# Node's own packages bring npm with them; Debian's do not.
+if ! command -v npm >/dev/null; then install_packages tests/viewer/packages.txt; fi
+# The viewer's bundle is committed; its tests rebuild it and open the page.
+if [ reports/viewer/package-lock.json -nt reports/viewer/node_modules/.package-lock.json ]; then
+  npm --prefix reports/viewer ci --no-audit --no-fund --loglevel=error
+fi
 build_project build all -- -DASSAY_TESTS=ON ${CI:+-DASSAY_WERROR=ON}
 ctest --test-dir build --output-on-failure --no-tests=error -j "$(nproc)" "${which[@]}" "$@"

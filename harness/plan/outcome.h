@@ -71,6 +71,7 @@ struct ChannelOutcome {
 struct ChannelHistory {
   std::vector<double> log_p_claimed = {};
   std::vector<double> log_p_forbidden = {};
+  std::vector<std::optional<reports::Effect>> effect = {};  ///< Absent where the look is void.
 };
 
 /// A test from claim to verdict. All but `history` is as of the last look.

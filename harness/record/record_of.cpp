@@ -161,6 +161,9 @@ std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& r
       look.p_pass = probability(forbidden);
       look.log10_p_pass = log10_of(forbidden);
     }
+    if (!outcome.channels.empty()) {
+      look.effect = outcome.history[outcome.channels[0].index].effect[k];
+    }
     looks.push_back(look);
   }
   return looks;

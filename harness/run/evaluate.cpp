@@ -120,12 +120,14 @@ void remember(TestOutcome& outcome, bool counts) {
   for (ChannelHistory& history : outcome.history) {
     history.log_p_claimed.push_back(0);
     history.log_p_forbidden.push_back(0);
+    history.effect.emplace_back();
   }
   for (ChannelOutcome& channel : outcome.channels) {
     ChannelHistory& history = outcome.history[channel.index];
     if (counts) {
       history.log_p_claimed.back() = channel.decision.log_p_claimed;
       history.log_p_forbidden.back() = channel.decision.log_p_forbidden;
+      history.effect.back() = channel.effect;
     }
     channel.decision = {.log_p_claimed = stats::log_p_over_looks(
                             outcome.plan.looks, history.log_p_claimed, channel.regions.two_sided()),

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/formats/ledger.h"
 #include "reports/words/describe.h"
 #include "reports/words/evidence.h"
-#include "reports/words/text.h"
+#include "reports/words/ledger.h"
 #include "reports/words/summary.h"
+#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {

@@ -10,8 +10,8 @@
 #include "reports/words/effect.h"
 #include "reports/words/evidence.h"
 #include "reports/words/number.h"
-#include "reports/words/text.h"
 #include "reports/words/summary.h"
+#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {

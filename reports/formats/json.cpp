@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/formats/base64.h"
+#include "reports/formats/display_fields.h"
 #include "reports/record/calibration.h"
 #include "reports/record/calibration_fields.h"
 #include "reports/record/fields.h"
@@ -27,6 +28,10 @@ class Writer {
   template <class T>
   void repeated(const char* key, const T& value) {
     object_[key] = tree(value);
+  }
+  template <class T>
+  void display(const T& value) {
+    object_["display"] = tree(reports::display(value));
   }
   Json take() { return std::move(object_); }
 
@@ -110,6 +115,8 @@ std::string printed(const Json& root) {
 }  // namespace
 
 std::string json(const Record& record) { return printed(tree(record)); }
+
+std::string compact_json(const Record& record) { return tree(record).dump(); }
 
 std::string json(const Calibration& calibration) { return printed(tree(calibration)); }
 

@@ -11,4 +11,7 @@ namespace assay::reports {
 /// "Infinity" or "-Infinity", never null. Text is clean (reports/text.h).
 std::string json(const Record&);
 
+/// The same without white space, for programs alone.
+std::string compact_json(const Record&);
+
 }  // namespace assay::reports

@@ -7,10 +7,10 @@
 #include <set>
 #include <utility>
 
-#include "reports/formats/ledger.h"
 #include "reports/words/describe.h"
 #include "reports/words/effect.h"
 #include "reports/words/evidence.h"
+#include "reports/words/ledger.h"
 #include "reports/words/number.h"
 #include "reports/words/summary.h"
 #include "reports/words/text.h"

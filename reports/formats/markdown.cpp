@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "reports/formats/ledger.h"
 #include "reports/words/describe.h"
 #include "reports/words/kill_matrix.h"
+#include "reports/words/ledger.h"
 #include "reports/words/number.h"
 #include "reports/words/statement_text.h"
-#include "reports/words/text.h"
 #include "reports/words/summary.h"
+#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {

@@ -52,6 +52,12 @@ class Reader {
     (*this)(key, unused);
   }
 
+  /// The sentences follow from the record: they are not read, and may be missing.
+  template <class T>
+  void display(const T&) {
+    known_.insert("display");
+  }
+
   void finish() const {
     for (const auto& item : object_.items()) {
       if (!known_.contains(item.key()))
@@ -211,13 +217,33 @@ Json parse(std::string_view text) {
   }
 }
 
+/// Adds the keys that version 2 has and version 1 had not.
+void upgrade(Json& root) {
+  const auto each = [](Json& node, const char* key, const auto& visit) {
+    if (!node.is_object() || !node.contains(key) || !node[key].is_array()) return;
+    for (Json& child : node[key]) visit(child);
+  };
+  const auto add_effect = [](Json& node) {
+    if (node.is_object()) node.emplace("effect", nullptr);
+  };
+  each(root, "suites", [&](Json& suite) {
+    each(suite, "tests", [&](Json& test) {
+      each(test, "looks", add_effect);
+      if (!test.is_object() || !test.contains("image") || !test["image"].is_object()) return;
+      each(test["image"], "groups", add_effect);
+      if (test["image"].contains("winner")) add_effect(test["image"]["winner"]);
+    });
+  });
+  root["schema"] = schema_version;
+}
+
 void check_version(const Json& root) {
   if (!root.is_object() || !root.contains("schema"))
     fail("", "not a record of assay: the key \"schema\" is missing");
   const Json& version = root["schema"];
-  if (version != schema_version)
+  if (version != 1 && version != schema_version)
     fail("schema",
-         fmt::format("written with version {} of the record, this program reads {}",
+         fmt::format("written with version {} of the record, this program reads 1 to {}",
                      version.is_number() ? version.dump() : version.type_name(), schema_version));
 }
 
@@ -239,8 +265,9 @@ void check_maps(const Record& record) {
 
 Record read_json(std::string_view text, std::string_view file_name) {
   try {
-    const Json root = parse(text);
+    Json root = parse(text);
     check_version(root);
+    if (root["schema"] == 1) upgrade(root);
     Record record;
     read(root, "", record);
     check_maps(record);

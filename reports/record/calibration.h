@@ -77,10 +77,7 @@ std::string verdict_sentence(const Calibration&);
 std::string console(const Calibration&);
 std::string markdown(const Calibration&);
 std::string json(const Calibration&);
-/// One page that needs nothing else: the rates over alpha drawn with their limits, and the tables.
+/// The viewer's page: the rates over alpha drawn with their limits, and the tables.
 std::string html(const Calibration&);
-
-/// The rates of one alpha over alpha, a row a cell: inline SVG.
-std::string calibration_chart(const Calibration&, double alpha);
 
 }  // namespace assay::reports

@@ -1,7 +1,8 @@
 #pragma once
 
 // The keys of the JSON record, once, in their order. An archive is called with a key and a member;
-// writing and reading are two archives, so they cannot disagree. Not part of the public interface.
+// writing and reading are two archives, so they cannot disagree. An archive's display() stands for
+// the sentences that follow from the record: they are written for readers, never read.
 
 #include "reports/record/fields_image.h"
 #include "reports/record/maybe_const.h"
@@ -152,6 +153,7 @@ void fields(Archive& a, T& look) {
   a("log10_p", look.log10_p);
   a("p_pass", look.p_pass);
   a("log10_p_pass", look.log10_p_pass);
+  a("effect", look.effect);
 }
 
 template <class Archive, maybe_const<Test> T>
@@ -197,6 +199,7 @@ void fields(Archive& a, T& test) {
   a("maps", test.maps);
   a("message", test.message);
   a("replay", test.replay);
+  a.display(test);
 }
 
 template <class Archive, maybe_const<EstimatorChannel> T>
@@ -264,6 +267,7 @@ void fields(Archive& a, T& suite) {
   a("tests", suite.tests);
   a("statements", suite.statements);
   a.repeated("answers", answers(suite));
+  a.display(suite);
 }
 
 template <class Archive, maybe_const<LedgerNight> T>
@@ -375,6 +379,7 @@ void fields(Archive& a, T& record) {
   a("suites", record.suites);
   a("ledger", record.ledger);
   a("shard", record.shard);
+  a.display(record);
 }
 
 }  // namespace assay::reports

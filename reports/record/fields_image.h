@@ -19,6 +19,7 @@ void fields(Archive& a, T& finding) {
   a("z", finding.z);
   a("log10_p", finding.log10_p);
   a("log10_p_adjusted", finding.log10_p_adjusted);
+  a("effect", finding.effect);
 }
 
 template <class Archive, maybe_const<Image> T>

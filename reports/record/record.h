@@ -10,12 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "reports/record/record_effect.h"
 #include "reports/record/record_image.h"
 #include "reports/record/record_ledger.h"
 
 namespace assay::reports {
 
-inline constexpr int schema_version = 1;
+inline constexpr int schema_version = 2;
 
 /// The verdict of a test. `skipped` was not run (another shard's).
 enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };
@@ -91,23 +92,6 @@ struct Sample {
   bool operator==(const Sample&) const = default;
 };
 
-/// A number with its interval at `confidence`.
-struct Estimate {
-  Number value, low, high;
-  bool operator==(const Estimate&) const = default;
-};
-
-/// theta of the claim: its estimate, and the interval that the verdict rests on. A fail, and a pass
-/// that excludes nothing, have the confidence 1 - the share of alpha. It is 1 - 2 x the share of
-/// beta where a region is excluded, or should have been.
-struct Effect {
-  std::string quantity;  ///< "relative difference of means", "ln variance ratio", …
-  Number estimate, low, high;
-  double confidence = 0;
-  bool relative = false;  ///< in units of the reference: shown in per cent
-  bool operator==(const Effect&) const = default;
-};
-
 /// An assumption checked. state: green, amber, red.
 struct Gate {
   std::string name;
@@ -169,6 +153,7 @@ struct Look {
   Number log10_p;
   Number p_pass;
   Number log10_p_pass;
+  std::optional<Effect> effect;  ///< that of the worst channel; absent if the look is void
   bool operator==(const Look&) const = default;
 };
 

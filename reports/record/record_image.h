@@ -3,10 +3,12 @@
 // The part of the record that tells of images: what speaks against their equality, and maps.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "reports/record/optional_number.h"
+#include "reports/record/record_effect.h"
 
 namespace assay::reports {
 
@@ -18,7 +20,8 @@ struct ImageFinding {
   std::string component;
   Number z;  ///< positive where the first image is brighter; of the energy: one-sided
   Number log10_p;
-  Number log10_p_adjusted;  ///< in the family of everything that was looked at in the image
+  Number log10_p_adjusted;       ///< in the family of everything that was looked at in the image
+  std::optional<Effect> effect;  ///< relative difference of the sums over the rectangle
   bool operator==(const ImageFinding&) const = default;
 };
 

@@ -6,10 +6,10 @@
 
 namespace assay::reports {
 
-/// The record as one page without network or fonts; it can be read without its script. It begins
-/// with the answers to statements and the verdicts of all suites. Each suite follows with its
-/// estimators, their pairs, and every test with charts, numbers and replay command. The page has a
-/// light, a dark and a printed look, and is well-formed XML.
+/// The record as one page without network or fonts. The page is the viewer's bundle and the record
+/// with its pictures, packed (pictures.h), compressed and in base64. A reader without scripts sees
+/// the Markdown tables. The Content-Security-Policy lets the bundle's own script and style run, no
+/// others.
 std::string html(const Record&);
 
 }  // namespace assay::reports

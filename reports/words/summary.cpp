@@ -18,8 +18,9 @@ void for_each_test(const Record& record, Visitor visit) {
   }
 }
 
-std::string of_tests(int some, int total) {
-  return fmt::format("{} of {}", some, counted(static_cast<std::uint64_t>(total), "test", "tests"));
+std::string of_claims(int some, int total) {
+  return fmt::format("{} of {}", some,
+                     counted(static_cast<std::uint64_t>(total), "claim", "claims"));
 }
 
 }  // namespace
@@ -52,15 +53,17 @@ std::string verdict_text(const Test& test) {
 
 std::string tally_sentence(const Tally& tally) {
   const int total = tally.passed + tally.failed + tally.inconclusive + tally.skipped;
-  if (total == 0) return "No test ran";
-  if (tally.failed > 0) return of_tests(tally.failed, total) + " not ok";
+  if (total == 0) return "No claim was tested";
+  if (tally.failed > 0) return of_claims(tally.failed, total) + " broken";
   if (tally.inconclusive > 0)
-    return of_tests(tally.inconclusive, total) + " undecided, none not ok";
-  if (total == 1) return tally.skipped > 0 ? "The test was not run" : "The test is ok";
-  if (tally.skipped == total) return fmt::format("None of {} tests was run", total);
+    return of_claims(tally.inconclusive, total) + " undecided, none broken";
+  if (total == 1)
+    return tally.skipped > 0 ? "The claim was not tested" : "The claim is as it should be";
+  if (tally.skipped == total) return fmt::format("None of {} claims was tested", total);
   if (tally.skipped > 0)
-    return fmt::format("{} ok, {} not run", of_tests(tally.passed, total), tally.skipped);
-  return fmt::format("All {} tests ok", total);
+    return fmt::format("{} as they should be, {} not tested", of_claims(tally.passed, total),
+                       tally.skipped);
+  return fmt::format("All {} claims are as they should be", total);
 }
 
 std::string last_line_note(const Record& record) {

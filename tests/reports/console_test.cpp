@@ -105,7 +105,7 @@ TEST(Console, TheSummarySaysInWordsWhatTheRunConcluded) {
   const std::string text = console(example_record());
   EXPECT_NE(
       text.find(
-          "5 of 13 tests not ok in 1 min 23 s. Verdicts: 1 pass, but fail expected; 1 error;"),
+          "5 of 13 claims broken in 1 min 23 s. Verdicts: 1 pass, but fail expected; 1 error;"),
       std::string::npos);
   EXPECT_NE(text.find("some test would fail by chance with probability 0.015 at most"),
             std::string::npos);

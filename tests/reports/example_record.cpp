@@ -281,24 +281,4 @@ Record example_record() {
   return r;
 }
 
-Record forty_estimators() {
-  Record r = example_record();
-  r.note.clear();
-  Suite s;
-  s.name = "forty estimators";
-  s.file = "suites/forty.yaml";
-  s.seed = 1;
-  s.alpha = s.beta = 0.01;
-  for (int i = 0; i < 40; ++i) {
-    const std::string name =
-        "technique_" + std::to_string(i) + (i % 7 == 3 ? "_with_a_longer_name" : "");
-    s.estimators.push_back(summary(
-        {name.c_str(), 0.481 + 0.0001 * (i % 3) + (i == 17 ? 0.1 : 0), 0.01 * (1 + i % 9)}));
-  }
-  compare_all(s);
-  s.tests = {passing()};
-  r.suites = {s};
-  return r;
-}
-
 }  // namespace assay::reports

@@ -11,7 +11,4 @@ namespace assay::reports {
 /// Three suites, about twenty tests. Every member differs from its default somewhere.
 Record example_record();
 
-/// One suite of forty estimators with all their pairs.
-Record forty_estimators();
-
 }  // namespace assay::reports

@@ -196,7 +196,8 @@ ImageFinding finding(const std::string& statistic, const std::string& place, dou
           .component = "green",
           .z = z,
           .log10_p = -46.25,
-          .log10_p_adjusted = -44.63827216398241};
+          .log10_p_adjusted = -44.63827216398241,
+          .effect = Effect{"relative difference", -0.0162, -0.0227, -0.0097, 0.99, true}};
 }
 
 void add_image(Test& t) {
@@ -290,8 +291,8 @@ Test undecided() {
   t.channels[0].log10_p = -1.1938200260161129;
   t.gates[0] = {"skewness", 1.7, 1.25, "amber"};
   t.planned_looks = {1024, 4096, 16384};
-  t.looks = {{1024, 1e-5, 8e-5, -0.31, 0.7, -0.155},
-             {4096, 0.0002, 0.002, -0.85, 0.45, -0.347},
+  t.looks = {{1024, 1e-5, 8e-5, -0.31, 0.7, -0.155, mean_effect(-0.09, 0.2)},
+             {4096, 0.0002, 0.002, -0.85, 0.45, -0.347, mean_effect(-0.05, 0.11)},
              {16384, 0.0012, 0.009, -1.19, std::nullopt, std::nullopt}};
   t.message = "the budget ended; about 2.3 M more observations would decide";
   return t;

@@ -16,7 +16,6 @@
 #include "reports/formats/markdown.h"
 #include "reports/formats/metrics.h"
 #include "reports/record/file.h"
-#include "reports/viewer/html.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {
@@ -56,8 +55,6 @@ TEST(Approved, MarkdownIsAsApproved) { compare("report.md", markdown(example_rec
 TEST(Approved, ConsoleIsAsApproved) { compare("console.txt", console(example_record())); }
 
 TEST(Approved, MetricsAreAsApproved) { compare("metrics.txt", metrics(example_record())); }
-
-TEST(Approved, HtmlIsAsApproved) { compare("report.html", html(example_record())); }
 
 }  // namespace
 }  // namespace assay::reports

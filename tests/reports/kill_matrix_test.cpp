@@ -4,8 +4,6 @@
 
 #include "reports/formats/console.h"
 #include "reports/formats/markdown.h"
-#include "reports/viewer/charts.h"
-#include "reports/viewer/html.h"
 #include "reports/words/columns.h"
 #include "reports/words/kill_text.h"
 
@@ -175,26 +173,10 @@ TEST(KillMatrix, ReportsShowItOnlyWhereAMutantWasTestedByTwoMethods) {
   Suite not_shown = shown;
   not_shown.tests.pop_back();
   constexpr const char* heading = "Which method sees which defect";
-  EXPECT_NE(html(record_of(shown)).find(heading), std::string::npos);
   EXPECT_NE(markdown(record_of(shown)).find("| one | 1.28\u00A0M | "), std::string::npos);
   EXPECT_NE(console(record_of(shown)).find("1 of 1 mutants are killed."), std::string::npos);
-  EXPECT_EQ(html(record_of(not_shown)).find(heading), std::string::npos);
   EXPECT_EQ(markdown(record_of(not_shown)).find(heading), std::string::npos);
   EXPECT_EQ(console(record_of(not_shown)).find("mutants are killed"), std::string::npos);
-  EXPECT_TRUE(kill_chart(not_shown, kill_matrix(not_shown)).empty());
-}
-
-TEST(KillMatrix, ThePictureIsPalerWhereMoreSamplesWereNeeded) {
-  Suite suite = two_methods();
-  const auto style = [&](std::uint64_t secondaries) {
-    suite.tests[0].samples[0].secondaries = secondaries;
-    const std::string chart = kill_chart(suite, kill_matrix(suite));
-    return chart.substr(chart.find("<rect class=\"") + 13, 7);
-  };
-  EXPECT_EQ(style(15), "kill k0");     // 960
-  EXPECT_EQ(style(16), "kill k1");     // 1024
-  EXPECT_EQ(style(15625), "kill k4");  // a million
-  EXPECT_EQ(style(UINT64_MAX / 64), "kill k5");
 }
 
 TEST(KillMatrix, NoLineOfTheConsoleIsWiderThanAskedForAndNoNumberIsCut) {

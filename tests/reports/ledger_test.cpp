@@ -1,4 +1,4 @@
-#include "reports/formats/ledger.h"
+#include "reports/words/ledger.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,6 @@
 #include "reports/formats/junit.h"
 #include "reports/formats/markdown.h"
 #include "reports/formats/read_json.h"
-#include "reports/viewer/html.h"
 #include "reports/words/number.h"
 #include "tests/reports/example_record.h"
 
@@ -69,8 +68,6 @@ TEST(LedgerReports, EveryFormatShowsAnAlarm) {
   EXPECT_THAT(markdown(record), HasSubstr("; 1 ledger alarm\n"));
   EXPECT_THAT(markdown(record), HasSubstr("**alarm**"));
   EXPECT_THAT(junit(record), HasSubstr("type=\"alarm\""));
-  EXPECT_THAT(html(record), HasSubstr("id=\"ledger\""));
-  EXPECT_THAT(html(record), HasSubstr("✗ alarm"));
 }
 
 TEST(LedgerReports, NoFormatShowsAnAlarmWhereThereIsNone) {
@@ -80,7 +77,6 @@ TEST(LedgerReports, NoFormatShowsAnAlarmWhereThereIsNone) {
     EXPECT_THAT(text, Not(HasSubstr("1 ledger alarm")));
     EXPECT_THAT(text, Not(HasSubstr("type=\"alarm\"")));
   }
-  EXPECT_THAT(html(record), Not(HasSubstr("✗ alarm")));
 }
 
 TEST(LedgerReports, NothingIsSaidWhereNoLedgerIsKept) {
@@ -89,13 +85,6 @@ TEST(LedgerReports, NothingIsSaidWhereNoLedgerIsKept) {
   for (const std::string& text : {console(record), markdown(record), junit(record)}) {
     EXPECT_THAT(text, Not(HasSubstr("Ledger")));
   }
-  EXPECT_THAT(html(record), Not(HasSubstr("id=\"ledger\"")));
-}
-
-TEST(LedgerReports, ACleanPageIsNoPassWithAnAlarm) {
-  Record record = example_record();
-  record.suites.clear();
-  EXPECT_THAT(html(record), HasSubstr("<h1 class=\"failed\">"));
 }
 
 TEST(LedgerReports, JsonReadsBack) {

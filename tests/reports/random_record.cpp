@@ -36,6 +36,8 @@ class Randomise {
   }
   template <class T>
   void repeated(const char*, const T&) {}
+  template <class T>
+  void display(const T&) {}
 
  private:
   static void fill(double& value) { value = *any_double(); }

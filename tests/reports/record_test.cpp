@@ -33,11 +33,11 @@ TEST(Tally, CountsEveryTestOnce) {
   EXPECT_EQ(counts.failed, 5);
   EXPECT_EQ(counts.inconclusive, 2);
   EXPECT_EQ(counts.skipped, 1);
-  EXPECT_EQ(tally_sentence(counts), "5 of 13\u00A0tests not ok");
-  EXPECT_EQ(tally_sentence({}), "No test ran");
-  EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 tests ok");
+  EXPECT_EQ(tally_sentence(counts), "5 of 13\u00A0claims broken");
+  EXPECT_EQ(tally_sentence({}), "No claim was tested");
+  EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 claims are as they should be");
   EXPECT_EQ(tally_sentence({.passed = 3, .inconclusive = 1}),
-            "1 of 4\u00A0tests undecided, none not ok");
+            "1 of 4\u00A0claims undecided, none broken");
 }
 
 Sample drawn(const std::string& stream, std::uint64_t primaries, std::uint64_t secondaries) {

@@ -39,14 +39,15 @@ TEST(Verdicts, ARunIsSummedUpInWords) {
 }
 
 TEST(Verdicts, ATallyAgreesWithItsNumber) {
-  EXPECT_EQ(tally_sentence({.failed = 1}), "1 of 1\u00A0test not ok");
-  EXPECT_EQ(tally_sentence({.passed = 1}), "The test is ok");
-  EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 tests ok");
-  EXPECT_EQ(tally_sentence({.passed = 1, .skipped = 2}), "1 of 3\u00A0tests ok, 2 not run");
+  EXPECT_EQ(tally_sentence({.failed = 1}), "1 of 1\u00A0claim broken");
+  EXPECT_EQ(tally_sentence({.passed = 1}), "The claim is as it should be");
+  EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 claims are as they should be");
+  EXPECT_EQ(tally_sentence({.passed = 1, .skipped = 2}),
+            "1 of 3\u00A0claims as they should be, 2 not tested");
   EXPECT_EQ(tally_sentence({.passed = 1, .inconclusive = 2}),
-            "2 of 3\u00A0tests undecided, none not ok");
-  EXPECT_EQ(tally_sentence({.skipped = 2}), "None of 2 tests was run");
-  EXPECT_EQ(tally_sentence({}), "No test ran");
+            "2 of 3\u00A0claims undecided, none broken");
+  EXPECT_EQ(tally_sentence({.skipped = 2}), "None of 2 claims was tested");
+  EXPECT_EQ(tally_sentence({}), "No claim was tested");
 }
 
 TEST(Verdicts, TheErrorRatesOfARunAreThoseOfItsSuitesTogether) {

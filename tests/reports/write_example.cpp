@@ -1,5 +1,4 @@
-// Writes the example reports to a folder, to be looked at in a browser:
-//   write_example FOLDER
+// Writes pages of made-up records into a folder: write_example FOLDER.
 
 #include <filesystem>
 #include <iostream>
@@ -7,6 +6,7 @@
 #include "reports/record/file.h"
 #include "reports/viewer/html.h"
 #include "tests/reports/example_record.h"
+#include "tests/reports/large_records.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -14,8 +14,12 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::filesystem::path folder = argv[1];
+  std::filesystem::create_directories(folder);
   using namespace assay::reports;
   write_whole(folder / "example.html", html(example_record()));
-  write_whole(folder / "forty.html", html(forty_estimators()));
+  write_whole(folder / "many.html", html(many_claims(1508)));
+  write_whole(folder / "ellipse.html", html(planted_ellipse()));
+  write_whole(folder / "hot.html", html(hot_pixel()));
+  write_whole(folder / "calibration.html", html(small_calibration()));
   return 0;
 }

@@ -1,0 +1,69 @@
+// What broke: a card a suspect, and a card a ledger's alarm.
+import { useContext } from "preact/hooks";
+import { NightsChart } from "./charts";
+import { Copy } from "./claims";
+import { ImageViewer } from "./image";
+import { PageContext } from "./page";
+import type { Suspect, Test } from "./record";
+import { link } from "./state";
+
+const most = 12; // cards; the list of claims has the rest
+
+function Card({ suspect }: { suspect: Suspect }) {
+  const page = useContext(PageContext);
+  const tests = suspect.tests.flatMap((id) => page.test.get(id) ?? []);
+  const first: Test | undefined = tests.find((test) => test.image) ?? tests[0];
+  if (!first) return null;
+  const others = tests.filter((test) => test !== first);
+  return (
+    <article class="card">
+      <h3>
+        {suspect.name} <span class="quiet">{suspect.sentence}</span>
+      </h3>
+      <p class="sentence">{first.display.sentence}</p>
+      {first.image && <ImageViewer test={first} pictures={page.pictures.get(first.id) ?? []} />}
+      <p class="quiet">
+        <a href={link({ open: [first.id] })}>Details</a>
+        {others.length > 0 && " · Also: "}
+        {others.slice(0, 8).map((test, i) => (
+          <span key={test.id}>
+            {i > 0 && ", "}
+            <a href={link({ open: [test.id] })}>{test.name}</a>
+          </span>
+        ))}
+        {others.length > 8 && ` and ${others.length - 8} more`}
+      </p>
+      <Copy command={first.replay} />
+    </article>
+  );
+}
+
+export function WhatBroke() {
+  const { record } = useContext(PageContext);
+  const { suspects } = record.display;
+  const alarms = record.ledger.series.flatMap((series, i) => (series.alarm ? [{ series, words: record.display.series[i] }] : []));
+  if (suspects.length === 0 && alarms.length === 0) return null;
+  return (
+    <section aria-label="What broke">
+      <h2>What broke</h2>
+      {suspects.slice(0, most).map((suspect) => (
+        <Card key={`${suspect.suite} ${suspect.name}`} suspect={suspect} />
+      ))}
+      {suspects.length > most && (
+        <p>
+          <a href={link({ show: "broken" })}>{suspects.length - most} more suspects are in the list of broken claims.</a>
+        </p>
+      )}
+      {alarms.map(({ series, words }) => (
+        <article class="card" key={words?.name}>
+          <h3>
+            {words?.name} <span class="quiet">drifted</span>
+          </h3>
+          <p class="sentence">{words?.alarm}.</p>
+          <NightsChart series={series} />
+          <p class="quiet">{words?.sentence}</p>
+        </article>
+      ))}
+    </section>
+  );
+}

@@ -1,0 +1,212 @@
+// Charts by Observable Plot, drawn when they are looked at.
+import { areaY, dot, line, plot, rectY, ruleX, ruleY, text, type PlotOptions } from "@observablehq/plot";
+import { useEffect, useRef } from "preact/hooks";
+import { finite, type Channel, type Estimator, type Sample, type Series, type Test } from "./record";
+
+const percent = new Intl.NumberFormat("en", { style: "percent", maximumSignificantDigits: 3 });
+const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
+
+export function Chart({ options, label, caption }: { options: PlotOptions; label: string; caption: string }) {
+  const place = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const drawn = plot({
+      width: 340,
+      height: 190,
+      marginLeft: 52,
+      className: "plot",
+      ariaLabel: label,
+      ...options,
+    });
+    // The page's policy forbids Plot's own style element; style.css holds its rules.
+    for (const style of drawn.querySelectorAll("style")) style.remove();
+    drawn.setAttribute("role", "img");
+    for (const part of drawn.querySelectorAll("[aria-label]")) part.removeAttribute("aria-label");
+    place.current?.replaceChildren(drawn);
+  }, [options]);
+  return (
+    <figure style={{ width: `${options.width ?? 340}px` }}>
+      <div ref={place} />
+      <figcaption>{caption}</figcaption>
+    </figure>
+  );
+}
+
+export function HistogramChart({ sample, channel }: { sample: Sample; channel: Channel | undefined }) {
+  const { low, high, counts } = sample.histogram;
+  const from = finite(low);
+  const to = finite(high);
+  if (from === null || to === null || counts.length === 0 || !(to > from)) return null;
+  const step = (to - from) / counts.length;
+  const bins = counts.map((count, i) => ({ x1: from + i * step, x2: from + (i + 1) * step, count }));
+  const mean = finite(sample.mean);
+  const reference = finite(channel?.reference);
+  const caption =
+    `${sample.estimator}: ${short.format(sample.secondaries)} observations. ` +
+    `Solid: their mean.${reference === null ? "" : " Dashed: what is claimed."}`;
+  return (
+    <Chart
+      label={`Histogram of ${sample.estimator}`}
+      caption={caption}
+      options={{
+        x: { label: null, ticks: 4 },
+        y: { label: null, axis: null },
+        marks: [
+          rectY(bins, { x1: "x1", x2: "x2", y: "count", fill: "var(--mark)", fillOpacity: 0.55, inset: 0.3 }),
+          ruleY([0]),
+          ...(mean === null ? [] : [ruleX([mean], { stroke: "var(--ink)", strokeWidth: 2 })]),
+          ...(reference === null
+            ? []
+            : [ruleX([reference], { stroke: "var(--ink)", strokeWidth: 2, strokeDasharray: "5 3" })]),
+        ],
+      }}
+    />
+  );
+}
+
+export function LooksChart({ test }: { test: Test }) {
+  const points = test.looks.flatMap((look) => {
+    const value = finite(look.effect?.estimate);
+    if (value === null) return [];
+    const low = finite(look.effect?.low);
+    const high = finite(look.effect?.high);
+    return [{ count: look.secondaries, value, low: low ?? value, high: high ?? value }];
+  });
+  if (points.length < 2) return null;
+  const unit = finite(test.detect);
+  return (
+    <Chart
+      label="Estimate after each look"
+      caption={`The estimate and its interval after each look, by observations.${unit ? " Band: what need not be caught." : ""}`}
+      options={{
+        x: { type: "log", label: null, ticks: 4, tickFormat: (n: number) => short.format(n) },
+        y: {
+          label: null,
+          ticks: 5,
+          tickFormat: test.effect.relative ? (n: number) => percent.format(n) : undefined,
+        },
+        marks: [
+          ...(unit
+            ? [areaY(points, { x: "count", y1: -unit, y2: unit, fill: "var(--good)", fillOpacity: 0.15, clip: true })]
+            : []),
+          ruleY([0], { stroke: "var(--muted)" }),
+          ruleX(points, { x: "count", y1: "low", y2: "high", stroke: "var(--mark)", strokeWidth: 1.5 }),
+          line(points, { x: "count", y: "value", stroke: "var(--mark)" }),
+          dot(points, { x: "count", y: "value", fill: "var(--mark)", r: 3 }),
+        ],
+      }}
+    />
+  );
+}
+
+export function QuantileChart({ sample }: { sample: Sample }) {
+  const points = sample.quantiles.flatMap(({ normal, observed }) => {
+    const x = finite(normal);
+    const y = finite(observed);
+    return x === null || y === null ? [] : [{ x, y }];
+  });
+  if (points.length === 0) return null;
+  return (
+    <Chart
+      label={`Quantiles of ${sample.estimator}`}
+      caption={`${sample.estimator}: quantiles against those of a normal law. A straight line is normal.`}
+      options={{
+        x: { label: null },
+        y: { label: null },
+        marks: [dot(points, { x: "x", y: "y", r: 2, fill: "var(--mark)" })],
+      }}
+    />
+  );
+}
+
+export function LawsChart({ channel }: { channel: Channel }) {
+  const points = channel.laws.flatMap(({ source, points }) =>
+    points.map((p) => ({
+      source,
+      value: finite(p.value),
+      observed: finite(p.observed),
+      low: finite(p.low),
+      high: finite(p.high),
+      law: finite(p.law),
+    })),
+  );
+  if (points.length === 0) return null;
+  const claimed = points.filter((p) => p.law !== null);
+  return (
+    <Chart
+      label="Distribution functions"
+      caption={`Part of the values up to x, with the band that holds the law.${claimed.length ? " Dashed: the claimed law." : ""}`}
+      options={{
+        x: { label: null, ticks: 5 },
+        y: { label: null, domain: [0, 1] },
+        color: { range: ["var(--mark)", "var(--other)"] },
+        marks: [
+          areaY(points, { x: "value", y1: "low", y2: "high", fill: "source", fillOpacity: 0.2 }),
+          line(points, { x: "value", y: "observed", stroke: "source" }),
+          line(claimed, { x: "value", y: "law", stroke: "var(--ink)", strokeDasharray: "5 3" }),
+        ],
+      }}
+    />
+  );
+}
+
+export function NightsChart({ series }: { series: Series }) {
+  const nights = series.nights.flatMap((night) => {
+    const value = finite(night.estimate);
+    if (value === null) return [];
+    const date = new Date(night.date);
+    return [{ date, value, low: finite(night.low) ?? value, high: finite(night.high) ?? value }];
+  });
+  if (nights.length === 0) return null;
+  const all = finite(series.estimate);
+  const moved = series.moved ? [new Date(series.moved)] : [];
+  return (
+    <Chart
+      label={`Nights of ${series.test}`}
+      caption={`A point a night with its interval. Dashed: all nights together.${moved.length ? ` Upright: the night it moved, commit ${series.moved_commit}.` : ""}`}
+      options={{
+        width: 640,
+        x: { type: "utc", label: null },
+        y: { label: null, tickFormat: series.relative ? (n: number) => percent.format(n) : undefined },
+        marks: [
+          ruleY([0], { stroke: "var(--muted)" }),
+          ruleX(moved, { stroke: "var(--bad)", strokeWidth: 2 }),
+          ...(all === null ? [] : [ruleY([all], { stroke: "var(--ink)", strokeDasharray: "5 3" })]),
+          ruleX(nights, { x: "date", y1: "low", y2: "high", stroke: "var(--mark)" }),
+          dot(nights, { x: "date", y: "value", fill: "var(--mark)", r: 3 }),
+        ],
+      }}
+    />
+  );
+}
+
+/// Cost of a primary estimate against its variance. Lines join equal efficiency.
+export function PlaneChart({ estimators }: { estimators: Estimator[] }) {
+  const points = estimators.flatMap(({ name, cost, primaries, secondaries, channels }) => {
+    const rays = cost.camera_rays + cost.closest_hit_rays + cost.shadow_rays;
+    const each = (rays || cost.samples) / (primaries * secondaries || 1);
+    const variance = finite(channels[0]?.variance.value);
+    return each > 0 && variance !== null && variance > 0 ? [{ name, each, variance }] : [];
+  });
+  if (points.length < 2) return null;
+  const costs = points.map((p) => p.each);
+  const ends = [Math.min(...costs) / 2, Math.max(...costs) * 2];
+  const lines = points.flatMap((p, z) => ends.map((x) => ({ z, x, y: (p.each * p.variance) / x })));
+  return (
+    <Chart
+      label="Cost against variance"
+      caption="Cost of a primary estimate (across) against its variance. Lines of equal efficiency: further down is better."
+      options={{
+        width: 640,
+        height: 320,
+        marginRight: 120,
+        x: { type: "log", label: null, ticks: 4, tickFormat: (n: number) => short.format(n) },
+        y: { type: "log", label: null, ticks: 4, tickFormat: (n: number) => short.format(n) },
+        marks: [
+          line(lines, { x: "x", y: "y", z: "z", stroke: "var(--muted)", strokeOpacity: 0.4, clip: true }),
+          dot(points, { x: "each", y: "variance", fill: "var(--mark)", r: 4 }),
+          text(points, { x: "each", y: "variance", text: "name", dx: 7, textAnchor: "start", fill: "var(--ink)" }),
+        ],
+      }}
+    />
+  );
+}

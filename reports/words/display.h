@@ -1,0 +1,95 @@
+#pragma once
+
+// Every report says the same of a record in words. The JSON record holds them as `display`.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/record/record.h"
+#include "reports/words/describe.h"
+
+namespace assay::reports {
+
+/// The groups that a reader sorts claims by.
+enum class Standing { broken, undecided, holds, caught, not_run };
+
+/// "broken", "undecided", "holds", "caught", "not run".
+const char* to_string(Standing);
+
+/// A planted bug is caught where the test is ok and its expected verdict is not pass.
+Standing standing(const Test&);
+
+struct TestDisplay {
+  std::string standing;
+  std::string verdict;   ///< "pass", "fail (as expected)"
+  std::string sentence;  ///< what was found, without a p-value
+  std::string effect;    ///< "+1.07 %"; empty where there is none
+  std::string interval;  ///< "+0.06 % to +2.1 %"
+  std::string margin;    ///< "0.5 %": what must be caught
+  std::string chance;    ///< "1 in 17,000": the chance of such data if nothing is wrong
+  std::string place;
+  std::string cost;
+  std::vector<Fact> facts;
+};
+TestDisplay display(const Test&);
+
+struct KillCellDisplay {
+  std::string test;  ///< id
+  std::string text;
+  std::string sentence;
+  bool killed = false;
+};
+struct KillRowDisplay {
+  std::string mutant;
+  std::string defect;
+  std::vector<std::optional<KillCellDisplay>> cells;
+};
+struct KillDisplay {
+  std::vector<std::string> methods;
+  std::vector<KillRowDisplay> rows;
+  std::string totals;
+  std::string legend;
+};
+struct StatementDisplay {
+  std::string answer;
+  std::string holds;
+  std::string fails;
+};
+struct SuiteDisplay {
+  std::string levels;
+  std::optional<KillDisplay> kills;
+  std::vector<StatementDisplay> statements;
+};
+SuiteDisplay display(const Suite&);
+
+/// The estimator that the most broken claims share, with these claims. A broken claim without a
+/// sample is a suspect by itself.
+struct Suspect {
+  std::string suite;
+  std::string name;
+  std::vector<std::string> tests;  ///< ids of its broken claims
+  std::string sentence;            ///< "4 of its 17 claims broken"
+};
+/// Every broken claim belongs to one suspect. Suspects with more broken claims come first.
+std::vector<Suspect> suspects(const Suite&);
+
+struct SeriesDisplay {
+  std::string name;
+  std::string sentence;
+  std::string alarm;  ///< empty without one
+};
+struct RecordDisplay {
+  std::string verdict;  ///< "5 of 126 claims broken; 1 ledger alarm"
+  std::string counts;
+  std::string rates;
+  std::string seed;  ///< all digits
+  std::vector<Suspect> suspects;
+  std::string ledger;
+  std::string quiet;
+  std::vector<std::string> notes;
+  std::vector<SeriesDisplay> series;
+};
+RecordDisplay display(const Record&);
+
+}  // namespace assay::reports

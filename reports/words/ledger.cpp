@@ -1,0 +1,132 @@
+#include "reports/words/ledger.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "reports/words/number.h"
+
+namespace assay::reports {
+namespace {
+
+std::string plural(std::uint64_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 || *noun == 's' ? "" : "s");
+}
+
+std::string day(const std::string& date) { return date.substr(0, date.find('T')); }
+
+/// theta and its standard error from the sums.
+std::string theta_sentence(const LedgerSeries& series) {
+  if (!series.estimate || !series.standard_error) return {};
+  const double shared = series.reference_error.value_or(0);
+  return fmt::format("{} {}, standard error {}{}, ", series.quantity,
+                     with_sign(*series.estimate, series.relative),
+                     magnitude(*series.standard_error, series.relative),
+                     shared > 0 ? fmt::format(" of the nights and {} of the reference",
+                                              magnitude(shared, series.relative))
+                                : "");
+}
+
+bool several_channels(const Ledger& ledger, const std::string& test) {
+  return std::count_if(ledger.series.begin(), ledger.series.end(),
+                       [&](const LedgerSeries& series) { return series.test == test; }) > 1;
+}
+
+double distance(const LedgerSeries& series) {
+  return series.limit.value_or(0) - series.log_e().value_or(0);
+}
+
+}  // namespace
+
+std::string alarm_count(const Record& record) {
+  const int count = alarms(record.ledger);
+  return count == 0 ? "" : plural(static_cast<std::uint64_t>(count), "ledger alarm");
+}
+
+std::string ledger_title(const Ledger& ledger) {
+  return fmt::format("Ledger {}, budget {} a suite: {} in {}", ledger.file, human(ledger.budget),
+                     plural(static_cast<std::uint64_t>(alarms(ledger)), "alarm"),
+                     plural(ledger.series.size(), "series"));
+}
+
+std::string series_name(const Ledger& ledger, const LedgerSeries& series) {
+  if (!several_channels(ledger, series.test)) return series.test;
+  return fmt::format("{} [{}]", series.test, series.channel);
+}
+
+std::string e_text(const Number& log_e) {
+  if (!log_e) return no_number;
+  const double log10_e = *log_e / std::log(10.0);
+  if (log10_e >= 2 && log10_e < 6) return fmt::format("{:.0f}", std::exp(*log_e));
+  return std::abs(log10_e) < 4 ? human(std::exp(*log_e), 3) : scientific(log10_e);
+}
+
+std::string series_sentence(const LedgerSeries& series) {
+  if (series.nights.empty()) return "no night yet";
+  return fmt::format("{} since {}: {}e-value E = {}, alarm at {}",
+                     plural(series.nights.size(), "night"), day(series.nights.front().date),
+                     theta_sentence(series), e_text(series.log_e()), e_text(series.limit));
+}
+
+std::string night_value(const LedgerSeries& series, const LedgerNight& night) {
+  if (!night.estimate || !night.low || !night.high) return e_text(night.log_p);
+  return fmt::format("{} [{}, {}]", with_sign(*night.estimate, series.relative),
+                     with_sign(*night.low, series.relative),
+                     with_sign(*night.high, series.relative));
+}
+
+std::string alarm_sentence(const LedgerSeries& series) {
+  if (!series.alarm) return {};
+  std::string text = fmt::format(
+      "the nights together refute the claim since {}; it moved most likely on the night "
+      "of {}, commit {}",
+      series.since, series.moved, series.moved_commit);
+  if (series.moved_from != series.moved_to) {
+    text += fmt::format(" (90 %: {} to {})", series.moved_from, series.moved_to);
+  }
+  return text;
+}
+
+std::string quiet_sentence(const Ledger& ledger) {
+  const LedgerSeries* highest = nullptr;
+  std::uint64_t count = 0;
+  std::size_t nights = 0;
+  for (const LedgerSeries& series : ledger.series) {
+    if (series.alarm || series.nights.empty()) continue;
+    ++count;
+    nights = std::max(nights, series.nights.size());
+    if (highest == nullptr || distance(series) < distance(*highest)) highest = &series;
+  }
+  if (highest == nullptr) return {};
+  return fmt::format(
+      "{} of up to {} without an alarm; nearest to one is {}, e-value "
+      "E = {}, alarm at {}",
+      plural(count, "series"), plural(nights, "night"), series_name(ledger, *highest),
+      e_text(highest->log_e()), e_text(highest->limit));
+}
+
+std::vector<std::string> ledger_notes(const Ledger& ledger) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_note;
+  for (const LedgerSeries& series : ledger.series) {
+    if (series.note.empty()) continue;
+    const auto known = std::find_if(by_note.begin(), by_note.end(),
+                                    [&](const auto& entry) { return entry.first == series.note; });
+    const std::string name = series_name(ledger, series);
+    if (known != by_note.end()) {
+      known->second.push_back(name);
+    } else {
+      by_note.push_back({series.note, {name}});
+    }
+  }
+  std::vector<std::string> notes;
+  for (const auto& [note, names] : by_note) {
+    const std::string more =
+        names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : std::string();
+    notes.push_back(fmt::format("{}{}: {}", names.front(), more, note));
+  }
+  return notes;
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,131 @@
+#include "reports/words/display.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "tests/reports/example_tests.h"
+#include "tests/reports/random_record.h"
+
+namespace assay::reports {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Test claim_of(const std::string& claim, Verdict verdict, const Effect& effect) {
+  reports::Test test = base(claim, 1);
+  test.verdict = verdict;
+  test.ok = verdict == Verdict::pass;
+  test.channels = {channel("value", effect)};
+  return test;
+}
+
+std::string sentence(const std::string& claim, const Effect& effect) {
+  return display(claim_of(claim, Verdict::fail, effect)).sentence;
+}
+
+TEST(Display, SaysOnWhichSideAnEstimateLiesAndWhatWasAskedFor) {
+  EXPECT_EQ(sentence("mean(a) == analytic", mean_effect(0.0107, 0.0101)),
+            "mean(a) is 1.07\u00A0% above analytic (+0.06\u00A0% to +2.08\u00A0%); you asked to "
+            "catch 0.5\u00A0%.");
+  EXPECT_EQ(
+      sentence("mean(a) == mean(b)", mean_effect(-0.02, 0.01)),
+      "mean(a) is 2\u00A0% below mean(b) (-3\u00A0% to -1\u00A0%); you asked to catch 0.5\u00A0%.");
+}
+
+TEST(Display, FactorsAndQuantitiesWithoutASideKeepTheirWords) {
+  const Effect factor{"ln(ratio of variances)", 2.302585092994046, 2, 2.5, 0.99, false};
+  EXPECT_THAT(sentence("variance(a) == variance(b)", factor),
+              HasSubstr("variance(a) is ×10 variance(b) (×7.39 to ×12.2)"));
+  const Effect distance{"largest distance of distribution functions", 0.2, 0.1, {}, 0.99, false};
+  EXPECT_THAT(sentence("distribution(a.x) == distribution(b.x)", distance),
+              HasSubstr("largest distance of distribution functions is +0.2 (at least +0.1)"));
+}
+
+TEST(Display, APassWhoseRangeLeavesTheClaimOutSaysSo) {
+  reports::Test test = claim_of("mean(a) == analytic", Verdict::pass, mean_effect(-0.002, 0.001));
+  EXPECT_THAT(display(test).sentence, HasSubstr("It is off, but by less than 0.5\u00A0%."));
+  test.detect.reset();
+  EXPECT_THAT(display(test).sentence, HasSubstr("at this test's level is no rejection."));
+  test.allow = 0.0015;
+  EXPECT_THAT(display(test).sentence, testing::Not(HasSubstr("no rejection")));
+}
+
+TEST(Display, AnImageIsHeadlinedByItsPlace) {
+  reports::Test test = failing();
+  EXPECT_EQ(display(test).sentence,
+            "x 2-3, y 1-2 of green is 1.62\u00A0% too dark (-2.27\u00A0% to -0.97\u00A0%); you "
+            "asked to catch "
+            "0.5\u00A0%.");
+  test.image->winner.effect.reset();
+  EXPECT_THAT(display(test).sentence, HasSubstr("x 2-3, y 1-2 of green is too dark"));
+}
+
+TEST(Display, ChancesHaveTwoDigits) {
+  reports::Test test = claim_of("mean(a) == analytic", Verdict::fail, mean_effect(0.02, 0.01));
+  const auto chance = [&](double log10_p) {
+    test.channels[0].log10_p = log10_p;
+    return display(test).chance;
+  };
+  EXPECT_EQ(chance(std::log10(1 / 17234.0)), "1 in 17,000");
+  EXPECT_EQ(chance(-6.5), "1 in 3,200,000");
+  EXPECT_EQ(chance(std::log10(0.04)), "1 in 25");
+  EXPECT_EQ(chance(-0.1), "more than 1 in 2");
+  EXPECT_EQ(chance(-300), "less than 1 in a billion");
+}
+
+TEST(Display, StandingsTellPlantedBugsFromClaimsThatHold) {
+  EXPECT_EQ(standing(passing()), Standing::holds);
+  EXPECT_EQ(standing(caught_mutant()), Standing::caught);
+  EXPECT_EQ(standing(surviving_mutant()), Standing::broken);
+  EXPECT_EQ(standing(undecided()), Standing::undecided);
+  EXPECT_EQ(standing(not_run()), Standing::not_run);
+}
+
+Test broken_claim(const std::string& name, const std::vector<std::string>& estimators) {
+  reports::Test test = claim_of(name, Verdict::fail, mean_effect(0.02, 0.01));
+  for (const std::string& estimator : estimators)
+    test.samples.push_back(sample(estimator, {0.5, 0.1, 0.0}));
+  return test;
+}
+
+TEST(Suspects, AreTheEstimatorsThatMostBrokenClaimsShare) {
+  Suite suite;
+  suite.name = "s";
+  suite.tests = {broken_claim("1", {"a", "shared"}), broken_claim("2", {"shared", "b"}),
+                 broken_claim("3", {"c"}), broken_claim("4", {})};
+  reports::Test fine = broken_claim("5", {"shared", "c"});
+  fine.verdict = Verdict::pass;
+  fine.ok = true;
+  suite.tests.push_back(fine);
+  const std::vector<Suspect> found = suspects(suite);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].name, "shared");
+  EXPECT_THAT(found[0].tests, ElementsAre("triangle/1", "triangle/2"));
+  EXPECT_EQ(found[0].sentence, "2 of its 3\u00A0claims broken");
+  EXPECT_EQ(found[1].name, "c");
+  EXPECT_EQ(found[1].sentence, "1 of its 2\u00A0claims broken");
+  EXPECT_EQ(found[2].name, "4");
+  EXPECT_THAT(found[2].sentence, IsEmpty());
+}
+
+RC_GTEST_PROP(Suspects, HoldEveryBrokenClaimOnce, ()) {
+  for (const Suite& suite : random_record().suites) {
+    std::multiset<std::string> broken, named;
+    for (const reports::Test& test : suite.tests) {
+      if (standing(test) == Standing::broken) broken.insert(test.id);
+    }
+    for (const Suspect& suspect : suspects(suite)) {
+      named.insert(suspect.tests.begin(), suspect.tests.end());
+    }
+    RC_ASSERT(broken == named);
+  }
+}
+
+}  // namespace
+}  // namespace assay::reports

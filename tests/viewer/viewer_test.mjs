@@ -1,0 +1,324 @@
+// The page in Chromium: viewer_test.mjs VIEWER_FOLDER CHROMIUM PAGES_FOLDER [SCREENSHOT_FOLDER]
+// PAGES_FOLDER holds what assay_write_example writes.
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync, statSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+
+const [viewer, chromium_path, pages, screenshots] = process.argv.slice(2);
+const require = createRequire(join(resolve(viewer), "package.json"));
+const { chromium } = require("playwright-core");
+const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+
+const widths = { wide: [1400, 1000], middle: [800, 1000], phone: [390, 844] };
+const browser = await chromium.launch({ executablePath: chromium_path, args: ["--no-sandbox"] });
+
+/// A page that is ready, with all that it said on the console and all that it asked the network.
+async function opened(name, { size = "wide", scheme = "light", hash = "", scripts = true } = {}) {
+  const [width, height] = widths[size];
+  const context = await browser.newContext({
+    viewport: { width, height },
+    colorScheme: scheme,
+    javaScriptEnabled: scripts,
+  });
+  const page = await context.newPage();
+  page.said = [];
+  page.asked = [];
+  page.on("console", (message) => page.said.push(message.text()));
+  page.on("pageerror", (error) => page.said.push(String(error)));
+  page.on("dialog", (dialog) => {
+    page.said.push(`dialog: ${dialog.message()}`);
+    dialog.dismiss();
+  });
+  page.on("request", (request) => page.asked.push(request.url()));
+  await page.goto(`file://${resolve(pages, name)}.html${hash}`);
+  page.setDefaultTimeout(5000);
+  if (scripts) await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
+  return page;
+}
+
+async function closed(page) {
+  assert.deepEqual(page.said, [], "the console is silent");
+  assert.equal(page.asked.length, 1, `one request, the page itself: ${page.asked}`);
+  await page.context().close();
+}
+
+/// Clicks what matches until nothing does: a click changes what matches.
+async function click_all(page, selector) {
+  for (let left = 200; left > 0 && (await page.locator(selector).count()) > 0; --left) {
+    await page.locator(selector).first().click();
+  }
+  assert.equal(await page.locator(selector).count(), 0, `${selector} is left`);
+}
+async function open_all(page) {
+  await click_all(page, '.suite h3 button[aria-expanded="false"]');
+  await click_all(page, 'button.row[aria-expanded="false"]');
+  await click_all(page, '.tools button[aria-expanded="false"]');
+  await click_all(page, "details:not([open]) > summary");
+  await frame(page);
+}
+
+/// What axe-core finds. It comes by the browser's own channel: the page's policy lets no script in.
+async function violations(page) {
+  await page.evaluate(axe);
+  const found = await page.evaluate(() => window.axe.run());
+  return found.violations.map(({ id, nodes }) => `${id}: ${nodes[0].html.slice(0, 200)} ${nodes[0].failureSummary}`);
+}
+
+const plain = async (locator) => (await locator.innerText()).replaceAll("\u00a0", " ");
+const elements = (page) => page.evaluate(() => document.querySelectorAll("*").length);
+const chosen = (page) => page.locator('nav [aria-pressed="true"]').innerText();
+const rows = (page) => page.locator(".suite li").count();
+const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+/// How much colour a canvas shows, 0 to 1, inside and outside a rectangle of its pixels.
+function colour(page, rectangle) {
+  return page.locator(".card canvas").first().evaluate((canvas, [x, y, width, height]) => {
+    const copy = document.createElement("canvas");
+    Object.assign(copy, { width: canvas.width, height: canvas.height });
+    const context = copy.getContext("2d", { willReadFrequently: true });
+    context.drawImage(canvas, 0, 0);
+    const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
+    const sums = { inside: [0, 0], outside: [0, 0] };
+    for (let py = 0; py < canvas.height; ++py) {
+      for (let px = 0; px < canvas.width; ++px) {
+        const at = 4 * (py * canvas.width + px);
+        const [least, most] = [Math.min(data[at], data[at + 2]), Math.max(data[at], data[at + 2])];
+        const inside = px >= x && px < x + width && py >= y && py < y + height;
+        const sum = sums[inside ? "inside" : "outside"];
+        sum[0] += (most - least) / 255;
+        sum[1] += 1;
+      }
+    }
+    return { inside: sums.inside[0] / sums.inside[1], outside: sums.outside[0] / sums.outside[1] };
+  }, rectangle);
+}
+
+const tests = {
+  async "1508 claims are small, soon ready and few elements"() {
+    const bytes = statSync(resolve(pages, "many.html")).size;
+    const times = [];
+    for (let i = 0; i < 3; ++i) {
+      const page = await opened("many");
+      times.push(await page.evaluate(() => performance.getEntriesByName("ready")[0].startTime));
+      const count = await elements(page);
+      assert.ok(count < 3000, `${count} elements`);
+      assert.match(await page.title(), /8 of 1508/);
+      if (i === 2) console.log(`    ${bytes} bytes, ready after ${Math.round(Math.min(...times))} ms, ${count} elements`);
+      await closed(page);
+    }
+    assert.ok(bytes < 5e6, `${bytes} bytes`);
+    assert.ok(Math.min(...times) < 1500, `ready after ${times} ms`);
+  },
+
+  async "failures are on the first screen at every width"() {
+    for (const size of Object.keys(widths)) {
+      for (const name of ["many", "example", "ellipse"]) {
+        const page = await opened(name, { size });
+        const [width, height] = widths[size];
+        const box = await page.locator(".card .sentence").first().boundingBox();
+        assert.ok(box.y + box.height <= height, `${name} at ${width}: the first failure ends at ${box.y + box.height}`);
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(wide <= width, `${name} at ${width}: ${wide} pixels wide`);
+        await closed(page);
+      }
+    }
+  },
+
+  async "claims are filtered by keyboard within three tabs"() {
+    const page = await opened("many");
+    for (let tabs = 1; tabs <= 3; ++tabs) {
+      await page.keyboard.press("Tab");
+      const words = await page.evaluate(() => document.activeElement.textContent);
+      if (words.includes("Broken")) break;
+      assert.ok(tabs < 3, "three tabs do not reach the filter");
+    }
+    await page.keyboard.press("Enter");
+    assert.match(await chosen(page), /Broken/);
+    assert.equal(await rows(page), 8);
+    await page.keyboard.press("/");
+    await page.keyboard.type("estimator_21)");
+    assert.equal(await rows(page), 1);
+    await closed(page);
+  },
+
+  async "what a reader chose survives a reload and a link"() {
+    const page = await opened("many");
+    await page.getByRole("button", { name: /Broken/ }).first().click();
+    await page.getByRole("searchbox").fill("estimator_31)");
+    await page.locator(".suite li .row").first().click();
+    await page.locator(".detail").waitFor();
+    const address = await page.evaluate(() => location.hash);
+    await page.reload();
+    const copy = await opened("many", { hash: address });
+    for (const one of [page, copy]) {
+      await one.locator(".detail").waitFor();
+      assert.match(await chosen(one), /Broken/);
+      assert.equal(await rows(one), 1);
+      assert.match(await one.locator(".detail .sentence").innerText(), /estimator_31/);
+      assert.equal(await one.getByRole("searchbox").inputValue(), "estimator_31)");
+    }
+    page.asked.length = 1;
+    await closed(page);
+    await closed(copy);
+  },
+
+  async "a link names a claim by its id and shows it"() {
+    const id = "suite_3/mean(estimator_1503) == analytic";
+    const page = await opened("many", { hash: "#" + new URLSearchParams({ open: id }) });
+    const row = page.locator(`[id="${id}"]`);
+    await row.locator(".detail figure svg").first().waitFor();
+    await frame(page);
+    const box = await row.boundingBox();
+    assert.ok(box.y >= 0 && box.y < widths.wide[1], `the claim stands at ${box.y}`);
+    await closed(page);
+  },
+
+  async "every part opens, and nothing of it is said on the console"() {
+    const page = await opened("example");
+    await open_all(page);
+    assert.equal(await page.locator(".detail").count(), 13);
+    assert.ok((await page.locator("figure svg").count()) > 10, "charts are drawn");
+    assert.equal(await page.locator("svg style").count(), 0);
+    assert.ok((await page.locator(".matrix td").count()) > 0, "the matrix of planted bugs is shown");
+    assert.match(await page.locator(".statements").innerText(), /contradicted/);
+    const intervals = await page.locator(".detail").allInnerTexts();
+    assert.ok(intervals.some((text) => text.includes("Chance of this if nothing is wrong")));
+    await closed(page);
+  },
+
+  async "hostile names run nothing"() {
+    for (const scripts of [true, false]) {
+      const page = await opened("example", { scripts });
+      if (scripts) {
+        await open_all(page);
+        assert.equal(await page.locator("script").count(), 1);
+        assert.equal(await page.locator("main b b, main script").count(), 0);
+        assert.match(await page.locator("main").innerText(), /<script>alert\(1\)<\/script>/);
+      }
+      await closed(page);
+    }
+    // The policy itself: a script of another text does not run.
+    const page = await opened("example");
+    await page.evaluate(() => {
+      const script = document.createElement("script");
+      script.textContent = "document.documentElement.dataset.ran = 'yes'";
+      document.body.append(script);
+    });
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.ran), undefined);
+    assert.match(page.said.join(), /Content Security Policy/);
+    await page.context().close();
+  },
+
+  async "without scripts the tables are shown"() {
+    const page = await opened("example", { scripts: false });
+    assert.match(await page.locator("body").innerText(), /\| verdict \| test \|/);
+    await closed(page);
+  },
+
+  async "axe finds no violation in light and dark"() {
+    for (const scheme of ["light", "dark"]) {
+      for (const size of ["wide", "phone"]) {
+        const page = await opened("example", { scheme, size });
+        await open_all(page);
+        assert.deepEqual(await violations(page), [], `${scheme} ${size}`);
+        await closed(page);
+      }
+    }
+  },
+
+  async "a planted ellipse is seen in Where, and the page is small"() {
+    const bytes = statSync(resolve(pages, "ellipse.html")).size;
+    assert.ok(bytes < 4e6, `${bytes} bytes`);
+    const page = await opened("ellipse");
+    await frame(page);
+    const seen = await colour(page, [610, 284, 60, 32]);
+    console.log(`    ${bytes} bytes; colour inside over outside: ${(seen.inside / seen.outside).toFixed(1)}`);
+    assert.ok(seen.inside > 3 * seen.outside, JSON.stringify(seen));
+    assert.match(await plain(page.locator(".card .sentence")), /^x 600-680, y 276-324 of G is 5 % too bright/);
+    const canvas = page.locator(".card canvas");
+    await canvas.hover({ position: { x: 50, y: 50 } });
+    assert.match(await page.locator(".controls .code").innerText(), /^x \d+, y \d+ · .* standard errors · new .* · old /);
+    await canvas.focus();
+    for (const [key, name] of [["2", "How much"], ["3", "New"], ["4", "Old"], ["5", "Wipe"], ["1", "Where"]]) {
+      await page.keyboard.press(key);
+      await frame(page);
+      assert.equal(await page.locator('.controls [aria-pressed="true"]').innerText(), name);
+    }
+    await page.keyboard.press("2");
+    await frame(page);
+    const much = await colour(page, [610, 284, 60, 32]);
+    assert.ok(much.inside > 3 * much.outside, JSON.stringify(much));
+    await closed(page);
+  },
+
+  async "a single hot pixel is found by zooming to the finding"() {
+    const page = await opened("hot");
+    await frame(page);
+    await page.getByRole("button", { name: "Zoom to finding" }).click();
+    await frame(page);
+    const found = await page.locator(".card canvas").evaluate((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      let full = 0, x = 0, y = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i] < 170 || data[i + 2] > 20) continue;
+        full += 1;
+        x += (i / 4) % canvas.width;
+        y += Math.floor(i / 4 / canvas.width);
+      }
+      return { full, x: x / full / canvas.width, y: y / full / canvas.height };
+    });
+    assert.ok(found.full > 100, `the pixel covers ${found.full} pixels`);
+    assert.ok(Math.abs(found.x - 0.5) < 0.1 && Math.abs(found.y - 0.5) < 0.1, JSON.stringify(found));
+    await closed(page);
+  },
+
+  async "a calibration shows its rates, its verdict and its tables"() {
+    for (const scheme of ["light", "dark"]) {
+      const page = await opened("calibration", { scheme });
+      assert.match(await page.locator("h1").innerText(), /Calibration: 1 of 4 cells/);
+      assert.equal(await page.locator("figure svg").count(), 2);
+      assert.match(await page.locator("pre.code").innerText(), /0\.15 of <means>/);
+      assert.deepEqual(await violations(page), []);
+      await closed(page);
+    }
+  },
+
+  async "print shows the summary and failures only"() {
+    const page = await opened("example");
+    await click_all(page, '.suite h3 button[aria-expanded="false"]');
+    await page.emulateMedia({ media: "print" });
+    assert.equal(await page.locator(".suite li.good:visible").count(), 0);
+    assert.ok((await page.locator(".suite li.bad:visible").count()) > 0);
+    assert.ok(await page.locator("h1").isVisible());
+    assert.equal(await page.locator("nav:visible, input:visible").count(), 0);
+    if (screenshots) await page.screenshot({ path: join(screenshots, "print.png"), fullPage: true });
+    await closed(page);
+  },
+};
+
+if (screenshots) {
+  mkdirSync(screenshots, { recursive: true });
+  for (const name of ["example", "many", "ellipse"]) {
+    for (const size of Object.keys(widths)) {
+      for (const scheme of ["light", "dark"]) {
+        const page = await opened(name, { size, scheme });
+        await frame(page);
+        await page.screenshot({ path: join(screenshots, `${name}-${size}-${scheme}.png`) });
+        await closed(page);
+      }
+    }
+  }
+}
+let failed = 0;
+for (const [name, run] of Object.entries(tests)) {
+  try {
+    await run();
+    console.log(`ok   ${name}`);
+  } catch (error) {
+    failed += 1;
+    console.log(`FAIL ${name}\n${error.message}`);
+  }
+}
+await browser.close();
+process.exit(failed === 0 ? 0 : 1);
