@@ -1,65 +1,129 @@
-// A picture of a small scene by path tracing.
+// Pictures of a scene by path tracing.
 //
-// Each pixel is the mean of primaries, paths through a point uniform in its square. The integrators
-// sample the same sum over paths of at most `depth` scatterings: the expectation of every pixel is
-// the same for all.
+// A pixel is the mean of paths through uniform points of it. A path's expectation is the light that
+// the pixel gets over at most so many bounces as the scene allows: integral of L over the pixel.
+// Light sampling, bsdf sampling and both together have this one expectation.
 
 #include "path_tracing/image.h"
 
-namespace assay::path_tracing {
+#include <utility>
 
+namespace assay::path_tracing {
 namespace {
 
-ParameterInformation pixels(const char* name, const char* summary, const char* fallback) {
-  return {.name = name,
-          .type = ParameterType::count,
-          .summary = summary,
-          .fallback = fallback,
-          .low = 2,
-          .high = 4096};
+const std::vector<std::string> colours{"red", "green", "blue"};
+
+/// The tile that a shift moves.
+bool in_tile(const Picture& picture, std::size_t x, std::size_t y) {
+  return x >= picture.width / 2 && x < picture.width / 2 + picture.width / 4 &&
+         y >= picture.height / 2 && y < picture.height / 2 + picture.height / 4;
 }
 
-Integrator integrator_called(const std::string& name) {
-  if (name == "bsdf") return Integrator::bsdf;
-  return name == "light" ? Integrator::light : Integrator::mis;
-}
+class PictureEstimator final : public Estimator {
+ public:
+  explicit PictureEstimator(std::shared_ptr<const Picture> picture)
+      : picture_(std::move(picture)) {}
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    render(*picture_, random, primaries, out, cost);
+  }
+
+ private:
+  std::shared_ptr<const Picture> picture_;
+};
+
+class PictureSetup final : public Setup {
+ public:
+  explicit PictureSetup(Picture picture)
+      : picture_(std::make_shared<const Picture>(std::move(picture))) {}
+  std::vector<Channel> channels() const override {
+    return element_channels(*image(), {.low = 0});
+  }
+  std::optional<ImageShape> image() const override {
+    return ImageShape{picture_->width, picture_->height, colours, true};
+  }
+  std::unique_ptr<Estimator> make() const override {
+    return std::make_unique<PictureEstimator>(picture_);
+  }
+
+ private:
+  std::shared_ptr<const Picture> picture_;
+};
 
 }  // namespace
 
-Information image_information() {
-  return {
-      .name = "path_tracing/image",
-      .summary = "A picture of a small scene by path tracing, with caustics and fireflies.",
-      .description =
-          "A primary is one path for each pixel, through a point uniform in the pixel's square. "
-          "Scenes: `mild`, a closed diffuse room with a large light; `glass`, the room with a "
-          "sphere of glass, one of mirror and a small light; `veach`, four plates of growing "
-          "roughness under four lights of growing size (Veach and Guibas 1995). Integrators "
-          "find a light by chance (`bsdf`), by a shadow ray (`light`), or by both with the "
-          "balance heuristic (`mis`). What a mirror or glass sees is found by chance in all "
-          "three, so all have the same expectation. Roulette ends paths from the fourth "
-          "scattering on and makes up for it; the scene limits their number. Means are not "
-          "known in closed form: compare integrators.",
-      .parameters = {{.name = "scene",
-                      .type = ParameterType::string,
-                      .summary = "what the camera sees",
-                      .fallback = "mild",
-                      .choices = {"mild", "glass", "veach"}},
-                     {.name = "integrator",
-                      .type = ParameterType::string,
-                      .summary = "how a path finds light",
-                      .fallback = "mis",
-                      .choices = {"bsdf", "light", "mis"}},
-                     pixels("width", "columns of the picture", "32"),
-                     pixels("height", "rows of the picture", "24")}};
+void render(const Picture& picture, Stream& random, std::uint64_t primaries, std::span<double> out,
+            Cost& cost) {
+  const Scene::Camera& camera = picture.scene->camera();
+  for (std::size_t y = 0; y < picture.height; ++y) {
+    for (std::size_t x = 0; x < picture.width; ++x) {
+      const std::size_t pixel = y * picture.width + x;
+      Stream mine = random.substream(static_cast<std::uint32_t>(pixel));
+      const double shift = in_tile(picture, x, y) ? picture.shift : 0;
+      Colour sum;
+      for (std::uint64_t i = 0; i < primaries; ++i) {
+        const double s = (static_cast<double>(x) + shift + mine.uniform()) /
+                         static_cast<double>(picture.width);
+        const double t =
+            (static_cast<double>(y) + mine.uniform()) / static_cast<double>(picture.height);
+        const Ray ray{camera.eye,
+                      render::normalised(camera.corner + s * camera.right + t * camera.down)};
+        sum += radiance(*picture.scene, picture.integrator, picture.defects, ray, mine, cost);
+      }
+      const bool dead = x == picture.width / 3 && y == picture.height / 2;
+      const double scale = (dead ? 1 - picture.dead : 1) / static_cast<double>(primaries);
+      out[3 * pixel] = scale * sum.x;
+      out[3 * pixel + 1] = scale * sum.y;
+      out[3 * pixel + 2] = scale * sum.z;
+    }
+  }
+  cost.samples += primaries;
 }
 
-Picture read_picture(Parameters& parameters) {
-  return {.scene = named_scene(parameters.string("scene")),
-          .integrator = integrator_called(parameters.string("integrator")),
-          .shape = {.width = parameters.count("width"),
-                    .height = parameters.count("height"),
-                    .components = {"red", "green", "blue"}}};
+Information image_information() {
+  return {.name = "path_tracing/image",
+          .summary = "A picture by path tracing: a diffuse box, glass, or glossy plates.",
+          .description =
+              "A primary is an image of one path a pixel, through a uniform point of the pixel. "
+              "Scenes: `box` has diffuse walls under a wide light; `glass` a glass sphere and a "
+              "mirror under a small one, with rare bright paths; `plates` four glossy plates under "
+              "four lights (Veach 1997). Integrators: `light` samples emitters, `bsdf` follows "
+              "the surfaces' lobes, `multiple` does both with the balance heuristic. All have one "
+              "expectation. Mirrors and glass are followed by each, and emitters seen in them "
+              "count. Nothing is known in closed form: compare two of them.",
+          .parameters = {{.name = "scene",
+                          .type = ParameterType::string,
+                          .summary = "what is rendered",
+                          .fallback = "box",
+                          .choices = scene_names()},
+                         {.name = "integrator",
+                          .type = ParameterType::string,
+                          .summary = "how light is found",
+                          .fallback = "multiple",
+                          .choices = integrator_names()},
+                         {.name = "width",
+                          .type = ParameterType::count,
+                          .summary = "columns of pixels",
+                          .fallback = "32",
+                          .low = 4,
+                          .high = 4096},
+                         {.name = "height",
+                          .type = ParameterType::count,
+                          .summary = "rows of pixels",
+                          .fallback = "24",
+                          .low = 4,
+                          .high = 4096}}};
+}
+
+Picture read_picture(Parameters& given) {
+  return {.scene = scene_of(given.string("scene")),
+          .integrator = integrator_of(given.string("integrator")),
+          .width = given.count("width"),
+          .height = given.count("height")};
+}
+
+std::shared_ptr<const Setup> image_setup(Picture picture) {
+  return std::make_shared<const PictureSetup>(std::move(picture));
 }
 
 }  // namespace assay::path_tracing
@@ -68,7 +132,8 @@ namespace assay::plugins {
 
 std::vector<Entry> path_tracing_image() {
   using namespace path_tracing;
-  return {{image_information(), [](Parameters& given) { return prepare_picture<>(given); }}};
+  return {
+      {image_information(), [](Parameters& given) { return image_setup(read_picture(given)); }}};
 }
 
 }  // namespace assay::plugins

@@ -1,102 +1,119 @@
 #pragma once
 
-// Scenes of a dozen quads and spheres, each with a material, and the lights among them.
+// Scenes whose pictures are hard for tests: spheres and parallelograms of ideal materials.
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "path_tracing/scattering.h"
+#include "estimators/render/vector.h"
 
 namespace assay::path_tracing {
 
+using render::Vector3;
+
+/// Red, green and blue; products are componentwise.
+using Colour = Vector3;
+constexpr Colour times(const Colour& a, const Colour& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+/// Light ends at an emitter, which reflects nothing.
+enum class Surface { diffuse, glossy, mirror, glass, emitter };
+
+struct Material {
+  Surface surface = Surface::diffuse;
+  Colour colour = {};     ///< albedo, or emitted radiance
+  double exponent = 0;    ///< of a glossy lobe cos^n about the mirrored direction
+  double refraction = 1;  ///< index of glass
+};
+
 struct Ray {
   Vector3 origin;
-  Vector3 direction;
-};
-
-/// A parallelogram. Its front, where its normal u x v points, emits.
-class Quad {
- public:
-  Quad(const Vector3& corner, const Vector3& u, const Vector3& v);
-
-  /// The distance along the ray to a hit in (from, to), or `to`.
-  double hit(const Ray& ray, double from, double to) const;
-  const Vector3& normal_at(const Vector3&) const { return normal_; }
-  /// A direction to a point uniform on the parallelogram.
-  Vector3 direction_from(const Vector3& point, Stream& random) const;
-  /// Its density per solid angle, if the ray hits at this distance.
-  double density(const Ray& ray, double distance) const;
-
- private:
-  Vector3 corner_, u_, v_, normal_;
-  Vector3 along_u_, along_v_;  // the rows of the inverse of (u, v): coordinates by dot products
-  double area_;
-};
-
-/// Its outside emits.
-class Sphere {
- public:
-  Sphere(const Vector3& centre, double radius) : centre_(centre), radius_(radius) {}
-
-  double hit(const Ray& ray, double from, double to) const;
-  Vector3 normal_at(const Vector3& point) const { return (point - centre_) / radius_; }
-  /// A direction uniform in the cone that the sphere fills, seen from outside.
-  Vector3 direction_from(const Vector3& point, Stream& random) const;
-  double density(const Ray& ray, double distance) const;
-
- private:
-  /// 1 - cos of the half angle of that cone, without cancellation.
-  double cone(const Vector3& to_centre) const;
-
-  Vector3 centre_;
-  double radius_;
-};
-
-struct Thing {
-  std::variant<Quad, Sphere> shape;
-  Material material;
-  Spectrum emission = {};
-
-  bool emits() const { return !(emission == Spectrum{}); }
+  Vector3 direction;  ///< of length 1
 };
 
 struct Hit {
-  const Thing* thing = nullptr;  ///< none: the ray leaves the scene, and sees black
   double distance = 0;
+  Vector3 point;
+  Vector3 normal;  ///< outwards of a sphere; along `normal` of a parallelogram
+  const Material* material = nullptr;
+  std::size_t shape = 0;
 };
 
-struct Camera {
-  Vector3 position;
-  Vector3 target;
-  double height = 1;  ///< of the film, one unit of length before the camera
+/// A sphere, or the parallelogram corner + s first + t second with s, t in [0, 1].
+struct Shape {
+  enum class Kind { sphere, parallelogram };
+  Kind kind = Kind::sphere;
+  Vector3 corner;  ///< or the centre
+  Vector3 first;
+  Vector3 second;
+  double radius = 0;
+  Vector3 normal;
+  Material material;
+};
+Shape sphere(const Vector3& centre, double radius, const Material& material);
+/// The normal is that of first x second.
+Shape parallelogram(const Vector3& corner, const Vector3& first, const Vector3& second,
+                    const Material& material);
+
+/// A point on an emitter as seen from elsewhere.
+struct LightPoint {
+  Vector3 direction;
+  double distance = 0;
+  double density = 0;  ///< per steradian
+  Colour radiance;
 };
 
-/// `depth` is the largest number of scatterings of a path from the camera to a light.
 class Scene {
  public:
-  Scene(std::vector<Thing> things, Camera camera, int depth);
+  struct Camera {
+    Vector3 eye;
+    Vector3 corner;  ///< upper left of the image plane, seen from the eye
+    Vector3 right;   ///< the whole width
+    Vector3 down;    ///< the whole height
+  };
 
-  /// The first thing hit at a distance of more than `from`.
-  Hit trace(const Ray& ray, double from) const;
-  /// The camera's ray through a point of the film; both coordinates are in [0, 1], from the top
-  /// left, and `aspect` is width / height.
-  Ray camera_ray(double x, double y, double aspect) const;
-  const std::vector<const Thing*>& lights() const { return lights_; }
-  int depth() const { return depth_; }
+  Scene(std::vector<Shape> shapes, Camera camera, std::size_t bounces);
+
+  const Camera& camera() const { return camera_; }
+  /// The most bounces of a path, beside those off mirrors and through glass.
+  std::size_t bounces() const { return bounces_; }
+
+  std::optional<Hit> closest(const Ray& ray) const;
+  /// True if something is hit nearer than that.
+  bool occluded(const Ray& ray, double nearer_than, double offset) const;
+
+  /// A point of an emitter, all equally probable: spheres by the cone that they fill,
+  /// parallelograms by area. A density of 0 where the emitter's back is seen.
+  LightPoint sample_light(const Vector3& from, double choice, double u, double v) const;
+  /// The density of sample_light for a ray from there that hit an emitter.
+  double light_density(const Vector3& from, const Hit& hit, const Vector3& direction) const;
+
+  /// Distance by which a ray's start is kept off its surface.
+  static constexpr double offset = 1e-6;
 
  private:
-  std::vector<Thing> things_;
-  std::vector<const Thing*> lights_;
+  std::vector<Shape> shapes_;
+  std::vector<std::size_t> lights_;
   Camera camera_;
-  Vector3 forward_, right_, down_;
-  int depth_;
+  std::size_t bounces_;
 };
 
-/// mild: a closed diffuse room with two boxes and a large light. glass: the room with a sphere of
-/// glass, one of mirror and a small light. veach: four glossy plates and four spheres of light.
-std::shared_ptr<const Scene> named_scene(const std::string& name);
+/// "box": diffuse walls under a wide light. "glass": a glass sphere and a mirror under a small light.
+/// "plates": four glossy plates under four lights, after Veach (1997, figure 9.2).
+std::vector<std::string> scene_names();
+std::shared_ptr<const Scene> scene_of(const std::string& name);
+
+/// Two unit vectors that are normal to n and each other.
+struct Frame {
+  Vector3 n;
+  Vector3 s;
+  Vector3 t;
+  explicit Frame(const Vector3& normal);
+  Vector3 of(double x, double y, double z) const { return x * s + y * t + z * n; }
+};
 
 }  // namespace assay::path_tracing

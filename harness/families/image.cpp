@@ -80,11 +80,8 @@ class ImageTheta : public Theta {
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{
         {"image",
-         "cells of every size, alternating sums and the sum of squares: images",
-         any_question,
-         Keeps::images,
-         nullptr,
-         {.from_pilot = FromPilot::weights}}};
+         "cells of every size, and alternating sums: images",
+         any_question, Keeps::images, nullptr, {}}};
     return table;
   }
 
@@ -117,9 +114,9 @@ class ImageTheta : public Theta {
            (question.of_two() || std::ranges::any_of(question.references, lit));
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
-    return choose_for_image(question, place, pilots, most, plan);
+    return choose_for_image(question, pilots, most, plan);
   }
   std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
                                            const Pilots& pilots, const Plan& plan) const override {
@@ -136,8 +133,7 @@ class ImageTheta : public Theta {
     return {.evidence = std::move(found.evidence), .image = std::move(found.outcome)};
   }
 
-  /// Other cells see the same sum of squares in a few pixels, or of both signs, from other sizes
-  /// on.
+  /// Other cells see the same difference in a few pixels, or of both signs, from other sizes on.
   const char* detectable_text() const override { return " that is the same all over the image"; }
   std::string where_it_differs(const DrawnTest& test) const override {
     return means_where_it_differs(test);

@@ -146,9 +146,8 @@ double z_of(const UnseenElement& unseen) {
 }
 
 template <class Real>
-VaryingPart<Real>::VaryingPart(const Question& question, const ImagePair<Real>& pair,
-                               std::span<const double> weights)
-    : of_two_(pair.of_two()), first_(pair.first()), weights_(weights) {
+VaryingPart<Real>::VaryingPart(const Question& question, const ImagePair<Real>& pair)
+    : of_two_(pair.of_two()), first_(pair.first()) {
   if (of_two_) {
     second_ = pair.second();
     settle_two(question);
@@ -163,8 +162,6 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
   const stats::ImageReference reference = pair.reference();
   value_.assign(reference.value.begin(), reference.value.end());
   error_.assign(reference.standard_error.begin(), reference.standard_error.end());
-  value_in_sums_ = value_;
-  error_in_sums_ = error_;
   const DeclaredElements channels(question.subjects[0]);
   Spans spans;
   bool constants = false;
@@ -177,24 +174,15 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
     ++constants_;
     const double constant = first_.images[0][i];
     const Constant expected{value_[i], error_.empty() ? 0 : error_[i]};
-    const bool differs = std::abs(constant - expected.value) > channels[i].rounding;
-    if (differs) {
+    if (std::abs(constant - expected.value) > channels[i].rounding) {
       const Missing missing{constant, channels[i].low, channels[i].high, first_.images.size()};
       unseen_.push_back({i, missing.sign(expected), missing.log_p(expected)});
     }
     if (span.low < span.high) replacements.push_back({i, constant});
     value_[i] = constant;
     if (!error_.empty()) error_[i] = 0;
-    if (differs && stays_in_sums(i)) {
-      left_to_sums_.push_back(i);
-    } else {
-      value_in_sums_[i] = constant;
-      if (!error_.empty()) error_in_sums_[i] = 0;
-    }
   }
-  for (std::vector<double>* errors : {&error_, &error_in_sums_}) {
-    if (std::ranges::all_of(*errors, [](double error) { return error == 0; })) errors->clear();
-  }
+  if (std::ranges::all_of(error_, [](double error) { return error == 0; })) error_.clear();
   first_ = replaced(first_, replacements, settled_);
 }
 
@@ -234,10 +222,6 @@ void VaryingPart<Real>::settle_two(const Question& question) {
     if (!missing.bounded(mean)) continue;
     const double sign = first_constant ? missing.sign(mean) : -missing.sign(mean);
     unseen_.push_back({i, sign, missing.log_p(mean)});
-    if (stays_in_sums(i)) {
-      left_to_sums_.push_back(i);
-      continue;
-    }
     of_first.push_back({i, missing.constant});
     of_second.push_back({i, missing.constant});
   }

@@ -31,22 +31,16 @@ double z_of(const UnseenElement& unseen);
 /// varied, its standard error tests the other's constant, provided that the other declares a range.
 /// Without a range Welch's test takes the values seen.
 ///
-/// Sums over elements must include rarely lit pixels that happened not to vary: only the lit ones
-/// would remain, and their means are too high. An element with a weight, which varied in the pilot,
-/// stays in the sums (`in_sums`); others are in no sum. Without weights each half of the images
-/// decides for the other.
+/// Such elements are in no sum (stats/image_halves.h).
 template <class Real>
 class VaryingPart {
  public:
-  /// `weights` of the elements in sums, as in ImageTest.
-  VaryingPart(const Question& question, const ImagePair<Real>& pair,
-              std::span<const double> weights);
+  VaryingPart(const Question& question, const ImagePair<Real>& pair);
   VaryingPart(const VaryingPart&) = delete;  // spans point inside
   VaryingPart& operator=(const VaryingPart&) = delete;
 
   const std::vector<UnseenElement>& unseen() const { return unseen_; }
   bool any() const { return constants_ < first_.extent.elements(); }
-  const stats::ImageStack<Real>& first() const { return first_; }
 
   /// Calls `use` with the first stack and its comparison, and returns the result.
   template <class Use>
@@ -54,19 +48,7 @@ class VaryingPart {
     if (of_two_) return use(first_, second_);
     return use(first_, stats::ImageReference{first_.extent, value_, error_});
   }
-  /// The same for sums over elements; those in left_to_sums() count in sums only.
-  template <class Use>
-  auto in_sums(const Use& use) const {
-    if (of_two_) return use(first_, second_);
-    return use(first_, stats::ImageReference{first_.extent, value_in_sums_, error_in_sums_});
-  }
-  /// Ascending.
-  const std::vector<std::size_t>& left_to_sums() const { return left_to_sums_; }
-
  private:
-  bool stays_in_sums(std::size_t element) const {
-    return !weights_.empty() && weights_[element] > 0;
-  }
   void settle_against_reference(const Question& question, const ImagePair<Real>& pair);
   void settle_two(const Question& question);
 
@@ -76,10 +58,6 @@ class VaryingPart {
   std::vector<std::vector<Real>> settled_;  // images with a rounded element
   std::vector<double> value_;
   std::vector<double> error_;
-  std::vector<double> value_in_sums_;
-  std::vector<double> error_in_sums_;
-  std::span<const double> weights_;
-  std::vector<std::size_t> left_to_sums_;
   std::vector<UnseenElement> unseen_;
   std::size_t constants_ = 0;
 };

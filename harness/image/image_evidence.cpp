@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/stream.h"
 #include "harness/base/parallel.h"
-#include "harness/image/image_flips.h"
 #include "harness/image/image_uniform.h"
 #include "harness/sampling/picture_look.h"
 #include "harness/theta/inversion.h"
@@ -16,7 +14,6 @@
 #include "stats/basics/moments.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_reference_error.h"
-#include "stats/images/image_windows.h"
 #include "stats/pyramids/image_pyramid.h"
 #include "stats/tails/tails.h"
 
@@ -27,53 +24,13 @@ constexpr double unseen_share = 0.02;
 
 // ---- theta = 0
 
-template <class Real, class Second>
-stats::FlipMatrix flips_of(const stats::ImageStack<Real>& a, const Second& b) {
-  constexpr std::size_t rows_at_a_time = 16 * GroupedFlips<Real>::row_unit;
-  GroupedFlips<Real> flips;
-  for (std::size_t row = 0; row < a.extent.height; row += rows_at_a_time) {
-    flips.take(stats::pair_of(a, b), {row, std::min(row + rows_at_a_time, a.extent.height)});
-  }
-  return flips.matrix();
-}
-
 template <class Real>
-bool has_error(const stats::ImageStack<Real>&) {
-  return false;
-}
-bool has_error(const stats::ImageReference& b) { return !b.standard_error.empty(); }
-
-/// The stream of the sign vectors for so many images.
-Stream signs_of(const ImageTest& test, std::size_t images) {
-  return {stream_key(test.flips.bits, "sign flips", "", 0), images};
-}
-
-template <class Real>
-void add_flipped_energy(const VaryingPart<Real>& varying, const ImageTest& test, std::size_t images,
-                        ImageOutcome& outcome) {
-  // A reference's error does not flip with the replicates, so cells alone are tested.
-  if (varying.with([](const auto&, const auto& b) { return has_error(b); })) return;
-  const std::optional<FlipSize> size = flip_size(test.share, images);
-  if (!size) return;
-  outcome.by_sign_flips = add_flipped_energy(
-      outcome.family, varying.first().extent, *size, signs_of(test, images),
-      [&] { return varying.with([](const auto& a, const auto& b) { return flips_of(a, b); }); });
-}
-
-template <class Real>
-void look_at_family(const VaryingPart<Real>& varying, const ImageTest& test, std::size_t images,
+void look_at_family(const VaryingPart<Real>& varying, const stats::ImageExtent& extent,
                     ImageOutcome& outcome) {
-  outcome.z.resize(varying.first().extent.elements());
-  const stats::PyramidOptions options{
-      .energy = test.independent && (test.symmetric || !test.weights.empty()),
-      .smallest = test.smallest_cell,
-      .weights = test.weights,
-      .only_in_sums = varying.left_to_sums(),
-      .z = outcome.z,
-      .for_each = on_all_threads};
-  outcome.family = varying.in_sums(
+  outcome.z.resize(extent.elements());
+  const stats::PyramidOptions options{.z = outcome.z, .for_each = on_all_threads};
+  outcome.family = varying.with(
       [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
-  if (!test.independent && test.symmetric) add_flipped_energy(varying, test, images, outcome);
 }
 
 stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageExtent& extent) {
@@ -144,20 +101,30 @@ double wanted_replicates(const stats::ImageDistance& distance, double margin, co
   return replicates * std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
 }
 
-/// Tests of a squared margin. An estimate below 0 counts as 0, since no bias is smaller.
-stats::TestResult at_squared_margin(const stats::ImageDistance& distance, double margin) {
+/// Tests of theta = margin. `hidden` is the norm of the bias that values can hide which no element
+/// showed: it may be part of theta, or make up theta. An estimate below 0 counts as 0, since no
+/// bias is smaller.
+stats::TestResult at_margin(const stats::ImageDistance& distance, double hidden, double margin) {
   stats::ImageDistance at_least_zero = distance;
   at_least_zero.squared_bias = std::max(0.0, distance.squared_bias);
-  stats::TestResult result = stats::squared_margin_test(distance, margin);
-  result.log_p_lower = stats::squared_margin_test(at_least_zero, margin).log_p_lower;
+  const auto at = [](const stats::ImageDistance& of, double root) {
+    return stats::squared_margin_test(of, std::copysign(root * root, root));
+  };
+  stats::TestResult result = at(distance, margin + hidden);
+  result.log_p_lower = at(at_least_zero, margin - hidden).log_p_lower;
   return result;
 }
 
-stats::Interval interval_of(const stats::ImageDistance& distance, double confidence) {
+/// Values of theta that at_margin does not reject, found by the square root's signed square.
+stats::Interval interval_of(const stats::ImageDistance& distance, double hidden,
+                            double confidence) {
   const double step = std::sqrt(distance.bias_variance) / distance.squared_norm;
+  const auto at_square = [&](double square) {
+    return at_margin(distance, hidden, std::copysign(std::sqrt(std::abs(square)), square));
+  };
   const stats::Interval squared = interval_by_inversion(
-      [&](double margin) { return at_squared_margin(distance, margin); },
-      {.estimate = distance.squared_bias / distance.squared_norm, .step = step}, confidence);
+      at_square, {.estimate = distance.squared_bias / distance.squared_norm, .step = step},
+      confidence);
   return {std::sqrt(std::max(0.0, squared.low)), std::sqrt(std::max(0.0, squared.high)),
           confidence};
 }
@@ -179,27 +146,6 @@ void require_spread(const Question& question, bool any, const stats::ImageDistan
       all_alike(question)));
 }
 
-template <class Real>
-double level_factor(const ImagePair<Real>& pair, const ImageTest& test) {
-  const auto side = [](const stats::ImageStack<Real>& stack, double factor) -> stats::CellPilot {
-    return {
-        .stack = stack, .factor = factor, .replicates = static_cast<double>(stack.images.size())};
-  };
-  std::vector<stats::CellPilot> sides{side(pair.first(), 1)};
-  if (pair.of_two()) sides.push_back(side(pair.second(), -1));
-  const std::vector<stats::CellTails> tails =
-      stats::cell_tails(sides, test.share.alpha, stats::WeightsFrom::pilot, on_all_threads);
-  double largest = 1;
-  for (const stats::CellTails& cells : tails) {
-    if (cells.size < test.smallest_cell) continue;
-    // Dependent cells scatter as one.
-    const auto count = static_cast<double>(stats::aligned_cells(pair.extent(), cells.size));
-    const double of_dependent = cells.factor - cells.scatter * std::sqrt(count);
-    largest = std::max(largest, test.independent ? cells.common : of_dependent);
-  }
-  return largest;
-}
-
 /// Tests the pair and measures its distance.
 template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
@@ -209,39 +155,28 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   const auto errors =
       test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown;
   const stats::ImageDistance distance = distance_of(pair, relative, errors);
-  const VaryingPart varying(question, pair, test.weights);
+  const VaryingPart varying(question, pair);
   require_spread(question, varying.any(), distance);
   outcome.unseen = varying.unseen();
   outcome.replicates = pair.most_replicates();
-  outcome.smallest_cell = test.smallest_cell;
-  outcome.symmetric = test.symmetric;
-  look_at_family(varying, test, pair.fewest_replicates(), outcome);
+  look_at_family(varying, pair.extent(), outcome);
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(pair.extent(), outcome);
   outcome.uniform_error = uniform_error(pair, relative);
-  outcome.level_factor = level_factor(pair, test);
   return distance;
 }
 
 /// The same for pictures that were looked at while reading. They declare neither rounding nor
 /// range, so an element that never varied stays as it is.
-stats::ImageDistance look_at(const Question& question, const ImageTest& test,
-                             const PictureLook& look, ImageOutcome& outcome) {
+stats::ImageDistance look_at(const Question& question, const ImageTest&, const PictureLook& look,
+                             ImageOutcome& outcome) {
   const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
   const bool relative = question.theta->is_relative(question, 0);
   const stats::ImageDistance distance = in_units_of_margin(look.distance, extent, relative);
   require_spread(question, look.family.tested > 0, distance);
   outcome.replicates = look.pictures;
-  outcome.smallest_cell = test.smallest_cell;
-  outcome.symmetric = test.symmetric;
   outcome.family = look.family;
   outcome.z = look.z;
-  stats::leave_out(outcome.family, {test.smallest_cell, !test.symmetric});
-  if (look.flips && test.symmetric) {
-    outcome.by_sign_flips =
-        add_flipped_energy(outcome.family, extent, flip_size(test.share, look.pictures).value(),
-                           signs_of(test, look.pictures), [&] { return *look.flips; });
-  }
   add_unseen(extent, outcome);
   outcome.uniform_error = uniform_error(look.means[0], look.means[1], relative);
   return distance;
@@ -260,8 +195,6 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
   const std::string z = fmt::format("z = {:+.3g}", finding.z);
   const stats::Rectangle& window = finding.window;
   switch (finding.statistic) {
-    case stats::ImageStatistic::energy:
-      return fmt::format("the sum of squares over the whole image{}, {}", component, z);
     case stats::ImageStatistic::alternating: {
       constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
       return fmt::format("the whole image{} with alternating signs ({}), {}", component,
@@ -298,6 +231,7 @@ ImageEvidence evidence_of_images(const Question& question, const ImageTest& test
         wanted_replicates(distance, margin, test, static_cast<double>(result.outcome.replicates));
   }
   const stats::ImageFamily& family = result.outcome.family;
+  const double hidden = std::sqrt(family.hidden_squares / distance.squared_norm);
   const stats::TestResult equal{
       .statistic = family.winner.z,
       .distribution = {"image-family", {static_cast<double>(family.tested)}},
@@ -307,10 +241,13 @@ ImageEvidence evidence_of_images(const Question& question, const ImageTest& test
   result.evidence = {
       .estimate = std::sqrt(std::max(0.0, distance.squared_bias / distance.squared_norm)),
       .at =
-          [distance, equal](double theta) {
-            return theta > 0 ? at_squared_margin(distance, theta * theta) : equal;
+          [distance, hidden, equal](double theta) {
+            return theta > 0 ? at_margin(distance, hidden, theta) : equal;
           },
-      .interval = [distance](double confidence) { return interval_of(distance, confidence); },
+      .interval =
+          [distance, hidden](double confidence) {
+            return interval_of(distance, hidden, confidence);
+          },
       .quantity = relative ? "relative root mean square difference of the images"
                            : "root mean square difference of the images",
       .relative = relative,

@@ -2,9 +2,8 @@
 
 // Evidence about images. theta is the size of their difference over all elements,
 //   theta = ||E a - E b|| / ||E b||, or its root mean square for absolute margins.
-// The family of cells of every size, alternating sums and the sum of squares test theta = 0
-// (stats/image_pyramid.h). The unbiased squared bias tests other values
-// (stats/image_equivalence.h).
+// The family of cells of every size and alternating sums tests theta = 0 (stats/image_pyramid.h).
+// The unbiased squared bias tests other values (stats/image_equivalence.h).
 
 #include "harness/image/image_constants.h"
 #include "harness/image/image_pair.h"
@@ -16,16 +15,10 @@ namespace assay::harness {
 
 struct PictureLook;
 
-/// Settings of the family's test. The plan freezes all but the share of the level.
+/// Settings of the family's test.
 struct ImageTest {
-  ErrorShare share = {};                 ///< Share of this look.
-  std::uint32_t smallest_cell = 1;       ///< The smallest size whose level the pilot confirms.
-  std::span<const double> weights = {};  ///< Weights of the elements, from the pilot.
-  bool symmetric = true;              ///< False if the differences share too much skewness for the
-                                      ///< sum of squares.
-  bool independent = true;            ///< False: an image's elements depend on each other, and
-                                      ///< signs are flipped.
-  StreamKey flips = {};               ///< Stream of the signs, if too many to enumerate.
+  ErrorShare share = {};              ///< Share of this look.
+  bool independent = true;            ///< False: an image's elements depend on each other.
   const PictureLook* look = nullptr;  ///< Look at pictures, taken while reading.
 };
 
@@ -34,16 +27,8 @@ struct ImageOutcome {
   std::vector<UnseenElement> unseen = {};
   std::vector<double> z = {};  ///< For every element: Welch's, or of the bound on the unseen.
   std::size_t replicates = 0;  ///< The larger side's.
-  std::uint32_t smallest_cell = 1;
-  bool symmetric = true;       ///< False: the sum of squares took no part.
-  bool by_sign_flips = false;  ///< The sum of squares was judged by flips.
   double wanted = 0;           ///< Replicates that would decide, roughly; 0: none.
   double uniform_error = 0;    ///< Standard error of a theta that is the same everywhere.
-  /// Lower bound on the factor by which skewness inflates the tail of a tested cell. It shows what
-  /// the pilot never met, such as rare lights. It uses the skewness that cells of one size share in
-  /// the test's own images. If pixels depend on each other, it is the mean of their factors less
-  /// one cell's scatter. 1 for streamed pictures.
-  double level_factor = 1;
 };
 
 struct ImageEvidence {

@@ -34,7 +34,7 @@ struct Pilot {
   std::optional<Fault> larger_fault = {};
 
   std::size_t image_count() const {
-    if (look) return look->piloted;
+    if (look) return look->pictures;
     return std::visit([](const auto& each) { return each.size(); }, images);
   }
   stats::Moments moments(std::size_t channel) const { return sums->moments(channel); }

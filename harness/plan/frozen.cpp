@@ -65,12 +65,7 @@ void freeze_cells(const Question& question, const Pilots& pilots, Plan& plan) {
 bool takes_from_pilot(const Method& method) { return method.is.from_pilot != FromPilot::nothing; }
 
 void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
-  const FromPilot wanted = plan.method.is.from_pilot;
-  if (wanted == FromPilot::cells) {
-    freeze_cells(question, pilots, plan);
-  } else if (wanted == FromPilot::weights) {
-    plan.method.frozen.weights = image_weights(question, pilots, plan);
-  }
+  if (takes_from_pilot(plan.method)) freeze_cells(question, pilots, plan);
 }
 
 }  // namespace assay::harness

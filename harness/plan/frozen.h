@@ -1,6 +1,6 @@
 #pragma once
 
-// Data that tests take from the pilots: cells of two laws, weights of images' elements.
+// Data that tests take from the pilots: cells of two laws.
 
 #include <vector>
 

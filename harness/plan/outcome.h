@@ -26,10 +26,6 @@ struct Plan {
   stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
   std::vector<Regions> regions = {};          ///< One a channel.
   std::vector<Gate> gates = {};               ///< Gates of the pilot.
-  std::uint32_t smallest_cell = 1;            ///< Smallest cells of an image that keep their level.
-  /// True if the shared skewness of an image's elements is too small to add up to a finding. The
-  /// sum of squares takes part then.
-  bool symmetric = true;
   std::string hint = "";     ///< Reason that the pilot's images give for a fail, or "".
   std::string caution = "";  ///< Possible slip of the user, shown unless the claim is refuted.
   /// True if red gates on the test's own data void a look. A forced method only shows them.

@@ -14,6 +14,7 @@
 #include "harness/base/text_hash.h"
 #include "harness/question/question_sources.h"
 #include "harness/record/picture.h"
+#include "harness/run/image_judge.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
@@ -22,15 +23,7 @@ namespace {
 using reports::Number;
 
 const char* statistic_name(stats::ImageStatistic statistic) {
-  switch (statistic) {
-    case stats::ImageStatistic::alternating:
-      return "alternating";
-    case stats::ImageStatistic::energy:
-      return "energy";
-    case stats::ImageStatistic::window:
-      break;
-  }
-  return "window";
+  return statistic == stats::ImageStatistic::alternating ? "alternating" : "window";
 }
 
 reports::ImageFinding finding_of(const stats::ImageFinding& finding, const ImageShape& shape) {
@@ -55,9 +48,6 @@ reports::Image image_of(const ImageOutcome& outcome, const ImageShape& shape) {
                        .tested = family.tested,
                        .constant = family.equal_constants - outcome.unseen.size(),
                        .unseen = outcome.unseen.size(),
-                       .smallest_cell = outcome.smallest_cell,
-                       .symmetric = outcome.symmetric,
-                       .sign_flips = outcome.by_sign_flips,
                        .winner = {},
                        .groups = {}};
   if (family.groups.empty()) return image;
@@ -225,6 +215,12 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
   if (outcome.channels.empty() || !outcome.channels[0].image) return;
   const ImageOutcome& found = *outcome.channels[0].image;
   test.image = image_of(found, *outcome.question.subjects[0].image);
+  if (const std::optional<PlaceEffect> effect = effect_at_place(drawn)) {
+    test.image->effect = number(effect->estimate);
+    test.image->effect_low = number(effect->interval.low);
+    test.image->effect_high = number(effect->interval.high);
+    test.image->other = number(effect->other);
+  }
   add_maps(drawn, found, test);
 }
 

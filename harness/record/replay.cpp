@@ -142,8 +142,6 @@ Plan recorded_plan(const Question& question, const Recorded& recorded) {
   Plan plan{
       .method = method,
       .looks = recorded_looks(question, recorded, method.is.over_looks),
-      .smallest_cell = test.image ? static_cast<std::uint32_t>(test.image->smallest_cell) : 1U,
-      .symmetric = !test.image || test.image->symmetric,
       .gates_invalidate = !test.forced};
   // The record has all subjects of a channel together.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {

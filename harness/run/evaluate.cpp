@@ -107,9 +107,6 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
       outcome.gates.push_back(std::move(gate));
     }
     outcome.channels.push_back(channel_outcome(test, channel, data));
-    if (const auto& images = outcome.channels.back().image) {
-      outcome.gates.push_back(own_skewness_gate(*images));
-    }
   }
   return constants;
 }

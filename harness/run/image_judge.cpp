@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "harness/plan/critical.h"
-#include "stats/pyramids/image_pyramid.h"
+#include "stats/images/image_windows.h"
+#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
@@ -23,19 +24,30 @@ std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const I
   return elements;
 }
 
+/// The mean of a subject over elements, by their weights or plain.
 double mean_over(const DrawnTest& test, std::size_t subject,
-                 const std::vector<std::size_t>& elements) {
-  const Summary& summary = test.samples[subject].summary();
-  const std::vector<std::size_t>& channels = test.outcome.question.subjects[subject].channels;
+                 const std::vector<std::size_t>& elements, const std::vector<float>& weights) {
+  const Question& question = test.outcome.question;
+  const bool numbers = subject >= question.subjects.size();
   double sum = 0;
-  for (const std::size_t i : elements) sum += summary.moments(channels[i]).mean;
-  return sum / static_cast<double>(elements.size());
+  double weight = 0;
+  for (const std::size_t i : elements) {
+    const double w = weights.empty() ? 1 : static_cast<double>(weights[i]);
+    const double value =
+        numbers ? question.references[i].value + question.offset
+                : test.samples[subject].summary().moments(question.subjects[subject].channels[i]).mean;
+    sum += w * value;
+    weight += w;
+  }
+  return sum / weight;
 }
 
-double reference_over(const Question& question, const std::vector<std::size_t>& elements) {
-  double sum = 0;
-  for (const std::size_t i : elements) sum += question.references[i].value + question.offset;
-  return sum / static_cast<double>(elements.size());
+/// The mean of what the first image is held against.
+double other_mean(const DrawnTest& test, const std::vector<std::size_t>& elements,
+                  const std::vector<float>& weights) {
+  const Question& question = test.outcome.question;
+  const double mean = mean_over(test, 1, elements, weights);
+  return question.of_two() ? question.factor * mean + question.offset : mean;
 }
 
 }  // namespace
@@ -44,12 +56,8 @@ ImageTest image_test(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;
   const std::vector<Subject>& subjects = outcome.question.subjects;
   return {.share = outcome.share(),
-          .smallest_cell = outcome.plan.smallest_cell,
-          .weights = outcome.plan.method.frozen.weights,
-          .symmetric = outcome.plan.symmetric,
           .independent = std::all_of(subjects.begin(), subjects.end(),
                                      [](const Subject& s) { return s.image->independent; }),
-          .flips = test.samples[0].pool().key(),
           .look = outcome.plan.look.get()};
 }
 
@@ -57,38 +65,51 @@ ImageViews images_of(const DrawnTest& test, std::size_t subject) {
   return {test.samples[subject].observations(), test.outcome.question.subjects[subject].channels};
 }
 
-Gate own_skewness_gate(const ImageOutcome& images) {
-  // Normal data exceed it about once in 1e5 tests.
-  constexpr double limit = 2;
-  const double factor = images.level_factor;
-  return gate_of(
-      reports::Gate{.name = "skewness of the images, theirs alone",
-                    .value = std::isfinite(factor) ? reports::Number(factor) : reports::Number(),
-                    .limit = limit,
-                    .state = factor <= limit ? "green" : "red"});
+std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
+  const TestOutcome& outcome = test.outcome;
+  const Question& question = outcome.question;
+  if (outcome.channels.empty() || !outcome.channels[0].image) return {};
+  const stats::ImageFamily& family = outcome.channels[0].image->family;
+  const stats::ImageFinding& winner = family.winner;
+  if (winner.statistic != stats::ImageStatistic::window || winner.window.width == 0) return {};
+  const std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
+  const stats::ImageEffect& effect = winner.effect;
+  if (!(effect.standard_error > 0)) {
+    const double base = other_mean(test, elements, {});
+    const double difference = mean_over(test, 0, elements, {}) - base;
+    return PlaceEffect{difference, {difference, difference, 1}, base};
+  }
+  const double half =
+      effect.margin + effect.standard_error *
+                          stats::student_t_quantile(
+                              {stats::Tail::upper, std::log((1 - confidence_at_place) / 2)},
+                              effect.degrees);
+  return PlaceEffect{.estimate = effect.estimate,
+                     .interval = {effect.estimate - half, effect.estimate + half,
+                                  confidence_at_place},
+                     .other = other_mean(test, elements, family.weights)};
 }
 
 std::string means_where_it_differs(const DrawnTest& test) {
-  const TestOutcome& outcome = test.outcome;
-  const Question& question = outcome.question;
-  if (outcome.verdict != reports::Verdict::fail || !outcome.channels[0].image) return "";
-  const stats::ImageFinding& winner = outcome.channels[0].image->family.winner;
-  if (winner.statistic != stats::ImageStatistic::window || winner.window.width == 0) return "";
-  const std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
-  const double mean = mean_over(test, 0, elements);
-  const double other = question.of_two()
-                           ? question.factor * mean_over(test, 1, elements) + question.offset
-                           : reference_over(question, elements);
-  const std::string part =
-      other == 0 ? "" : fmt::format(", {:+.3g} %", 100 * (mean - other) / std::abs(other));
-  return fmt::format("; the mean at that place is {:.5g} against {:.5g}{}", mean, other, part);
+  if (test.outcome.verdict != reports::Verdict::fail) return "";
+  const std::optional<PlaceEffect> effect = effect_at_place(test);
+  if (!effect) return "";
+  const bool relative = effect->other != 0;
+  const double unit = relative ? std::abs(effect->other) / 100 : 1;
+  const char* const per_cent = relative ? " %" : "";
+  return fmt::format("; there it is {:.3g}{} too {} ({:.3g} to {:.3g}{}): {:.5g} against {:.5g}",
+                     std::abs(effect->estimate) / unit, per_cent,
+                     effect->estimate < 0 ? "dark" : "bright",
+                     (effect->estimate < 0 ? -effect->interval.high : effect->interval.low) / unit,
+                     (effect->estimate < 0 ? -effect->interval.low : effect->interval.high) / unit,
+                     per_cent, effect->other + effect->estimate, effect->other);
 }
 
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,
                                            const ChannelOutcome& channel) {
   if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return {};
-  const stats::ImageExtent extent = extent_of(*outcome.question.subjects[0].image);
-  const double part = stats::whole_image_share(extent) / static_cast<double>(extent.channels);
+  const double part = stats::whole_image_share /
+                      static_cast<double>(outcome.question.subjects[0].image->components.size());
   const double z =
       critical_value(size.share.alpha * part, true) + critical_value(size.share.beta, false);
   const double shrunk =

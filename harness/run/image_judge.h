@@ -15,11 +15,18 @@ ImageTest image_test(const DrawnTest& test);
 /// The observations of this look: the subject's elements of each.
 ImageViews images_of(const DrawnTest& test, std::size_t subject);
 
-/// Red if rare lights that the pilot did not meet move the level.
-Gate own_skewness_gate(const ImageOutcome& images);
+/// The mean difference over the cell that speaks most against equality, in units of the images and
+/// weighted as the test weighs it. The interval is of this one cell.
+inline constexpr double confidence_at_place = 0.99;
+struct PlaceEffect {
+  double estimate = 0;
+  stats::Interval interval = {};
+  double other = 0;  ///< The mean that it is held against.
+};
+std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
 
-/// "; the mean at that place is 1.03 against 1, +3 %" for a failed claim on images that one window
-/// decided; else "".
+/// "; there it is 3 % too bright (2 to 4 %): 1.03 against 1" for a failed claim on images that one
+/// cell decided; else "".
 std::string means_where_it_differs(const DrawnTest& test);
 
 /// The least detectable difference that is the same everywhere, by the sum over the whole image.

@@ -10,10 +10,8 @@
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
-#include "harness/image/image_flips.h"
 #include "harness/image/image_pair.h"
 #include "harness/image/image_uniform.h"
-#include "harness/plan/critical.h"
 #include "harness/plan/image_plan.h"
 #include "stats/images/image_row_distance.h"
 #include "stats/images/image_sums.h"
@@ -26,10 +24,6 @@ using Stack = stats::ImageStack<float>;
 using Pyramid = stats::RowPyramid<float>;
 
 constexpr std::size_t row_unit = Pyramid::row_unit;
-static_assert(row_unit % stats::RowCellTails::row_unit == 0 &&
-              row_unit % GroupedFlips<float>::row_unit == 0 &&
-              Pyramid::rows_before >= stats::RowCellTails::rows_beside &&
-              Pyramid::rows_ahead >= stats::RowCellTails::rows_beside);
 // Row counts are multiples of it: most files compress 16 rows together.
 constexpr std::size_t read_unit = 16;
 // Limit of texels read at a time, unless one unit of rows has more.
@@ -74,14 +68,13 @@ class Side {
     there_ = rows;
   }
 
-  Stack stack(std::size_t pictures) const {
+  Stack stack() const {
     Stack stack{extent_, {}, there_.elements(extent_)};
-    for (std::size_t i = 0; i < pictures; ++i) {
+    for (std::size_t i = 0; i < pictures_; ++i) {
       stack.images.emplace_back(texels_.get() + i * size_, stack.there.size());
     }
     return stack;
   }
-  Stack stack() const { return stack(pictures_); }
 
   double seconds() const {
     double sum = 0;
@@ -126,15 +119,12 @@ class Side {
 /// Results of rows that are collected row by row.
 class Looking {
  public:
-  Looking(const Question& question, const FamilyPlace& place)
+  explicit Looking(const Question& question)
       : question_(question),
-        place_(place),
         extent_(extent_of(*question.subjects[0].image)),
         pictures_(pictures_of(question.subjects[0])),
-        piloted_(usual_images(*question.subjects[0].setup, 1).value_or(0)),
         sums_(extent_, pictures_) {
     look_->pictures = pictures_;
-    look_->piloted = piloted_ = std::min<std::uint64_t>(piloted_, pictures_);
     look_->z.resize(extent_.elements());
     for (const Subject& subject : question.subjects) {
       sides_.emplace_back(subject);
@@ -220,7 +210,9 @@ class Looking {
   void take(stats::RowRange rows) {
     const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
     const stats::ImagePair<float> pair = stats::pair_of(stacks[0], stacks[1]);
-    if (rows.first == 0) begin(pair);
+    if (rows.first == 0) {
+      pyramid_.emplace(pair, stats::PyramidOptions{.z = look_->z, .for_each = on_all_threads});
+    }
     sums_.take(pair, rows);
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
@@ -229,32 +221,11 @@ class Looking {
     }
     distance_.take(pair, rows, on_all_threads);
     pyramid_->take(pair, rows);
-    tails_->take(pilot_sides(), rows);
-    if (flips_) flips_->take(pair, rows);
-  }
-
-  void begin(const stats::ImagePair<float>& pair) {
-    const bool independent = std::ranges::all_of(
-        question_.subjects, [](const Subject& side) { return side.image->independent; });
-    pyramid_.emplace(pair, stats::PyramidOptions{
-                               .energy = independent, .z = look_->z, .for_each = on_all_threads});
-    tails_.emplace(pilot_sides(), smallest_level(question_, place_),
-                   stats::WeightsFrom::halves_of_the_test, on_all_threads);
-    if (!independent && flip_size(place_.share, pictures_)) flips_.emplace();
-  }
-
-  std::vector<stats::CellPilot> pilot_sides() const {
-    const auto replicates = static_cast<double>(usual_replicates(question_, pictures_));
-    return {{.stack = sides_[0].stack(piloted_), .factor = 1, .replicates = replicates},
-            {.stack = sides_[1].stack(piloted_), .factor = -1, .replicates = replicates}};
   }
 
   void finish() {
     look_->distance = distance_.distance();
     look_->family = pyramid_->family();
-    look_->tails = tails_->tails();
-    if (flips_) look_->flips = flips_->matrix();
-    look_->skewness = sums_.skewness();
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       look_->means.push_back(channel_means(of_channels_[s], extent_));
       for (double& sum : of_pictures_[s]) sum /= static_cast<double>(extent_.elements());
@@ -262,10 +233,8 @@ class Looking {
   }
 
   const Question& question_;
-  const FamilyPlace& place_;
   stats::ImageExtent extent_;
   std::size_t pictures_;
-  std::size_t piloted_;
   std::vector<Side> sides_;
   std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
   SumsOfTwo sums_;
@@ -273,8 +242,6 @@ class Looking {
   std::vector<std::vector<double>> of_channels_;  // sums of each picture's channels
   stats::RowDistance<float> distance_;
   std::optional<Pyramid> pyramid_;
-  std::optional<stats::RowCellTails> tails_;
-  std::optional<GroupedFlips<float>> flips_;
 };
 
 bool is_streamed(const Subject& side, const Subject& other) {
@@ -321,10 +288,9 @@ double streamed_bytes(const Subject& side) {
                              sizeof(float));
 }
 
-StreamedPictures stream_pictures(const Question& question, const FamilyPlace& place,
-                                 Progress& progress) {
+StreamedPictures stream_pictures(const Question& question, Progress& progress) {
   progress.begin("pictures", 2 * pictures_of(question.subjects[0]));
-  StreamedPictures found = Looking(question, place).take_all(progress);
+  StreamedPictures found = Looking(question).take_all(progress);
   progress.end();
   return found;
 }

@@ -10,7 +10,6 @@
 #include "harness/base/progress.h"
 #include "harness/pilot/pilot.h"
 #include "harness/question/question.h"
-#include "harness/theta/family.h"
 
 namespace assay::harness {
 
@@ -31,7 +30,6 @@ struct StreamedPictures {
   std::string fault = {};
 };
 
-StreamedPictures stream_pictures(const Question& question, const FamilyPlace& place,
-                                 Progress& progress);
+StreamedPictures stream_pictures(const Question& question, Progress& progress);
 
 }  // namespace assay::harness

@@ -117,11 +117,9 @@ std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEsti
 Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
                const std::vector<bool>& chosen, std::vector<const PreparedEstimator*> used,
                const RunOptions& options, Progress& progress) {
-  const std::vector<FamilyPlace> place = places(run.suite, questions);
   Pilots pilots;
   for (const Question* const question : streamed(questions, chosen)) {
-    const auto index = static_cast<std::size_t>(question - questions.data());
-    StreamedPictures taken = stream_pictures(*question, place[index], progress);
+    StreamedPictures taken = stream_pictures(*question, progress);
     stop_if_interrupted();
     if (taken.pilots.empty()) {
       require_memory(run.estimators, {}, available_bytes(), taken.fault);

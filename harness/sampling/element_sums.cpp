@@ -6,7 +6,6 @@
 
 #include "harness/base/parallel.h"
 #include "harness/sampling/beyond_doubles.h"
-#include "harness/sampling/difference_skewness.h"
 #include "stats/images/image_element_moments.h"
 
 namespace assay::harness {
@@ -34,35 +33,17 @@ Extremes extremes_of(std::span<const stats::Moments> elements) {
   return extremes;
 }
 
-/// Sums of some elements of both sides.
-struct Part {
-  std::array<Extremes, 2> sides = {};
-  std::vector<double> skewness = {};
-};
-
-using Elements = std::vector<stats::Moments>;
-
-/// The moments of these elements; `sums` keeps a part of them.
-Elements take_side(const stats::ImageStack<float>& stack, stats::ElementRange range,
+/// The extremes of these elements; `sums` keeps their moments.
+Extremes take_side(const stats::ImageStack<float>& stack, stats::ElementRange range,
                    ElementSums& sums) {
-  Elements moments(range.size());
+  std::vector<stats::Moments> moments(range.size());
   stats::element_moments(stack, range.first, moments);
   for (std::size_t i = 0; i < moments.size(); ++i) {
     sums.mean[range.first + i] = moments[i].mean;
     sums.m2[range.first + i] = moments[i].m2;
   }
   if (range.first == 0) sums.first = moments[0];
-  return moments;
-}
-
-Part part_of(const Elements& first, const Elements& second) {
-  Part part{{extremes_of(first), extremes_of(second)}};
-  part.skewness.reserve(first.size());
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const SkewedSide sides[] = {{first[i], 1, 1}, {second[i], 1, -1}};
-    if (const auto skewness = difference_skewness(sides)) part.skewness.push_back(*skewness);
-  }
-  return part;
+  return extremes_of(moments);
 }
 
 void join(ElementSums& sums, const Extremes& found) {
@@ -87,23 +68,19 @@ SumsOfTwo::SumsOfTwo(const stats::ImageExtent& extent, std::uint64_t pictures)
 
 void SumsOfTwo::take(const stats::ImagePair<float>& pair, stats::RowRange rows) {
   const stats::ElementRange range = rows.elements(extent_);
-  std::vector<Part> parts((range.size() + elements_at_a_time - 1) / elements_at_a_time);
+  std::vector<std::array<Extremes, 2>> parts((range.size() + elements_at_a_time - 1) / elements_at_a_time);
   on_all_threads(parts.size(), [&](std::size_t i) {
     const std::size_t first = range.first + i * elements_at_a_time;
     const stats::ElementRange some{first, std::min(first + elements_at_a_time, range.last)};
-    parts[i] = part_of(take_side(pair.a, some, sides_[0]), take_side(*pair.b, some, sides_[1]));
+    parts[i] = {take_side(pair.a, some, sides_[0]), take_side(*pair.b, some, sides_[1])};
   });
-  for (const Part& part : parts) {
+  for (const auto& part : parts) {
     for (std::size_t s = 0; s < sides_.size(); ++s) {
-      join(sides_[s], part.sides[s]);
-      sound_ = sound_ && part.sides[s].sound;
+      join(sides_[s], part[s]);
+      sound_ = sound_ && part[s].sound;
     }
-    for (const double skewness : part.skewness) skewness_ += skewness;
-    varying_ += static_cast<double>(part.skewness.size());
   }
 }
-
-double SumsOfTwo::skewness() const { return varying_ > 0 ? skewness_ / varying_ : 0; }
 
 std::vector<ElementSums> SumsOfTwo::finish(std::span<const std::vector<double>> averages) {
   for (std::size_t s = 0; s < 2; ++s) {

@@ -36,16 +36,12 @@ class SumsOfTwo {
   void take(const stats::ImagePair<float>& pair, stats::RowRange rows);
   /// Call it after the last rows, with the averages of each side's pictures.
   std::vector<ElementSums> finish(std::span<const std::vector<double>> averages);
-  /// Mean of |skewness of one picture's difference| over the elements that vary.
-  double skewness() const;
   /// True if every element that varies has finite moments.
   bool sound() const { return sound_; }
 
  private:
   stats::ImageExtent extent_;
   std::vector<ElementSums> sides_;
-  double skewness_ = 0;
-  double varying_ = 0;  // number of elements in the sum
   bool sound_ = true;
 };
 

@@ -59,14 +59,13 @@ struct RowAllowance {
 /// Data that a method takes from the pilot, before the test's own are seen.
 struct Frozen {
   std::shared_ptr<const stats::SampledCells> cells = nullptr;  ///< For chi-square-two-sample.
-  std::vector<double> weights = {};                            ///< Weights of an image's elements.
   std::vector<RowAllowance> row_allowances = {};               ///< For means.
 };
 
 struct Method;
 
 /// Part of the pilots that a method's evidence needs.
-enum class FromPilot { nothing, cells, weights };
+enum class FromPilot { nothing, cells };
 
 /// Other properties of a method.
 struct MethodTraits {

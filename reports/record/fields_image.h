@@ -31,10 +31,11 @@ void fields(Archive& a, T& image) {
   a("tested", image.tested);
   a("constant", image.constant);
   a("unseen", image.unseen);
-  a("smallest_cell", image.smallest_cell);
-  a("symmetric", image.symmetric);
-  a("sign_flips", image.sign_flips);
   a("winner", image.winner);
+  a("effect", image.effect);
+  a("effect_low", image.effect_low);
+  a("effect_high", image.effect_high);
+  a("other", image.other);
   a("groups", image.groups);
 }
 

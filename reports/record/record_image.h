@@ -14,11 +14,11 @@ namespace assay::reports {
 
 /// A sum over part of an image, or over all of it, that speaks against equality.
 struct ImageFinding {
-  std::string statistic;  ///< "window", "alternating" (signs), "energy" (sum of squares)
+  std::string statistic;  ///< "window", "alternating" (signs)
   std::string place;      ///< where, and its z, in words
   std::uint64_t x = 0, y = 0, width = 0, height = 0;  ///< the rectangle of pixels
   std::string component;
-  Number z;  ///< positive where the first image is brighter; of the energy: one-sided
+  Number z;  ///< positive where the first image is brighter
   Number log10_p;
   Number log10_p_adjusted;       ///< in the family of everything that was looked at in the image
   std::optional<Effect> effect;  ///< relative difference of the sums over the rectangle
@@ -33,10 +33,10 @@ struct Image {
   std::uint64_t tested = 0;          ///< Elements that vary.
   std::uint64_t constant = 0;        ///< Elements that do not vary and equal the reference.
   std::uint64_t unseen = 0;          ///< Elements that do not vary and differ from it.
-  std::uint64_t smallest_cell = 1;   ///< Side of the smallest cells in the family, in pixels.
-  bool symmetric = true;             ///< False: skewness kept the sum of squares out.
-  bool sign_flips = false;           ///< True: flips of signs judged the sum of squares.
   ImageFinding winner;               ///< The least adjusted p.
+  Number effect;                     ///< Mean difference over the winner's rectangle.
+  Number effect_low, effect_high;    ///< Its 99 % interval, as of a single rectangle.
+  Number other;                      ///< The mean that it is held against.
   std::vector<ImageFinding> groups;  ///< The best of each group of sums.
   bool operator==(const Image&) const = default;
 };

@@ -15,16 +15,8 @@ std::string components_text(const Image& image) {
   return text;
 }
 
-std::string left_out(const Image& image) {
+std::string constants_text(const Image& image) {
   std::string text;
-  if (image.smallest_cell == 2) {
-    text += "; single pixels are left out: their skewness is too large";
-  } else if (image.smallest_cell > 2) {
-    text += fmt::format("; cells below {0} x {0} pixels are left out: their skewness is too large",
-                        image.smallest_cell);
-  }
-  if (!image.symmetric) text += "; its pixels are skewed to one side";
-  if (image.sign_flips) text += "; its pixels depend on each other: signs of whole images flipped";
   if (image.constant > 0) text += fmt::format("; constant elements: {}", image.constant);
   if (image.unseen > 0) {
     text += fmt::format(
@@ -54,7 +46,7 @@ std::string image_fact(const Test& test) {
     text += fmt::format("; differs most at {}, p = {} in all", image.winner.place,
                         p_text({}, image.winner.log10_p_adjusted));
   }
-  return text + left_out(image);
+  return text + constants_text(image);
 }
 
 std::string map_title(const Map& map) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "stats/basics/check.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -26,39 +25,6 @@ void decide(ImageFamily& family) {
   family.log_p = family.winner.adjusted_log_p;
 }
 
-void leave_out(ImageFamily& family, LeftOut which) {
-  if (family.different_constants > 0) return;
-  std::erase_if(family.groups, [&](const ImageFinding& finding) {
-    if (finding.statistic == ImageStatistic::energy) return which.energy;
-    return finding.statistic == ImageStatistic::window && finding.size < which.smallest;
-  });
-  family.log_p = 0;
-  family.winner = {};
-  decide(family);
-}
-
-void add_energy(ImageFamily& family, const ImageExtent& extent, double log_p) {
-  check::log_probability({"add_energy", "log_p"}, log_p);
-  ImageFinding finding = whole_image(ImageStatistic::energy, extent);
-  finding.log_p = log_p;
-  finding.z =
-      log_p < 0 ? normal_quantile({Tail::upper, log_p}) : -std::numeric_limits<double>::infinity();
-  finding.adjusted_log_p = std::min(0.0, log_p - std::log(energy_share));
-  family.groups.push_back(finding);
-  decide(family);
-}
-
-double energy_notice(const ImageFamily& family) { return family.log_p + std::log(energy_share); }
-
-ImageFinding whole_image(ImageStatistic statistic, const ImageExtent& extent) {
-  ImageFinding finding;
-  finding.statistic = statistic;
-  finding.window = {0, 0, static_cast<std::uint32_t>(extent.width),
-                    static_cast<std::uint32_t>(extent.height)};
-  finding.size = std::max(finding.window.width, finding.window.height);
-  return finding;
-}
-
 ImageFinding certain_finding(const ImageExtent& extent, std::size_t element, double sign) {
   const std::size_t place = element / extent.channels;
   const Rectangle window{static_cast<std::uint32_t>(place % extent.width),
@@ -70,7 +36,9 @@ ImageFinding certain_finding(const ImageExtent& extent, std::size_t element, dou
           element % extent.channels,
           std::copysign(std::numeric_limits<double>::infinity(), sign),
           never,
-          never};
+          never,
+          Alternation::columns,
+          {}};
 }
 
 }  // namespace assay::stats

@@ -37,27 +37,23 @@ HalfMoments half_moments(const ImageStack<Real>& stack, std::size_t half, Elemen
   return moments;
 }
 
-// Means over 3 elements along rows or columns, fewer at the edge.
+// Means over the 5 elements around each along rows or columns, fewer at the edge.
 struct Line {
   std::size_t size;
   std::size_t stride;
 };
 void smooth_line(std::vector<double>& values, std::size_t first, Line line) {
-  double before = 0;
+  std::array<double, 2 * rows_beside + 1> around{};  // A ring of the unsmoothed values.
+  const auto value = [&](std::size_t i) -> double& { return values[first + i * line.stride]; };
+  const auto kept = [&](std::size_t i) -> double& { return around[i % around.size()]; };
+  for (std::size_t i = 0; i < std::min(rows_beside, line.size); ++i) kept(i) = value(i);
   for (std::size_t i = 0; i < line.size; ++i) {
-    double& value = values[first + i * line.stride];
-    double sum = value;
-    double count = 1;
-    if (i > 0) {
-      sum += before;
-      ++count;
-    }
-    if (i + 1 < line.size) {
-      sum += values[first + (i + 1) * line.stride];
-      ++count;
-    }
-    before = value;
-    value = sum / count;
+    const std::size_t begin = i - std::min(i, rows_beside);
+    const std::size_t end = std::min(i + rows_beside + 1, line.size);
+    if (i + rows_beside < line.size) kept(i + rows_beside) = value(i + rows_beside);
+    double sum = 0;
+    for (std::size_t j = begin; j < end; ++j) sum += kept(j);
+    value(i) = sum / static_cast<double>(end - begin);
   }
 }
 
@@ -70,6 +66,13 @@ std::vector<double> smoothed(const ImageExtent& extent, std::vector<double> valu
   }
   for (std::size_t i = 0; i < row; ++i) smooth_line(values, i, {extent.height, row});
   return values;
+}
+
+// The mean of each element's variance and that of its neighbourhood in the channel.
+std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance) {
+  std::vector<double> steady = smoothed(extent, variance);
+  for (std::size_t i = 0; i < steady.size(); ++i) steady[i] = std::midpoint(steady[i], variance[i]);
+  return steady;
 }
 
 // Subtracts the reference from the difference and adds its error to the variance. It joins no
@@ -90,13 +93,14 @@ Half half_of(const ImagePair<Real>& pair, std::size_t half, RowRange rows,
   const ElementRange range = rows.elements(extent);
   const ImageExtent part{extent.width, rows.last - rows.first, extent.channels};
   HalfMoments a = half_moments(pair.a, half, range, for_each);
-  Half result{range.first, std::move(a.mean), std::move(a.squared_error), {}, {}};
+  Half result{range.first, {a.mean, {}}, std::move(a.mean), std::move(a.squared_error), {}, {}};
   if (pair.b != nullptr) {
-    const HalfMoments b = half_moments(*pair.b, half, range, for_each);
+    HalfMoments b = half_moments(*pair.b, half, range, for_each);
     for (std::size_t i = 0; i < b.mean.size(); ++i) {
       result.difference[i] -= b.mean[i];
       result.variance[i] += b.squared_error[i];
     }
+    result.mean[1] = std::move(b.mean);
   }
   result.varied.reserve(range.size());
   for (const double variance : result.variance) result.varied.push_back(variance > 0);
@@ -110,15 +114,9 @@ Half half_of(const ImagePair<Real>& pair, std::size_t half, RowRange rows,
 
 }  // namespace
 
-std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance) {
-  std::vector<double> steady = smoothed(extent, variance);
-  for (std::size_t i = 0; i < steady.size(); ++i) steady[i] = std::midpoint(steady[i], variance[i]);
-  return steady;
-}
-
 RowRange with_neighbours(RowRange rows, const ImageExtent& extent) {
-  return {rows.first - std::min<std::size_t>(rows.first, 1),
-          std::min(rows.last + 1, extent.height)};
+  return {rows.first - std::min(rows.first, rows_beside),
+          std::min(rows.last + rows_beside, extent.height)};
 }
 
 template <class Real>

@@ -13,21 +13,21 @@ namespace assay::stats {
 inline constexpr std::size_t halves = 2;
 
 // One half: D = mean a - mean b, its squared error v, and the weight that the other half takes. The
-// weight is 1 / sqrt of the mean of v and of v smoothed over 3 x 3 elements of the channel. It is
+// weight is 1 / sqrt of the mean of v and of v smoothed over 5 x 5 elements of the channel. It is
 // zero if the element is constant within the half. A single element's v is from few values, and one
 // that is tiny by chance would carry the whole sum.
 struct Half {
   std::size_t first = 0;  // The element that they begin with.
+  std::array<std::vector<double>, 2> mean;  // Of either side; a reference has none.
   std::vector<double> difference;
   std::vector<double> variance;
   std::vector<unsigned char> varied;  // Nonzero if any replicate of the half differs from another.
   std::vector<double> weight;
 };
 
-// The mean of each element's variance and that of its 3 x 3 neighbourhood in the channel.
-std::vector<double> steadied(const ImageExtent& extent, const std::vector<double>& variance);
-
-// These rows and one more at either side, where the image has one. Steadying needs their variances.
+// Steadying needs the variances of rows so far away.
+inline constexpr std::size_t rows_beside = 2;
+// These rows and rows_beside more at either side, as far as the image has them.
 RowRange with_neighbours(RowRange rows, const ImageExtent& extent);
 
 // Halves of the elements of with_neighbours(rows). Weights are right in `rows` alone.

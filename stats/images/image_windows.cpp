@@ -61,22 +61,24 @@ void add_level(std::vector<WindowGroup>& groups, const ImageExtent& extent, std:
   std::erase_if(shifted, [&](const Rectangle& w) { return w.x % size == 0 && w.y % size == 0; });
 }
 
-// Gives every level the same share and the whole image twice that. A level's parts have equal parts
-// of it.
-void share_out(std::vector<WindowGroup>& groups, std::size_t levels, double share) {
-  const double each = share / static_cast<double>(levels + 1);
+// The whole image has whole_share of the level, all other sizes have equal shares. A size's aligned
+// and shifted cells have equal parts of it.
+void share_out(std::vector<WindowGroup>& groups, std::size_t sizes, double share) {
+  const double whole_part = sizes == 1 ? share : whole_image_share;
   const std::uint32_t whole = groups.back().size;
   for (WindowGroup& group : groups) {
     const auto parts = std::count_if(groups.begin(), groups.end(),
                                      [&](const WindowGroup& g) { return g.size == group.size; });
-    group.share = (group.size == whole ? 2 : 1) * each / static_cast<double>(parts);
+    const double of_size = group.size == whole
+                               ? whole_part
+                               : (share - whole_part) / static_cast<double>(sizes - 1);
+    group.share = of_size / static_cast<double>(parts);
   }
 }
 
 }  // namespace
 
-std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share,
-                                       std::uint32_t listed) {
+std::vector<WindowGroup> window_groups(const ImageExtent& extent, std::uint32_t listed) {
   const std::uint32_t longest = narrow(std::max(extent.width, extent.height));
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t size = 1; size < longest; size *= 2) sizes.push_back(size);
@@ -85,17 +87,13 @@ std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share,
   for (const std::uint32_t size : sizes)
     add_level(groups, extent, size, size >= listed || size == longest);
   if (longest == 1) {
-    share_out(groups, sizes.size(), share);
+    share_out(groups, sizes.size(), 1);
     return groups;
   }
-  share_out(groups, sizes.size(), share - alternating_share);
+  share_out(groups, sizes.size(), 1 - alternating_share);
   const Rectangle whole{0, 0, narrow(extent.width), narrow(extent.height)};
   groups.push_back({longest, Grid::alternating, alternating_share, {whole, whole, whole}});
   return groups;
-}
-
-std::size_t aligned_cells(const ImageExtent& extent, std::uint32_t size) {
-  return ((extent.width + size - 1) / size) * ((extent.height + size - 1) / size);
 }
 
 WindowSums::WindowSums(const ImageExtent& extent)

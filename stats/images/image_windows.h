@@ -29,18 +29,18 @@ enum class Grid { aligned, shifted, alternating };
 struct WindowGroup {
   std::uint32_t size = 1;
   Grid grid = Grid::aligned;
-  double share = 0;  // Share of the level. All groups together have `share` of window_groups.
+  double share = 0;  // Share of the level.
   std::vector<Rectangle> windows;
 };
 
-// The groups and their shares. Every level has one share and the whole image two, halved between a
-// level's aligned and shifted cells. The three alternating sums have .025. Windows of sizes below
-// `listed`, but for the whole image, are not listed: there are millions.
-std::vector<WindowGroup> window_groups(const ImageExtent& extent, double share,
-                                       std::uint32_t listed = 1);
+// Share of the level for the sum over the whole image, which finds a uniform difference.
+inline constexpr double whole_image_share = 0.4;
 
-// Number of cells of that size in the aligned grid.
-std::size_t aligned_cells(const ImageExtent& extent, std::uint32_t size);
+// The groups and their shares, which sum to 1. The three alternating sums have .025, all sizes but
+// the whole image equal shares of the rest, halved between aligned and shifted cells. An image of
+// one element has one group. Windows of sizes below `listed`, but for the whole image, are not
+// listed: there are millions.
+std::vector<WindowGroup> window_groups(const ImageExtent& extent, std::uint32_t listed = 1);
 
 // Sums over rectangles of one channel by a summed-area table (Crow 1984), in double.
 class WindowSums {

@@ -102,44 +102,83 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
         // from.
         if (sums.total_of(group, i) == 0) moments.m2[window] = 0;
       });
-      moments.finish_part(count, side == 0 ? 0.5 : -0.5);
+      moments.finish_part(side, count, side == 0 ? 0.5 : -0.5);
     }
   }
   if (coarse.squared_error.blocks.empty()) return moments;
   sums.load(coarse.squared_error);
   for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-    if (moments.variance[window] == 0) return;
-    moments.variance[window] += std::max(sums.total_of(group, i), 0.0);
+    if (moments.variance[0][window] == 0) return;
+    moments.variance[1][window] += std::max(sums.total_of(group, i), 0.0);
   });
   return moments;
 }
 
-// `groups` in elements, `coarse` the same in blocks.
-void offer_windows(std::vector<BestCell>& best, const Groups& groups, const Groups& coarse,
-                   const WelchCells& moments, std::size_t channel) {
-  for_each_window(coarse, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-    // Different constants of two images were found before.
-    if (!moments.varied(window)) return;
-    const bool alternating = group.grid == Grid::alternating;
-    const auto g = static_cast<std::size_t>(&group - coarse.data());
-    ImageFinding candidate{alternating ? ImageStatistic::alternating : ImageStatistic::window,
-                           group.size,
-                           groups[g].windows[i],
-                           channel,
-                           0,
-                           0,
-                           0};
-    if (alternating) candidate.alternation = static_cast<Alternation>(i);
-    offer(best[g], candidate, moments.value(window));
-  });
+// The largest deviations of a window's elements.
+void add_largest(const CoarseImages& coarse, const Rectangle& blocks, std::size_t channel,
+                 CellNoise& noise) {
+  for (std::size_t y = blocks.y; y < blocks.y + blocks.height; ++y) {
+    for (std::size_t x = blocks.x; x < blocks.x + blocks.width; ++x) {
+      const std::size_t i = (y * coarse.extent.width + x) * coarse.extent.channels + channel;
+      for (std::size_t s = 0; s < sides_of_pair; ++s) {
+        for (std::size_t d = 0; d < directions; ++d) {
+          noise.largest[s][d] = std::max(noise.largest[s][d], coarse.largest[s][i][d]);
+        }
+      }
+    }
+  }
+}
+
+// One channel's numbers of blocks, as sums over windows.
+WindowSums channel_sums(const ImageExtent& blocks, const std::vector<double>& numbers,
+                        std::size_t channel) {
+  std::vector<double> values(blocks.width * blocks.height);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = numbers[i * blocks.channels + channel];
+  }
+  WindowSums sums(blocks);
+  sums.load(values);
+  return sums;
 }
 
 }  // namespace
 
 void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::size_t channel,
-                        std::vector<BestCell>& best) {
+                        const NoisePyramid& noise, std::vector<BestCell>& best) {
   const Groups in_blocks = coarse_groups(groups);
-  offer_windows(best, groups, in_blocks, window_moments(coarse, in_blocks, channel), channel);
+  const WelchCells moments = window_moments(coarse, in_blocks, channel);
+  const WindowSums third = channel_sums(coarse.extent, coarse.third, channel);
+  const WindowSums more = channel_sums(coarse.extent, coarse.more, channel);
+  const WindowSums base = channel_sums(coarse.extent, coarse.base.blocks, channel);
+  for_each_window(in_blocks, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+    // Different constants of two images were found before.
+    if (!moments.varied(window)) return;
+    const bool alternating = group.grid == Grid::alternating;
+    const auto g = static_cast<std::size_t>(&group - in_blocks.data());
+    Candidate candidate;
+    candidate.finding.statistic =
+        alternating ? ImageStatistic::alternating : ImageStatistic::window;
+    candidate.finding.size = group.size;
+    candidate.finding.window = groups[g].windows[i];
+    candidate.finding.channel = channel;
+    if (alternating) candidate.finding.alternation = static_cast<Alternation>(i);
+    moments.put(window, candidate.noise);
+    const Rectangle& elements = candidate.finding.window;
+    candidate.noise.elements = static_cast<double>(elements.width) * elements.height;
+    // Signs in turn cancel what the elements lack, and their skewness.
+    if (alternating) candidate.noise.elements = 0;
+    if (!alternating) {
+      candidate.noise.third = third.of(group, i);
+      candidate.noise.more = std::max(more.of(group, i), 0.0);
+      candidate.noise.level = {base.of(group, i) + candidate.noise.effect, base.of(group, i)};
+    }
+    const StudentValue value = own_value(candidate.noise);
+    candidate.finding.z = t_to_z(value);
+    ++best[g].windows;
+    if (!beats(candidate.finding, best[g])) return;
+    if (!alternating) add_largest(coarse, group.windows[i], channel, candidate.noise);
+    offer(best[g], candidate, noise);
+  });
 }
 
 }  // namespace assay::stats

@@ -12,6 +12,7 @@ namespace assay::stats {
 // Internal to image_pyramid. Offers one channel's coarse cells and alternating sums to the best of
 // their groups, from the sums over blocks.
 void offer_coarse_cells(const CoarseImages& coarse, const std::vector<WindowGroup>& groups,
-                        std::size_t channel, std::vector<BestCell>& best);
+                        std::size_t channel, const NoisePyramid& noise,
+                        std::vector<BestCell>& best);
 
 }  // namespace assay::stats

@@ -77,6 +77,45 @@ ASSAY_VECTOR_COPIES void add_row(const ColumnSums& to, double sign, std::size_t 
   }
 }
 
+// What one replicate adds to the moments of a row of elements.
+struct RowMoments {
+  double* m2;
+  double* m3;
+  float* up;
+  float* down;
+  float* deviation;
+};
+
+template <class Real>
+inline __attribute__((always_inline)) void deviate(const Real* value, const double* mean,
+                                                   const double* weight, const RowMoments& to,
+                                                   std::size_t size) {
+  double* const __restrict m2 = to.m2;
+  double* const __restrict m3 = to.m3;
+  float* const __restrict up = to.up;
+  float* const __restrict down = to.down;
+  float* const __restrict deviation = to.deviation;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double d = weight[i] * (static_cast<double>(value[i]) - mean[i]);
+    const auto rounded = static_cast<float>(d);
+    m2[i] += d * d;
+    m3[i] += d * d * d;
+    up[i] = std::max(up[i], rounded);
+    down[i] = std::max(down[i], -rounded);
+    deviation[i] = rounded;
+  }
+}
+ASSAY_VECTOR_COPIES void add_row_moments(const float* value, const double* mean,
+                                         const double* weight, const RowMoments& to,
+                                         std::size_t size) {
+  deviate(value, mean, weight, to, size);
+}
+ASSAY_VECTOR_COPIES void add_row_moments(const double* value, const double* mean,
+                                         const double* weight, const RowMoments& to,
+                                         std::size_t size) {
+  deviate(value, mean, weight, to, size);
+}
+
 // Asks for the rows of a tile before they are needed. A tile's rows are too short for the machine
 // to foresee the next.
 template <class Real>
@@ -111,34 +150,45 @@ GroupsOfSide groups_of_side(const std::vector<WindowGroup>& groups, std::uint32_
 template <class Real>
 class FineTiles {
  public:
-  FineTiles(const FineCells<Real>& cells, std::size_t band, CoarseImages& coarse)
+  FineTiles(const FineCells<Real>& cells, std::size_t band, FineFindings& found)
       : cells_(cells),
         extent_(cells.pair.a.extent),
-        best_(cells.groups.size()),
-        coarse_(coarse),
+        found_(found),
+        coarse_(found.coarse),
         alternating_(band * extent_.channels * alternations),
         sums_(extent_),
         column_sums_(Tile{extent_}.stride()),
-        signed_column_sums_(column_sums_.size()) {
+        signed_column_sums_(column_sums_.size()),
+        elements_(extent_) {
     for (std::size_t k = 0; k < fine_squares.size(); ++k) {
       groups_[k] = groups_of_side(cells.groups, fine_squares[k].side);
     }
   }
 
-  const std::vector<BestCell>& best() const { return best_; }
+  const ElementCounts& counts() const { return counts_; }
 
   void take(const Tile& tile) {
+    candidates_.assign(cells_.groups.size(), {});
+    elements_.start();
     const std::size_t size = Tile::rows * tile.stride();
     for (std::size_t k = 0; k < fine_squares.size(); ++k) {
       moments_[k].start(size / (fine_squares[k].step * fine_squares[k].step));
     }
     for (std::size_t h = 0; h < halves; ++h) {
       take_half(tile, cells_.pair.a, {h, 0}, 0.5);
-      if (cells_.pair.b != nullptr) take_half(tile, *cells_.pair.b, {h, 1}, -0.5);
+      take_elements(tile, cells_.pair.a, {h, 0}, 0.5);
+      if (cells_.pair.b != nullptr) {
+        take_half(tile, *cells_.pair.b, {h, 1}, -0.5);
+        take_elements(tile, *cells_.pair.b, {h, 1}, -0.5);
+      }
       count_varied(tile, h);
     }
     if (!coarse_.squared_error.blocks.empty()) add_reference_error(tile);
+    add_base(tile);
+    offer_elements(tile);
     for (std::size_t k = 0; k < fine_squares.size(); ++k) offer_squares(tile, k);
+    const std::size_t across = (extent_.width + Tile::columns - 1) / Tile::columns;
+    found_.tiles[tile.y / Tile::rows * across + tile.x / Tile::columns] = std::move(candidates_);
   }
 
  private:
@@ -146,6 +196,204 @@ class FineTiles {
     std::size_t half;
     std::size_t side;
   };
+
+  // Elements that begin in a tile, row after row, without those beyond it.
+  struct Elements {
+    explicit Elements(const ImageExtent& extent)
+        : stride(Tile::columns * extent.channels), deviation(stride) {}
+    void start() {
+      const std::size_t size = Tile::rows * stride;
+      for (std::vector<double>* each :
+           {&effect, &variance[0], &variance[1], &reciprocal_degrees, &third, &more}) {
+        each->assign(size, 0.0);
+      }
+      for (auto& side : largest) {
+        for (std::vector<float>& each : side) each.assign(size, 0.0F);
+      }
+    }
+    std::size_t stride;
+    std::vector<double> m2;  // Of the current part.
+    std::vector<double> m3;
+    std::vector<float> deviation;  // Of one row.
+    std::vector<double> effect;
+    std::array<std::vector<double>, sides_of_pair> variance;
+    std::vector<double> reciprocal_degrees;
+    std::vector<double> third;
+    std::vector<double> more;
+    std::array<std::array<std::vector<float>, directions>, sides_of_pair> largest;
+  };
+
+  std::size_t rows_of(const Tile& tile) const {
+    return std::min(Tile::rows, extent_.height - tile.y);
+  }
+  std::size_t columns_of(const Tile& tile) const {
+    return std::min(Tile::columns, extent_.width - tile.x);
+  }
+  // Calls visit(index here, element of the image, x, y, channel).
+  template <class Visit>
+  void for_each_element(const Tile& tile, const Visit& visit) const {
+    for (std::size_t y = 0; y < rows_of(tile); ++y) {
+      std::size_t i = y * elements_.stride;
+      std::size_t element = ((tile.y + y) * extent_.width + tile.x) * extent_.channels;
+      for (std::size_t x = 0; x < columns_of(tile); ++x) {
+        for (std::size_t c = 0; c < extent_.channels; ++c) {
+          visit(i++, element++, tile.x + x, tile.y + y, c);
+        }
+      }
+    }
+  }
+
+  void take_elements(const Tile& tile, const ImageStack<Real>& stack, Part part, double factor) {
+    Elements& all = elements_;
+    all.m2.assign(Tile::rows * all.stride, 0.0);
+    all.m3.assign(Tile::rows * all.stride, 0.0);
+    const Half& own = cells_.half[part.half];
+    const Half& other = cells_.half[1 - part.half];
+    const std::size_t size = columns_of(tile) * extent_.channels;
+    std::size_t count = 0;
+    for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
+      ++count;
+      for (std::size_t y = 0; y < rows_of(tile); ++y) {
+        const std::size_t element = ((tile.y + y) * extent_.width + tile.x) * extent_.channels;
+        const std::size_t here = element - own.first;
+        const std::size_t row = y * all.stride;
+        add_row_moments(stack.at(r, element), own.mean[part.side].data() + here,
+                        other.weight.data() + here,
+                        {all.m2.data() + row, all.m3.data() + row,
+                         all.largest[part.side][upward].data() + row,
+                         all.largest[part.side][downward].data() + row, all.deviation.data()},
+                        size);
+        note_rare(tile, y, size, part.side);
+      }
+    }
+    finish_elements(tile, part, static_cast<double>(count), factor);
+  }
+
+  void note_rare(const Tile& tile, std::size_t y, std::size_t size, std::size_t side) {
+    for (std::size_t i = 0; i < size; ++i) {
+      const float deviation = elements_.deviation[i];
+      if (std::abs(deviation) <= PooledNoise::least_rare) continue;
+      found_.noise.at(side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
+          .add_rare(deviation);
+    }
+  }
+
+  void finish_elements(const Tile& tile, Part part, double count, double factor) {
+    const Half& own = cells_.half[part.half];
+    const Half& other = cells_.half[1 - part.half];
+    Elements& all = elements_;
+    const double third_factor = factor * factor * factor / (count * count * count);
+    for_each_element(tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y,
+                               std::size_t c) {
+      const std::size_t here = element - own.first;
+      const double weight = other.weight[here];
+      if (part.side == 0) all.effect[i] += factor * weight * own.difference[here];
+      if (weight == 0) return;
+      const double variance = factor * factor * all.m2[i] / (count * (count - 1));
+      all.variance[part.side][i] += variance;
+      all.reciprocal_degrees[i] += variance * variance / (count - 1);
+      all.third[i] += third_factor * all.m3[i];
+      found_.noise.at(part.side, x, y, c)
+          .add_element({.replicates = count,
+                        .sum_of_squares = all.m2[i],
+                        .mean = weight * own.mean[part.side][here]});
+    });
+  }
+
+  // Tests each element, and leaves what it showed to its block.
+  void offer_elements(const Tile& tile) {
+    Elements& all = elements_;
+    for_each_element(tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y,
+                               std::size_t c) {
+      const std::size_t block =
+          (y / block_side * coarse_.extent.width + x / block_side) * extent_.channels + c;
+      coarse_.third[block] += all.third[i];
+      Candidate candidate;
+      for (std::size_t s = 0; s < sides_of_pair; ++s) {
+        for (std::size_t d = 0; d < directions; ++d) {
+          float& largest = coarse_.largest[s][block][d];
+          candidate.noise.largest[s][d] = all.largest[s][d][i];
+          largest = std::max(largest, all.largest[s][d][i]);
+        }
+      }
+      const std::size_t here = element - cells_.half[0].first;
+      found_.weights[element] =
+          static_cast<float>((cells_.half[0].weight[here] + cells_.half[1].weight[here]) / 2);
+      const double own = all.variance[0][i] + all.variance[1][i];
+      if (!(own > 0)) {
+        note_constant(element);
+        found_.z[element] = 0;
+        return;
+      }
+      ++counts_.tested;
+      for (std::size_t s = 0; s < sides_of_pair; ++s) {
+        if (s == 1 && cells_.pair.b == nullptr) continue;
+        found_.noise.at(s, x, y, c).add_largest(candidate.noise.largest[s]);
+      }
+      candidate.finding.window = {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1,
+                                  1};
+      candidate.finding.channel = c;
+      candidate.noise.effect = all.effect[i];
+      const double base = base_of(element);
+      candidate.noise.level = {base + all.effect[i], base};
+      candidate.noise.variance = {all.variance[0][i], all.variance[1][i] + error_of(element)};
+      const double total = candidate.noise.variance[0] + candidate.noise.variance[1];
+      candidate.noise.degrees = total * total / all.reciprocal_degrees[i];
+      candidate.noise.elements = 1;
+      all.more[i] = variance_of_missing_light(candidate.noise);
+      coarse_.more[block] += all.more[i];
+      const StudentValue value = own_value(candidate.noise);
+      found_.z[element] = candidate.finding.z = t_to_z(value);
+      if (candidates_[0].wants(value)) candidates_[0].keep(candidate);
+    });
+  }
+
+  // The weighted mean of what the first image is held against.
+  double base_of(std::size_t element) const {
+    const std::size_t here = element - cells_.half[0].first;
+    double sum = 0;
+    for (std::size_t h = 0; h < halves; ++h) {
+      const double mean = cells_.pair.reference != nullptr
+                              ? cells_.pair.reference->value[element]
+                              : cells_.half[h].mean[1][here];
+      sum += cells_.half[1 - h].weight[here] * mean / halves;
+    }
+    return sum;
+  }
+  void add_base(const Tile& tile) {
+    fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = base_of(first + i);
+    });
+    sums_.add_up(tile);
+    keep_blocks(tile, coarse_.base);
+  }
+
+  // A reference's squared error, weighted as the element is.
+  double error_of(std::size_t element) const {
+    if (coarse_.squared_error.blocks.empty()) return 0;
+    const std::size_t here = element - cells_.half[0].first;
+    const double weight = (cells_.half[0].weight[here] + cells_.half[1].weight[here]) / 2;
+    const double error = weight * cells_.pair.reference->standard_error[element];
+    return error * error;
+  }
+
+  // An element without variance. One that varied in one half alone is in sums only.
+  void note_constant(std::size_t element) {
+    const std::size_t here = element - cells_.half[0].first;
+    const double difference = cells_.half[0].difference[here];
+    const bool varied = cells_.half[0].varied[here] > 0 || cells_.half[1].varied[here] > 0;
+    ElementCounts one;
+    if (varied || difference == 0) {
+      one.equal_constants = 1;
+    } else {
+      one = {.tested = 0,
+             .equal_constants = 0,
+             .different_constants = 1,
+             .first_different = element,
+             .difference = difference};
+    }
+    counts_.merge(one);
+  }
 
   void take_half(const Tile& tile, const ImageStack<Real>& stack, Part part, double factor) {
     const Half& other = cells_.half[1 - part.half];
@@ -169,7 +417,7 @@ class FineTiles {
       keep_blocks(tile, blocks);
       add_alternating(tile, blocks);
     }
-    for (WelchCells& moments : moments_) moments.finish_part(count, factor);
+    for (WelchCells& moments : moments_) moments.finish_part(part.side, count, factor);
   }
 
   void update_squares(const Tile& tile, std::size_t k, double inverse) {
@@ -243,20 +491,13 @@ class FineTiles {
   // nothing of values never seen.
   void add_reference_error(const Tile& tile) {
     fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
-      for (std::size_t i = 0; i < out.size(); ++i) {
-        const std::size_t e = first + i;
-        const std::size_t here = e - cells_.half[0].first;
-        const double weight = (cells_.half[0].weight[here] + cells_.half[1].weight[here]) / 2;
-        const double error = weight * cells_.pair.reference->standard_error[e];
-        out[i] = error * error;
-      }
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = error_of(first + i);
     });
     sums_.add_up(tile);
     keep_blocks(tile, coarse_.squared_error);
     for (std::size_t k = 0; k < fine_squares.size(); ++k) {
-      std::vector<double>& variance = moments_[k].variance;
-      for (std::size_t i = 0; i < variance.size(); ++i) {
-        if (variance[i] > 0) variance[i] += sums_.of(k)[i];
+      for (std::size_t i = 0; i < moments_[k].variance[0].size(); ++i) {
+        if (moments_[k].variance[0][i] > 0) moments_[k].variance[1][i] += sums_.of(k)[i];
       }
     }
   }
@@ -286,16 +527,53 @@ class FineTiles {
     square.width = std::min(wide, width - square.x);
     square.height = std::min(high, height - square.y);
     const WelchCells& moments = moments_[k];
+    Candidate candidate;
+    candidate.finding.size = cells_.groups[*group].size;
+    candidate.finding.window = square;
+    candidate.noise.elements = static_cast<double>(square.width * square.height);
     for (std::size_t c = 0; c < extent_.channels; ++c) {
       if (!moments.varied(first + c)) continue;
-      offer(best_[*group], {ImageStatistic::window, cells_.groups[*group].size, square, c, 0, 0, 0},
-            moments.value(first + c));
+      candidate.finding.channel = c;
+      moments.put(first + c, candidate.noise);
+      const StudentValue value = own_value(candidate.noise);
+      if (!candidates_[*group].wants(value)) continue;
+      const double base = sums_.of(k)[first + c];
+      candidate.noise.level = {base + candidate.noise.effect, base};
+      candidate.finding.z = t_to_z(value);
+      candidate.noise.largest = {};
+      candidate.noise.more = 0;
+      add_elements(candidate);
+      candidates_[*group].keep(candidate);
+    }
+  }
+
+  // What the elements of a square showed, as far as they are in the tile.
+  void add_elements(Candidate& candidate) const {
+    const Rectangle& square = candidate.finding.window;
+    const std::size_t bottom = std::min<std::size_t>(square.height, Tile::rows - square.y % Tile::rows);
+    const std::size_t right =
+        std::min<std::size_t>(square.width, Tile::columns - square.x % Tile::columns);
+    for (std::size_t y = 0; y < bottom; ++y) {
+      for (std::size_t x = 0; x < right; ++x) {
+        const std::size_t i = (square.y % Tile::rows + y) * elements_.stride +
+                              (square.x % Tile::columns + x) * extent_.channels +
+                              candidate.finding.channel;
+        candidate.noise.more += elements_.more[i];
+        for (std::size_t s = 0; s < sides_of_pair; ++s) {
+          for (std::size_t d = 0; d < directions; ++d) {
+            float& largest = candidate.noise.largest[s][d];
+            largest = std::max(largest, elements_.largest[s][d][i]);
+          }
+        }
+      }
     }
   }
 
   const FineCells<Real>& cells_;
   const ImageExtent& extent_;
-  std::vector<BestCell> best_;
+  std::vector<Candidates> candidates_;  // A tile's, of each group.
+  ElementCounts counts_;
+  FineFindings& found_;
   CoarseImages& coarse_;
   std::size_t alternating_;  // Index of the band's sums with alternating signs.
   TileSums sums_;
@@ -303,20 +581,13 @@ class FineTiles {
   std::vector<double> signed_column_sums_;
   std::array<WelchCells, fine_squares.size()> moments_;  // Squares that begin in the tile.
   std::array<GroupsOfSide, fine_squares.size()> groups_;
+  Elements elements_;
 };
 
 // Rows of an image are looked at in bands of tiles. Each band has alternating sums of its own until
 // all are there.
 constexpr std::size_t band_rows = 2 * Tile::rows;
 static_assert(fine_rows % band_rows == 0 && fine_rows_ahead == Tile::halo);
-
-}  // namespace
-
-bool is_fine(const WindowGroup& group) {
-  return group.grid != Grid::alternating &&
-         std::ranges::any_of(fine_squares,
-                             [&](const Squares& squares) { return squares.side == group.size; });
-}
 
 template <class Real>
 CoarseImages empty_blocks(const ImagePair<Real>& pair) {
@@ -329,6 +600,10 @@ CoarseImages empty_blocks(const ImagePair<Real>& pair) {
   const auto per_half = [](const ImageStack<Real>& stack, std::size_t h) {
     return (stack.images.size() + 1 - h) / halves;
   };
+  coarse.third.resize(coarse.extent.elements());
+  coarse.base = none;
+  coarse.more.resize(coarse.extent.elements());
+  for (auto& side : coarse.largest) side.resize(coarse.extent.elements());
   for (std::size_t h = 0; h < halves; ++h) {
     coarse.images[h][0].assign(per_half(pair.a, h), none);
     if (pair.b != nullptr) coarse.images[h][1].assign(per_half(*pair.b, h), none);
@@ -340,22 +615,51 @@ CoarseImages empty_blocks(const ImagePair<Real>& pair) {
   return coarse;
 }
 
+}  // namespace
+
+bool is_fine(const WindowGroup& group) {
+  return group.grid != Grid::alternating &&
+         std::ranges::any_of(fine_squares,
+                             [&](const Squares& squares) { return squares.side == group.size; });
+}
+
 template <class Real>
 void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
                       const ForEach& for_each) {
   const ImageExtent& extent = cells.pair.a.extent;
-  std::vector<std::vector<BestCell>> best((rows.last - rows.first + band_rows - 1) / band_rows);
-  for_each(best.size(), [&](std::size_t i) {
+  std::vector<ElementCounts> counts((rows.last - rows.first + band_rows - 1) / band_rows);
+  for_each(counts.size(), [&](std::size_t i) {
     const std::size_t first = rows.first + i * band_rows;
-    FineTiles<Real> tiles(cells, first / band_rows, found.coarse);
+    FineTiles<Real> tiles(cells, first / band_rows, found);
     for (std::size_t y = first; y < std::min(first + band_rows, rows.last); y += Tile::rows) {
       for (std::size_t x = 0; x < extent.width; x += Tile::columns) tiles.take({extent, x, y});
     }
-    best[i] = tiles.best();
+    counts[i] = tiles.counts();
   });
-  for (const std::vector<BestCell>& of_band : best) {
-    for (std::size_t g = 0; g < found.best.size(); ++g) join(found.best[g], of_band[g]);
+  for (const ElementCounts& of_band : counts) found.counts.merge(of_band);
+}
+
+void ElementCounts::merge(const ElementCounts& other) {
+  if (different_constants == 0) {
+    first_different = other.first_different;
+    difference = other.difference;
   }
+  tested += other.tested;
+  equal_constants += other.equal_constants;
+  different_constants += other.different_constants;
+}
+
+template <class Real>
+FineFindings empty_findings(const ImagePair<Real>& pair, std::span<double> z) {
+  const ImageExtent& extent = pair.a.extent;
+  const std::size_t across = (extent.width + Tile::columns - 1) / Tile::columns;
+  const std::size_t down = (extent.height + Tile::rows - 1) / Tile::rows;
+  return {.coarse = empty_blocks(pair),
+          .noise = {extent, {pair.a.images.size(), pair.b != nullptr ? pair.b->images.size() : 0}},
+          .tiles = std::vector<std::vector<Candidates>>(across * down),
+          .counts = {},
+          .weights = std::vector<float>(extent.elements()),
+          .z = z};
 }
 
 void add_up_alternating(CoarseImages& coarse) {
@@ -372,8 +676,8 @@ void add_up_alternating(CoarseImages& coarse) {
   }
 }
 
-template CoarseImages empty_blocks(const ImagePair<float>&);
-template CoarseImages empty_blocks(const ImagePair<double>&);
+template FineFindings empty_findings(const ImagePair<float>&, std::span<double>);
+template FineFindings empty_findings(const ImagePair<double>&, std::span<double>);
 template void offer_fine_cells(const FineCells<float>&, RowRange, FineFindings&, const ForEach&);
 template void offer_fine_cells(const FineCells<double>&, RowRange, FineFindings&, const ForEach&);
 

@@ -9,14 +9,14 @@
 #include "stats/images/image_halves.h"
 #include "stats/images/image_windows.h"
 #include "stats/pyramids/image_best_cell.h"
+#include "stats/pyramids/image_noise.h"
 
 namespace assay::stats {
 
-// Internal to image_pyramid. Nearly all cells are small, and an image has many replicates. So cells
-// of sides 2, 4 and 8 are tested tile by tile over all replicates, which keeps a tile in the cache.
-// Larger cells are summed from blocks of 4 x 4, which this pass leaves behind.
+// Internal to image_pyramid. Nearly all cells are small, and an image has many replicates. So
+// elements and cells of sides 2, 4 and 8 are tested tile by tile over all replicates, which keeps a
+// tile in the cache. Larger cells are summed from blocks of 4 x 4, which this pass leaves behind.
 
-inline constexpr std::size_t sides_of_pair = 2;
 inline constexpr std::size_t alternations = 3;  // By column, by row, checkerboard.
 inline constexpr std::uint32_t block_side = 4;
 // Blocks that cover so many elements of a row or column.
@@ -40,6 +40,19 @@ struct CoarseImages {
   std::array<std::array<std::vector<BlockSums>, sides_of_pair>, halves> images;
   std::array<BlockSums, halves> varied;  // Number of elements that vary and have a weight.
   BlockSums squared_error;               // Of a reference, weighted; empty if it has none.
+  BlockSums base;                        // Weighted means of what is held against.
+  std::vector<double> more;              // Variance of missing light (image_noise.h), by block.
+  std::vector<double> third;             // Third cumulants of the effects of elements, by block.
+  std::array<std::vector<Largest>, sides_of_pair> largest;  // Of each block's elements.
+};
+
+struct ElementCounts {
+  std::size_t tested = 0;
+  std::size_t equal_constants = 0;
+  std::size_t different_constants = 0;
+  std::size_t first_different = 0;  // An element, if there is any.
+  double difference = 0;            // Its own.
+  void merge(const ElementCounts& other);
 };
 
 // Input of the test of fine cells: replicates, halves with the weights that each gives the other,
@@ -53,19 +66,24 @@ struct FineCells {
 
 struct FineFindings {
   CoarseImages coarse;
-  std::vector<BestCell> best;  // One per group.
+  NoisePyramid noise;
+  std::vector<std::vector<Candidates>> tiles;  // A group's candidates, in every tile.
+  ElementCounts counts;
+  std::vector<float> weights;                  // Of every element, averaged over the halves.
+  std::span<double> z;                         // Of every element alone, by its own noise.
 };
 
+// Nothing found yet; z has room for every element.
 template <class Real>
-CoarseImages empty_blocks(const ImagePair<Real>& pair);
+FineFindings empty_findings(const ImagePair<Real>& pair, std::span<double> z);
 
 // Rows are taken in multiples of fine_rows, but for the image's last. Cells that begin in them
 // reach fine_rows_ahead rows further. The images and halves must have those rows.
 inline constexpr std::size_t fine_rows = 64;
 inline constexpr std::size_t fine_rows_ahead = 8;
 
-// Offers every fine cell that begins in these rows to the best of its group, and fills in their
-// blocks.
+// Collects the candidates among the fine cells that begin in these rows, and fills in their blocks
+// and noise.
 template <class Real>
 void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
                       const ForEach& for_each = one_by_one);

@@ -1,30 +1,32 @@
 #include "stats/pyramids/image_welch_cells.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace assay::stats {
 
 void WelchCells::start(std::size_t cells) {
-  for (std::vector<double>* each : {&mean, &m2, &effect, &variance, &reciprocal_degrees}) {
+  for (std::vector<double>* each :
+       {&mean, &m2, &effect, &variance[0], &variance[1], &reciprocal_degrees}) {
     each->assign(cells, 0.0);
   }
 }
 
-void WelchCells::finish_part(double count, double factor) {
+void WelchCells::finish_part(std::size_t side, double count, double factor) {
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const double part = factor * factor * m2[i] / (count * (count - 1));
     effect[i] += factor * mean[i];
-    variance[i] += part;
+    variance[side][i] += part;
     reciprocal_degrees[i] += part * part / (count - 1);
   }
   std::ranges::fill(mean, 0.0);
   std::ranges::fill(m2, 0.0);
 }
 
-StudentValue WelchCells::value(std::size_t cell) const {
-  return {effect[cell] / std::sqrt(variance[cell]),
-          variance[cell] * variance[cell] / reciprocal_degrees[cell]};
+void WelchCells::put(std::size_t cell, CellNoise& noise) const {
+  noise.effect = effect[cell];
+  noise.variance = {variance[0][cell], variance[1][cell]};
+  const double total = noise.variance[0] + noise.variance[1];
+  noise.degrees = total * total / reciprocal_degrees[cell];
 }
 
 }  // namespace assay::stats

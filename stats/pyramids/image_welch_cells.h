@@ -1,9 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
-#include "stats/tails/t_to_z.h"
+#include "stats/pyramids/image_noise.h"
 
 namespace assay::stats {
 
@@ -15,17 +16,18 @@ struct WelchCells {
   std::vector<double> mean;
   std::vector<double> m2;
   // The parts that are done.
-  std::vector<double> effect;              // Estimate of a - b, averaged over the halves.
-  std::vector<double> variance;            // Its squared standard error.
+  std::vector<double> effect;                                  // Estimate of a - b.
+  std::array<std::vector<double>, sides_of_pair> variance;     // Its squared error, by side.
   std::vector<double> reciprocal_degrees;  // Sum of variance_g^2 / (n_g - 1) over the parts.
 
   void start(std::size_t cells);
-  // The replicates since the last call are a part, whose mean enters with this factor.
-  void finish_part(double count, double factor);
+  // The replicates since the last call are a part of that side, whose mean enters with this factor.
+  void finish_part(std::size_t side, double count, double factor);
 
   // Sums that did not vary have no variance and no value.
-  bool varied(std::size_t cell) const { return variance[cell] > 0; }
-  StudentValue value(std::size_t cell) const;
+  bool varied(std::size_t cell) const { return variance[0][cell] + variance[1][cell] > 0; }
+  // Sets effect, variance and degrees.
+  void put(std::size_t cell, CellNoise& noise) const;
 };
 
 }  // namespace assay::stats

@@ -7,6 +7,7 @@
 
 #include "stats/basics/moments.h"
 #include "stats/images/image.h"
+#include "stats/means/welch_t.h"
 #include "tests/philox.h"
 
 namespace assay::tests {
@@ -31,6 +32,15 @@ inline stats::Moments one_element(const OwnedStack& stack, std::size_t element) 
   stats::Moments moments;
   for (const auto& image : stack.images) moments.add(static_cast<double>(image[element]));
   return moments;
+}
+
+// Welch's statistic of every element by itself.
+inline std::vector<stats::TestResult> welch_of_elements(const OwnedStack& a, const OwnedStack& b) {
+  std::vector<stats::TestResult> tests;
+  for (std::size_t e = 0; e < a.extent.elements(); ++e) {
+    tests.push_back(stats::welch_t(one_element(a, e), one_element(b, e), {}));
+  }
+  return tests;
 }
 
 // draw(element) for every element of every replicate.

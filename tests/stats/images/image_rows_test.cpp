@@ -4,10 +4,8 @@
 
 #include <limits>
 
-#include "stats/images/image_cell_skewness.h"
 #include "stats/images/image_halves.h"
 #include "stats/images/image_row_distance.h"
-#include "stats/images/image_sign_flip.h"
 #include "stats/images/image_sums.h"
 #include "stats/pyramids/image_row_pyramid.h"
 #include "tests/stats/image_samples.h"
@@ -97,17 +95,17 @@ void expect_same(const ImageFamily& rows, const ImageFamily& whole) {
 
 TEST_F(ImageRows, MakeTheFamilyOfTheWhole) {
   using Pyramid = RowPyramid<float>;
-  for (const std::uint32_t smallest : {1U, 4U}) {
-    std::vector<double> z(extent.elements());
-    std::vector<double> z_of_whole(extent.elements());
-    const PyramidOptions options{.smallest = smallest, .z = z, .for_each = tests::last_first};
-    Pyramid pyramid(pair_of(a_.view(), b_.view()), options);
-    for_each_window(a_, b_, {Pyramid::rows_before, Pyramid::rows_ahead},
-                    [&](const auto& pair, RowRange rows) { pyramid.take(pair, rows); });
-    expect_same(pyramid.family(),
-                image_pyramid(a_.view(), b_.view(), {.smallest = smallest, .z = z_of_whole}));
-    EXPECT_EQ(z, z_of_whole);
-  }
+  std::vector<double> z(extent.elements());
+  std::vector<double> z_of_whole(extent.elements());
+  Pyramid pyramid(pair_of(a_.view(), b_.view()), {.z = z, .for_each = tests::last_first});
+  for_each_window(a_, b_, {Pyramid::rows_before, Pyramid::rows_ahead},
+                  [&](const auto& pair, RowRange rows) { pyramid.take(pair, rows); });
+  const ImageFamily rows = pyramid.family();
+  const ImageFamily whole = image_pyramid(a_.view(), b_.view(), {.z = z_of_whole});
+  expect_same(rows, whole);
+  EXPECT_EQ(z, z_of_whole);
+  EXPECT_EQ(rows.weights, whole.weights);
+  EXPECT_EQ(rows.hidden_squares, whole.hidden_squares);
 }
 
 TEST_F(ImageRows, HaveTheDistanceOfTheWhole) {
@@ -125,38 +123,6 @@ TEST_F(ImageRows, HaveTheDistanceOfTheWhole) {
   EXPECT_EQ(rows.degrees, whole.degrees);
 }
 
-TEST_F(ImageRows, HaveTheTailsOfTheWhole) {
-  const auto sides = [](const ImagePair<float>& pair) {
-    return std::vector<CellPilot>{{.stack = pair.a, .factor = 1, .replicates = 17},
-                                  {.stack = *pair.b, .factor = -1, .replicates = 17}};
-  };
-  const ImageStack<float> a = a_.view();
-  const ImageStack<float> b = b_.view();
-  const std::vector<CellPilot> whole = sides(pair_of(a, b));
-  RowCellTails rows(whole, 0.01, {}, tests::last_first);
-  for_each_window(a_, b_, {RowCellTails::rows_beside, RowCellTails::rows_beside},
-                  [&](const auto& pair, RowRange some) { rows.take(sides(pair), some); });
-  const std::vector<CellTails> found = rows.tails();
-  const std::vector<CellTails> expected = cell_tails(whole, 0.01);
-  ASSERT_EQ(found.size(), expected.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_EQ(found[i].size, expected[i].size);
-    EXPECT_EQ(found[i].factor, expected[i].factor);
-    EXPECT_EQ(found[i].scatter, expected[i].scatter);
-    EXPECT_NE(found[i].factor, 1);
-  }
-}
-
-TEST_F(ImageRows, HaveTheFlipsOfTheWhole) {
-  RowFlips<float> flips;
-  for_each_window(a_, b_, {0, 0}, [&](const auto& pair, RowRange rows) {
-    flips.take(pair, rows, tests::last_first);
-  });
-  std::vector<double> signs(count, 1);
-  signs[3] = signs[32] = -1;
-  EXPECT_EQ(flips.matrix().energy(signs), flip_matrix(a_.view(), b_.view()).energy(signs));
-}
-
 TEST_F(ImageRows, AddUpToTheSumsOfTheWhole) {
   std::vector<double> sums(count);
   for_each_window(a_, b_, {0, 0}, [&](const auto& pair, RowRange rows) {
@@ -171,33 +137,6 @@ TEST_F(ImageRows, AddUpToTheSumsOfTheWholesChannels) {
     add_to_channel_sums(sums, pair.a, rows.elements(extent), tests::last_first);
   });
   EXPECT_EQ(sums, image_channel_sums(a_.view()));
-}
-
-// The difference of one element, by a loop over the replicates.
-double product_of(const OwnedStack& a, const OwnedStack& b, std::size_t r, std::size_t s) {
-  double sum = 0;
-  for (std::size_t e = 0; e < extent.elements(); ++e) {
-    const auto difference = [&](std::size_t i) {
-      return static_cast<double>(a.images[i][e]) - static_cast<double>(b.images[i][e]);
-    };
-    double squares = 0;
-    for (std::size_t i = 0; i < count; ++i) squares += difference(i) * difference(i);
-    sum += difference(r) * difference(s) / squares;
-  }
-  return sum;
-}
-
-// 33 replicates fill no whole piece. With one sign turned Q is less by four times its row.
-TEST_F(ImageRows, FlipsAreThoseOfEveryPairOfReplicates) {
-  const FlipMatrix matrix = flip_matrix(a_.view(), b_.view());
-  const std::vector<double> all(count, 1);
-  for (const std::size_t r : {0U, 17U, 32U}) {
-    double row = 0;
-    for (std::size_t s = 0; s < count; ++s) row += s == r ? 0 : product_of(a_, b_, r, s);
-    std::vector<double> signs = all;
-    signs[r] = -1;
-    EXPECT_NEAR(matrix.energy(all) - matrix.energy(signs), 4 * row, 1e-8);
-  }
 }
 
 }  // namespace

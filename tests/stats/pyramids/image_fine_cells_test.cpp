@@ -53,39 +53,43 @@ Moments cell_moments(const ImageStack<float>& stack, std::size_t half,
   return moments;
 }
 
-StudentValue value_of(const ImagePair<float>& pair, const std::array<Half, halves>& half,
-                      const Cell& cell) {
-  double effect = 0;
-  double variance = 0;
+// What a cell's own sums and elements say, by loops over its rectangle.
+CellNoise noise_of(const ImagePair<float>& pair, const std::array<Half, halves>& half,
+                   const Cell& cell) {
+  CellNoise noise;
   double reciprocal_degrees = 0;
   for (std::size_t h = 0; h < halves; ++h) {
-    for (const ImageStack<float>* stack : {&pair.a, pair.b}) {
-      const Moments moments = cell_moments(*stack, h, half[1 - h].weight, cell);
+    for (std::size_t s = 0; s < sides_of_pair; ++s) {
+      const Moments moments =
+          cell_moments(s == 0 ? pair.a : *pair.b, h, half[1 - h].weight, cell);
       const double part = std::pow(moments.standard_error() / 2, 2);
-      effect += (stack == pair.b ? -0.5 : 0.5) * moments.mean;
-      variance += part;
+      noise.effect += (s == 0 ? 0.5 : -0.5) * moments.mean;
+      noise.level[s] += moments.mean / 2;
+      noise.variance[s] += part;
       reciprocal_degrees += part * part / static_cast<double>(moments.count - 1);
     }
   }
-  return {effect / std::sqrt(variance), variance * variance / reciprocal_degrees};
+  noise.degrees = std::pow(noise.variance[0] + noise.variance[1], 2) / reciprocal_degrees;
+  return noise;
 }
 
-std::vector<BestCell> one_by_one(const ImagePair<float>& pair, const std::array<Half, halves>& half,
-                                 const Groups& groups) {
-  std::vector<BestCell> best(groups.size());
-  for (std::size_t g = 1; g < groups.size(); ++g) {
-    for (std::size_t i = 0; i < groups[g].windows.size(); ++i) {
-      for (std::size_t c = 0; c < pair.a.extent.channels; ++c) {
-        ImageFinding finding;
-        finding.window = groups[g].windows[i];
-        finding.channel = c;
-        offer(best[g], finding, value_of(pair, half, {groups[g], i, c}));
-      }
+// The group's cell that is farthest from zero by its own noise.
+Candidate farthest(const ImagePair<float>& pair, const std::array<Half, halves>& half,
+                   const WindowGroup& group) {
+  Candidate best;
+  for (std::size_t i = 0; i < group.windows.size(); ++i) {
+    for (std::size_t c = 0; c < pair.a.extent.channels; ++c) {
+      Candidate candidate{.finding = {}, .noise = noise_of(pair, half, {group, i, c})};
+      candidate.finding.window = group.windows[i];
+      candidate.finding.channel = c;
+      candidate.finding.z = t_to_z(own_value(candidate.noise));
+      if (std::abs(candidate.finding.z) > std::abs(best.finding.z)) best = candidate;
     }
   }
   return best;
 }
 
+// All light is alike here, so that neighbours take nothing away, or nearly.
 void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
   Philox random(test_case);
   const auto draw = [&](std::size_t) { return 3 + random.normal(); };
@@ -96,22 +100,47 @@ void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
   const ImagePair<float> pair{a, &b, nullptr};
   const RowRange rows{0, extent.height};
   const std::array<Half, halves> half = halves_of(pair, rows);
-  const Groups groups = window_groups(extent, 1);
-  FineFindings found{empty_blocks(pair), std::vector<BestCell>(groups.size())};
+  const Groups groups = window_groups(extent);
+  std::vector<double> z(extent.elements());
+  FineFindings found = empty_findings(pair, z);
   offer_fine_cells<float>({pair, half, groups}, rows, found);
   add_up_alternating(found.coarse);
-  std::vector<BestCell>& best = found.best;
-  for (std::size_t c = 0; c < extent.channels; ++c) {
-    offer_coarse_cells(found.coarse, groups, c, best);
+  EXPECT_EQ(found.counts.tested, extent.elements());
+  std::vector<double> windows(groups.size());
+  std::vector<Candidate> best(groups.size());
+  for (const std::vector<Candidates>& tile : found.tiles) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      windows[g] += tile[g].windows();
+      for (const Candidate& each : tile[g].kept()) {
+        if (std::abs(each.finding.z) > std::abs(best[g].finding.z)) best[g] = each;
+      }
+    }
   }
-  const std::vector<BestCell> expected = one_by_one(pair, half, groups);
-  for (std::size_t g = 1; g < groups.size(); ++g) {
+  // Without noise around it, a coarse cell keeps its own value.
+  const NoisePyramid none(extent, {0, 0});
+  std::vector<BestCell> coarse(groups.size());
+  for (std::size_t c = 0; c < extent.channels; ++c) {
+    offer_coarse_cells(found.coarse, groups, c, none, coarse);
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g) {
     SCOPED_TRACE(testing::Message() << extent.width << " x " << extent.height << ", group " << g);
-    ASSERT_EQ(best[g].windows, expected[g].windows);
-    EXPECT_EQ(best[g].finding.channel, expected[g].finding.channel);
-    EXPECT_EQ(best[g].finding.window, expected[g].finding.window);
-    EXPECT_NEAR(best[g].value.t, expected[g].value.t, 1e-9);
-    EXPECT_NEAR(best[g].value.degrees, expected[g].value.degrees, 1e-8);
+    const Candidate expected = farthest(pair, half, groups[g]);
+    const bool is_coarse = coarse[g].windows > 0;
+    const double cells = static_cast<double>(groups[g].windows.size() * extent.channels);
+    EXPECT_EQ(is_coarse ? coarse[g].windows : windows[g], cells);
+    if (is_coarse) {
+      EXPECT_LE(std::abs(coarse[g].value.t), std::abs(own_value(expected.noise).t) + 1e-9);
+      EXPECT_GE(std::abs(coarse[g].value.t), 0.7 * std::abs(own_value(expected.noise).t));
+      continue;
+    }
+    EXPECT_EQ(best[g].finding.channel, expected.finding.channel);
+    EXPECT_EQ(best[g].finding.window, expected.finding.window);
+    EXPECT_NEAR(best[g].noise.effect, expected.noise.effect, 1e-9);
+    for (const std::size_t s : {0U, 1U}) {
+      EXPECT_NEAR(best[g].noise.level[s], expected.noise.level[s], 1e-8);
+      EXPECT_NEAR(best[g].noise.variance[s], expected.noise.variance[s], 1e-9);
+    }
+    EXPECT_NEAR(best[g].noise.degrees, expected.noise.degrees, 1e-7);
   }
 }
 
@@ -130,16 +159,18 @@ TEST(FineCells, OfSmallImagesAreCutOffAtEveryEdge) {
 }
 
 TEST(BestCell, IsTheFirstOfEqualsInWhicheverOrderTheyCome) {
-  ImageFinding first;
-  first.window = {2, 0, 2, 2};
-  ImageFinding later;
-  later.window = {0, 2, 2, 2};
+  Candidate first;
+  first.finding.window = {2, 0, 2, 2};
+  first.finding.z = 2.5;
+  first.noise = {.effect = 2.5, .variance = {1, 0}, .degrees = 30};
+  Candidate later = first;
+  later.finding.window = {0, 2, 2, 2};
+  const NoisePyramid none({4, 4, 1}, {0, 0});
   for (const bool in_order : {true, false}) {
     BestCell best;
-    offer(best, in_order ? first : later, {2.5, 30});
-    offer(best, in_order ? later : first, {-2.5, 30});
-    EXPECT_EQ(best.finding.window, first.window);
-    EXPECT_EQ(best.windows, 2);
+    offer(best, in_order ? first : later, none);
+    offer(best, in_order ? later : first, none);
+    EXPECT_EQ(best.finding.window, first.finding.window);
   }
 }
 
