@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "render/frame.h"
+
 namespace assay::path_tracing {
 namespace {
 
@@ -43,12 +45,6 @@ double one_less_cosine(const Shape& sphere, const Vector3& from) {
 }
 
 }  // namespace
-
-Frame::Frame(const Vector3& normal) : n(normal) {
-  const Vector3 other = std::abs(n.x) > 0.7 ? Vector3{0, 1, 0} : Vector3{1, 0, 0};
-  s = render::normalised(cross(n, other));
-  t = cross(n, s);
-}
 
 Shape sphere(const Vector3& centre, double radius, const Material& material) {
   return {.kind = Shape::Kind::sphere,
@@ -108,8 +104,9 @@ LightPoint Scene::sample_light(const Vector3& from, double choice, double u, dou
     const double height = one_less_cosine(light, from);
     const double cosine = 1 - u * height;
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    found.direction = Frame(render::normalised(light.corner - from))
-                          .of(sine * std::cos(2 * pi * v), sine * std::sin(2 * pi * v), cosine);
+    found.direction =
+        render::Frame::about(render::normalised(light.corner - from))
+            .to_world({sine * std::cos(2 * pi * v), sine * std::sin(2 * pi * v), cosine});
     found.distance = distance_to(light, {from, found.direction}, offset);
     // The rim of the cone can pass by the sphere for rounding.
     if (found.distance == none) return found;

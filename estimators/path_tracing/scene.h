@@ -107,13 +107,4 @@ class Scene {
 std::vector<std::string> scene_names();
 std::shared_ptr<const Scene> scene_of(const std::string& name);
 
-/// Two unit vectors that are normal to n and each other.
-struct Frame {
-  Vector3 n;
-  Vector3 s;
-  Vector3 t;
-  explicit Frame(const Vector3& normal);
-  Vector3 of(double x, double y, double z) const { return x * s + y * t + z * n; }
-};
-
 }  // namespace assay::path_tracing

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/frame.h"
+
 namespace assay::path_tracing {
 namespace {
 
@@ -36,8 +38,8 @@ class Lobe {
     const bool is_diffuse = material_.surface == Surface::diffuse;
     const double cosine = is_diffuse ? std::sqrt(u) : std::pow(u, 1 / (material_.exponent + 1));
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    return Frame(is_diffuse ? normal_ : axis_)
-        .of(sine * std::cos(2 * pi * v), sine * std::sin(2 * pi * v), cosine);
+    return render::Frame::about(is_diffuse ? normal_ : axis_)
+        .to_world({sine * std::cos(2 * pi * v), sine * std::sin(2 * pi * v), cosine});
   }
 
  private:
