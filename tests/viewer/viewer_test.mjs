@@ -94,6 +94,21 @@ function colour(page, rectangle) {
   }, rectangle);
 }
 
+async function parts_open(size) {
+  const page = await opened("example", { size });
+  await open_all(page);
+  assert.equal(await page.locator(".detail").count(), 13);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= widths[size][0], `${wide} pixels wide`);
+  assert.ok((await page.locator("figure svg").count()) > 10, "charts are drawn");
+  assert.equal(await page.locator("svg style").count(), 0);
+  assert.ok((await page.locator(".matrix td").count()) > 0, "the matrix of planted bugs is shown");
+  assert.match(await page.locator(".statements").innerText(), /contradicted/);
+  const intervals = await page.locator(".detail").allInnerTexts();
+  assert.ok(intervals.some((text) => text.includes("Chance of this if nothing is wrong")));
+  await closed(page);
+}
+
 const tests = {
   async "1508 claims are small, soon ready and few elements"() {
     const bytes = statSync(resolve(pages, "many.html")).size;
@@ -174,17 +189,8 @@ const tests = {
     await closed(page);
   },
 
-  async "every part opens, and nothing of it is said on the console"() {
-    const page = await opened("example");
-    await open_all(page);
-    assert.equal(await page.locator(".detail").count(), 13);
-    assert.ok((await page.locator("figure svg").count()) > 10, "charts are drawn");
-    assert.equal(await page.locator("svg style").count(), 0);
-    assert.ok((await page.locator(".matrix td").count()) > 0, "the matrix of planted bugs is shown");
-    assert.match(await page.locator(".statements").innerText(), /contradicted/);
-    const intervals = await page.locator(".detail").allInnerTexts();
-    assert.ok(intervals.some((text) => text.includes("Chance of this if nothing is wrong")));
-    await closed(page);
+  async "every part opens within the width, and nothing of it is said on the console"() {
+    for (const size of Object.keys(widths)) await parts_open(size);
   },
 
   async "hostile names run nothing"() {
