@@ -510,10 +510,9 @@ class MeanTheta : public Theta {
   std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
                               std::span<const ChannelData> data) const override {
     std::string reason = Theta::lack_of_numbers(test, channel, data);
-    if (!reason.empty()) return reason;
-    if (!test.outcome.plan.method.is.exact) {
-      reason = lost_to_rounding(test.outcome.question, channel, data);
-    }
+    // An exact method bounds what was never seen.
+    if (!reason.empty() || test.outcome.plan.method.is.exact) return reason;
+    reason = lost_to_rounding(test.outcome.question, channel, data);
     return reason.empty() ? unseen_could_decide(test.outcome, channel, data) : reason;
   }
 

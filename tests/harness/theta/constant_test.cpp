@@ -7,6 +7,7 @@
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "tests/harness/questions.h"
+#include "tests/harness/running.h"
 
 namespace assay::harness {
 namespace {
@@ -178,6 +179,18 @@ TEST(Constant, ComparesTwoWithoutARange) {
 }
 
 // The other's values lie in [0.5, 10.5] too.
+// Bets bound what was never seen, so that a run needs no spread to compare by.
+TEST(Constant, ComparesTwoByBetsInARun) {
+  const std::string text = R"(suite: constants
+estimators:
+  low: {plugin: analytic/rare_spike, height: 10, probability: 0}
+  high: {plugin: analytic/zero_variance}   # 6.36
+tests:
+  - {name: two constants, claim: mean(low) == mean(high), secondaries: 1000)";
+  EXPECT_EQ(run_verdict(text + "}\n"), Verdict::fail);
+  EXPECT_EQ(run_verdict(text + ", test: welch}\n"), Verdict::invalid);
+}
+
 TEST(Constant, ComparesTwoByBothRanges) {
   EXPECT_EQ(bet_on("two in ranges", 1000, {0.5, 9}), Verdict::fail);
   EXPECT_EQ(bet_on("two in ranges", 2000, {0.5, 0.5}), Verdict::pass);
