@@ -278,7 +278,7 @@ std::optional<double> LogTheta::pilot_spread(const Question& question, std::size
                                              std::optional<std::size_t> channel,
                                              const Pilots& pilots, const Plan& plan) const {
   const Subject& side = question.subjects[subject];
-  const Pilot& pilot = *pilot_of(question, subject, pilots);
+  const Pilot& pilot = *pilot_of(side, pilots);
   const double averaged = side.averaged(plan.primaries[subject]);
   std::optional<double> most;
   for (std::size_t i = 0; i < side.channels.size(); ++i) {

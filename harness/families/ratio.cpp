@@ -177,7 +177,7 @@ class RatioTheta : public LogTheta {
 
 class CostTheta final : public RatioTheta {
  public:
-  CostTheta() : RatioTheta({.joins_channels = true, .rests_on_tails = true}, "costs") {}
+  CostTheta() : RatioTheta({.joins_channels = true}, "costs") {}
 
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{influence_row(in_counts, Keeps::costs, cost_evidence),
@@ -207,7 +207,7 @@ class CostTheta final : public RatioTheta {
 
 class EfficiencyTheta final : public RatioTheta {
  public:
-  EfficiencyTheta() : RatioTheta({.of_spread = true, .rests_on_tails = true}, "efficiencies") {}
+  EfficiencyTheta() : RatioTheta({.of_spread = true}, "efficiencies") {}
 
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{
@@ -249,9 +249,7 @@ class EfficiencyTheta final : public RatioTheta {
 
 class TotalVarianceTheta final : public RatioTheta {
  public:
-  TotalVarianceTheta()
-      : RatioTheta({.joins_channels = true, .of_spread = true, .rests_on_tails = true},
-                   "variances") {}
+  TotalVarianceTheta() : RatioTheta({.joins_channels = true, .of_spread = true}, "variances") {}
 
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{

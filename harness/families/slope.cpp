@@ -186,9 +186,7 @@ class SlopeTheta final : public Theta {
 };
 
 const SlopeTheta slope_theta({.fit_decides = true});
-const SlopeTheta variance_slope_theta({.of_spread = true,
-                                       .rests_on_tails = true,
-                                       .fit_decides = true});
+const SlopeTheta variance_slope_theta({.of_spread = true, .fit_decides = true});
 
 // ---- Binding
 

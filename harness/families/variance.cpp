@@ -109,8 +109,7 @@ std::string rows_beside_primaries(const Question& question) {
 /// theta = ln(Var x / v0), or ln(Var x / (c Var y)), each of one primary if the estimator averages.
 class VarianceTheta final : public LogTheta {
  public:
-  VarianceTheta()
-      : LogTheta({.of_moments = true, .of_spread = true, .rests_on_tails = true}, "variances") {}
+  VarianceTheta() : LogTheta({.of_moments = true, .of_spread = true}, "variances") {}
 
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{

@@ -13,13 +13,9 @@ namespace assay::harness {
 namespace {
 
 // The pilot of an estimator that does not average, which may be a chain, has as many primaries as
-// the floor of evidence, but 512 observations at least and many_observations at most. It grows if
-// the observations are far from normal. The larger number tells a light-tailed skewness and
-// kurtosis to a few per cent.
+// the floor of evidence, but 512 observations at least and many_observations at most.
 constexpr std::uint64_t few_observations = 512;
 constexpr std::uint64_t primaries_of_few = std::uint64_t{1} << 14;
-// Most primaries of a larger pilot: a chain's observation may have millions.
-constexpr std::uint64_t most_primaries_of_larger = std::uint64_t{1} << 27;
 // An image's pilot has as many images as this pays for, at least the fewest that tell their
 // variance.
 constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
@@ -35,44 +31,11 @@ std::uint64_t few_of(const PreparedEstimator& estimator) {
                     many_observations);
 }
 
-/// Observations of the larger pilot. Images and files have no larger one, since each observation
-/// may be a rendering: it returns the usual number.
-std::uint64_t larger_size(const PreparedEstimator& estimator, const PilotRun& run) {
-  const auto worth = run.on_tails.find(estimator.name);
-  const Setup& setup = *estimator.setup;
-  if (worth == run.on_tails.end() || estimator.nature().averages || setup.observations() ||
-      setup.image() || recorded::keeps_files(setup) ||
-      setup.channels().size() > most_kept_channels) {
-    return few_of(estimator);
-  }
-  const std::uint64_t affordable = most_primaries_of_larger / estimator.primaries.value_or(1);
-  return std::clamp(std::min(worth->second, affordable), few_of(estimator), many_observations);
-}
-
-/// Three standard errors above the kurtosis of normal values.
-bool is_far_from_normal(const stats::Moments& moments) {
-  const double error = std::sqrt(24 / static_cast<double>(moments.count));
-  return !(moments.m2 > 0) || moments.kurtosis() > 3 + 3 * error;
-}
-
-/// A constant value may hide a rare one. A constant cost is usual.
-bool is_far_from_normal(const Pool& pool, const Summary& sums) {
-  const std::vector<Channel> channels = pool.setup()->channels();
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!channels[i].diagnostic && is_far_from_normal(sums.moments(i))) return true;
-    for (const stats::JointSums& joint : sums.details(i).joint) {
-      const stats::Moments cost = joint.moments().cost();
-      if (cost.m2 > 0 && is_far_from_normal(cost)) return true;
-    }
-  }
-  return false;
-}
-
-std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, const PilotRun& run) {
+std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
   const bool averages = estimator.nature().averages;
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
   auto pool =
-      std::make_shared<Pool>(estimator.setup, key_of(estimator, run.seed, 0, "pilot"), primaries);
+      std::make_shared<Pool>(estimator.setup, key_of(estimator, seed, 0, "pilot"), primaries);
   std::uint64_t usual = averages ? many_observations : few_of(estimator);
   if (const auto images = usual_images(*estimator.setup, primaries)) {
     usual = *images;
@@ -80,8 +43,7 @@ std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, const Pilot
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
   if (pool->channels() <= most_kept_channels) {
-    const std::uint64_t kept = std::max(count, larger_size(estimator, run));
-    for (ChannelPlan& channel : pool->plans()) channel.keep = kept;
+    for (ChannelPlan& channel : pool->plans()) channel.keep = count;
   }
   pool->request(count);
   return pool;
@@ -148,7 +110,9 @@ std::variant<Pilot, Fault> read(const Pool& pool) {
   Pilot pilot{.sums = sums_of(drawn), .primaries = pool.primaries()};
   for (std::size_t i = 0; i < pool.plan().size() && pool.plan()[i].keep > 0; ++i) {
     const std::span<const double> kept = drawn.values(i);
-    if (!kept.empty()) pilot.values.emplace_back(kept.begin(), kept.end());
+    if (kept.empty()) continue;
+    pilot.values.emplace_back(kept.begin(), kept.end());
+    pilot.order_gates.push_back(drawn.order_gates(i));
   }
   pilot.kept = pool.kept();
   pilot.images = drawn.observations(usual_images(*pool.setup(), pool.primaries()).value_or(0));
@@ -203,15 +167,6 @@ void Pilots::add(const std::string& name, std::variant<Pilot, Fault> pilot) {
   }
 }
 
-void Pilots::add_larger(const std::string& name, std::variant<Pilot, Fault> larger) {
-  Pilot& few = drawn_.at(name);
-  if (auto* const drawn = std::get_if<Pilot>(&larger)) {
-    few.larger = std::make_shared<const Pilot>(std::move(*drawn));
-  } else {
-    few.larger_fault = std::get<Fault>(std::move(larger));
-  }
-}
-
 void Pilots::merge(Pilots others) {
   drawn_.merge(others.drawn_);
   faults_.merge(others.faults_);
@@ -222,11 +177,6 @@ std::string where_pilots_stopped(const Question& question, const Pilots& pilots)
     const Fault* fault = pilots.fault(subject.estimator->name, subject.purpose);
     if (fault == nullptr && subject.purpose.empty()) {
       fault = pilots.fault(subject.estimator->name, averages_purpose);
-    }
-    const Pilot* const pilot = pilot_of(subject, pilots);
-    if (fault == nullptr && pilot != nullptr && pilot->larger_fault &&
-        question.is().rests_on_tails) {
-      fault = &*pilot->larger_fault;
     }
     if (fault == nullptr) continue;
     return sentence_of(*fault, subject.estimator->name, " in the pilot");
@@ -245,42 +195,11 @@ PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size
                                                 : std::span<const double>()};
 }
 
-const Pilot* pilot_of(const Question& question, std::size_t subject, const Pilots& pilots) {
-  const Pilot* const pilot = pilot_of(question.subjects[subject], pilots);
-  const bool larger = pilot != nullptr && pilot->larger && question.is().rests_on_tails;
-  return larger ? pilot->larger.get() : pilot;
-}
-
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots) {
-  return pilot_channel(question.subjects[subject], *pilot_of(question, subject, pilots), channel);
+  const Subject& side = question.subjects[subject];
+  return pilot_channel(side, *pilot_of(side, pilots), channel);
 }
-
-namespace {
-
-/// Draws on for claims that need more than the first observations.
-void enlarge(Pilots& pilots, const std::vector<const PreparedEstimator*>& estimators,
-             const std::vector<std::shared_ptr<Pool>>& pools, const PilotRun& run,
-             Progress& progress) {
-  std::vector<std::string> names;
-  std::vector<std::shared_ptr<Pool>> enlarged;
-  for (std::size_t i = 0; i < estimators.size(); ++i) {
-    const std::uint64_t size = larger_size(*estimators[i], run);
-    const Pilot* const few = pilots.find(estimators[i]->name);
-    if (size == few_of(*estimators[i]) || few == nullptr) continue;
-    if (!is_far_from_normal(*pools[i], *few->sums)) continue;
-    names.push_back(estimators[i]->name);
-    enlarged.push_back(pools[i]);
-    pools[i]->request(size);
-  }
-  if (enlarged.empty()) return;
-  draw_all(enlarged, {.threads = run.threads, .phase = "pilot"}, progress);
-  if (interrupted()) return;
-  // A fault here does not stop claims on means, which do not need these observations.
-  for (std::size_t i = 0; i < enlarged.size(); ++i) pilots.add_larger(names[i], read(*enlarged[i]));
-}
-
-}  // namespace
 
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
                   Progress& progress) {
@@ -288,7 +207,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   std::vector<std::shared_ptr<Pool>> pools;
   for (const PreparedEstimator* estimator : estimators) {
     names.push_back(estimator->name);
-    pools.push_back(pilot_pool(*estimator, run));
+    pools.push_back(pilot_pool(*estimator, run.seed));
     if (run.with_cost.contains(estimator->name)) {
       for (ChannelPlan& channel : pools.back()->plans()) channel.powers = Powers::with_costs;
     }
@@ -306,7 +225,6 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   Pilots pilots;
   if (interrupted()) return pilots;
   for (std::size_t i = 0; i < pools.size(); ++i) pilots.add(names[i], read(*pools[i]));
-  enlarge(pilots, estimators, pools, run, progress);
   return pilots;
 }
 

@@ -21,17 +21,14 @@ namespace assay::harness {
 struct Pilot {
   /// Sums of secondaries with `primaries` primaries each.
   std::shared_ptr<const Summary> sums = {};
-  std::vector<std::vector<double>> values = {};  ///< of the first channels, as drawn
+  std::vector<std::vector<double>> values = {};            ///< of the first channels, as drawn
+  std::vector<std::vector<stats::Gate>> order_gates = {};  ///< of the same
   std::uint64_t primaries = 1;
   /// Whole observations of an image, and their owner.
   Observations images = {};
   std::shared_ptr<const KeptObservations> kept = {};
   /// The look at pictures while reading them, in place of `images`.
   std::shared_ptr<const PictureLook> look = {};
-  /// More observations, including these, for claims on variances and costs; or why they could not
-  /// be drawn.
-  std::shared_ptr<const Pilot> larger = {};
-  std::optional<Fault> larger_fault = {};
 
   std::size_t image_count() const {
     if (look) return look->pictures;
@@ -69,7 +66,6 @@ class Pilots {
   bool empty() const { return drawn_.empty() && faults_.empty(); }
 
   void add(const std::string& name, std::variant<Pilot, Fault> pilot);
-  void add_larger(const std::string& name, std::variant<Pilot, Fault> larger);
   void merge(Pilots others);
 
  private:
@@ -80,9 +76,7 @@ class Pilots {
 struct PilotRun {
   std::uint64_t seed;
   unsigned threads;
-  std::set<std::string> with_cost = {};  ///< estimators whose costs are needed
-  /// Estimators whose variances or costs are tested, with the largest useful pilot of each.
-  std::map<std::string, std::uint64_t> on_tails = {};
+  std::set<std::string> with_cost = {};    ///< estimators whose costs are needed
   std::vector<const Subject*> draws = {};  ///< samplers whose draws are needed too
 };
 
@@ -98,8 +92,6 @@ const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots);
 
 /// The pilot of a subject; null if there is none or it has a fault.
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);
-/// The pilot of a question's subject, the larger one if the question needs it.
-const Pilot* pilot_of(const Question& question, std::size_t subject, const Pilots& pilots);
 
 struct PilotChannel {
   stats::Moments moments;

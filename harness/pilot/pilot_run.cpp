@@ -18,24 +18,6 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
-// Enough to tell an excess kurtosis of .5 from a normal law's, even if a claim asks for fewer.
-constexpr std::uint64_t least_of_larger = 2048;
-
-/// The most observations that a claim on variance or cost asks for, by estimator. References are
-/// left out: only their mean is used.
-std::map<std::string, std::uint64_t> on_tails(const std::vector<Question>& questions) {
-  std::map<std::string, std::uint64_t> most;
-  for (const Question& question : questions) {
-    if (!question.is().rests_on_tails) continue;
-    for (std::size_t i = 0; i < question.compared(); ++i) {
-      std::uint64_t& size = most[question.subjects[i].estimator->name];
-      size =
-          std::max({size, least_of_larger, question.test->secondaries.value_or(many_observations)});
-    }
-  }
-  return most;
-}
-
 }  // namespace
 
 std::vector<const Subject*> piloted_draws(const Question& question) {
@@ -50,15 +32,9 @@ std::vector<const Subject*> piloted_draws(const Question& question) {
 PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
                       std::uint64_t seed, unsigned threads) {
   PilotRun run{.seed = seed, .threads = threads, .with_cost = costly(questions)};
-  const std::map<std::string, std::uint64_t> most = on_tails(questions);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!chosen[i]) continue;
     for (const Subject* subject : piloted_draws(questions[i])) run.draws.push_back(subject);
-    if (!questions[i].is().rests_on_tails) continue;
-    for (const Subject& subject : questions[i].subjects) {
-      const auto found = most.find(subject.estimator->name);
-      if (found != most.end()) run.on_tails.insert(*found);
-    }
   }
   return run;
 }

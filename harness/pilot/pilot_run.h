@@ -11,8 +11,8 @@ namespace assay::harness {
 /// The samplers of a question whose draws need a pilot.
 std::vector<const Subject*> piloted_draws(const Question& question);
 
-/// The pilots of a suite's questions. All questions decide what a pilot keeps and how large it may
-/// be, so a selection does not change it. The chosen ones decide whether it is drawn.
+/// The pilots of a suite's questions. All questions decide what a pilot keeps, so a selection does
+/// not change it. The chosen ones decide whether a sampler's draws are piloted.
 PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
                       std::uint64_t seed, unsigned threads);
 /// The same with all chosen.

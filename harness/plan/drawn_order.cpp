@@ -2,12 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "harness/plan/gate_text.h"
 #include "harness/plan/rows.h"
-#include "stats/gates/independence_gates.h"
 
 namespace assay::harness {
 
@@ -15,11 +11,10 @@ bool shows_order(const Subject& subject) {
   return !is_recorded(subject) && !subject.setup->image();
 }
 
-std::string why_dependent(const Subject& subject, std::span<const double> values,
+std::string why_dependent(const Subject& subject, std::span<const stats::Gate> order,
                           std::vector<Gate>& gates) {
-  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) return "";
   std::string why;
-  for (const stats::Gate& gate : stats::drawn_order_gates(values)) {
+  for (const stats::Gate& gate : order) {
     if (gate.state != stats::GateState::red) continue;
     gates.push_back(gate_of(gate, ", " + subject.estimator->name));
     if (!why.empty()) continue;
@@ -35,9 +30,9 @@ void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& pla
   for (const Subject& side : question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
     if (!shows_order(side) || pilot == nullptr) continue;
-    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      std::string why =
-          why_dependent(side, pilot_channel(side, *pilot, channel).values, plan.gates);
+    for (const std::size_t channel : side.channels) {
+      if (channel >= pilot->order_gates.size()) continue;
+      std::string why = why_dependent(side, pilot->order_gates[channel], plan.gates);
       if (plan.invalid.empty()) plan.invalid = std::move(why);
     }
   }

@@ -216,7 +216,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Subject& side = question.subjects[i];
     if (side.setup->observations()) continue;
-    const Pilot* const known_pilot = pilot_of(question, i, pilots);
+    const Pilot* const known_pilot = pilot_of(side, pilots);
     if (known_pilot == nullptr) return std::nullopt;
     const stats::Moments pilot = known_pilot->moments(side.channels[channel]);
     if (is_constant(question, i, channel, pilot)) return std::nullopt;

@@ -20,7 +20,7 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
   if (question.is().of_single_values) return "";
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
-    const Pilot* pilot = pilot_of(question, subject, pilots);
+    const Pilot* pilot = pilot_of(side, pilots);
     if (pilot == nullptr || pilot->look || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const stats::Moments moments = pilot->moments(side.channels[channel]);
@@ -36,7 +36,7 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
   std::vector<Known> all;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
-    const Pilot* pilot = pilot_of(question, subject, pilots);
+    const Pilot* pilot = pilot_of(side, pilots);
     if (pilot == nullptr || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel data = pilot_channel(side, *pilot, channel);
@@ -131,7 +131,7 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
   bool hidden = false;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
-    const Pilot* const pilot = pilot_of(question, subject, pilots);
+    const Pilot* const pilot = pilot_of(side, pilots);
     if (pilot == nullptr || !side.purpose.empty() || is_recorded(side)) return false;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel seen = pilot_channel(question, subject, channel, pilots);

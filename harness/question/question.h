@@ -46,7 +46,6 @@ struct ThetaTraits {
   bool logarithm = false;         ///< Theta is the logarithm of a ratio.
   bool of_moments = false;        ///< The moments of single channels tell theta and its error.
   bool of_spread = false;         ///< Theta is or contains a variance.
-  bool rests_on_tails = false;    ///< Theta is or contains a variance or a cost.
   bool of_single_values = false;  ///< Theta is about the law of observations, not their mean.
   bool of_a_law = false;          ///< Theta is a distance between distribution functions.
   bool of_images = false;         ///< All elements of images are compared together.

@@ -181,9 +181,8 @@ void judge_drawn_order(TestOutcome& outcome, const DrawnTest& test) {
     const Subject& side = outcome.question.subjects[subject];
     if (!shows_order(side)) continue;
     for (const std::size_t channel : side.channels) {
-      const std::span<const double> values = test.samples[subject].values(channel);
-      std::string why = why_dependent(
-          side, values.first(std::min<std::size_t>(values.size(), ordered_values)), outcome.gates);
+      std::string why =
+          why_dependent(side, test.samples[subject].order_gates(channel), outcome.gates);
       if (outcome.plan.invalid.empty()) outcome.plan.invalid = std::move(why);
     }
   }

@@ -15,6 +15,7 @@
 #include "harness/sampling/group_variance.h"
 #include "harness/sampling/kept_sums.h"
 #include "harness/sampling/recorded_run.h"
+#include "stats/gates/independence_gates.h"
 
 namespace assay::harness {
 namespace {
@@ -165,6 +166,17 @@ std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) c
   if (values_.empty()) return {};
   const std::vector<double>& kept = values_.at(channel);
   return {kept.data(), std::min<std::size_t>(kept.size(), count)};
+}
+
+const std::vector<stats::Gate>& Pool::order_gates(std::size_t channel, std::uint64_t count) const {
+  std::span<const double> first = values(channel, count);
+  first = first.first(std::min<std::size_t>(first.size(), ordered_values));
+  const auto [found, added] = order_gates_.try_emplace({channel, first.size()});
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  if (added && std::ranges::all_of(first, is_finite)) {
+    found->second = stats::drawn_order_gates(first);
+  }
+  return found->second;
 }
 
 Observations Pool::observations(std::uint64_t count) const { return all_kept().range(0, count); }

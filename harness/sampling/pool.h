@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "estimators/estimator.h"
@@ -26,6 +27,10 @@ std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primari
 /// Observations of a block: a power of two that depends on an observation's `primaries` alone. An
 /// image's are those of all its elements.
 std::uint64_t block_size_of(std::uint64_t primaries);
+
+/// Observations of a test that show their order. Offsets of a few per cent that hundreds of
+/// neighbours share take thousands.
+inline constexpr std::uint64_t ordered_values = 16384;
 
 class Pool {
  public:
@@ -120,6 +125,7 @@ class Pool {
   std::vector<ChannelPlan> plan_;
   friend class Drawn;
   std::span<const double> values(std::size_t channel, std::uint64_t count) const;
+  const std::vector<stats::Gate>& order_gates(std::size_t channel, std::uint64_t count) const;
   Observations observations(std::uint64_t count) const;
   std::span<const BlockSums> blocks() const { return blocks_; }
 
@@ -137,6 +143,8 @@ class Pool {
   std::uint64_t requested_ = 0;
   Summary running_;
   std::vector<std::vector<double>> values_;
+  /// By channel and number of values: judged once for all tests and looks, on one thread.
+  mutable std::map<std::pair<std::size_t, std::size_t>, std::vector<stats::Gate>> order_gates_;
   std::vector<std::size_t> grouped_channels_;
   std::shared_ptr<KeptObservations> kept_ = std::make_shared<KeptObservations>();
   std::shared_ptr<const KeptObservations> known_;

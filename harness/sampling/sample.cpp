@@ -35,6 +35,10 @@ std::span<const double> Drawn::values(std::size_t channel) const {
   return pool_->values(channel, count_);
 }
 
+const std::vector<stats::Gate>& Drawn::order_gates(std::size_t channel) const {
+  return pool_->order_gates(channel, count_);
+}
+
 Observations Drawn::observations(std::uint64_t most) const {
   return pool_->observations(std::min(count_, most));
 }

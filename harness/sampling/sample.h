@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include <cstdint>
 #include <exception>
 #include <limits>
@@ -14,6 +13,7 @@
 #include "harness/sampling/image_views.h"
 #include "harness/sampling/summary.h"
 #include "stats/basics/moments.h"
+#include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {
 
@@ -48,6 +48,9 @@ class Drawn {
   std::shared_ptr<const Summary> shared_summary() const { return summary_; }
   /// The kept values of a channel.
   std::span<const double> values(std::size_t channel) const;
+  /// Gates on the order of a channel's first kept values (stats::drawn_order_gates). Values that
+  /// are not finite have no order.
+  const std::vector<stats::Gate>& order_gates(std::size_t channel) const;
   /// The first kept observations, at most `most`, with all channels.
   Observations observations(std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) const;
   /// All blocks drawn so far, also of later observations, if the pool keeps them.
