@@ -20,6 +20,7 @@ namespace {
 
 using reports::CalibrationCell;
 using reports::Rate;
+using reports::VerdictRates;
 
 /// Counts of one law. Their limits need the total number of cells.
 struct Measured {
@@ -52,28 +53,28 @@ std::vector<std::pair<std::string, std::uint64_t>> by_frequency(const VerdictCou
   return methods;
 }
 
+VerdictRates rates_of(const VerdictCounts& counts, double error) {
+  const auto rate = [&](std::uint64_t count) { return rate_of(count, counts.runs, error); };
+  return {.pass = rate(counts.passed),
+          .fail = rate(counts.failed),
+          .inconclusive = rate(counts.inconclusive),
+          .invalid = rate(counts.invalid),
+          .red = rate(counts.red),
+          .observations = mean_observations(counts),
+          .by = by_frequency(counts)};
+}
+
 CalibrationCell cell_of(const Measured& measured, double error) {
-  const bool proof = measured.of.proof;
-  const auto mistakes = [proof](const VerdictCounts& c) { return proof ? c.passed : c.failed; };
-  const VerdictCounts& level = measured.at(Trial::true_claim);
-  const VerdictCounts& power = measured.at(Trial::false_claim);
   const VerdictCounts& alone = measured.at(Trial::alone);
   return {.method = measured.of.method,
           .question = measured.of.question,
           .law = measured.law,
           .alpha = measured.alpha,
-          .proof = proof,
-          .mistaken = rate_of(mistakes(level), level.runs, error),
-          .inconclusive = level.inconclusive,
-          .invalid = level.invalid,
-          .observations = mean_observations(level),
-          .chosen = by_frequency(level),
-          .found = rate_of(proof ? power.passed : power.failed, power.runs, error),
-          .missed = rate_of(proof ? power.failed : power.passed, power.runs, error),
-          .alone = rate_of(mistakes(alone), alone.runs, error),
-          .red = rate_of(alone.red, alone.runs, error),
-          .alone_green = rate_of(alone.mistaken_not_red, alone.runs, error),
-          .alone_observations = mean_observations(alone)};
+          .proof = measured.of.proof,
+          .holds = rates_of(measured.at(Trial::holds), error),
+          .off = rates_of(measured.at(Trial::off), error),
+          .alone = rates_of(alone, error),
+          .alone_not_red = rate_of(alone.mistaken_not_red, alone.runs, error)};
 }
 
 void measure(const CalibrationBench& bench, const CalibrationRuns& options,

@@ -111,8 +111,8 @@ Facts facts_of(const std::string& law) {
 struct Draft {
   std::string method;
   std::string question;
-  std::string true_claim;
-  std::string false_claim = "";
+  std::string holds;
+  std::string off = "";
   std::optional<Margin> detect = {};
   bool is_default = true;
   CostKind cost = CostKind::samples;
@@ -133,21 +133,21 @@ void means(const Facts& f, std::vector<Draft>& drafts) {
   drafts.push_back(
       {"welch", "mean == mean", "mean(x) == mean(y)", "mean(shifted) == mean(y)", detect});
   const std::string within = fmt::format("within {:.17g} of", f.shift());
-  drafts.push_back({"tost", "mean within x of number", against(within.c_str(), f.mean - f.shift()),
-                    against(within.c_str(), f.mean)});
+  drafts.push_back({"tost", "mean within x of number", against(within.c_str(), f.mean),
+                    against(within.c_str(), f.mean - f.shift())});
   std::vector<const char*> others{"skewness-corrected-t"};
   if (f.two_valued()) others.push_back("binomial");
   if (f.bounded()) others.push_back("betting");
   for (const char* method : others) {
     drafts.push_back({.method = method,
                       .question = "mean == number",
-                      .true_claim = against("==", f.mean),
+                      .holds = against("==", f.mean),
                       .is_default = false});
   }
   if (f.bounded() || !std::isfinite(f.low)) return;
   drafts.push_back({.method = "betting",
                     .question = "mean <= number",
-                    .true_claim = against("<=", f.mean),
+                    .holds = against("<=", f.mean),
                     .is_default = false});
 }
 
@@ -165,22 +165,22 @@ void variances(const Facts& f, std::vector<Draft>& drafts) {
                     fmt::format("variance(x) == {:.17g} * variance(y)", factor), detect});
   drafts.push_back({.method = "influence-t",
                     .question = "variance == number",
-                    .true_claim = against("==", 1),
+                    .holds = against("==", 1),
                     .is_default = false});
   drafts.push_back({.method = "influence-t",
                     .question = "variance == variance",
-                    .true_claim = "variance(x) == variance(y)",
+                    .holds = "variance(x) == variance(y)",
                     .is_default = false});
   drafts.push_back({"influence-t", "total variance == number", "total_" + against("==", 1),
                     "total_" + against("==", factor), detect});
   drafts.push_back({"influence-t", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
                     "efficiency(y) == efficiency(scaled)", detect});
-  const auto costly = [&](const char* method, const char* question, const std::string& true_claim,
-                          const std::string& false_claim) {
+  const auto costly = [&](const char* method, const char* question, const std::string& holds,
+                          const std::string& off) {
     drafts.push_back({.method = method,
                       .question = question,
-                      .true_claim = true_claim,
-                      .false_claim = false_claim,
+                      .holds = holds,
+                      .off = off,
                       .detect = detect,
                       .cost = CostKind::rays});
   };
@@ -204,7 +204,7 @@ void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
                       "distribution(moved) == distribution(y)", detect});
     drafts.push_back({.method = "chi-square-two-sample",
                       .question = "draws == draws",
-                      .true_claim = "distribution(x.x) == distribution(y.x)",
+                      .holds = "distribution(x.x) == distribution(y.x)",
                       .is_default = false});
     drafts.push_back({"chi-square-fit", "draws == density", "distribution(x.x) == density", "",
                       Margin{.value = cell_effect}});
@@ -225,9 +225,8 @@ std::vector<Draft> images() {
                     fmt::format("mean(picture) == {:.17g} * mean(other_picture)", 1 + image_part),
                     part});
   const std::string within = fmt::format("mean(picture) within {:.17g} of ", image_bias);
-  drafts.push_back({"image", "image within x of analytic",
-                    fmt::format("bias(picture) within {0:.17g} of {0:.17g}", image_bias),
-                    within + "analytic"});
+  drafts.push_back({"image", "image within x of analytic", within + "analytic",
+                    fmt::format("bias(picture) within {0:.17g} of {0:.17g}", image_bias)});
   for (Draft& draft : drafts) draft.alone = classical_replicates;
   return drafts;
 }
@@ -260,13 +259,13 @@ TestEntry planned(const std::string& claim, const Draft& draft, const Calibratio
 
 CalibrationCase case_of(const Draft& draft, const CalibrationScope& scope) {
   CalibrationCase made{.method = draft.method, .question = draft.question};
-  made.alone = test_of(draft.true_claim, draft);
+  made.proof = parse_claim(draft.holds, {}).relation == Relation::within;
+  made.alone = test_of(made.proof ? draft.off : draft.holds, draft);
   made.alone->method = draft.method;
   made.alone->secondaries = scope.samples.value_or(draft.alone);
-  made.proof = made.alone->claim.relation == Relation::within;
   if (!draft.is_default) return made;
-  made.true_claim = planned(draft.true_claim, draft, scope);
-  if (!draft.false_claim.empty()) made.false_claim = planned(draft.false_claim, draft, scope);
+  made.holds = planned(draft.holds, draft, scope);
+  if (!draft.off.empty()) made.off = planned(draft.off, draft, scope);
   return made;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Cases for calibration. For each law they hold claims that are true, claims that are false by just
+// Cases for calibration. For each law they hold claims that hold exactly, claims that are off by
 // `detect`, and each method alone.
 
 #include <map>
@@ -32,13 +32,13 @@ struct CalibrationCase {
   std::string method;
   std::string question;  ///< "mean == number"
   bool proof = false;    ///< True if a pass is the mistake.
-  /// Theta is at the border of the claimed region, for a proof at that of the forbidden one.
-  /// Missing if another method is the question's default.
-  std::optional<TestEntry> true_claim = {};
-  /// Theta is at `detect`, for a proof 0. Missing if no law at that distance is available.
-  std::optional<TestEntry> false_claim = {};
-  /// The true claim with this method forced and all observations in one look. Gates are shown but
-  /// have no effect.
+  /// Theta is 0. Missing if another method is the question's default.
+  std::optional<TestEntry> holds = {};
+  /// Theta is at `detect`, for a proof at the border of the forbidden region. Missing if another
+  /// method is the question's default, or no law at that distance is available.
+  std::optional<TestEntry> off = {};
+  /// The claim on which a verdict against the level is possible, with this method forced and all
+  /// observations in one look. Gates are shown but have no effect.
   std::optional<TestEntry> alone = {};
 };
 

@@ -40,8 +40,7 @@ std::vector<Item> items_of(const CalibrationBench& bench, const std::vector<doub
   for (std::size_t a = 0; a < alphas.size(); ++a) {
     for (std::size_t c = 0; c < bench.cases.size(); ++c) {
       const CalibrationCase& each = bench.cases[c];
-      const std::optional<TestEntry>* const tests[] = {&each.true_claim, &each.false_claim,
-                                                       &each.alone};
+      const std::optional<TestEntry>* const tests[] = {&each.holds, &each.off, &each.alone};
       for (std::size_t t = 0; t < trials_of_a_case; ++t) {
         if (!*tests[t]) continue;
         Suite suite{.name = "calibration", .stem = "calibration", .alpha = alphas[a]};

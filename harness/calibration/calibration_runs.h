@@ -32,7 +32,7 @@ struct VerdictCounts {
 };
 
 /// The three tests of a case at one alpha.
-enum class Trial { true_claim, false_claim, alone };
+enum class Trial { holds, off, alone };
 inline constexpr std::size_t trials_of_a_case = 3;
 using CaseCounts = std::array<VerdictCounts, trials_of_a_case>;
 

@@ -303,9 +303,9 @@ Examples:
 
 void define_calibrate(Options& options, CalibrateCommand& command) {
   options.about(
-      R"(Measures how often each method errs on laws whose truth is known, and how often it finds an effect:
-the whole procedure with its pilot, gates and looks, and beside it the method alone. Exit code 1
-where a cell errs too often.
+      R"(Counts the verdicts pass, fail, inconclusive and invalid on laws whose truth is known: of claims that
+hold exactly and of claims that are off by `detect`. The whole procedure judges them, with its pilot,
+gates and looks, and beside it the method alone. Exit code 1 where a cell errs too often.
 
 Examples:
   assay calibrate

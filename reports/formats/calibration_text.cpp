@@ -12,45 +12,54 @@
 namespace assay::reports {
 namespace {
 
-std::string rate_text(const Rate& rate) {
-  return rate.runs == 0 ? "" : fmt::format("{:.3g}", rate.value());
-}
+std::string rate_text(const Rate& rate) { return fmt::format("{:.3g}", rate.value()); }
 
-std::string share_text(std::uint64_t count, const Rate& of) {
-  if (of.runs == 0) return "";
-  return fmt::format("{:.2g}", static_cast<double>(count) / static_cast<double>(of.runs));
-}
+/// One of a cell's claims: a line of the table.
+struct ClaimLine {
+  const char* claim;
+  const VerdictRates* rates;
+  const Rate* mistaken;  ///< null if no verdict on this claim errs against alpha
+};
 
-std::string low_text(const Rate& rate) {
-  return rate.runs == 0 ? "" : fmt::format("{:.2g}", rate.low);
-}
-
-std::string observations_text(double count) {
-  return count == 0 ? "" : count_text(static_cast<std::uint64_t>(count + 0.5));
-}
-
-std::string chosen_text(const CalibrationCell& cell) {
-  return cell.chosen.empty() ? "" : cell.chosen[0].first;
+std::vector<ClaimLine> lines_of(const CalibrationCell& cell) {
+  std::vector<ClaimLine> lines;
+  for (const ClaimLine& line :
+       {ClaimLine{"holds", &cell.holds, cell.proof ? nullptr : &cell.mistaken()},
+        ClaimLine{"off", &cell.off, cell.proof ? &cell.mistaken() : nullptr},
+        ClaimLine{"alone", &cell.alone, &cell.alone_mistaken()}}) {
+    if (line.rates->runs() > 0) lines.push_back(line);
+  }
+  return lines;
 }
 
 struct Column {
   const char* heading;
   int width;
-  std::string (*text)(const CalibrationCell&);
+  std::string (*text)(const ClaimLine&);
 };
 
 // Mark and law take 21 columns.
 const std::vector<Column>& table_columns() {
   static const std::vector<Column> all{
-      {"mistaken", 9, [](const CalibrationCell& c) { return rate_text(c.mistaken); }},
-      {"at least", 9, [](const CalibrationCell& c) { return low_text(c.mistaken); }},
-      {"invalid", 8, [](const CalibrationCell& c) { return share_text(c.invalid, c.mistaken); }},
-      {"open", 6, [](const CalibrationCell& c) { return share_text(c.inconclusive, c.mistaken); }},
-      {"power", 6, [](const CalibrationCell& c) { return rate_text(c.found); }},
-      {"n", 7, [](const CalibrationCell& c) { return observations_text(c.observations); }},
-      {"by", 21, chosen_text},
-      {"alone", 7, [](const CalibrationCell& c) { return rate_text(c.alone); }},
-      {"red", 6, [](const CalibrationCell& c) { return share_text(c.red.count, c.red); }},
+      {"claim", 6, [](const ClaimLine& l) { return std::string(l.claim); }},
+      {"pass", 7, [](const ClaimLine& l) { return rate_text(l.rates->pass); }},
+      {"fail", 8, [](const ClaimLine& l) { return rate_text(l.rates->fail); }},
+      {"open", 7, [](const ClaimLine& l) { return rate_text(l.rates->inconclusive); }},
+      {"invalid", 8, [](const ClaimLine& l) { return rate_text(l.rates->invalid); }},
+      {"errs", 8,
+       [](const ClaimLine& l) {
+         return l.mistaken == nullptr ? "" : fmt::format("{:.2g}", l.mistaken->low);
+       }},
+      {"red", 6,
+       [](const ClaimLine& l) {
+         return l.rates->red.count == 0 ? "" : fmt::format("{:.2g}", l.rates->red.value());
+       }},
+      {"n", 8,
+       [](const ClaimLine& l) {
+         return count_text(static_cast<std::uint64_t>(l.rates->observations + 0.5));
+       }},
+      {"by", 21,
+       [](const ClaimLine& l) { return l.rates->by.empty() ? "" : l.rates->by.front().first; }},
   };
   return all;
 }
@@ -64,10 +73,15 @@ const char* mark_of(const Calibration& calibration, const CalibrationCell& cell)
   return unflagged(calibration, cell) ? "!  " : "   ";
 }
 
-std::string console_row(const Calibration& calibration, const CalibrationCell& cell) {
-  std::string line = mark_of(calibration, cell) + pad_right(shorten(cell.law, 18), 18);
-  for (const Column& column : table_columns()) line += padded(column.text(cell), column.width);
-  return line + "\n";
+std::string console_rows(const Calibration& calibration, const CalibrationCell& cell) {
+  std::string out;
+  for (const ClaimLine& line : lines_of(cell)) {
+    out += out.empty() ? mark_of(calibration, cell) + pad_right(shorten(cell.law, 18), 18)
+                       : std::string(21, ' ');
+    for (const Column& column : table_columns()) out += padded(column.text(line), column.width);
+    out += "\n";
+  }
+  return out;
 }
 
 std::string heading_row() {
@@ -77,11 +91,12 @@ std::string heading_row() {
 }
 
 constexpr const char* legend =
-    R"(mistaken  runs in which the whole procedure fails a true claim (of tost: passes a false one)
-at least  the exact lower limit of that        open  inconclusive        n  mean observations
-power     right verdicts where the effect is `detect`; empty where no such runs are made
-by        the method that most runs are judged by
-alone     the method forced, in one look, gates without effect        red  with a red gate
+    R"(holds   the claim holds exactly        off  the claim is off by `detect`
+alone   the method forced, in one look, gates without effect, where it can err
+open    inconclusive        red  with a red gate        n  mean observations
+by      the method that judges most runs
+errs    the exact lower limit of the rate of mistakes: true claims that fail, or for tost and other
+        proofs claims off by `detect` that pass
 !!  mistaken too often for certain        !  alone mistaken too often for certain without a red gate
 )";
 
@@ -109,7 +124,7 @@ std::string console(const Calibration& calibration) {
       group = cell.method + cell.question;
       out += fmt::format("{}: {}\n", cell.method, cell.question);
     }
-    out += console_row(calibration, cell);
+    out += console_rows(calibration, cell);
   }
   return out + "\n" + legend + wrapped_detect(calibration) + "\n" + verdict_sentence(calibration) +
          "\n";
@@ -128,11 +143,13 @@ std::string markdown(const Calibration& calibration) {
       for (std::size_t i = 0; i < table_columns().size(); ++i) out += "---|";
       out += "\n";
     }
-    out +=
-        fmt::format("| {}{} | {} | {} |", mark_of(calibration, cell), escape_markdown(cell.method),
-                    escape_markdown(cell.question), escape_markdown(cell.law));
-    for (const Column& column : table_columns()) out += fmt::format(" {} |", column.text(cell));
-    out += "\n";
+    for (const ClaimLine& line : lines_of(cell)) {
+      out += fmt::format("| {}{} | {} | {} |", mark_of(calibration, cell),
+                         escape_markdown(cell.method), escape_markdown(cell.question),
+                         escape_markdown(cell.law));
+      for (const Column& column : table_columns()) out += fmt::format(" {} |", column.text(line));
+      out += "\n";
+    }
   }
   return out + "\n```\n" + legend + wrapped_detect(calibration) + "```\n";
 }

@@ -7,11 +7,11 @@
 namespace assay::reports {
 
 bool above(const Calibration& calibration, const CalibrationCell& cell) {
-  return cell.mistaken.low > calibration.tolerance * cell.alpha;
+  return cell.mistaken().low > calibration.tolerance * cell.alpha;
 }
 
 bool unflagged(const Calibration& calibration, const CalibrationCell& cell) {
-  return cell.alone_green.low > calibration.tolerance * cell.alpha;
+  return cell.alone_not_red.low > calibration.tolerance * cell.alpha;
 }
 
 std::size_t defects(const Calibration& calibration) {

@@ -23,31 +23,39 @@ struct Rate {
   }
 };
 
+/// The verdicts on one claim over the runs. The first four rates add up to 1.
+struct VerdictRates {
+  Rate pass;
+  Rate fail;
+  Rate inconclusive;
+  Rate invalid;             ///< or error, or refused before sampling
+  Rate red;                 ///< a gate is red
+  double observations = 0;  ///< mean over the runs, of each subject
+  /// The methods that judged, with their numbers of runs, the most frequent first.
+  std::vector<std::pair<std::string, std::uint64_t>> by = {};
+
+  std::uint64_t runs() const { return pass.runs; }
+};
+
 /// A method on a question about a law at one alpha.
 struct CalibrationCell {
   std::string method;
   std::string question;  ///< "mean == number"
   std::string law;
   double alpha = 0;
-  bool proof = false;  ///< the mistake is a pass
+  bool proof = false;  ///< the mistake is a pass of the claim that is off
 
-  /// The whole procedure on a true claim: pilot, choice of method, looks, gates. No runs where
-  /// another method is the question's default.
-  Rate mistaken;
-  std::uint64_t inconclusive = 0;
-  std::uint64_t invalid = 0;
-  double observations = 0;  ///< mean over the runs, of each subject
-  /// By which method the runs were judged, the most frequent first.
-  std::vector<std::pair<std::string, std::uint64_t>> chosen = {};
+  /// The whole procedure: pilot, choice of method, looks, gates. No runs where another method is
+  /// the question's default.
+  VerdictRates holds;  ///< on the claim that holds exactly
+  VerdictRates off;    ///< on the claim that is off by `detect`; perhaps no runs
+  /// The method alone on the claim where it can be mistaken: forced, one look, gates without
+  /// effect.
+  VerdictRates alone;
+  Rate alone_not_red;  ///< mistaken though no gate is red
 
-  Rate found;   ///< of the false claim at `detect`: the right verdict
-  Rate missed;  ///< the wrong one
-
-  /// The method alone on the true claim: forced, one look, gates without effect.
-  Rate alone;
-  Rate red;          ///< a gate of it is red
-  Rate alone_green;  ///< mistaken though no gate is red
-  double alone_observations = 0;
+  const Rate& mistaken() const { return proof ? off.pass : holds.fail; }
+  const Rate& alone_mistaken() const { return proof ? alone.pass : alone.fail; }
 };
 
 struct Calibration {

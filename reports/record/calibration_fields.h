@@ -27,26 +27,30 @@ void fields(Archive& a, T& chosen) {
   a("runs", chosen.runs);
 }
 
+template <class Archive, maybe_const<VerdictRates> T>
+void fields(Archive& a, T& rates) {
+  std::vector<ChosenMethod> by;
+  for (const auto& [method, runs] : rates.by) by.push_back({method, runs});
+  a("pass", rates.pass);
+  a("fail", rates.fail);
+  a("inconclusive", rates.inconclusive);
+  a("invalid", rates.invalid);
+  a("red", rates.red);
+  a("observations", rates.observations);
+  a("by", by);
+}
+
 template <class Archive, maybe_const<CalibrationCell> T>
 void fields(Archive& a, T& cell) {
-  std::vector<ChosenMethod> chosen;
-  for (const auto& [method, runs] : cell.chosen) chosen.push_back({method, runs});
   a("method", cell.method);
   a("question", cell.question);
   a("law", cell.law);
   a("alpha", cell.alpha);
   a("proof", cell.proof);
-  a("mistaken", cell.mistaken);
-  a("inconclusive", cell.inconclusive);
-  a("invalid", cell.invalid);
-  a("observations", cell.observations);
-  a("chosen", chosen);
-  a("found", cell.found);
-  a("missed", cell.missed);
+  a("holds", cell.holds);
+  a("off", cell.off);
   a("alone", cell.alone);
-  a("alone_red", cell.red);
-  a("alone_green", cell.alone_green);
-  a("alone_observations", cell.alone_observations);
+  a("alone_not_red", cell.alone_not_red);
 }
 
 template <class Archive, maybe_const<Calibration> T>

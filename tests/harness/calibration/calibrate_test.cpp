@@ -32,14 +32,14 @@ TEST(Calibrate, TheTTestKeepsItsLevelAndFindsItsEffectOnNormalData) {
   const auto result =
       measured({.methods = {"t"}, .laws = {"normal"}, .alphas = {0.05}, .runs = 400, .threads = 1});
   const auto& t = cell(result, "mean == number", "normal(0, 1)");
-  EXPECT_EQ(t.alone.runs, 400U);
-  EXPECT_GE(t.alone.count, 4U);
-  EXPECT_LE(t.alone.count, 42U);
-  EXPECT_LE(t.mistaken.count, 42U);
-  EXPECT_EQ(t.invalid, 0U);
-  EXPECT_EQ(t.red.count, 0U);
-  EXPECT_GT(t.found.count, 380U);
-  EXPECT_EQ(t.chosen, (std::vector<std::pair<std::string, std::uint64_t>>{{"t", 400}}));
+  EXPECT_EQ(t.alone.runs(), 400U);
+  EXPECT_GE(t.alone.fail.count, 4U);
+  EXPECT_LE(t.alone.fail.count, 42U);
+  EXPECT_LE(t.holds.fail.count, 42U);
+  EXPECT_EQ(t.holds.invalid.count, 0U);
+  EXPECT_EQ(t.alone.red.count, 0U);
+  EXPECT_GT(t.off.fail.count, 380U);
+  EXPECT_EQ(t.holds.by, (std::vector<std::pair<std::string, std::uint64_t>>{{"t", 400}}));
   EXPECT_EQ(reports::defects(result), 0U);
 }
 
@@ -49,24 +49,24 @@ TEST(Calibrate, FAloneIsFarOffOnExponentialDataAndItsGateIsRed) {
   const auto result = measured(
       {.methods = {"F"}, .laws = {"exponential"}, .alphas = {0.01}, .runs = 300, .threads = 1});
   const auto& f = cell(result, "variance == variance", "exponential(1)");
-  EXPECT_GT(f.alone.count, 20U);
-  EXPECT_EQ(f.red.count, 300U);
-  EXPECT_EQ(f.alone_green.count, 0U);
-  EXPECT_EQ(f.chosen.at(0).first, "influence-t");
+  EXPECT_GT(f.alone.fail.count, 20U);
+  EXPECT_EQ(f.alone.red.count, 300U);
+  EXPECT_EQ(f.alone_not_red.count, 0U);
+  EXPECT_EQ(f.holds.by.at(0).first, "influence-t");
   // P(more than 14 of 300 at .01) = 8e-7.
-  EXPECT_LE(f.mistaken.count, 14U);
+  EXPECT_LE(f.mistaken().count, 14U);
   EXPECT_EQ(reports::defects(result), 0U);
 }
 
-// Theta of the false claim stands on the border of what `within` claims: a pass is the mistake.
+// Theta of the claim that is off stands on the border of what `within` claims.
 TEST(Calibrate, OfAProofAPassIsTheMistake) {
   const auto result = measured(
       {.methods = {"tost"}, .laws = {"uniform"}, .alphas = {0.05}, .runs = 200, .threads = 1});
   const auto& tost = cell(result, "mean within x of number", "uniform(0, 1)");
   EXPECT_TRUE(tost.proof);
   // P(more than 27 of 200 at .05) = 2e-6.
-  EXPECT_LE(tost.mistaken.count, 27U);
-  EXPECT_GT(tost.found.count, 150U);
+  EXPECT_LE(tost.mistaken().count, 27U);
+  EXPECT_GT(tost.holds.pass.count, 150U);
 }
 
 TEST(Calibrate, FixedSamplesAreOneLookOfThatMany) {
@@ -77,8 +77,8 @@ TEST(Calibrate, FixedSamplesAreOneLookOfThatMany) {
                                 .samples = 150,
                                 .threads = 1});
   const auto& welch = cell(result, "mean == mean", "normal(3, 2)");
-  EXPECT_EQ(welch.observations, 150);
-  EXPECT_EQ(welch.alone_observations, 150);
+  EXPECT_EQ(welch.holds.observations, 150);
+  EXPECT_EQ(welch.alone.observations, 150);
 }
 
 TEST(Calibrate, ThreadsChangeNoCount) {
@@ -90,10 +90,10 @@ TEST(Calibrate, ThreadsChangeNoCount) {
   const auto b = measured(three);
   ASSERT_EQ(a.cells.size(), b.cells.size());
   for (std::size_t i = 0; i < a.cells.size(); ++i) {
-    EXPECT_EQ(a.cells[i].mistaken.count, b.cells[i].mistaken.count);
-    EXPECT_EQ(a.cells[i].alone.count, b.cells[i].alone.count);
-    EXPECT_EQ(a.cells[i].observations, b.cells[i].observations);
-    EXPECT_EQ(a.cells[i].chosen, b.cells[i].chosen);
+    EXPECT_EQ(a.cells[i].holds.fail.count, b.cells[i].holds.fail.count);
+    EXPECT_EQ(a.cells[i].alone.fail.count, b.cells[i].alone.fail.count);
+    EXPECT_EQ(a.cells[i].holds.observations, b.cells[i].holds.observations);
+    EXPECT_EQ(a.cells[i].holds.by, b.cells[i].holds.by);
   }
 }
 
@@ -107,7 +107,7 @@ TEST(Calibrate, FlatDataAreGivenTheObservationsThatTheirTestNeeds) {
                                 .threads = 1});
   ASSERT_EQ(result.cells.size(), 3U);
   // P(fewer than 90 of 100) is 6e-9 at .99, .96 at .83.
-  for (const auto& each : result.cells) EXPECT_GE(each.found.count, 90U) << each.question;
+  for (const auto& each : result.cells) EXPECT_GE(each.off.fail.count, 90U) << each.question;
 }
 
 // They share what they draw.
@@ -123,9 +123,9 @@ TEST(Calibrate, AMethodCountsTheSameBesideOthers) {
   ASSERT_EQ(alone.cells.size(), 1U);
   ASSERT_EQ(both.cells.size(), 3U);
   EXPECT_EQ(both.cells[2].method, "F");
-  EXPECT_EQ(both.cells[2].mistaken.count, alone.cells[0].mistaken.count);
-  EXPECT_EQ(both.cells[2].alone.count, alone.cells[0].alone.count);
-  EXPECT_EQ(both.cells[2].observations, alone.cells[0].observations);
+  EXPECT_EQ(both.cells[2].holds.fail.count, alone.cells[0].holds.fail.count);
+  EXPECT_EQ(both.cells[2].alone.fail.count, alone.cells[0].alone.fail.count);
+  EXPECT_EQ(both.cells[2].holds.observations, alone.cells[0].holds.observations);
 }
 
 // Every question is asked once of each kind of law without an internal error.
