@@ -94,6 +94,12 @@ std::string dependent(const Question& question, const Rows& rows, bool at_a_lag)
         "many chains take turns; give one row a chain",
         rows.label, worst.lag, worst.correlation);
   }
+  if (!(time > 1)) {
+    return fmt::format(
+        "the {} are not independent: those {} apart have a rank correlation of {:.2g}; give the "
+        "mean of rows that were drawn together as one row",
+        rows.label, worst.lag, worst.correlation);
+  }
   const double worth = static_cast<double>(rows.values.size()) / time;
   return fmt::format(
       "the {} are not independent: {} of them are worth about {:.0f} independent ones; give one "

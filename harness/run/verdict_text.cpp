@@ -125,7 +125,7 @@ std::string passed_by_empty_interval(const ChannelOutcome& channel) {
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.evidence.exact) return "as claimed: what never varies is compared exactly";
   if (!channel.regions.has_forbidden()) {
-    std::string text = "no evidence against the claim";
+    const std::string text = "no evidence against the claim";
     if (channel.finds_nothing) {
       return fmt::format(
           "{}, nor could there be: in {} observations no difference that the range allows is found "
@@ -140,11 +140,13 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     }
     if (channel.detectable) {
       const char* how = outcome.question.theta->detectable_text();
-      text += fmt::format("; {}{} would have been found with probability {:g}",
-                          reports::margin_text(*channel.detectable, channel.effect), how,
-                          1 - outcome.place.share.beta);
+      return fmt::format("{}; {}{} would have been found with probability {:g}", text,
+                         reports::margin_text(*channel.detectable, channel.effect), how,
+                         1 - outcome.place.share.beta);
     }
-    return text;
+    if (reports::interval_text(channel.effect).empty()) return text;
+    return fmt::format("{}, nor is it shown: {}; say with `detect` how far off it must not be",
+                       text, finding(channel));
   }
   if (holds_no_effect(channel)) return passed_by_empty_interval(channel);
   const double excluded = excluded_beyond(channel);

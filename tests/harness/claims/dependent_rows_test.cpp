@@ -102,6 +102,16 @@ TEST(DependentRows, OfAShortChainAreInvalidAndSayWhatTheyAreWorth) {
   }
 }
 
+// Rows of which each leans away from the one before are worth more than as many independent ones.
+TEST(DependentRows, ThatAlternateSayTheirCorrelation) {
+  const reports::Test test =
+      judged(chain(-0.5, 1001, 6), "claim: 'distribution(rows) == normal(0, 1)'");
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message,
+              testing::ContainsRegex("those 1 apart have a rank correlation of -0[.][45]"));
+  EXPECT_THAT(test.message, testing::Not(HasSubstr("are worth")));
+}
+
 TEST(DependentRows, OfAChainForceNoTestOfIndependentRows) {
   const reports::Test forced = judged(chain(0.9, 8000, 5), "claim: mean(rows) == 0, test: t");
   EXPECT_EQ(forced.verdict, Verdict::invalid);

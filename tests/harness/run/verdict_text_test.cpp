@@ -28,6 +28,7 @@ estimators:
   averaged: {plugin: analytic/normal, mean: 2, primaries: 16}
   unit: {plugin: analytic/normal, mean: 2, deviation: 0.1, primaries: 1}
   ranged: {plugin: analytic/law, law: 'uniform(0, 4)', primaries: 1}
+  rare: {plugin: analytic/law, law: bernoulli(0.0000000001), scale: 100000, shift: 1, primaries: 1}
 tests:
   - {name: test, )" + test + "}\n"),
                     "test");
@@ -93,6 +94,13 @@ TEST(Narrate, ClassicalPassSaysWhereNothingCouldHaveBeenFound) {
   expect_said(told(std::string(claim) + "4"), Verdict::pass,
               "nor could there be: in 4 observations no difference that the range allows is found");
   expect_said(told(std::string(claim) + "400"), Verdict::pass, "or more would have been found");
+}
+
+// 1 in all observations, of a range up to 100,001: a rare high value may lift the mean to 1.5.
+TEST(Narrate, APassThatShowsNothingSaysSo) {
+  const reports::Test test = told("claim: mean(rare) == 1.5");
+  expect_said(test, Verdict::pass, "no evidence against the claim, nor is it shown: ");
+  expect_said(test, Verdict::pass, "say with `detect` how far off it must not be");
 }
 
 // An exponent of points of which one alone is not zero is infinite.
