@@ -3,6 +3,7 @@
 // Observations that are images.
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,16 @@ struct ImageShape {
   /// True if the pixels of one observation are independent. They are not if they share random
   /// numbers, if a filter reaches over several, or if a chain visits them.
   bool independent = true;
+  /// Where its corner lies in the whole picture, of which a crop shows a part.
+  std::int64_t left = 0;
+  std::int64_t top = 0;
 
   std::size_t pixels() const { return width * height; }
   std::size_t elements() const { return pixels() * components.size(); }
 };
 
 /// The channel's name of one pixel, as claims and messages call it: "x3y5", with several components
-/// "x3y5.red".
+/// "x3y5.red". Columns and rows are those of the whole picture.
 std::string element_name(const ImageShape& shape, std::size_t element);
 
 }  // namespace assay

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -23,11 +24,6 @@ namespace {
 
 bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != text.npos; }
 
-/// "ViewLayer.Combined.R" is R of the layer "ViewLayer.Combined".
-std::string layer_of(const std::string& channel) {
-  const std::size_t dot = channel.rfind('.');
-  return dot == channel.npos ? "" : channel.substr(0, dot);
-}
 std::string last_of(const std::string& channel) { return channel.substr(channel.rfind('.') + 1); }
 
 std::size_t rank_of(const std::string& channel) {
@@ -35,9 +31,9 @@ std::size_t rank_of(const std::string& channel) {
   return static_cast<std::size_t>(std::ranges::find(order, last_of(channel)) - order.begin());
 }
 
-std::vector<std::string> names_of(const ExrFile& file) {
+std::vector<std::string> names_of(const PictureFile& file) {
   std::vector<std::string> names;
-  for (const ExrChannel& channel : file.channels()) names.push_back(channel.name);
+  for (const FileChannel& channel : file.channels()) names.push_back(channel.name);
   return names;
 }
 
@@ -74,7 +70,7 @@ std::vector<std::string> colours_of(const std::string& layer) {
   return {prefix + "R", prefix + "G", prefix + "B"};
 }
 
-std::vector<std::string> usual_channels(const ExrFile& file) {
+std::vector<std::string> usual_channels(const PictureFile& file) {
   const std::vector<std::string> names = names_of(file);
   const auto has = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
   if (has("R") && has("G") && has("B")) return colours_of("");
@@ -91,7 +87,7 @@ std::vector<std::string> usual_channels(const ExrFile& file) {
              (names.empty() ? "R" : layer_of(names[0]) + ".*") + "\"`; it has " + quoted(names));
 }
 
-std::vector<std::string> matching_channels(const ExrFile& file, const std::string& patterns) {
+std::vector<std::string> matching_channels(const PictureFile& file, const std::string& patterns) {
   const std::vector<std::string> names = names_of(file);
   std::set<std::string> chosen;
   for (const std::string& pattern : split_at_commas(patterns)) {
@@ -117,48 +113,68 @@ void sort_channels(std::vector<std::string>& names) {
                     [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
 }
 
-std::vector<std::string> components_of(const std::vector<std::string>& names) {
-  const bool one_layer = std::ranges::all_of(
-      names, [&](const std::string& name) { return layer_of(name) == layer_of(names[0]); });
-  if (!one_layer) return names;
-  std::vector<std::string> components;
-  for (const std::string& name : names) components.push_back(last_of(name));
-  return components;
+/// The third coordinate of a normal or a position has the others beside it.
+bool is_depth(const std::string& name, const std::vector<std::string>& all) {
+  const std::vector<std::string> depths{"Z", "ZBack", "Depth", "depth"};
+  const std::string layer = layer_of(name);
+  return std::ranges::find(depths, last_of(name)) != depths.end() &&
+         std::ranges::find(all, layer.empty() ? "X" : layer + ".X") == all.end();
 }
 
-std::string size_text(const ExrWindow& window) {
+void name_components(PictureChannels& channels, const std::vector<std::string>& all) {
+  const std::vector<std::string>& names = channels.names;
+  const bool one_layer = std::ranges::all_of(
+      names, [&](const std::string& name) { return layer_of(name) == layer_of(names[0]); });
+  for (const std::string& name : names) {
+    channels.components.push_back(one_layer ? last_of(name) : name);
+    channels.depth.push_back(is_depth(name, all));
+    if (channels.depth.back())
+      channels.components.push_back(channels.components.back() + "_infinite");
+  }
+}
+
+std::string size_text(const PictureWindow& window) {
   return std::to_string(window.width) + " x " + std::to_string(window.height);
 }
 
-void require_same(const ExrFile& file, const PictureStack& stack) {
-  const ExrWindow window = file.window(stack.channels.names);
-  if (window == stack.window) return;
-  const std::string first = "`" + stack.files[0] + "`";
-  if (window.width == stack.window.width && window.height == stack.window.height) {
-    refuse(file.name(), "its data window lies elsewhere than that of " + first +
-                            ": render all files with one crop window");
+void require_same(const PictureFile& file, const PictureView& view, const std::string& first) {
+  const PictureWindow window = file.window(view.channels.names);
+  if (window == view.whole) return;
+  if (window.width == view.whole.width && window.height == view.whole.height) {
+    refuse(file.name(), "its data window lies elsewhere than that of `" + first +
+                            "`: render all files with one crop window");
   }
-  refuse(file.name(), "it has " + size_text(window) + " pixels, but " + first + " has " +
-                          size_text(stack.window) + ": render all files at one size");
+  refuse(file.name(), "it has " + size_text(window) + " pixels, but `" + first + "` has " +
+                          size_text(view.whole) + ": render all files at one size");
 }
 
 std::string at_texel(const ImageShape& shape, std::size_t element) {
   const std::size_t pixel = element / shape.components.size();
-  return "at pixel x " + std::to_string(pixel % shape.width) + ", y " +
-         std::to_string(pixel / shape.width) + " of " +
+  return "at pixel x " +
+         std::to_string(shape.left + static_cast<std::int64_t>(pixel % shape.width)) + ", y " +
+         std::to_string(shape.top + static_cast<std::int64_t>(pixel / shape.width)) + " of " +
          shape.components[element % shape.components.size()];
 }
 
-std::vector<double> read_doubles(const ExrFile& file, const std::vector<std::string>& names,
-                                 const ImageShape& shape) {
-  std::vector<float> texels(shape.pixels() * names.size());
-  file.read(names, texels);
-  const auto bad = std::ranges::find_if(texels, [](float x) { return !(x - x == 0); });
+std::vector<double> read_doubles(const PictureFile& file, const PictureView& view) {
+  const ImageShape shape = view.shape();
+  std::vector<float> texels(shape.elements());
+  view.read(file, texels);
+  const auto bad = std::ranges::find_if(texels, [](float x) { return !std::isfinite(x); });
   if (bad != texels.end()) {
-    refuse(file.name(), "the channels " + quoted(names) + " are not finite " +
+    refuse(file.name(), "the channels " + quoted(view.channels.names) + " are not finite " +
                             at_texel(shape, static_cast<std::size_t>(bad - texels.begin())));
   }
   return {texels.begin(), texels.end()};
+}
+
+/// The same pixels of other channels, as they are in the file.
+PictureView view_of_others(const PictureView& view, const std::vector<std::string>& names) {
+  PictureView others = view;
+  others.channels = {.names = names, .components = names, .depth = {}};
+  others.channels.depth.assign(names.size(), false);
+  others.rounding = Rounding::none;
+  return others;
 }
 
 std::vector<std::string> substituted(const std::string& pattern,
@@ -172,7 +188,7 @@ std::vector<std::string> substituted(const std::string& pattern,
   return names;
 }
 
-bool has_all(const ExrFile& file, const std::vector<std::string>& names) {
+bool has_all(const PictureFile& file, const std::vector<std::string>& names) {
   const std::vector<std::string> there = names_of(file);
   return std::ranges::all_of(names, [&](const std::string& name) {
     return std::ranges::find(there, name) != there.end();
@@ -180,9 +196,11 @@ bool has_all(const ExrFile& file, const std::vector<std::string>& names) {
 }
 
 /// Samples of every pixel.
-std::vector<double> read_counts(const ExrFile& file, const MomentChannels& errors,
-                                const ImageShape& shape, double least) {
-  const auto everywhere = [&](double count) { return std::vector<double>(shape.pixels(), count); };
+std::vector<double> read_counts(const PictureFile& file, const MomentChannels& errors,
+                                const PictureView& view, double least) {
+  const auto everywhere = [&](double count) {
+    return std::vector<double>(view.shape().pixels(), count);
+  };
   const std::string& text = errors.samples;
   if (text.empty()) {
     if (const auto count = file.samples_per_pixel()) return everywhere(static_cast<double>(*count));
@@ -196,8 +214,10 @@ std::vector<double> read_counts(const ExrFile& file, const MomentChannels& error
   if (problem == std::errc{} && end == text.data() + text.size()) {
     counts = everywhere(number);
   } else {
-    counts = read_doubles(file, {text},
-                          {.width = shape.width, .height = shape.height, .components = {text}});
+    counts = read_doubles(file, view_of_others(view, {text}));
+    for (std::size_t i = 0; i < view.left_out.size(); ++i) {
+      if (view.left_out[i]) counts[i] = least;
+    }
   }
   const auto few = std::ranges::find_if(counts, [&](double count) { return !(count >= least); });
   if (few == counts.end()) return counts;
@@ -212,7 +232,7 @@ bool names_pictures(const std::string& file) {
   const auto status = std::filesystem::status(file, ignored);
   if (!std::filesystem::exists(status) && is_pattern(file)) return true;
   // A look into a pipe would take its bytes away.
-  return file.ends_with(".exr") || (std::filesystem::is_regular_file(status) && is_exr(file));
+  return file.ends_with(".exr") || (std::filesystem::is_regular_file(status) && is_picture(file));
 }
 
 std::vector<std::string> files_of(const std::string& pattern) {
@@ -237,7 +257,7 @@ std::vector<std::string> files_of(const std::string& pattern) {
   return files;
 }
 
-PictureChannels choose_channels(const ExrFile& file, const std::string& patterns) {
+PictureChannels choose_channels(const PictureFile& file, const std::string& patterns) {
   PictureChannels channels;
   if (patterns == "usual") {
     channels.names = usual_channels(file);
@@ -246,42 +266,173 @@ PictureChannels choose_channels(const ExrFile& file, const std::string& patterns
     sort_channels(channels.names);
   }
   if (channels.names.empty()) refuse(file.name(), "no channel is chosen");
-  channels.components = components_of(channels.names);
+  name_components(channels, names_of(file));
   return channels;
 }
 
-ImageShape PictureStack::shape(bool independent) const {
+std::string layer_of(const std::string& channel) {
+  const std::size_t dot = channel.rfind('.');
+  return dot == channel.npos ? "" : channel.substr(0, dot);
+}
+
+ImageShape PictureView::shape(bool independent) const {
   return {.width = window.width,
           .height = window.height,
           .components = channels.components,
-          .independent = independent};
+          .independent = independent,
+          .left = window.left,
+          .top = window.top};
 }
 
-std::unique_ptr<const ExrFile> PictureStack::open(std::size_t index) const {
-  auto file = std::make_unique<const ExrFile>(files[index]);
-  require_same(*file, *this);
+namespace {
+
+/// Copies rows of a file into those of a view.
+void take_rows(const PictureView& view, std::span<const float> source, std::span<float> texels) {
+  const std::size_t names = view.channels.names.size();
+  const auto skipped = static_cast<std::size_t>(view.window.left - view.whole.left);
+  float* out = texels.data();
+  for (std::size_t y = 0; y < texels.size() / view.row(); ++y) {
+    const float* in = source.data() + (y * view.whole.width + skipped) * names;
+    for (std::size_t x = 0; x < view.window.width; ++x) {
+      for (std::size_t c = 0; c < names; ++c, ++in) {
+        const bool infinite =
+            view.channels.depth[c] && *in == std::numeric_limits<float>::infinity();
+        *out++ = infinite ? 0 : *in;
+        if (view.channels.depth[c]) *out++ = infinite ? 1 : 0;
+      }
+    }
+  }
+}
+
+void round_all(const PictureView& view, std::span<float> texels) {
+  const std::size_t components = view.channels.components.size();
+  std::vector<bool> alpha;
+  for (const std::string& component : view.channels.components) {
+    alpha.push_back(last_of(component) == "A");
+  }
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    texels[i] = rounded(texels[i], view.rounding, alpha[i % components]);
+  }
+}
+
+}  // namespace
+
+void PictureView::read(const PictureFile& file, std::span<float> texels, std::size_t first) const {
+  const std::size_t rows = texels.size() / row();
+  const std::size_t above = static_cast<std::size_t>(window.top - whole.top);
+  const bool plain = window.width == whole.width &&
+                     std::ranges::none_of(channels.depth, [](bool depth) { return depth; });
+  if (plain) {
+    file.read(channels.names, texels, above + first);
+  } else {
+    std::vector<float> source(rows * whole.width * channels.names.size());
+    file.read(channels.names, source, above + first);
+    take_rows(*this, source, texels);
+  }
+  if (rounding != Rounding::none) round_all(*this, texels);
+  if (left_out.empty()) return;
+  const std::size_t components = channels.components.size();
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    if (left_out[first * window.width + i / components]) texels[i] = 0;
+  }
+}
+
+namespace {
+
+void require_inside(const PictureFile& file, const PictureWindow& window,
+                    const PictureWindow& whole, const char* what) {
+  const auto ends_inside = [](std::int64_t begin, std::size_t size, std::int64_t from,
+                              std::size_t of) {
+    return begin >= from &&
+           begin + static_cast<std::int64_t>(size) <= from + static_cast<std::int64_t>(of);
+  };
+  if (ends_inside(window.left, window.width, whole.left, whole.width) &&
+      ends_inside(window.top, window.height, whole.top, whole.height)) {
+    return;
+  }
+  refuse(file.name(), "its " + size_text(whole) + " pixels at x " + std::to_string(whole.left) +
+                          ", y " + std::to_string(whole.top) + " do not cover the " + what +
+                          " of " + size_text(window) + " at x " + std::to_string(window.left) +
+                          ", y " + std::to_string(window.top));
+}
+
+/// Leaves out where all colours of the mask are 0. It covers the window, or has its size.
+void apply_mask(const std::string& name, PictureView& view) {
+  const std::unique_ptr<const PictureFile> file = open_picture(name);
+  PictureView mask;
+  mask.channels = choose_channels(*file, "usual");
+  mask.whole = file->window(mask.channels.names);
+  mask.window = view.window;
+  if (mask.whole.width == view.window.width && mask.whole.height == view.window.height) {
+    mask.window = mask.whole;
+  }
+  require_inside(*file, mask.window, mask.whole, "window");
+  std::vector<float> texels(mask.shape().elements());
+  mask.read(*file, texels);
+  const std::size_t components = mask.channels.components.size();
+  std::vector<bool> lit(view.left_out.size());
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    if (texels[i] != 0) lit[i / components] = true;
+  }
+  for (std::size_t i = 0; i < lit.size(); ++i) view.left_out[i] = view.left_out[i] || !lit[i];
+}
+
+/// Leaves out where a number of these files is not finite.
+void apply_finite(const std::string& patterns, const std::string& chosen, PictureView& view) {
+  for (const std::string& pattern : split_at_commas(patterns)) {
+    for (const std::string& name : files_of(pattern)) {
+      const std::unique_ptr<const PictureFile> file = open_picture(name);
+      PictureView all{.window = view.window, .channels = choose_channels(*file, chosen)};
+      all.whole = file->window(all.channels.names);
+      require_inside(*file, all.window, all.whole, "window");
+      std::vector<float> texels(all.shape().elements());
+      all.read(*file, texels);
+      const std::size_t components = all.channels.components.size();
+      for (std::size_t i = 0; i < texels.size(); ++i) {
+        if (!std::isfinite(texels[i])) view.left_out[i / components] = true;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+PictureView view_of(const PictureFile& file, const std::string& patterns,
+                    const PictureTreatment& treatment) {
+  PictureView view{.channels = choose_channels(file, patterns), .rounding = treatment.rounding};
+  view.whole = file.window(view.channels.names);
+  view.of_files = file.channel(view.channels.names[0]).rounding;
+  view.window = treatment.crop.value_or(view.whole);
+  require_inside(file, view.window, view.whole, "window");
+  if (treatment.mask.empty() && treatment.finite.empty()) return view;
+  view.left_out.resize(view.window.width * view.window.height);
+  if (!treatment.mask.empty()) apply_mask(treatment.mask, view);
+  if (!treatment.finite.empty()) apply_finite(treatment.finite, patterns, view);
+  if (std::ranges::all_of(view.left_out, [](bool out) { return out; })) {
+    refuse(file.name(), "all its pixels are left out; see that the mask is not black");
+  }
+  return view;
+}
+
+std::unique_ptr<const PictureFile> PictureStack::open(std::size_t index) const {
+  auto file = open_picture(files[index]);
+  require_same(*file, view, files[0]);
   return file;
 }
 
 void PictureStack::read(std::size_t index, std::span<float> texels) const {
-  open(index)->read(channels.names, texels);
+  view.read(*open(index), texels);
 }
 
-PictureStack open_stack(std::vector<std::string> files, const std::string& patterns) {
-  const ExrFile first(files.at(0));
-  PictureStack stack{.files = std::move(files), .channels = choose_channels(first, patterns)};
-  stack.window = first.window(stack.channels.names);
-  for (std::size_t i = 1; i < stack.files.size(); ++i) {
-    require_same(ExrFile(stack.files[i]), stack);
-  }
+PictureStack open_stack(std::vector<std::string> files, const std::string& patterns,
+                        const PictureTreatment& treatment) {
+  const std::unique_ptr<const PictureFile> first = open_picture(files.at(0));
+  PictureStack stack{.files = std::move(files), .view = view_of(*first, patterns, treatment)};
+  for (std::size_t i = 1; i < stack.files.size(); ++i) stack.open(i);
   return stack;
 }
 
-ImageShape PictureMoments::shape() const {
-  return {.width = window.width, .height = window.height, .components = channels.components};
-}
-
-MomentChannels usual_moments(const ExrFile& file, const PictureChannels& channels) {
+MomentChannels usual_moments(const PictureFile& file, const PictureChannels& channels) {
   if (has_all(file, substituted("Variance.*", channels.names))) return {.variance = "Variance.*"};
   if (has_all(file, substituted("m2_*", channels.names))) return {.second_moment = "m2_*"};
   return {};
@@ -334,19 +485,20 @@ void raise_where_few(const std::vector<double>& counts, const ImageShape& shape,
 }  // namespace
 
 PictureMoments read_moments(const std::string& name, const std::string& patterns,
-                            const MomentChannels& errors) {
-  const ExrFile file(name);
-  PictureMoments moments{.channels = choose_channels(file, patterns)};
-  moments.window = file.window(moments.channels.names);
-  const ImageShape shape = moments.shape();
-  moments.mean = read_doubles(file, moments.channels.names, shape);
+                            const MomentChannels& errors, const PictureTreatment& treatment) {
+  const std::unique_ptr<const PictureFile> file = open_picture(name);
+  const PictureView view = view_of(*file, patterns, treatment);
+  PictureMoments moments{.shape = view.shape(), .mean = read_doubles(*file, view)};
   if (!errors.any()) return moments;
+  if (view.channels.names.size() != view.channels.components.size()) {
+    refuse(name, "a depth that may be infinite has no variance; choose other channels");
+  }
+  const ImageShape& shape = moments.shape;
   const bool by_variance = !errors.variance.empty();
-  const std::vector<double> counts = read_counts(file, errors, shape, by_variance ? 1 : 2);
+  const std::vector<double> counts = read_counts(*file, errors, view, by_variance ? 1 : 2);
   moments.standard_error = read_doubles(
-      file,
-      substituted(by_variance ? errors.variance : errors.second_moment, moments.channels.names),
-      shape);
+      *file, view_of_others(view, substituted(by_variance ? errors.variance : errors.second_moment,
+                                              view.channels.names)));
   for (std::size_t i = 0; i < moments.mean.size(); ++i) {
     double& value = moments.standard_error[i];
     if (!by_variance) value = std::max(0.0, value - moments.mean[i] * moments.mean[i]);

@@ -132,10 +132,10 @@ std::string make_one(foreign::Renderings& renderings) {
 
 /// Why no channels of a picture can be chosen; "" where they can.
 std::string why_no_channels(const std::string& file, const std::string& channels) {
-  if (!is_exr(file)) return "";
-  const ExrFile picture(file);
+  if (!is_picture(file)) return "";
+  const std::unique_ptr<const PictureFile> picture = open_picture(file);
   try {
-    recorded::choose_channels(picture, channels);
+    recorded::choose_channels(*picture, channels);
   } catch (const InputError& error) {
     return error.message();
   }
@@ -144,9 +144,9 @@ std::string why_no_channels(const std::string& file, const std::string& channels
 
 Contents look_at(const std::string& file, const Look& look) {
   Contents contents;
-  if (is_exr(file)) {
-    contents.pictures = recorded::open_stack({file}, look.channels);
-    contents.shape = contents.pictures.shape(look.independent);
+  if (is_picture(file)) {
+    contents.pictures = recorded::open_stack({file}, look.channels, {});
+    contents.shape = contents.pictures.view.shape(look.independent);
     contents.pictures.files.clear();
   } else {
     contents.columns = recorded::read_table(file, recorded::Rows::one_is_fine).columns;

@@ -23,15 +23,17 @@ struct Format {
 constexpr std::string_view as_exr =
     "a mean of pixels needs them unrounded: render to OpenEXR (.exr)";
 
+constexpr std::string_view as_file =
+    "name the file of the picture itself: it is not read from pipes or packed";
+
 constexpr std::array formats{
-    Format{"\x76\x2f\x31\x01"sv, "an OpenEXR picture",
-           "name the file of the picture itself: it is not read from pipes or packed"},
-    Format{"\x89PNG"sv, "a PNG picture", as_exr},
+    Format{"\x76\x2f\x31\x01"sv, "an OpenEXR picture", as_file},
+    Format{"\x89PNG"sv, "a PNG picture", as_file},
+    Format{"PF\n"sv, "a PFM picture", as_file},
     Format{"\xff\xd8\xff"sv, "a JPEG picture", as_exr},
     Format{"II*\0"sv, "a TIFF picture", as_exr},
     Format{"MM\0*"sv, "a TIFF picture", as_exr},
     Format{"#?RADIANCE"sv, "a Radiance picture", as_exr},
-    Format{"PF\n"sv, "a PFM picture", as_exr},
     Format{"PK\x03\x04"sv, "a zip archive, as .npz and .xlsx are",
            "`unzip $` gives the arrays of an .npz as .npy files, which can be read;\n"
            "  save a spreadsheet as CSV"},

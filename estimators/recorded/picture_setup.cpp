@@ -33,9 +33,7 @@ class Seen {
   SeenPictures pictures_;
 };
 
-std::size_t row_of(const PictureStack& stack) {
-  return stack.window.width * stack.channels.names.size();
-}
+std::size_t row_of(const PictureStack& stack) { return stack.view.row(); }
 
 class Picture final : public Estimator {
  public:
@@ -78,10 +76,10 @@ class StackRows final : public PictureRows {
   void read(std::uint64_t index, std::span<float> texels) override {
     Reading& picture = pictures_.at(index);
     if (!picture.file) picture.file = stack_->open(index);
-    picture.file->read(stack_->channels.names, texels, picture.rows);
+    stack_->view.read(*picture.file, texels, picture.rows);
     picture.digest.add(texels);
     picture.rows += texels.size() / row_of(*stack_);
-    const bool last = picture.rows == stack_->window.height;
+    const bool last = picture.rows == stack_->view.window.height;
     if (last) seen_->refuse_a_copy(index, picture.digest);
     if (last || pictures_.size() > most_open) picture.file.reset();
   }
@@ -91,7 +89,7 @@ class StackRows final : public PictureRows {
   static constexpr std::size_t most_open = 128;
 
   struct Reading {
-    std::shared_ptr<const ExrFile> file;
+    std::shared_ptr<const PictureFile> file;
     PictureDigest digest;
     std::size_t rows = 0;
   };
@@ -106,7 +104,7 @@ class PictureSetup final : public Setup, public InFiles {
   PictureSetup(PictureStack stack, bool independent, std::string data_file)
       : stack_(std::make_shared<const PictureStack>(std::move(stack))),
         seen_(std::make_shared<Seen>(stack_)),
-        shape_(stack_->shape(independent)),
+        shape_(stack_->view.shape(independent)),
         data_file_(std::move(data_file)) {}
 
   std::vector<Channel> channels() const override {
@@ -128,7 +126,9 @@ class PictureSetup final : public Setup, public InFiles {
   }
   std::optional<std::pair<std::string, std::string>> shared_with(const PictureSetup& other,
                                                                  std::uint64_t count) const {
-    if (seen_ == other.seen_) return {};
+    // One render in two precisions is no copy: rounding has made it so.
+    const bool alike = stack_->view.of_files == other.stack_->view.of_files;
+    if (seen_ == other.seen_ || !alike) return {};
     const auto indices = seen_->pictures().shared_with(other.seen_->pictures(), count);
     if (!indices) return {};
     return std::pair(file(indices->first), other.file(indices->second));
@@ -144,7 +144,7 @@ class PictureSetup final : public Setup, public InFiles {
 class ReferenceSetup final : public Setup {
  public:
   explicit ReferenceSetup(PictureMoments moments)
-      : moments_(std::move(moments)), shape_(moments_.shape()) {}
+      : moments_(std::move(moments)), shape_(moments_.shape) {}
 
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels = element_channels(shape_);

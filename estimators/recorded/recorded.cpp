@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -158,7 +159,33 @@ struct PictureRequest {
   bool independent;
   bool exact;
   recorded::MomentChannels errors;
+  recorded::PictureTreatment treatment;
 };
+
+/// "LEFT TOP WIDTH HEIGHT".
+std::optional<PictureWindow> crop_of(Parameters& parameters) {
+  std::istringstream text(parameters.string("crop"));
+  if (!parameters.given("crop")) return {};
+  PictureWindow crop;
+  std::string more;
+  if (!(text >> crop.left >> crop.top >> crop.width >> crop.height) || text >> more) {
+    parameters.refuse("crop", "must be left, top, width and height, as in `crop: 64 32 640 480`");
+  }
+  return crop;
+}
+
+recorded::PictureTreatment treatment_of(Parameters& parameters) {
+  const std::map<std::string, Rounding> roundings{{"none", Rounding::none},
+                                                  {"half", Rounding::half},
+                                                  {"png16", Rounding::png16},
+                                                  {"png8", Rounding::png8}};
+  const std::string finite = parameters.string("finite");
+  const std::string mask = parameters.string("mask");
+  return {.rounding = roundings.at(parameters.string("rounded")),
+          .crop = crop_of(parameters),
+          .mask = parameters.given("mask") ? parameters.file("mask") : "",
+          .finite = parameters.given("finite") ? finite : ""};
+}
 
 PictureRequest picture_request(Parameters& parameters) {
   const auto given = [&](const char* name) {
@@ -171,7 +198,8 @@ PictureRequest picture_request(Parameters& parameters) {
           .exact = parameters.boolean("exact"),
           .errors = {.variance = given("variance"),
                      .second_moment = given("second_moment"),
-                     .samples = given("samples")}};
+                     .samples = given("samples")},
+          .treatment = treatment_of(parameters)};
 }
 
 /// Reports an error of a file at the parameter that names it.
@@ -199,8 +227,9 @@ std::shared_ptr<const Setup> prepare_reference(const Parameters& parameters,
   if (request.exact && errors.any()) {
     parameters.refuse("exact", "is given beside a variance: a mean is exact or has an error");
   }
-  return recorded::reference_setup(reading(
-      parameters, [&] { return recorded::read_moments(files[0], request.channels, errors); }));
+  return recorded::reference_setup(reading(parameters, [&] {
+    return recorded::read_moments(files[0], request.channels, errors, request.treatment);
+  }));
 }
 
 std::shared_ptr<const Setup> prepare_pictures(const Parameters& parameters,
@@ -214,17 +243,18 @@ std::shared_ptr<const Setup> prepare_pictures(const Parameters& parameters,
   if (!request.errors.samples.empty()) {
     parameters.refuse("samples", "needs `variance` or `second_moment` beside it");
   }
-  recorded::PictureStack stack =
-      reading(parameters, [&] { return recorded::open_stack(std::move(files), request.channels); });
+  recorded::PictureStack stack = reading(parameters, [&] {
+    return recorded::open_stack(std::move(files), request.channels, request.treatment);
+  });
   return recorded::picture_setup(std::move(stack), request.independent,
                                  std::filesystem::weakly_canonical(request.pattern).string());
 }
 
 std::shared_ptr<const Setup> prepare_text(Parameters& parameters) {
-  for (const char* const name :
-       {"channels", "pixels", "exact", "variance", "second_moment", "samples"}) {
+  for (const char* const name : {"channels", "pixels", "exact", "variance", "second_moment",
+                                 "samples", "rounded", "crop", "mask", "finite"}) {
     if (parameters.given(name)) {
-      parameters.refuse(name, "is of OpenEXR pictures, and `file` names none");
+      parameters.refuse(name, "is of pictures, and `file` names none");
     }
   }
   const Reading reading = read(parameters);
@@ -252,7 +282,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 std::vector<Entry> recorded_recorded() {
   return {
       {{.name = "recorded",
-        .summary = "Observations from rows of text or an array of numpy, from OpenEXR pictures, "
+        .summary = "Observations from rows of text or an array of numpy, from pictures, "
                    "or moments of a saved run.",
         .description =
             "Observation i is row i of `file`: a text, a CSV, or an array that numpy saved "
@@ -268,9 +298,11 @@ std::vector<Entry> recorded_recorded() {
             "rows and is left out. `#` begins a comment. Every row needs the same number of "
             "numbers; `nan` and `inf` are read as such. An array has one dimension or two, of "
             "float32, float64 or whole numbers.\n\n"
-            "Or `file` is a pattern, `out/*.exr`, and observation i is the i-th OpenEXR picture "
-            "by name, an image: of one part or several, scan lines or tiles. `channels` chooses "
-            "among its channels; a layer, or a part, stands before a dot. A picture of a mean "
+            "Or `file` is a pattern, `out/*.exr`, and observation i is the i-th picture by name, "
+            "an image: OpenEXR of one part or several, scan lines or tiles, PFM or PNG. "
+            "`channels` chooses among its channels; a layer, or a part, stands before a dot. PNG "
+            "is taken from sRGB to linear light. A depth `Z` that is infinite counts as 0, and as "
+            "1 in a component of its own, `Z_infinite`. A picture of a mean "
             "that carries its error, or is `exact`, is a reference: it can stand on the right "
             "of `mean(x) ==`. Its error is sqrt(variance / samples), with the channels that "
             "`variance` names (`Variance.*` of pbrt), or of `second_moment` (`m2_*` of "
@@ -317,6 +349,27 @@ std::vector<Entry> recorded_recorded() {
                         .type = ParameterType::string,
                         .summary = "how many samples the mean is of, a number or the channel "
                                    "that counts them; the file's own word when absent",
+                        .fallback = "none"},
+                       {.name = "rounded",
+                        .type = ParameterType::string,
+                        .summary = "of pictures: round their numbers as files do that they are "
+                                   "compared with; PNG clips to [0, 1] too",
+                        .fallback = "none",
+                        .choices = {"none", "half", "png16", "png8"}},
+                       {.name = "crop",
+                        .type = ParameterType::string,
+                        .summary = "of pictures: left, top, width and height of the part to use, "
+                                   "in pixels of the whole",
+                        .fallback = "none"},
+                       {.name = "mask",
+                        .type = ParameterType::string,
+                        .summary = "of pictures: a picture of the pixels to use; where it is 0, "
+                                   "they are left out",
+                        .fallback = "none"},
+                       {.name = "finite",
+                        .type = ParameterType::string,
+                        .summary = "of pictures: patterns of files, commas between; pixels that "
+                                   "are not finite in one of them are left out",
                         .fallback = "none"},
                        {.name = "run",
                         .type = ParameterType::string,

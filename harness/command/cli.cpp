@@ -243,26 +243,36 @@ void define_images(Options& options, ImagesCommand& command) {
       R"(Holds pictures of one scene against each other, pixel by pixel and on every larger scale: are their
 means equal, and if not, where? Every file is one observation and needs a seed of its own.
 
+Files are OpenEXR, PFM or PNG. PNG is taken from sRGB to linear light, clipped to [0, 1] as it is. Both
+sides are rounded as the coarser is, half or PNG. Crops are compared where both sides have pixels. A
+depth Z may be infinite. With --channels, each layer has a claim of its own.
+
 Examples:
   assay images --candidate 'new/*.exr' --reference 'old/*.exr' --report html=difference.html
   assay images --candidate 'new/*.exr' --reference converged.exr --detect 1%
-  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --channels 'ViewLayer.DiffInd.*'
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --channels '*'      every layer
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --ignore nonfinite --mask mask.png
   assay images --candidate 'half/*.exr' --reference 'float/*.exr' --within 0.5% --report json=run.json
 )");
   ImagesArguments& given = command.arguments;
   options.add(
-      {.name = "--candidate", .value = "GLOB", .needed = "--candidate, a pattern of OpenEXR files"},
+      {.name = "--candidate", .value = "GLOB", .needed = "--candidate, a pattern of pictures"},
       given.candidate,
-      "the pictures in question, OpenEXR, 16 or more, each rendered with a seed of its own");
+      "the pictures in question, 16 or more, each rendered with a seed of its own");
   options.add({.name = "--reference",
                .value = "GLOB",
-               .needed = "--reference, a pattern of OpenEXR files or one file"},
+               .needed = "--reference, a pattern of pictures or one file"},
               given.reference,
               "what they are held against: as many again, or one picture, with its variance "
               "(channels `Variance.*` or `m2_*`) or exact");
   options.add({"--channels", "GLOB"}, given.channels,
               "the channels to test, as 'ViewLayer.DiffInd.*'; commas between several; default R, "
-              "G and B, or what stands for them");
+              "G and B, or what stands for them, and an alpha that is not 1");
+  options.add({"--ignore", "KIND"}, given.ignores_nonfinite, one_of<bool>({{"nonfinite", true}}),
+              "nonfinite: leave out pixels that are no number in one of the pictures; default an "
+              "error");
+  options.add({"--mask", "FILE"}, given.mask,
+              "a picture; pixels where it is 0 are left out; default none");
   options.add({"--pixels", "KIND"}, given.independent_pixels,
               one_of<bool>({{"dependent", false}, {"independent", true}}),
               "independent, as under a box filter one pixel wide, or dependent; default dependent");

@@ -182,7 +182,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest&, const P
   return distance;
 }
 
-std::string range_text(std::uint32_t first, std::uint32_t count, const char* name) {
+std::string range_text(std::int64_t first, std::uint32_t count, const char* name) {
   if (count == 1) return fmt::format("{} {}", name, first);
   return fmt::format("{}s {}-{}", name, first, first + count - 1);
 }
@@ -203,15 +203,17 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
     case stats::ImageStatistic::window:
       break;
   }
+  const std::int64_t x = shape.left + window.x;
+  const std::int64_t y = shape.top + window.y;
   if (window.width == 1 && window.height == 1) {
-    return fmt::format("pixel x {}, y {}{}, {}", window.x, window.y, component, z);
+    return fmt::format("pixel x {}, y {}{}, {}", x, y, component, z);
   }
   if (window.width == shape.width && window.height == shape.height) {
     return fmt::format("the whole image{}, {}", component, z);
   }
-  return fmt::format("{}, {}{} ({} x {} pixels), {}", range_text(window.x, window.width, "column"),
-                     range_text(window.y, window.height, "row"), component, window.width,
-                     window.height, z);
+  return fmt::format("{}, {}{} ({} x {} pixels), {}", range_text(x, window.width, "column"),
+                     range_text(y, window.height, "row"), component, window.width, window.height,
+                     z);
 }
 
 ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,

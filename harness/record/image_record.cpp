@@ -240,7 +240,9 @@ reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, do
     double deviation = 0;
     for (std::size_t c = 0; c < shape.components.size(); ++c) {
       const std::size_t element = pixel * shape.components.size() + c;
-      deviation += std::sqrt(summary.moments(element).variance());
+      const stats::Moments moments = summary.moments(element);
+      if (moments.count < 2) return estimate;
+      deviation += std::sqrt(moments.variance());
     }
     sum += deviation * deviation;
     squares += std::pow(deviation, 4);

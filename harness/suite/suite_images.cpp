@@ -1,8 +1,12 @@
 #include "harness/suite/suite_images.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <memory>
+#include <span>
 
 #include "estimators/pictures.h"
 #include "harness/suite/suite_entries.h"
@@ -35,7 +39,8 @@ void require_enough(const char* option, const std::string& pattern, std::size_t 
                   stats::least_replicates));
 }
 
-EstimatorEntry entry(const char* name, const Location& where, std::vector<Value::Member> members) {
+EstimatorEntry entry(const std::string& name, const Location& where,
+                     std::vector<Value::Member> members) {
   return {.name = name,
           .plugin = "recorded",
           .parameters = Value::map(std::move(members), where),
@@ -47,22 +52,149 @@ Value::Member member(const char* key, const std::string& text, const Location& w
   return {key, Value::scalar(text, where)};
 }
 
-EstimatorEntry stack_entry(const char* name, const Location& where, const std::string& pattern,
-                           const ImagesArguments& arguments) {
-  std::vector<Value::Member> members{member("file", pattern, where),
-                                     member("channels", arguments.channels, where)};
+/// The first picture of each side, which stands for the rest.
+struct FirstPictures {
+  std::unique_ptr<const PictureFile> candidate;
+  std::unique_ptr<const PictureFile> reference;
+};
+
+/// A layer that has a claim of its own.
+struct Layer {
+  std::string suffix;    ///< of the estimators' names; "" if there is no other
+  std::string channels;  ///< patterns
+  recorded::PictureChannels of_candidate;
+  recorded::PictureChannels of_reference;
+};
+
+bool has(const PictureFile& file, const std::string& name) {
+  return std::ranges::find(file.channels(), name, &FileChannel::name) != file.channels().end();
+}
+
+/// True if a channel is 1 throughout.
+bool is_one(const PictureFile& file, const std::string& name) {
+  const PictureWindow window = file.window(std::span(&name, 1));
+  std::vector<float> texels(window.width * window.height);
+  file.read(std::span(&name, 1), texels);
+  return std::ranges::all_of(texels, [](float x) { return x == 1; });
+}
+
+/// The patterns of the usual channels, with alpha if it tells anything.
+std::string usual_with_alpha(const FirstPictures& first) {
+  const recorded::PictureChannels usual = recorded::choose_channels(*first.candidate, "usual");
+  if (recorded::choose_channels(*first.reference, "usual").names != usual.names) return "usual";
+  const std::string layer = recorded::layer_of(usual.names[0]);
+  const std::string alpha = layer.empty() ? "A" : layer + ".A";
+  if (!has(*first.candidate, alpha) || !has(*first.reference, alpha)) return "usual";
+  if (is_one(*first.candidate, alpha) && is_one(*first.reference, alpha)) return "usual";
+  if (recorded::usual_moments(*first.reference, usual).any()) return "usual";
+  return fmt::format("{},{}", fmt::join(usual.names, ","), alpha);
+}
+
+std::string as_name(const std::string& layer) {
+  std::string name = "_" + (layer.empty() ? "picture" : layer);
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return name;
+}
+
+std::vector<Layer> layers_of(const ImagesArguments& arguments, const FirstPictures& first) {
+  const auto layer = [&](const std::string& suffix, const std::string& channels) {
+    return Layer{suffix, channels, recorded::choose_channels(*first.candidate, channels),
+                 recorded::choose_channels(*first.reference, channels)};
+  };
+  if (arguments.channels == "usual") return {layer("", usual_with_alpha(first))};
+  std::vector<std::pair<std::string, std::string>> found;  // layers and their channels
+  for (const std::string& name :
+       recorded::choose_channels(*first.candidate, arguments.channels).names) {
+    const std::string of = recorded::layer_of(name);
+    if (found.empty() || found.back().first != of) {
+      found.emplace_back(of, name);
+    } else {
+      found.back().second += "," + name;
+    }
+  }
+  if (found.size() == 1) return {layer("", arguments.channels)};
+  std::vector<Layer> layers;
+  for (const auto& [of, channels] : found) layers.push_back(layer(as_name(of), channels));
+  return layers;
+}
+
+/// What both sides have, on one canvas. nullopt if their windows are equal.
+std::optional<PictureWindow> common_window(const ImagesArguments& arguments,
+                                           const FirstPictures& first, const Layer& layer) {
+  const PictureWindow a = first.candidate->window(layer.of_candidate.names);
+  const PictureWindow b = first.reference->window(layer.of_reference.names);
+  if (a == b) return {};
+  const auto end = [](std::int64_t begin, std::size_t size) {
+    return begin + static_cast<std::int64_t>(size);
+  };
+  const std::int64_t left = std::max(a.left, b.left);
+  const std::int64_t top = std::max(a.top, b.top);
+  const std::int64_t right = std::min(end(a.left, a.width), end(b.left, b.width));
+  const std::int64_t bottom = std::min(end(a.top, a.height), end(b.top, b.height));
+  if (first.candidate->canvas() == first.reference->canvas() && left < right && top < bottom) {
+    return PictureWindow{left, top, static_cast<std::size_t>(right - left),
+                         static_cast<std::size_t>(bottom - top)};
+  }
+  throw InputError(place("--reference", arguments.reference),
+                   fmt::format("its pictures have {} x {} pixels at x {}, y {}, those of "
+                               "--candidate {} x {} at x {}, y {}; render both at one size",
+                               b.width, b.height, b.left, b.top, a.width, a.height, a.left, a.top));
+}
+
+const char* rounding_of(const FirstPictures& first, const Layer& layer) {
+  Rounding coarsest = Rounding::none;
+  bool differ = false;
+  for (const auto& [file, channels] : {std::pair(&first.candidate, &layer.of_candidate),
+                                       std::pair(&first.reference, &layer.of_reference)}) {
+    for (const std::string& name : channels->names) {
+      const Rounding rounding = (*file)->channel(name).rounding;
+      differ = differ || rounding != first.candidate->channel(layer.of_candidate.names[0]).rounding;
+      coarsest = std::max(coarsest, rounding);
+    }
+  }
+  if (!differ) return "none";
+  constexpr const char* words[] = {"none", "half", "png16", "png8"};
+  return words[static_cast<std::size_t>(coarsest)];
+}
+
+/// What both sides' estimators are told.
+std::vector<Value::Member> members_of(const ImagesArguments& arguments, const FirstPictures& first,
+                                      const Layer& layer, const std::string& file,
+                                      const Location& where) {
+  std::vector<Value::Member> members{member("file", file, where),
+                                     member("channels", layer.channels, where)};
+  if (const std::string rounding = rounding_of(first, layer); rounding != "none") {
+    members.push_back(member("rounded", rounding, where));
+  }
+  if (const auto crop = common_window(arguments, first, layer)) {
+    members.push_back(
+        member("crop", fmt::format("{} {} {} {}", crop->left, crop->top, crop->width, crop->height),
+               where));
+  }
+  if (arguments.mask) {
+    members.push_back(member("mask", *arguments.mask, place("--mask", *arguments.mask)));
+  }
+  if (arguments.ignores_nonfinite) {
+    members.push_back(member("finite", arguments.candidate + "," + arguments.reference, where));
+  }
+  return members;
+}
+
+/// A stack of pictures.
+EstimatorEntry stack_entry(const std::string& name, std::vector<Value::Member> members,
+                           const Location& where, const ImagesArguments& arguments) {
   if (arguments.independent_pixels) members.push_back(member("pixels", "independent", where));
   return entry(name, where, std::move(members));
 }
 
 /// One reference file, with the error that its channels tell.
-EstimatorEntry reference_entry(const Location& where, const std::string& file,
+EstimatorEntry reference_entry(const std::string& name, std::vector<Value::Member> members,
+                               const Location& where, const PictureFile& picture,
+                               const recorded::PictureChannels& channels,
                                const ImagesArguments& arguments) {
-  std::vector<Value::Member> members{member("file", file, where),
-                                     member("channels", arguments.channels, where)};
-  const ExrFile picture(file);
-  const recorded::MomentChannels errors =
-      recorded::usual_moments(picture, recorded::choose_channels(picture, arguments.channels));
+  const recorded::MomentChannels errors = recorded::usual_moments(picture, channels);
   if (errors.any()) {
     if (!arguments.samples && !picture.samples_per_pixel()) {
       throw InputError(where,
@@ -81,20 +213,7 @@ EstimatorEntry reference_entry(const Location& where, const std::string& file,
     }
     members.push_back(member("exact", "true", where));
   }
-  return entry("reference", where, std::move(members));
-}
-
-EstimatorEntry reference_of(const ImagesArguments& arguments) {
-  const Location where = place("--reference", arguments.reference);
-  const std::vector<std::string> files = files_given("--reference", arguments.reference);
-  if (files.size() == 1) return reference_entry(where, files[0], arguments);
-  if (arguments.samples) {
-    throw InputError(place("--samples", *arguments.samples),
-                     "is of a reference that is one picture with its variance; several tell it "
-                     "themselves");
-  }
-  require_enough("--reference", arguments.reference, files.size());
-  return stack_entry("reference", where, arguments.reference, arguments);
+  return entry(name, where, std::move(members));
 }
 
 std::optional<Margin> margin(const std::optional<std::string>& text, const char* option) {
@@ -104,8 +223,8 @@ std::optional<Margin> margin(const std::optional<std::string>& text, const char*
   return margin;
 }
 
-std::string claim_of(const ImagesArguments& arguments) {
-  if (!arguments.within) return "mean(candidate) == mean(reference)";
+std::string claim_of(const ImagesArguments& arguments, const std::string& suffix) {
+  if (!arguments.within) return fmt::format("mean(candidate{0}) == mean(reference{0})", suffix);
   margin(arguments.within, "--within");
   for (const auto& [text, option] :
        {std::pair(&arguments.detect, "--detect"), std::pair(&arguments.allow, "--allow")}) {
@@ -114,14 +233,13 @@ std::string claim_of(const ImagesArguments& arguments) {
                      "is of a claim that the pictures are equal; --within says itself what must "
                      "not pass");
   }
-  return fmt::format("mean(candidate) within {} of mean(reference)", *arguments.within);
+  return fmt::format("mean(candidate{1}) within {0} of mean(reference{1})", *arguments.within,
+                     suffix);
 }
 
-}  // namespace
-
-Suite suite_of_images(const ImagesArguments& arguments) {
+TestEntry test_of(const ImagesArguments& arguments, const std::string& suffix) {
   const Location where{"claim", 1, 1};
-  TestEntry test{.claim = parse_claim(claim_of(arguments), where), .where = where};
+  TestEntry test{.claim = parse_claim(claim_of(arguments, suffix), where), .where = where};
   test.name = test.claim.text;
   test.id = "images/" + test.name;
   test.detect = margin(arguments.detect, "--detect");
@@ -130,16 +248,57 @@ Suite suite_of_images(const ImagesArguments& arguments) {
   if (test.allow) test.keys["allow"] = test.allow->where;
   if (arguments.within) test.claim.margin.where = place("--within", *arguments.within);
   check_test(test);
-  require_enough("--candidate", arguments.candidate,
-                 files_given("--candidate", arguments.candidate).size());
+  return test;
+}
+
+FirstPictures first_pictures(const ImagesArguments& arguments, const std::string& candidate,
+                             const std::string& reference) {
+  const auto open = [](const char* option, const std::string& pattern, const std::string& file) {
+    try {
+      return open_picture(file);
+    } catch (const InputError& error) {
+      throw InputError(place(option, pattern), "`" + file + "`: " + error.message());
+    }
+  };
+  return {open("--candidate", arguments.candidate, candidate),
+          open("--reference", arguments.reference, reference)};
+}
+
+}  // namespace
+
+Suite suite_of_images(const ImagesArguments& arguments) {
+  test_of(arguments, "");
+  const std::vector<std::string> candidates = files_given("--candidate", arguments.candidate);
+  require_enough("--candidate", arguments.candidate, candidates.size());
+  const std::vector<std::string> references = files_given("--reference", arguments.reference);
+  const bool one = references.size() == 1;
+  if (!one && arguments.samples) {
+    throw InputError(place("--samples", *arguments.samples),
+                     "is of a reference that is one picture with its variance; several tell it "
+                     "themselves");
+  }
+  if (!one) require_enough("--reference", arguments.reference, references.size());
+  const FirstPictures first = first_pictures(arguments, candidates[0], references[0]);
   Suite suite;
   suite.name = "images";
   suite.stem = "images";
   suite.folder = ".";
-  suite.estimators = {stack_entry("candidate", place("--candidate", arguments.candidate),
-                                  arguments.candidate, arguments),
-                      reference_of(arguments)};
-  suite.tests.push_back(std::move(test));
+  const Location of_candidate = place("--candidate", arguments.candidate);
+  const Location of_reference = place("--reference", arguments.reference);
+  for (const Layer& layer : layers_of(arguments, first)) {
+    suite.estimators.push_back(
+        stack_entry("candidate" + layer.suffix,
+                    members_of(arguments, first, layer, arguments.candidate, of_candidate),
+                    of_candidate, arguments));
+    std::vector<Value::Member> members = members_of(
+        arguments, first, layer, one ? references[0] : arguments.reference, of_reference);
+    const std::string name = "reference" + layer.suffix;
+    suite.estimators.push_back(
+        one ? reference_entry(name, std::move(members), of_reference, *first.reference,
+                              layer.of_reference, arguments)
+            : stack_entry(name, std::move(members), of_reference, arguments));
+    suite.tests.push_back(test_of(arguments, layer.suffix));
+  }
   return suite;
 }
 

@@ -30,7 +30,7 @@ class Pictures : public ::testing::Test {
   recorded::PictureChannels choose(const std::vector<std::string>& channels,
                                    const std::string& patterns = "usual") const {
     draws::write_scan_lines(file("a.exr"), {.channels = channels});
-    return recorded::choose_channels(ExrFile(file("a.exr")), patterns);
+    return recorded::choose_channels(*open_picture(file("a.exr")), patterns);
   }
   // One texel.
   void write_texel(const std::string& name, const std::vector<std::string>& channels,
@@ -87,7 +87,8 @@ TEST_F(Pictures, ChooseByPatternsInTheOrderOfColours) {
   EXPECT_THAT(one.names, ElementsAre("L.DiffInd.R", "L.DiffInd.G", "L.DiffInd.B"));
   EXPECT_THAT(one.components, ElementsAre("R", "G", "B"));
   const auto two = choose(all, "L.Depth.Z, *.R");
-  EXPECT_THAT(two.components, ElementsAre("L.Depth.Z", "L.DiffInd.R"));
+  EXPECT_THAT(two.components, ElementsAre("L.Depth.Z", "L.Depth.Z_infinite", "L.DiffInd.R"));
+  EXPECT_THAT(choose({"N.X", "N.Y", "N.Z"}, "N.*").components, ElementsAre("X", "Y", "Z"));
   EXPECT_THAT(choose(all, "*Sample Count*").components, ElementsAre("X"));
 }
 

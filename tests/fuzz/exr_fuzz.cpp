@@ -1,11 +1,13 @@
-// OpenEXR pictures of other programs (estimators/exr_file.h, estimators/pictures.h). Every file is
+// Pictures of other programs (estimators/picture_file.h, estimators/pictures.h). Every file is
 // read, or refused with its name.
 
 // sources: estimators/render/exr/exr_file.cpp estimators/render/exr/exr_header.cpp
+// sources: estimators/render/picture_file.cpp estimators/render/pfm_file.cpp
+// sources: estimators/render/png_file.cpp
 // sources: estimators/pictures.cpp estimators/core/value.cpp estimators/estimator.cpp
 // sources: estimators/image.cpp estimators/core/text_pattern.cpp
 // libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
-// libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath
+// libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath -lpng
 
 #include <cstddef>
 #include <cstdint>
@@ -22,14 +24,14 @@ namespace {
 using namespace assay;
 
 void read_all(const std::string& file) {
-  const ExrFile picture(file);
-  for (const ExrChannel& channel : picture.channels()) {
+  const auto picture = open_picture(file);
+  for (const FileChannel& channel : picture->channels()) {
     const std::vector<std::string> names{channel.name};
-    const ExrWindow window = picture.window(names);
+    const PictureWindow window = picture->window(names);
     // The format lets a file of 4 KiB hold more than a case may take.
     if (window.width * window.height > 1 << 16) continue;
     std::vector<float> texels(window.width * window.height);
-    picture.read(names, texels);
+    picture->read(names, texels);
   }
 }
 
@@ -48,7 +50,7 @@ void guarded(const std::string& file, const Work& work) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string file = fuzz::written(data, size, ".exr");
   guarded(file, [&] { read_all(file); });
-  guarded(file, [&] { recorded::open_stack({file}, "usual"); });
-  guarded(file, [&] { recorded::open_stack({file}, "*.R,?"); });
+  guarded(file, [&] { recorded::open_stack({file}, "usual", {}); });
+  guarded(file, [&] { recorded::open_stack({file}, "*.R,?", {}); });
   return 0;
 }

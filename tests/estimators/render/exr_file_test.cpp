@@ -1,5 +1,3 @@
-#include "estimators/exr_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <span>
 
 #include "estimators/core/value.h"
+#include "estimators/picture_file.h"
 #include "tests/estimators/exr_kinds.h"
 
 namespace assay {
@@ -32,20 +31,23 @@ class ExrFiles : public ::testing::Test {
 
   std::vector<std::string> names() const {
     std::vector<std::string> names;
-    const ExrFile file(file_);
-    for (const ExrChannel& channel : file.channels()) names.push_back(channel.name);
+    const auto picture = open_picture(file_);
+    const PictureFile& file = *picture;
+    for (const FileChannel& channel : file.channels()) names.push_back(channel.name);
     return names;
   }
   std::vector<float> read(const std::vector<std::string>& channels) const {
-    const ExrFile file(file_);
-    const ExrWindow window = file.window(channels);
+    const auto picture = open_picture(file_);
+    const PictureFile& file = *picture;
+    const PictureWindow window = file.window(channels);
     std::vector<float> texels(window.width * window.height * channels.size());
     file.read(channels, texels);
     expect_same_in_portions(file, channels, texels);
     return texels;
   }
   // One row, and then the rest: neither begins or ends where a chunk does.
-  static void expect_same_in_portions(const ExrFile& file, const std::vector<std::string>& channels,
+  static void expect_same_in_portions(const PictureFile& file,
+                                      const std::vector<std::string>& channels,
                                       const std::vector<float>& expected) {
     const std::size_t row = file.window(channels).width * channels.size();
     std::vector<float> texels(expected.size());
@@ -170,23 +172,23 @@ TEST_F(ExrFiles, ReadsTheDataWindowWhereverItLies) {
   write_scan_lines(file_, {.channels = {"R"}, .left = -7});
   EXPECT_EQ(read({"R"})[6], expected_texel(2, 1, 0));
   const std::vector<std::string> channels{"R"};
-  EXPECT_EQ(ExrFile(file_).window(channels),
-            (ExrWindow{.left = -7, .top = 0, .width = 4, .height = 3}));
+  EXPECT_EQ(open_picture(file_)->window(channels),
+            (PictureWindow{.left = -7, .top = 0, .width = 4, .height = 3}));
 }
 
 TEST_F(ExrFiles, KnowsTheSamplesThatPbrtWrites) {
   write_scan_lines(file_, {.channels = {"R"}});
-  EXPECT_EQ(ExrFile(file_).samples_per_pixel(), std::nullopt);
+  EXPECT_EQ(open_picture(file_)->samples_per_pixel(), std::nullopt);
   write_scan_lines(file_, {.channels = {"R"}, .samples = 64});
-  EXPECT_EQ(ExrFile(file_).samples_per_pixel(), 64u);
+  EXPECT_EQ(open_picture(file_)->samples_per_pixel(), 64u);
 }
 
 TEST_F(ExrFiles, RefusesWhatIsNoPicture) {
   expect_refused("it does not open: No such file");
   write_bytes(file_, "1 2 3\n");
-  expect_refused("it is no OpenEXR picture");
+  expect_refused("it is no OpenEXR, PFM or PNG picture");
   write_bytes(file_, "");
-  expect_refused("it is no OpenEXR picture");
+  expect_refused("it is no OpenEXR, PFM or PNG picture");
   std::filesystem::remove(file_);
   std::filesystem::create_directory(file_);
   expect_refused("it is a folder");

@@ -5,6 +5,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
 
 #include "harness/command/cli.h"
 #include "harness/command/run.h"
@@ -121,6 +128,243 @@ TEST(SuiteImages, TheCommandLineSaysHowToRunItAgain) {
                 parse_command_line({"images", "--candidate", "a"});
               }),
               HasSubstr("`assay images` needs --reference"));
+}
+
+// Pictures of 6 x 5 pixels as renderers write them, each through the command line. Equal ones are
+// of one law, so that each of these has a false alarm of 0.01, whatever the seed.
+
+constexpr int width = 6;
+constexpr int height = 5;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+using Texel = std::function<float(int x, int y, const std::string& channel, double noise)>;
+
+struct Kind {
+  std::vector<std::string> channels = {"R", "G", "B"};
+  Imf::PixelType type = Imf::FLOAT;
+  int left = 0;
+  int top = 0;
+  int right = width;
+  int bottom = height;
+  const char* ending = "exr";
+  std::uint32_t seed = 0;  ///< of the noise; by default the name's
+};
+
+draws::Picture picture_of(const Kind& kind, const Texel& texel, tests::Philox& random) {
+  draws::Picture picture{.width = kind.right - kind.left,
+                         .height = kind.bottom - kind.top,
+                         .channels = kind.channels,
+                         .values = {},
+                         .type = kind.type,
+                         .left = kind.left,
+                         .top = kind.top};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (const std::string& channel : kind.channels) {
+        const float value = texel(x, y, channel, random.normal());
+        const bool inside = x >= kind.left && x < kind.right && y >= kind.top && y < kind.bottom;
+        if (inside) picture.values.push_back(value);
+      }
+    }
+  }
+  return picture;
+}
+
+void write_pfm(const std::string& file, const draws::Picture& picture) {
+  std::ofstream out(file, std::ios::binary);
+  out << "PF\n" << picture.width << ' ' << picture.height << "\n-1.0\n";
+  const auto row = static_cast<std::size_t>(3 * picture.width);
+  for (int y = picture.height - 1; y >= 0; --y) {
+    out.write(
+        reinterpret_cast<const char*>(picture.values.data() + static_cast<std::size_t>(y) * row),
+        static_cast<std::streamsize>(4 * row));
+  }
+}
+
+void write_png(const std::string& file, const draws::Picture& picture) {
+  std::vector<std::uint8_t> bytes;
+  for (const float value : picture.values) {
+    const double clipped = std::clamp(double{value}, 0., 1.);
+    const double code =
+        clipped <= 0.0031308 ? 12.92 * clipped : 1.055 * std::pow(clipped, 1 / 2.4) - 0.055;
+    bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * code)));
+  }
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(picture.width);
+  image.height = static_cast<png_uint_32>(picture.height);
+  image.format = PNG_FORMAT_RGB;
+  ASSERT_NE(png_image_write_to_file(&image, file.c_str(), 0, bytes.data(), 0, nullptr), 0);
+}
+
+void write_stack(const Workplace& place, const std::string& name, const Kind& kind,
+                 const Texel& texel, int count = 24) {
+  tests::Philox random(kind.seed != 0 ? kind.seed : static_cast<std::uint32_t>(name[0]));
+  for (int i = 0; i < count; ++i) {
+    const draws::Picture picture = picture_of(kind, texel, random);
+    const std::string file = place.file(fmt::format("{}{:02}.{}", name, i, kind.ending));
+    const std::string ending = kind.ending;
+    if (ending == "pfm") {
+      write_pfm(file, picture);
+    } else if (ending == "png") {
+      write_png(file, picture);
+    } else {
+      draws::write_exr(file, picture);
+    }
+  }
+}
+
+std::vector<reports::Test> answers(const Workplace& place,
+                                   const std::vector<std::string>& more = {}) {
+  std::vector<std::string> line{"images",         "--candidate", place.file("a*"), "--reference",
+                                place.file("b*"), "--pixels",    "independent"};
+  line.insert(line.end(), more.begin(), more.end());
+  const Command command = parse_command_line(line);
+  Silence silence;
+  const Suite suite = suite_of_images(std::get<ImagesCommand>(command).arguments);
+  return run({suite}, {.threads = 1}, silence).suites[0].tests;
+}
+
+reports::Test answer(const Workplace& place, const std::vector<std::string>& more = {}) {
+  const std::vector<reports::Test> tests = answers(place, more);
+  EXPECT_EQ(tests.size(), 1u);
+  return tests.at(0);
+}
+
+float noisy(int, int, const std::string&, double noise) {
+  return static_cast<float>(0.3 + 0.05 * noise);
+}
+
+// A background without noise, and renders of the same seeds: rounding alone tells them apart.
+TEST(PictureFiles, HalvesAgainstFloatsOfTheSameLawPass) {
+  const Workplace place;
+  const Texel half_constant = [](int x, int, const std::string&, double noise) {
+    return x < 3 ? 0.3F : static_cast<float>(0.3 + 0.05 * noise);
+  };
+  write_stack(place, "a", {.type = Imf::HALF}, half_constant);
+  write_stack(place, "b", {}, half_constant);
+  EXPECT_EQ(answer(place).verdict, Verdict::pass);
+  write_stack(place, "b", {.seed = 'a'}, half_constant);
+  EXPECT_EQ(answer(place).verdict, Verdict::pass);
+  write_stack(place, "b", {}, [&](int x, int y, const std::string& channel, double noise) {
+    return 1.1F * half_constant(x, y, channel, noise);
+  });
+  EXPECT_EQ(answer(place).verdict, Verdict::fail);
+}
+
+TEST(PictureFiles, AnAlphaThatDiffersIsFound) {
+  const Workplace place;
+  const Kind rgba{.channels = {"A", "B", "G", "R"}};
+  const auto with_alpha = [](double alpha, double spread) {
+    return [=](int x, int y, const std::string& channel, double noise) {
+      return channel == "A" ? static_cast<float>(alpha + spread * noise)
+                            : noisy(x, y, channel, noise);
+    };
+  };
+  write_stack(place, "a", rgba, with_alpha(0.5, 0.1));
+  write_stack(place, "b", rgba, with_alpha(0.5, 0.1));
+  EXPECT_EQ(answer(place).verdict, Verdict::pass);
+  write_stack(place, "b", rgba, with_alpha(0.7, 0.1));
+  const reports::Test differs = answer(place);
+  EXPECT_EQ(differs.verdict, Verdict::fail);
+  EXPECT_EQ(differs.image->winner.component, "A");
+  EXPECT_EQ(answer(place, {"--channels", "R,G,B"}).verdict, Verdict::pass);
+  // An alpha of 1 tells nothing and is left aside.
+  write_stack(place, "a", rgba, with_alpha(1, 0));
+  write_stack(place, "b", rgba, with_alpha(1, 0));
+  const reports::Test opaque = answer(place);
+  EXPECT_EQ(opaque.verdict, Verdict::pass);
+  EXPECT_EQ(opaque.image->components, (std::vector<std::string>{"R", "G", "B"}));
+}
+
+TEST(PictureFiles, InfiniteDepthOnBothSidesIsEqualAndOnOneAFinding) {
+  const Workplace place;
+  const Kind depth{.channels = {"Z"}};
+  const auto background_from = [](int column) {
+    return [=](int x, int, const std::string&, double noise) {
+      return x >= column ? infinity : static_cast<float>(5 + 0.1 * noise);
+    };
+  };
+  write_stack(place, "a", depth, background_from(4));
+  write_stack(place, "b", depth, background_from(4));
+  EXPECT_EQ(answer(place).verdict, Verdict::pass);
+  write_stack(place, "b", depth, background_from(5));
+  const reports::Test differs = answer(place);
+  EXPECT_EQ(differs.verdict, Verdict::fail) << differs.message;
+  EXPECT_EQ(differs.image->winner.x, 4u) << differs.message;
+}
+
+TEST(PictureFiles, CropsAreComparedWhereBothHavePixelsInColumnsOfTheWhole) {
+  const Workplace place;
+  const auto spot_of = [](float more) {
+    return [=](int x, int y, const std::string& channel, double noise) {
+      return noisy(x, y, channel, noise) + (x == 4 && y == 3 ? more : 0);
+    };
+  };
+  write_stack(place, "a", {.left = 2, .top = 1}, spot_of(1));
+  write_stack(place, "b", {}, spot_of(0));
+  const reports::Test found = answer(place);
+  EXPECT_EQ(found.verdict, Verdict::fail);
+  EXPECT_THAT(found.message, HasSubstr("pixel x 4, y 3"));
+  EXPECT_EQ(found.image->width, 4u);
+  write_stack(place, "b", {}, spot_of(1));
+  EXPECT_EQ(answer(place).verdict, Verdict::pass);
+  write_stack(place, "b", {.right = 5}, spot_of(1));
+  EXPECT_THAT(refusal([&] { answer(place); }), HasSubstr("render both at one size"));
+}
+
+TEST(PictureFiles, PfmAndPngAreHeldAgainstOpenExr) {
+  for (const char* const ending : {"pfm", "png"}) {
+    const Workplace place;
+    const auto ramp = [](float factor) {
+      return [=](int x, int y, const std::string& channel, double noise) {
+        return factor * (noisy(x, y, channel, noise) + 0.02F * static_cast<float>(x + 2 * y));
+      };
+    };
+    write_stack(place, "a", {.ending = ending}, ramp(1));
+    write_stack(place, "b", {}, ramp(1));
+    EXPECT_EQ(answer(place).verdict, Verdict::pass) << ending;
+    write_stack(place, "b", {}, ramp(1.1F));
+    const reports::Test differs = answer(place);
+    EXPECT_EQ(differs.verdict, Verdict::fail) << ending;
+    EXPECT_NEAR(differs.samples[0].mean.value(), 0.3 + 0.02 * (2.5 + 4), 0.01) << ending;
+  }
+}
+
+TEST(PictureFiles, PixelsThatAreNoNumberOrMaskedAreLeftOut) {
+  const Workplace place;
+  const auto broken = [](float corner) {
+    return [=](int x, int y, const std::string& channel, double noise) {
+      const float value = noisy(x, y, channel, noise);
+      return x == 1 && y == 2 ? corner : value;
+    };
+  };
+  write_stack(place, "a", {}, broken(std::nanf("")));
+  write_stack(place, "b", {}, noisy);
+  EXPECT_EQ(answer(place).verdict, Verdict::error);
+  EXPECT_EQ(answer(place, {"--ignore", "nonfinite"}).verdict, Verdict::pass);
+  write_stack(place, "a", {}, broken(9));
+  EXPECT_EQ(answer(place).verdict, Verdict::fail);
+  write_stack(
+      place, "mask", {},
+      [](int x, int y, const std::string&, double) { return x == 1 && y == 2 ? 0.F : 1.F; }, 1);
+  EXPECT_EQ(answer(place, {"--mask", place.file("mask00.exr")}).verdict, Verdict::pass);
+}
+
+TEST(PictureFiles, EachLayerHasAClaimOfItsOwn) {
+  const Workplace place;
+  const Kind layered{.channels = {"B", "G", "R", "direct.B", "direct.G", "direct.R"}};
+  write_stack(place, "a", layered, noisy);
+  write_stack(place, "b", layered, [](int x, int y, const std::string& channel, double noise) {
+    return noisy(x, y, channel, noise) + (channel == "direct.G" ? 0.1F : 0);
+  });
+  const std::vector<reports::Test> tests = answers(place, {"--channels", "*"});
+  ASSERT_EQ(tests.size(), 2u);
+  EXPECT_EQ(tests[0].claim, "mean(candidate_picture) == mean(reference_picture)");
+  EXPECT_EQ(tests[0].verdict, Verdict::pass);
+  EXPECT_EQ(tests[1].claim, "mean(candidate_direct) == mean(reference_direct)");
+  EXPECT_EQ(tests[1].verdict, Verdict::fail);
+  EXPECT_EQ(answer(place).verdict, Verdict::pass);  // R, G and B alone
 }
 
 }  // namespace

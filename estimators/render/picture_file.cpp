@@ -1,0 +1,157 @@
+#include "estimators/picture_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+
+#include "estimators/core/value.h"
+#include "render/picture_kinds.h"
+
+namespace assay {
+
+namespace {
+
+using namespace std::string_view_literals;
+
+struct Kind {
+  std::string_view magic;
+  std::string_view ending;  ///< of the file's name, where a text may begin as the picture does
+  std::unique_ptr<const PictureFile> (*open)(const std::string& file);
+};
+
+constexpr Kind kinds[] = {{"\x76\x2f\x31\x01"sv, "", render::open_exr},
+                          {"PF\n"sv, ".pfm", render::open_pfm},
+                          {"Pf\n"sv, ".pfm", render::open_pfm},
+                          {"\x89PNG\r\n\x1a\n"sv, "", render::open_png}};
+
+const Kind* kind_of(const std::string& file) {
+  std::array<char, 8> begin{};
+  std::ifstream(file, std::ios::binary).read(begin.data(), begin.size());
+  const std::string_view bytes(begin.data(), begin.size());
+  const auto* const found = std::ranges::find_if(kinds, [&](const Kind& kind) {
+    return bytes.starts_with(kind.magic) && file.ends_with(kind.ending);
+  });
+  return found == std::end(kinds) ? nullptr : found;
+}
+
+std::string listed(const std::vector<FileChannel>& channels) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, channels.size()); ++i) {
+    text += (i == 0 ? "`" : ", `") + channels[i].name + "`";
+  }
+  if (channels.size() > most) text += ", … (" + std::to_string(channels.size()) + " in all)";
+  return text.empty() ? "none" : text;
+}
+
+/// To the nearest of 11 significant bits, or multiple of 2^-24; ties go to even.
+float to_half(float value) {
+  constexpr float largest = 65520;
+  if (!(std::abs(value) < largest)) return value;
+  if (std::abs(value) < 0x1p-14F) return std::copysign((std::abs(value) + 0.5F) - 0.5F, value);
+  auto bits = std::bit_cast<std::uint32_t>(value);
+  bits += 0xfffU + ((bits >> 13U) & 1U);
+  return std::bit_cast<float>(bits & ~0x1fffU);
+}
+
+// The inverse of from_srgb.
+double to_srgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+float to_png(float value, double levels, bool alpha) {
+  if (std::isnan(value)) return value;
+  const double clipped = std::clamp(double{value}, 0., 1.);
+  if (alpha) return static_cast<float>(std::round(clipped * levels) / levels);
+  return static_cast<float>(render::from_srgb(std::round(to_srgb(clipped) * levels) / levels));
+}
+
+}  // namespace
+
+namespace render {
+
+double from_srgb(double code) {
+  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
+}
+
+void refuse_picture(const std::string& file, const std::string& why) {
+  throw InputError({.file = file}, why);
+}
+
+void require_size(const std::string& file, std::size_t width, std::size_t height) {
+  if (width == 0 || height == 0) refuse_picture(file, "the picture has no pixels");
+  if (width <= most_pixels / height) return;
+  refuse_picture(file, "the picture has " + std::to_string(width) + " x " + std::to_string(height) +
+                           " pixels, more than 2^27; crop it or scale it down");
+}
+
+}  // namespace render
+
+float rounded(float value, Rounding how, bool alpha) {
+  switch (how) {
+    case Rounding::half:
+      return to_half(value);
+    case Rounding::png16:
+      return to_png(value, 65535, alpha);
+    case Rounding::png8:
+      return to_png(value, 255, alpha);
+    case Rounding::none:
+      break;
+  }
+  return value;
+}
+
+const FileChannel& PictureFile::channel(const std::string& name) const {
+  const auto found = std::ranges::find(channels_, name, &FileChannel::name);
+  if (found != channels_.end()) return *found;
+  render::refuse_picture(name_, "there is no channel `" + name + "`; it has " + listed(channels_));
+}
+
+PictureWindow PictureFile::window(std::span<const std::string> names) const {
+  const FileChannel& first = channel(names.front());
+  for (const std::string& name : names) {
+    if (channel(name).window == first.window) continue;
+    render::refuse_picture(name_, "the channels `" + first.name + "` and `" + name +
+                                      "` are pictures of unequal sizes; choose channels of one "
+                                      "size");
+  }
+  return first.window;
+}
+
+void PictureFile::read(std::span<const std::string> names, std::span<float> texels,
+                       std::size_t first) const {
+  const PictureWindow whole = window(names);
+  const std::size_t row = whole.width * names.size();
+  const std::size_t last = first + texels.size() / row;
+  if (texels.size() % row != 0 || last > whole.height) {
+    throw std::invalid_argument("PictureFile::read: there is room for " +
+                                std::to_string(texels.size()) + " texels");
+  }
+  read_rows(names, texels, first, last);
+}
+
+std::unique_ptr<const PictureFile> open_picture(const std::string& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    render::refuse_picture(file, "it is a folder, not a picture");
+  }
+  if (!std::ifstream(file)) {
+    render::refuse_picture(file, std::string("it does not open: ") + std::strerror(errno));
+  }
+  const Kind* const kind = kind_of(file);
+  if (kind == nullptr) {
+    render::refuse_picture(file, "it is no OpenEXR, PFM or PNG picture; convert it to OpenEXR");
+  }
+  return kind->open(file);
+}
+
+bool is_picture(const std::string& file) { return kind_of(file) != nullptr; }
+
+}  // namespace assay
