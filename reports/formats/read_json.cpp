@@ -13,6 +13,7 @@
 
 #include "reports/formats/base64.h"
 #include "reports/record/fields.h"
+#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {
@@ -106,7 +107,7 @@ void leaf(const Json& node, const std::string& place, Number& value) {
 
 void leaf(const Json& node, const std::string& place, std::string& value) {
   if (!node.is_string()) wrong_type(place, "text", node);
-  value = node.get<std::string>();
+  value = clean(node.get<std::string>());  // as it would be written
 }
 
 void leaf(const Json& node, const std::string& place, Texels& value) {

@@ -3,8 +3,8 @@
 // report can be made from it.
 
 // options: -max_len=32768
-// sources: reports/*.cpp reports/*/*.cpp
-// libraries: -lfmt -lpng
+// sources: reports/*.cpp reports/*/*.cpp build/reports/page.cpp
+// libraries: -lfmt -lz
 
 #include <cstddef>
 #include <cstdint>

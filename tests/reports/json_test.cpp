@@ -256,6 +256,14 @@ TEST(ReadJson, ReadsTheFirstVersion) {
   EXPECT_TRUE(read_json(tree.dump(), "run.json") == record);
 }
 
+TEST(ReadJson, TextIsCleanedAsItWouldBeWritten) {
+  Json tree = Json::parse(json(example_record()));
+  tree["note"] = "a\x1b[31mb\u202Ec";
+  const Record record = read_json(tree.dump(), "run.json");
+  EXPECT_EQ(record.note, clean("a\x1b[31mb\u202Ec"));
+  EXPECT_EQ(json(read_json(json(record), "run.json")), json(record));
+}
+
 TEST(ReadJson, TheSecondVersionHasAllItsKeys) {
   EXPECT_EQ(
       refusal_after([](Json& tree) { tree["suites"][0]["tests"][5]["looks"][0].erase("effect"); }),
