@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/base/parallel.h"
+#include "harness/plan/repeated_images.h"
 #include "harness/plan/secondaries.h"
 #include "harness/sampling/image_views.h"
 #include "harness/theta/planned_channel.h"
@@ -88,6 +89,7 @@ bool plans_replicates(const Question& question) {
 std::uint64_t choose_for_image(const Question& question, const Pilots& pilots, std::uint64_t most,
                                Plan& plan) {
   if (const Pilot* const pilot = pilot_of(question.subjects[0], pilots)) plan.look = pilot->look;
+  note_repeated_images(question, pilots, plan);
   const bool in_looks = plans_replicates(question) && !question.test->secondaries;
   if (!in_looks || !all_pictured(question, pilots)) return stats::least_replicates;
   return std::min<std::uint64_t>(stats::least_replicates, most);

@@ -95,10 +95,12 @@ std::string dependent(const Question& question, const Rows& rows, bool at_a_lag)
         rows.label, worst.lag, worst.correlation);
   }
   if (!(time > 1)) {
+    const stats::LaggedCorrelation any =
+        stats::worst_of(stats::lagged_correlations(rows.values, 1));
     return fmt::format(
         "the {} are not independent: those {} apart have a rank correlation of {:.2g}; give the "
         "mean of rows that were drawn together as one row",
-        rows.label, worst.lag, worst.correlation);
+        rows.label, any.lag, any.correlation);
   }
   const double worth = static_cast<double>(rows.values.size()) / time;
   return fmt::format(

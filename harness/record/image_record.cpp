@@ -216,10 +216,15 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
   const ImageOutcome& found = *outcome.channels[0].image;
   test.image = image_of(found, *outcome.question.subjects[0].image);
   if (const std::optional<PlaceEffect> effect = effect_at_place(drawn)) {
-    test.image->effect = number(effect->estimate);
-    test.image->effect_low = number(effect->interval.low);
-    test.image->effect_high = number(effect->interval.high);
-    test.image->other = number(effect->other);
+    const bool relative = effect->other != 0;
+    const double unit = relative ? std::abs(effect->other) : 1;
+    test.image->winner.effect =
+        reports::Effect{.quantity = relative ? "relative difference" : "difference",
+                        .estimate = number(effect->estimate / unit),
+                        .low = number(effect->interval.low / unit),
+                        .high = number(effect->interval.high / unit),
+                        .confidence = confidence_at_place,
+                        .relative = relative};
   }
   add_maps(drawn, found, test);
 }

@@ -162,7 +162,11 @@ std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& r
       look.log10_p_pass = log10_of(forbidden);
     }
     if (!outcome.channels.empty()) {
-      look.effect = outcome.history[outcome.channels[0].index].effect[k];
+      const ChannelOutcome& worst = outcome.channels[0];
+      look.effect = outcome.history[worst.index].effect[k];
+      if (look.effect) look.effect->quantity = worst.effect.quantity;
+      // Earlier looks have no interval: its confidence depends on the verdict.
+      if (look.effect && k + 1 == taken) look.effect = worst.effect;
     }
     looks.push_back(look);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/base/numbers.h"
 #include "harness/plan/critical.h"
 #include "harness/plan/drawn_order.h"
 #include "harness/plan/gate_text.h"
@@ -124,7 +125,8 @@ void remember(TestOutcome& outcome, bool counts) {
     if (counts) {
       history.log_p_claimed.back() = channel.decision.log_p_claimed;
       history.log_p_forbidden.back() = channel.decision.log_p_forbidden;
-      history.effect.back() = channel.effect;
+      history.effect.back() = reports::Effect{.estimate = number(channel.evidence.estimate),
+                                              .relative = channel.evidence.relative};
     }
     channel.decision = {.log_p_claimed = stats::log_p_over_looks(
                             outcome.plan.looks, history.log_p_claimed, channel.regions.two_sided()),

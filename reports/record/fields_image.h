@@ -32,10 +32,6 @@ void fields(Archive& a, T& image) {
   a("constant", image.constant);
   a("unseen", image.unseen);
   a("winner", image.winner);
-  a("effect", image.effect);
-  a("effect_low", image.effect_low);
-  a("effect_high", image.effect_high);
-  a("other", image.other);
   a("groups", image.groups);
 }
 

@@ -21,7 +21,7 @@ struct ImageFinding {
   Number z;  ///< positive where the first image is brighter
   Number log10_p;
   Number log10_p_adjusted;       ///< in the family of everything that was looked at in the image
-  std::optional<Effect> effect;  ///< relative difference of the sums over the rectangle
+  std::optional<Effect> effect;  ///< difference of the means over the rectangle, of the winner
   bool operator==(const ImageFinding&) const = default;
 };
 
@@ -34,9 +34,6 @@ struct Image {
   std::uint64_t constant = 0;        ///< Elements that do not vary and equal the reference.
   std::uint64_t unseen = 0;          ///< Elements that do not vary and differ from it.
   ImageFinding winner;               ///< The least adjusted p.
-  Number effect;                     ///< Mean difference over the winner's rectangle.
-  Number effect_low, effect_high;    ///< Its 99 % interval, as of a single rectangle.
-  Number other;                      ///< The mean that it is held against.
   std::vector<ImageFinding> groups;  ///< The best of each group of sums.
   bool operator==(const Image&) const = default;
 };

@@ -86,7 +86,6 @@ std::string found_in_image(const Image& image) {
                        size_text(*winner.effect->estimate, *winner.effect),
                        *winner.effect->estimate > 0 ? "bright" : "dark", bracket(*winner.effect));
   }
-  if (winner.statistic == "energy") return "the differences of all pixels together are too large";
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
   return fmt::format("{} is too {}", pixels(image, winner),
                      winner.z.value_or(0) > 0 ? "bright" : "dark");

@@ -216,7 +216,7 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
       const double excess = tail[s].excess - tail[1 - s].excess;
       const double excess_error =
           std::sqrt(tail[s].excess_variance + tail[1 - s].excess_variance);
-      margin += safety * cell.elements * std::max(0.0, excess - errors * excess_error);
+      margin += safety * cell.elements * std::max(0.0, excess - excess_error);
       more += std::max(0.0, lacks[s] - lacks[1 - s] - errors * cell.elements * std::sqrt(error));
     }
     if (neighbours < 0) neighbours = more;

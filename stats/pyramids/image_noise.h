@@ -111,7 +111,7 @@ class NoisePyramid {
   // Let e be the mean
   // of (x - c)+ over the noise of a block around it, where c is the cell's own largest deviation.
   // It is what the cell lacks if it missed all larger values. Where one side lacks more than the
-  // other, 3 (e_a - e_b - 2 errors) is taken off the effect: for every block from four times the
+  // other, 3 (e_a - e_b - 1 error) is taken off the effect: for every block from four times the
   // cell's side up to the whole image. Values below c have the block's variance at least, if that
   // of one side falls short of it by more than that of the other and 2 errors. Two sides of one
   // law lack the same, and nothing is taken off.

@@ -129,8 +129,8 @@ double RowPyramid<Real>::hidden_squares() const {
   for (std::size_t i = 0; i < found_.weights.size(); ++i) {
     const double weight = found_.weights[i];
     if (!(weight > 0)) continue;
-    const std::size_t pixel = i / extent_.channels;
-    const double bias = found_.noise.hidden(pixel % extent_.width, pixel / extent_.width,
+    const std::size_t place = i / extent_.channels;
+    const double bias = found_.noise.hidden(place % extent_.width, place / extent_.width,
                                             i % extent_.channels) /
                         weight;
     sum += bias * bias;

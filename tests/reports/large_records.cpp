@@ -173,10 +173,12 @@ Calibration small_calibration() {
       CalibrationCell cell{.method = method,
                            .question = "mean == <number>",
                            .law = "exponential(1)",
-                           .alpha = alpha,
-                           .mistaken = {.count = errs ? 60U : 8U, .runs = 1000}};
-      cell.mistaken.low = errs ? 0.04 : 0.002;
-      cell.mistaken.high = errs ? 0.09 : 0.03;
+                           .alpha = alpha};
+      cell.holds.pass.runs = 1000;
+      cell.holds.fail = {.count = errs ? 60U : 8U,
+                         .runs = 1000,
+                         .low = errs ? 0.04 : 0.002,
+                         .high = errs ? 0.09 : 0.03};
       measured.cells.push_back(cell);
     }
   }

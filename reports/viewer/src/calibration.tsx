@@ -8,10 +8,26 @@ interface Rate {
   low: number;
   high: number;
 }
+interface Verdicts {
+  pass: Rate;
+  fail: Rate;
+}
+interface Cell {
+  method: string;
+  question: string;
+  law: string;
+  alpha: number;
+  proof: boolean;
+  holds: Verdicts;
+  off: Verdicts;
+}
+/** A true claim that fails; of a proof, a claim off by `detect` that passes. */
+const mistakes = (cell: Cell): Rate => (cell.proof ? cell.off.pass : cell.holds.fail);
+
 export interface Calibration {
   calibration: {
     tolerance: number;
-    cells: { method: string; question: string; law: string; alpha: number; mistaken: Rate; alone: Rate }[];
+    cells: Cell[];
   };
   title: string;
   sound: boolean;
@@ -20,13 +36,13 @@ export interface Calibration {
 
 function Rates({ data, alpha }: { data: Calibration["calibration"]; alpha: number }) {
   const points = data.cells
-    .filter((cell) => cell.alpha === alpha && cell.mistaken.runs > 0)
-    .map(({ method, question, law, mistaken }) => ({
-      place: `${method}, ${question}: ${law}`,
-      value: mistaken.count / mistaken.runs / alpha,
-      low: mistaken.low / alpha,
-      high: Math.min(mistaken.high / alpha, 4),
-      bad: mistaken.low > data.tolerance * alpha,
+    .filter((cell) => cell.alpha === alpha && mistakes(cell).runs > 0)
+    .map((cell) => ({
+      place: `${cell.method}, ${cell.question}: ${cell.law}`,
+      value: mistakes(cell).count / mistakes(cell).runs / alpha,
+      low: mistakes(cell).low / alpha,
+      high: Math.min(mistakes(cell).high / alpha, 4),
+      bad: mistakes(cell).low > data.tolerance * alpha,
     }));
   if (points.length === 0) return null;
   const places = points.map((point) => point.place);

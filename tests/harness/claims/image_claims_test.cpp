@@ -64,15 +64,17 @@ struct Defect {
   const char* statistic;
 };
 
-// Each defect is found and located with probability above 0.99.
+// Each defect is found and located with probability above 0.99. A last column is seen by windows and
+// by columns in turn.
 TEST(ImageClaims, MutantsAreCaughtByTheSumThatFitsThem) {
   for (const Defect& defect :
-       {Defect{"tile", "window"}, Defect{"hot_pixels", "window"}, Defect{"last_column", "window"},
+       {Defect{"tile", "window"}, Defect{"hot_pixels", "window"}, Defect{"last_column", nullptr},
         Defect{"interlaced", "alternating"}, Defect{"global", "window"}}) {
     const reports::Test test = floor_test(
         mutant(defect.name), "claim: mean(a) == analytic, secondaries: 256, expect: fail");
     EXPECT_EQ(test.verdict, Verdict::fail) << defect.name << ": " << test.message;
     EXPECT_TRUE(test.ok);
+    if (defect.statistic == nullptr) continue;
     EXPECT_EQ(test.image->winner.statistic, defect.statistic) << defect.name;
   }
 }
@@ -106,11 +108,9 @@ TEST(ImageClaims, MapsHoldZMeanVarianceAdjustedPAndReference) {
   const auto& variance = map_named(test, "variance").texels.values;
   const auto& reference = map_named(test, "reference").texels.values;
   for (std::size_t i = 0; i < z.size(); ++i) {
-    // Student's t of 63 degrees is larger than its z.
+    // The test's halves have weights of their own, so that its z is near Student's t.
     const double t = (mean[i] - reference[i]) / std::sqrt(variance[i] / 64.0);
-    EXPECT_LE(std::abs(z[i]), std::abs(t) * 1.0001 + 1e-4) << i;
-    EXPECT_GE(std::abs(z[i]), std::abs(t) * 0.85 - 1e-4) << i;
-    EXPECT_EQ(std::signbit(z[i]), std::signbit(t)) << i;
+    EXPECT_NEAR(z[i], t, 0.5 + 0.2 * std::abs(t)) << i;
     const double alone = std::erfc(std::abs(z[i]) / std::sqrt(2.0));
     EXPECT_NEAR(p[i], -std::expm1(256 * std::log1p(-alone)), 1e-5) << i;
   }
@@ -156,17 +156,6 @@ TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
                                         "claim: mean(a) == analytic, budget: 122880");
   EXPECT_EQ(paid.message.find("15 images are too few"), 0u) << paid.message;
   EXPECT_NE(paid.message.find("give a larger `budget`"), std::string::npos);
-}
-
-// One exponential value a pixel has skewness 2: single pixels take no part. False alarm .01.
-TEST(ImageClaims, PixelsThatAreSkewedAreJudgedInLargerCells) {
-  const std::string text =
-      "suite: s\nestimators:\n  a: {plugin: analytic/ramp, law: exponential(1), primaries: "
-      "1}\ntests:\n"
-      "  - {claim: mean(a) == analytic, secondaries: 32}\n";
-  const reports::Test test = run_text(text).suites[0].tests[0];
-  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
-  EXPECT_GT(test.image->smallest_cell, 1u);
 }
 
 TEST(ImageClaims, MapsReadBackEqualToTheRecord) {
@@ -264,23 +253,23 @@ reports::Test chains_test(const std::string& plugin) {
   return run_text(text).suites[0].tests[0];
 }
 
-bool has_energy(const reports::Image& image) {
-  return std::any_of(image.groups.begin(), image.groups.end(),
-                     [](const auto& group) { return group.statistic == "energy"; });
-}
-
-// No share of sign vectors is as small as the p-value of a chain that is far off. False alarm 0.01
-// at seed 1.
-TEST(ImageClaims, SignsOfDependentPixelsAreFlippedWhereThatCanTellMore) {
-  const reports::Test sound = chains_test("metropolis/mean_value");
-  EXPECT_EQ(sound.verdict, Verdict::pass) << sound.message;
-  EXPECT_TRUE(sound.image->sign_flips);
-  EXPECT_TRUE(has_energy(*sound.image));
+// False alarm 0.01 at seed 1.
+TEST(ImageClaims, DependentPixelsOfChainsAreJudgedByTheirCells) {
+  EXPECT_EQ(chains_test("metropolis/mean_value").verdict, Verdict::pass);
   const reports::Test broken = chains_test("mutants/metropolis_inverted_ratio");
   EXPECT_EQ(broken.verdict, Verdict::fail) << broken.message;
   EXPECT_LT(*broken.image->winner.log10_p_adjusted, -6);
-  EXPECT_FALSE(broken.image->sign_flips);
-  EXPECT_FALSE(has_energy(*broken.image));
+}
+
+// The effect at the place in units of the picture, with an interval that leaves 0 out.
+TEST(ImageClaims, AFailureSaysHowMuchTooBrightWhichPlaceIs) {
+  const reports::Test test =
+      floor_test(mutant("tile"), "claim: mean(a) == mean(b), secondaries: 64");
+  ASSERT_EQ(test.verdict, Verdict::fail) << test.message;
+  ASSERT_TRUE(test.image->winner.effect);
+  EXPECT_GT(*test.image->winner.effect->low, 0);
+  EXPECT_LT(*test.image->winner.effect->low, *test.image->winner.effect->estimate);
+  EXPECT_NE(test.message.find("too bright ("), std::string::npos) << test.message;
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(PooledNoise, IsTheSameInOnePieceOrTwo) {
   const PooledNoise::Tail two = first.beyond(upward, 5);
   const PooledNoise::Tail one = pooled(values).beyond(upward, 5);
   EXPECT_NEAR(two.excess, one.excess, 1e-6);
-  EXPECT_NEAR(two.square, one.square, 1e-9);
+  EXPECT_NEAR(two.square, one.square, 1e-5);
 }
 
 NoisePyramid pyramid_of(const std::array<std::vector<double>, sides_of_pair>& values) {
@@ -89,9 +89,9 @@ TEST(NoisePyramid, TakesOffWhatOneSideAloneMayHaveMissed) {
   const double alone = -3 / std::sqrt(std::pow(10.0 / 7, 2) / 16 + 1.0 / 16);
   const NoisePyramid clean = pyramid_of({normal_values(random), normal_values(random)});
   EXPECT_NEAR(clean.kept(cell, pixel, 0).t, alone, 0.15);
-  // 40 of 1024 values are 48 beyond 2: they carry 1.9 of the mean, less two errors of .3 each.
+  // 40 of 1024 values are 48 beyond 2: they carry 1.9 of the mean, less an error of .3.
   const NoisePyramid::Kept one = pyramid_of({rare, normal_values(random)}).kept(cell, pixel, 0);
-  EXPECT_NEAR(one.margin, 3 * (40 * 48.0 - 2 * std::sqrt(40) * 48) / 1024, 0.05);
+  EXPECT_NEAR(one.margin, 3 * (40 * 48.0 - std::sqrt(40) * 48) / 1024, 0.05);
   EXPECT_EQ(one.t, 0);
   // The brighter side misses the same.
   const NoisePyramid::Kept both = pyramid_of({rare, rare}).kept(cell, pixel, 0);
@@ -101,7 +101,7 @@ TEST(NoisePyramid, TakesOffWhatOneSideAloneMayHaveMissed) {
   CellNoise brighter = cell;
   brighter.effect = 3;
   brighter.level = {13, 10};
-  EXPECT_GT(pyramid_of({rare, normal_values(random)}).kept(brighter, pixel, 0).t, 5);
+  EXPECT_NEAR(pyramid_of({rare, normal_values(random)}).kept(brighter, pixel, 0).margin, 0, 0.01);
 }
 
 TEST(NoisePyramid, ScalesTheNoiseOfTheDarkerSide) {
@@ -110,8 +110,7 @@ TEST(NoisePyramid, ScalesTheNoiseOfTheDarkerSide) {
                        .level = {2, 10},
                        .variance = {0.04, 0.5},
                        .degrees = 20,
-                       .elements = 4,
-                       .more = 0};
+                       .elements = 4};
   EXPECT_NEAR(none.kept(cell, pixel, 0).t, -8 / std::sqrt(0.04 * 25 + 0.5), 1e-12);
   CellNoise by_elements = cell;
   by_elements.more = 3;
@@ -144,8 +143,8 @@ TEST(NoisePyramid, ShrinksSkewedSumsWhereTheyAreTooLow) {
                  .level = {-4, 0},
                  .variance = {0.5, 0.5},
                  .degrees = 30,
-                 .elements = 64,
-                 .third = 0.3};
+                 .third = 0.3,
+                 .elements = 64};
   const Rectangle whole{0, 0, 8, 8};
   const double shrunk = 4 - 0.3 * 16 / 3 + 0.09 * 64 / 27 - 0.05;
   EXPECT_NEAR(none.kept(cell, whole, 0).t, -shrunk, 1e-12);
