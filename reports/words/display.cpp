@@ -82,9 +82,16 @@ std::string found_in_image(const Image& image) {
   const ImageFinding& winner = image.winner;
   if (winner.place.empty()) return {};
   if (winner.effect && winner.effect->estimate) {
-    return fmt::format("{} is {} too {}{}", pixels(image, winner),
-                       size_text(*winner.effect->estimate, *winner.effect),
-                       *winner.effect->estimate > 0 ? "bright" : "dark", bracket(*winner.effect));
+    Effect size = *winner.effect;
+    const bool dark = *size.estimate < 0;
+    if (dark) {
+      std::swap(size.low, size.high);
+      for (Number* each : {&size.estimate, &size.low, &size.high}) {
+        if (*each) *each = -**each;
+      }
+    }
+    return fmt::format("{} is {} too {}{}", pixels(image, winner), size_text(*size.estimate, size),
+                       dark ? "dark" : "bright", bracket(size));
   }
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
   return fmt::format("{} is too {}", pixels(image, winner),
