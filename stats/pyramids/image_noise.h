@@ -108,13 +108,12 @@ class NoisePyramid {
   // throughout has its neighbours' relative variance. (Sums below 0 are no light, and nothing is
   // done.)
   //
-  // Let e be the mean
-  // of (x - c)+ over the noise of a block around it, where c is the cell's own largest deviation.
-  // It is what the cell lacks if it missed all larger values. Where one side lacks more than the
-  // other, 3 (e_a - e_b - 1 error) is taken off the effect: for every block from four times the
-  // cell's side up to the whole image. Values below c have the block's variance at least, if that
-  // of one side falls short of it by more than that of the other and 2 errors. Two sides of one
-  // law lack the same, and nothing is taken off.
+  // Let c be the cell's own largest deviation, and e the mean of (x - c)+ over the noise of a block
+  // around it. The cell lacks e if it missed all larger values. Where one side lacks more than the
+  // other, 3 (e_a - e_b - 1 error) is taken off the effect. That is done for every block from four
+  // times the cell's side up to the whole image. A side also lacks variance if values below c have
+  // more of it in the block. What one side lacks beyond the other and 2 errors is added. Two sides
+  // of one law lack the same, and nothing changes.
   //
   // A cell with a third cumulant takes Hall's correction for skewness (1992, J. R. Statist. Soc. B
   // 54, 221) where it shrinks t. Beyond the point where it grows again t is cut off.
@@ -125,9 +124,9 @@ class NoisePyramid {
   };
   Kept kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
 
-  // The bias of an element in units of the weights that values can hide which it never showed: the
-  // larger of what its block shows beyond the usual largest deviation, upward of one side and
-  // downward of the other.
+  // The bias of an element, in units of the weights, that values can hide which it never showed. Its
+  // block shows them beyond the usual largest deviation: upward of one side and downward of the
+  // other. The larger sum counts.
   double hidden(std::size_t x, std::size_t y, std::size_t channel) const;
 
  private:
