@@ -25,6 +25,7 @@ Examples:
   assay describe luminaire/area
 
 Commands (each has its own --help, with examples and defaults):
+  init      write a small example: a suite, a plugin, a program, a job of CI
   run       test the claims of suite files
   plan      what a run would do and cost; only the pilots are drawn
   check     test one claim
@@ -435,6 +436,18 @@ Examples:
   add_output(options, command.output);
 }
 
+void define_init(Options& options, InitArguments& given) {
+  options.about(R"(Writes a small example that runs at once, and says what to edit and how to run it.
+
+Examples:
+  assay init suite
+  assay init process python sky      into the folder sky
+)");
+  options.add({.name = "KIND", .needed = "one of " + listed(kinds_of_example())}, given.words,
+              listed(kinds_of_example()) + "; then a folder, default this one");
+  options.afterwards([&given] { read_kind(given); });
+}
+
 template <class Kind>
 CommandRow command(const char* name, void (*define)(Options&, Kind&)) {
   return {name, [define](Options& options) {
@@ -453,7 +466,8 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
        command("images", define_images), command("sample", define_sample),
        command("calibrate", define_calibrate), command("list", define_list),
        command("describe", define_describe), command("replay", define_replay),
-       command("merge", define_merge), command("report", define_report)});
+       command("merge", define_merge), command("report", define_report),
+       command("init", define_init)});
 }
 
 }  // namespace assay::harness

@@ -8,6 +8,7 @@
 
 #include "harness/calibration/calibrate.h"
 #include "harness/command/commands.h"
+#include "harness/command/init.h"
 #include "harness/record/merge.h"
 #include "harness/record/recorded_test.h"
 #include "harness/suite/suite_images.h"
@@ -67,7 +68,7 @@ struct TextCommand {
 
 using Command = std::variant<RunCommand, PlanCommand, CheckCommand, ImagesCommand, SampleArguments,
                              ListCommand, DescribeCommand, ReplayArguments, ReportCommand,
-                             MergeCommand, CalibrateCommand, TextCommand>;
+                             MergeCommand, CalibrateCommand, InitArguments, TextCommand>;
 
 /// Parses the arguments after the program's name. InputError, if possible with a suggestion, for
 /// anything that is not as `--help` says.

@@ -80,6 +80,7 @@ int act(const ReplayArguments& arguments) { return replay(arguments); }
 int act(const ReportCommand& command) { return report_saved_run(command.file, command.output); }
 int act(const MergeCommand& command) { return merge_shards(command.arguments, command.output); }
 int act(const CalibrateCommand& command) { return calibrate(command.arguments, command.output); }
+int act(const InitArguments& arguments) { return write_example(arguments); }
 
 int act(const TextCommand& command) {
   fmt::print("{}", command.text);

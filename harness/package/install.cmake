@@ -1,4 +1,5 @@
-# Installs the program, the headers of plugins, and a relocatable CMake package.
+# Installs the program, the headers of plugins, and a relocatable CMake package. The folder `prefix`
+# of the build has the same shape, so that a project finds Assay without an installation.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -20,16 +21,27 @@ if(TARGET assay_googletest)
   endforeach()
 endif()
 
+set(built ${PROJECT_BINARY_DIR}/prefix)
 configure_package_config_file(
-  ${CMAKE_CURRENT_LIST_DIR}/assayConfig.cmake.in ${PROJECT_BINARY_DIR}/package/assayConfig.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/assayConfig.cmake.in ${built}/${ASSAY_PACKAGE_DIR}/assayConfig.cmake
   INSTALL_DESTINATION ${ASSAY_PACKAGE_DIR}
   PATH_VARS CMAKE_INSTALL_BINDIR CMAKE_INSTALL_INCLUDEDIR)
 # Before 1.0 a minor version may change the meaning of suites and records.
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/assayConfigVersion.cmake
+write_basic_package_version_file(${built}/${ASSAY_PACKAGE_DIR}/assayConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
-install(FILES
-  ${PROJECT_BINARY_DIR}/package/assayConfig.cmake
-  ${PROJECT_BINARY_DIR}/package/assayConfigVersion.cmake
-  ${CMAKE_CURRENT_LIST_DIR}/assayTests.cmake
-  ${CMAKE_CURRENT_LIST_DIR}/assayTestsAtTestTime.cmake.in
-  DESTINATION ${ASSAY_PACKAGE_DIR})
+foreach(file IN ITEMS assayTests.cmake assayTestsAtTestTime.cmake.in)
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/${file} ${built}/${ASSAY_PACKAGE_DIR}/${file} COPYONLY)
+endforeach()
+install(DIRECTORY ${built}/${ASSAY_PACKAGE_DIR}/ DESTINATION ${ASSAY_PACKAGE_DIR}
+        PATTERN assayTargets* EXCLUDE)
+
+set(include ${built}/${CMAKE_INSTALL_INCLUDEDIR}/assay)
+file(MAKE_DIRECTORY ${include} ${built}/${CMAKE_INSTALL_BINDIR})
+file(CREATE_LINK ${PROJECT_BINARY_DIR}/harness/assay ${built}/${CMAKE_INSTALL_BINDIR}/assay SYMBOLIC)
+foreach(header IN ITEMS estimators/plugin_abi.h estimators harness)
+  cmake_path(GET header FILENAME name)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${header} ${include}/${name} SYMBOLIC)
+endforeach()
+if(TARGET assay_googletest)
+  export(EXPORT assayTargets NAMESPACE assay:: FILE ${built}/${ASSAY_PACKAGE_DIR}/assayTargets.cmake)
+endif()

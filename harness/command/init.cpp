@@ -1,0 +1,96 @@
+#include "harness/command/init.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "estimators/core/quoting.h"
+#include "estimators/core/value.h"
+#include "harness/command/files.h"
+#include "harness/command/options.h"
+#include "harness/suite/suite_keys.h"
+#include "reports/record/file.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr std::string_view templates = "init/";
+constexpr std::string_view next_steps = "NEXT.txt";  // printed, not written
+
+/// The files of a kind, their paths below its folder.
+std::vector<CarriedFile> files_of(const std::string& kind) {
+  const std::string folder = fmt::format("{}{}/", templates, kind);
+  std::vector<CarriedFile> files;
+  for (const CarriedFile& file : carried_files()) {
+    if (!file.path.starts_with(folder)) continue;
+    files.push_back({file.path.substr(folder.size()), file.text});
+  }
+  return files;
+}
+
+std::string with_place(std::string_view steps, const std::string& folder) {
+  constexpr std::string_view mark = "@CD@";
+  std::string text(steps);
+  const std::size_t at = text.find(mark);
+  const std::string line = folder == "." ? "" : fmt::format("cd {}\n    ", shell_quoted(folder));
+  return at == std::string::npos ? text : text.replace(at, mark.size(), line);
+}
+
+}  // namespace
+
+std::vector<std::string> kinds_of_example() {
+  std::vector<std::string> kinds;
+  for (const CarriedFile& file : carried_files()) {
+    if (!file.path.starts_with(templates) || !file.path.ends_with(next_steps)) continue;
+    const std::string_view below = file.path.substr(templates.size());
+    kinds.emplace_back(below.substr(0, below.find('/')));
+    std::ranges::replace(kinds.back(), '-', ' ');
+  }
+  return kinds;
+}
+
+void read_kind(InitArguments& arguments) {
+  const std::vector<std::string> kinds = kinds_of_example();
+  const std::vector<std::string>& words = arguments.words;
+  std::string kind;
+  for (std::size_t count = 1; count <= words.size(); ++count) {
+    kind += (count == 1 ? "" : " ") + words[count - 1];
+    if (std::ranges::find(kinds, kind) == kinds.end()) continue;
+    if (words.size() > count + 1)
+      usage_error(fmt::format("`{}` is one argument too many", words[count + 1]));
+    arguments.kind = kind;
+    std::ranges::replace(arguments.kind, ' ', '-');
+    if (words.size() > count) arguments.folder = words[count];
+    return;
+  }
+  usage_error(fmt::format("there is no example `{}`{}; there is {}", kind, suggestion(kind, kinds),
+                          listed(kinds)));
+}
+
+int write_example(const InitArguments& arguments) {
+  const std::filesystem::path folder = arguments.folder;
+  const std::vector<CarriedFile> files = files_of(arguments.kind);
+  for (const CarriedFile& file : files) {
+    const std::filesystem::path path = folder / file.path;
+    if (file.path == next_steps || !std::filesystem::exists(path)) continue;
+    throw InputError({}, fmt::format("`{}` exists already, so nothing is written; name another "
+                                     "folder",
+                                     path.string()));
+  }
+  std::string steps;
+  for (const CarriedFile& file : files) {
+    if (file.path == next_steps) {
+      steps = with_place(file.text, arguments.folder);
+      continue;
+    }
+    const std::filesystem::path path = folder / file.path;
+    std::filesystem::create_directories(path.parent_path());
+    reports::write_whole(path, file.text);
+    fmt::print("wrote {}\n", (arguments.folder == "." ? path.lexically_normal() : path).string());
+  }
+  fmt::print("{}", steps);
+  return 0;
+}
+
+}  // namespace assay::harness
