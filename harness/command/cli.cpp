@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "estimators/catalogue.h"
+#include "harness/command/files.h"
 #include "harness/command/option_values.h"
 #include "harness/command/options.h"
 #include "harness/command/tables.h"
@@ -16,42 +18,19 @@ namespace assay::harness {
 
 namespace {
 
-constexpr const char* general_help =
-    R"(Assay tests whether Monte Carlo estimators do what their authors claim.
+Texts names_of(const std::string& plural) {
+  Texts names;
+  for (const TableRow& row : std::ranges::find(tables(), plural, &Table::plural)->rows) {
+    names.push_back(row.name);
+  }
+  return names;
+}
 
-Examples:
-  assay run suites/luminaire.yaml
-  assay check 'mean(luminaire/area) == analytic' --detect 0.5%
-  assay describe luminaire/area
-
-Commands (each has its own --help, with examples and defaults):
-  init      write a small example: a suite, a plugin, a program, a job of CI
-  run       test the claims of suite files
-  plan      what a run would do and cost; only the pilots are drawn
-  check     test one claim
-  images    hold rendered pictures against each other, without a suite
-  calibrate how often the methods err, and how much they find, on known laws
-  sample    print observations of an estimator
-  list      list plugins, tests of suites, methods, quantities, laws, gates, reports
-  describe  print the manual of a plugin, a method, a quantity or a law
-  replay    draw the numbers of a recorded test again
-  merge     join the records of shards to that of one run
-  report    make reports from a saved run
-  help      this text, or that of a command: `assay help run`
-
-Options:
-  -h, --help   this text
-  --version    version and commit
-
-Exit codes:
-  0    every test came out as expected
-  1    at least one did not: it failed, was invalid or could not be tested; or the ledger alarms
-  2    a mistake in what was asked for, or trouble
-  3    none of these, but at least one is inconclusive
-  4    no test ran: --filter, --tag or --shard selected none (0 where the environment asked for a shard)
-  77   all tests were skipped
-  130  interrupted
-)";
+Texts plugin_names() {
+  Texts names;
+  for (const Entry& entry : catalogue()) names.push_back(entry.information.name);
+  return names;
+}
 
 std::string read_suite(const std::string& text, const std::string& /*option*/) {
   if (!text.ends_with(".json")) return text;
@@ -76,7 +55,9 @@ auto report_beside(const std::vector<ReportRequest>& others) {
 // Rows of several commands.
 
 void add_report(Options& options, Output& output, const std::string& kinds) {
-  options.add({"--report", "KIND=PATH", Replay::nowhere}, output.reports,
+  Texts words = names_of("reports");
+  for (std::string& word : words) word += '=';
+  options.add({"--report", "KIND=PATH", Replay::nowhere, "", words}, output.reports,
               report_beside(output.reports),
               kinds +
                   " to a file, - is standard output; one or more; default console=-, which goes "
@@ -88,18 +69,18 @@ void add_output(Options& options, Output& output) {
   add_report(options, output, "console, json, junit, markdown, html or metrics (OpenMetrics)");
   options.add(
       {"--color", "WHEN", Replay::nowhere}, output.colour,
-      one_of<Colour>(
-          {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}),
+      OneOf<Colour>{
+          {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}},
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
 }
 
 void add_inconclusive(Options& options, Output& output) {
   options.add({"--inconclusive", "fail|pass", Replay::nowhere}, output.inconclusive,
-              one_of<InconclusivePolicy>(
-                  {{"fail", InconclusivePolicy::fail}, {"pass", InconclusivePolicy::pass}}),
+              OneOf<InconclusivePolicy>{
+                  {{"fail", InconclusivePolicy::fail}, {"pass", InconclusivePolicy::pass}}},
               "count undecided tests as failed or as passed; default neither: exit code 3");
   options.add({"--github", "auto|never", Replay::nowhere}, output.github,
-              one_of<bool>({{"auto", true}, {"never", false}}),
+              OneOf<bool>{{{"auto", true}, {"never", false}}},
               "annotations and the step's summary for a job of GitHub Actions; default auto: where "
               "GITHUB_ACTIONS is true");
 }
@@ -120,7 +101,8 @@ struct Running {
 };
 
 void add_sampling(Options& options, RunOptions& run, Output& output, const Running& about) {
-  options.add({"--seed", "N|random", Replay::nowhere}, run.seed, read_seed, about.seed);
+  options.add({"--seed", "N|random", Replay::nowhere, "", {"random"}}, run.seed, read_seed,
+              about.seed);
   add_threads(options, run.threads);
   options.add({"--alpha", "A"}, run.alpha, read_error_rate, about.alpha);
   add_quiet(options, output);
@@ -147,8 +129,8 @@ void add_selection(Options& options, Selection& selection) {
 }
 
 void add_suites(Options& options, SuitesCommand& command) {
-  options.add({.name = "SUITE", .needed = "a suite file"}, command.suites, read_suite,
-              "suite files");
+  options.add({.name = "SUITE", .needed = "a suite file", .words = {"*.yaml"}}, command.suites,
+              read_suite, "suite files");
   add_selection(options, command.options.selection);
   options.add({"--coarsen", "F", Replay::last}, command.options.coarsen, read_positive,
               "multiply every `detect` by F, above 0; default 1");
@@ -181,7 +163,7 @@ Examples:
   options.add({"--shard", "I/N", Replay::nowhere}, command.options.shard, read_shard,
               "only the I-th of N parts of the tests, each on its fixed share of alpha, for `assay "
               "merge`; default all, or what GTEST_TOTAL_SHARDS or TEST_TOTAL_SHARDS says");
-  options.add({"--ledger", "FILE", Replay::nowhere}, command.options.ledger,
+  options.add({"--ledger", "FILE", Replay::nowhere, "", {"*"}}, command.options.ledger,
               "add the run's evidence to a file of nights with fresh seeds and alarm at what they "
               "say together; default none");
   add_running(options, command.options, command.output, of_suites);
@@ -218,7 +200,7 @@ Examples:
   options.add({"--allow", "X"}, given.allow,
               "the effect that may be there, as 0.5% or 0.002; default 0");
   options.add(
-      {"--test", "METHOD"}, given.method,
+      {"--test", "METHOD", Replay::middle, "", method_names()}, given.method,
       "force a method, one of " + listed(method_names()) + "; default chosen from the pilot");
   options.add(
       {"--over", "SWEEP"}, given.over,
@@ -256,26 +238,29 @@ Examples:
   assay images --candidate 'half/*.exr' --reference 'float/*.exr' --within 0.5% --report json=run.json
 )");
   ImagesArguments& given = command.arguments;
-  options.add(
-      {.name = "--candidate", .value = "GLOB", .needed = "--candidate, a pattern of pictures"},
-      given.candidate,
-      "the pictures in question, 16 or more, each rendered with a seed of its own");
+  options.add({.name = "--candidate",
+               .value = "GLOB",
+               .needed = "--candidate, a pattern of pictures",
+               .words = {"*"}},
+              given.candidate,
+              "the pictures in question, 16 or more, each rendered with a seed of its own");
   options.add({.name = "--reference",
                .value = "GLOB",
-               .needed = "--reference, a pattern of pictures or one file"},
+               .needed = "--reference, a pattern of pictures or one file",
+               .words = {"*"}},
               given.reference,
               "what they are held against: as many again, or one picture, with its variance "
               "(channels `Variance.*` or `m2_*`) or exact");
   options.add({"--channels", "GLOB"}, given.channels,
               "the channels to test, as 'ViewLayer.DiffInd.*'; commas between several; default R, "
               "G and B, or what stands for them, and an alpha that is not 1");
-  options.add({"--ignore", "KIND"}, given.ignores_nonfinite, one_of<bool>({{"nonfinite", true}}),
+  options.add({"--ignore", "KIND"}, given.ignores_nonfinite, OneOf<bool>{{{"nonfinite", true}}},
               "nonfinite: leave out pixels that are no number in one of the pictures; default an "
               "error");
-  options.add({"--mask", "FILE"}, given.mask,
+  options.add({"--mask", "FILE", Replay::middle, "", {"*"}}, given.mask,
               "a picture; pixels where it is 0 are left out; default none");
   options.add({"--pixels", "KIND"}, given.independent_pixels,
-              one_of<bool>({{"dependent", false}, {"independent", true}}),
+              OneOf<bool>{{{"dependent", false}, {"independent", true}}},
               "independent, as under a box filter one pixel wide, or dependent; default dependent");
   options.add({"--samples", "N"}, given.samples,
               "of how many samples the means of one picture with its variance are, or the channel "
@@ -301,14 +286,14 @@ Examples:
   assay sample luminaire/area --secondaries 1000 > area.txt
   assay sample a --estimator 'a=luminaire/area,scene=rectangle' --primaries 64
 )");
-  options.add({.name = "SOURCE", .needed = "an estimator"}, given.source,
+  options.add({.name = "SOURCE", .needed = "an estimator", .words = plugin_names()}, given.source,
               "an estimator, or a part of it");
   add_estimators(options, given.estimators);
   options.add({"--primaries", "N"}, given.primaries, at_least(1),
               "primary estimates of an observation; default 1");
   options.add({"--secondaries", "M"}, given.secondaries, at_least(1),
               "number of observations; default 10");
-  options.add({"--seed", "N|random"}, given.seed, read_seed,
+  options.add({"--seed", "N|random", Replay::middle, "", {"random"}}, given.seed, read_seed,
               "seed of the stream, or a fresh one; default 1");
 }
 
@@ -325,7 +310,7 @@ Examples:
 )");
   CalibrateArguments& given = command.arguments;
   Output& output = command.output;
-  options.add({.name = "METHOD"}, given.methods, "methods; default all");
+  options.add({.name = "METHOD", .words = method_names()}, given.methods, "methods; default all");
   options.add({"--law", "LAW"}, given.laws,
               "what is drawn, as exponential or 'student_t(3)'; repeatable; default eight laws");
   options.add({"--alpha", "A"}, given.alphas, read_error_rate,
@@ -334,7 +319,7 @@ Examples:
   options.add({"--samples", "N"}, given.samples, at_least(2),
               "observations of every test, in one look, 2 or more; default planned, in looks, and "
               "1000 or 64 images of a method alone");
-  options.add({"--seed", "N|random"}, given.seed, read_seed,
+  options.add({"--seed", "N|random", Replay::middle, "", {"random"}}, given.seed, read_seed,
               "seed of the first run, the next ones follow; default 1");
   add_threads(options, given.threads);
   add_quiet(options, output);
@@ -359,12 +344,13 @@ Examples:
   Texts lists{"plugins", "tests"};
   for (const Table& table : tables()) lists.push_back(table.plural);
   options.add(
-      {.name = "WHAT", .needed = "one of " + listed(lists)}, command.what,
+      {.name = "WHAT", .needed = "one of " + listed(lists), .words = lists}, command.what,
       [lists](const std::string& text, const std::string& /*option*/) {
         return lists[choice(Value::scalar(text), "what is listed", lists)];
       },
       "plugins, tests, methods, quantities, laws, gates or reports");
-  options.add({.name = "SUITE"}, command.suites, "suite files, of which the tests are listed");
+  options.add({.name = "SUITE", .words = {"*.yaml"}}, command.suites,
+              "suite files, of which the tests are listed");
   add_selection(options, command.selection);
   options.afterwards([&command] {
     const std::string list = "`assay list " + command.what + "`";
@@ -387,7 +373,11 @@ Examples:
   assay describe luminaire/area
   assay describe t
 )");
-  options.add({.name = "NAME", .needed = "a plugin, a method, a quantity or a law"}, command.name,
+  Texts words = plugin_names();
+  for (const Table& table : tables())
+    std::ranges::copy(names_of(table.plural), std::back_inserter(words));
+  options.add({.name = "NAME", .needed = "a plugin, a method, a quantity or a law", .words = words},
+              command.name,
               "a plugin, a method, a quantity, a law or a report, as `assay list` prints them");
 }
 
@@ -398,7 +388,8 @@ Examples:
   assay replay run.json 'luminaire/mean(triangle_area) == analytic'
   assay replay run.json 'luminaire/mean(triangle_area) == analytic' 17
 )");
-  options.add({.name = "RUN.json", .needed = "a saved run"}, given.record, "a saved run");
+  options.add({.name = "RUN.json", .needed = "a saved run", .words = {"*.json"}}, given.record,
+              "a saved run");
   options.add({.name = "TEST", .needed = "a test, as `assay list tests SUITE` prints them"},
               given.test, "a test's id or name");
   options.add(
@@ -419,7 +410,7 @@ Examples:
   assay run suites/luminaire.yaml --shard 2/2 --report json=2.json
   assay merge 1.json 2.json --report json=run.json html=run.html
 )");
-  options.add({.name = "SHARD.json", .needed = "the records of all shards"},
+  options.add({.name = "SHARD.json", .needed = "the records of all shards", .words = {"*.json"}},
               command.arguments.records, "the records of all shards, in any order");
   add_inconclusive(options, command.output);
   add_output(options, command.output);
@@ -432,42 +423,104 @@ Examples:
   assay report run.json --report html=run.html
   assay report run.json --report console=-
 )");
-  options.add({.name = "RUN.json", .needed = "a saved run"}, command.file, "a saved run");
+  options.add({.name = "RUN.json", .needed = "a saved run", .words = {"*.json"}}, command.file,
+              "a saved run");
   add_output(options, command.output);
 }
 
 void define_init(Options& options, InitArguments& given) {
-  options.about(R"(Writes a small example that runs at once, and says what to edit and how to run it.
+  options.about(
+      R"(Writes a small example that runs at once, and says what to edit and how to run it.
 
 Examples:
   assay init suite
   assay init process python sky      into the folder sky
 )");
-  options.add({.name = "KIND", .needed = "one of " + listed(kinds_of_example())}, given.words,
-              listed(kinds_of_example()) + "; then a folder, default this one");
+  const Texts kinds = kinds_of_example();
+  Texts words = kinds;
+  for (std::string& word : words) std::ranges::replace(word, ' ', '-');
+  options.add({.name = "KIND",
+               .value = "KIND [FOLDER]",
+               .needed = "one of " + listed(kinds),
+               .words = words},
+              given.words, listed(kinds) + "; then a folder, default this one");
   options.afterwards([&given] { read_kind(given); });
 }
 
+void define_completion(Options& options, TextCommand& command) {
+  options.about(
+      R"(Prints a script that completes commands, options, their values, suites and names in a shell.
+
+Examples:
+  assay completion fish > ~/.config/fish/completions/assay.fish
+  source <(assay completion bash)      in ~/.bashrc
+  source <(assay completion zsh)       in ~/.zshrc, after compinit
+)");
+  constexpr std::string_view scripts = "completion/assay.";
+  std::vector<std::pair<std::string, std::string>> shells;
+  for (const CarriedFile& file : carried_files()) {
+    if (!file.path.starts_with(scripts)) continue;
+    shells.emplace_back(file.path.substr(scripts.size()), file.text);
+  }
+  options.add({.name = "SHELL", .needed = "one of bash, fish, zsh"}, command.text,
+              OneOf<std::string>{shells}, "bash, fish or zsh");
+}
+
+std::vector<CommandText> all_commands();
+
+void define_man(Options& options, TextCommand& command) {
+  options.about(R"(Prints the manual page, which lists all commands and options.
+
+Examples:
+  assay man > assay.1 && man -l assay.1
+)");
+  options.afterwards([&command] { command.text = man_page(all_commands()); });
+}
+
 template <class Kind>
-CommandRow command(const char* name, void (*define)(Options&, Kind&)) {
-  return {name, [define](Options& options) {
+CommandRow command(const char* name, const char* summary, void (*define)(Options&, Kind&)) {
+  return {name, summary, [define](Options& options) {
             const auto kind = std::make_shared<Kind>();
             define(options, *kind);
             return [kind] { return Command(*kind); };
           }};
 }
 
+const std::vector<CommandRow>& command_rows() {
+  static const std::vector<CommandRow> rows{
+      command("init", "write a small example: a suite, a plugin, a program, a job of CI",
+              define_init),
+      command("run", "test the claims of suite files", define_run),
+      command("plan", "what a run would do and cost; only the pilots are drawn", define_plan),
+      command("check", "test one claim", define_check),
+      command("images", "hold rendered pictures against each other, without a suite",
+              define_images),
+      command("calibrate", "how often the methods err, and how much they find, on known laws",
+              define_calibrate),
+      command("sample", "print observations of an estimator", define_sample),
+      command("list", "list plugins, tests of suites, methods, quantities, laws, gates, reports",
+              define_list),
+      command("describe", "print the manual of a plugin, a method, a quantity or a law",
+              define_describe),
+      command("replay", "draw the numbers of a recorded test again", define_replay),
+      command("merge", "join the records of shards to that of one run", define_merge),
+      command("report", "make reports from a saved run", define_report),
+      command("completion", "print a script that completes commands in a shell", define_completion),
+      command("man", "print the manual page", define_man)};
+  return rows;
+}
+
+std::vector<CommandText> all_commands() { return texts_of(command_rows()); }
+
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
-  return parsed(
-      arguments, general_help,
-      {command("run", define_run), command("plan", define_plan), command("check", define_check),
-       command("images", define_images), command("sample", define_sample),
-       command("calibrate", define_calibrate), command("list", define_list),
-       command("describe", define_describe), command("replay", define_replay),
-       command("merge", define_merge), command("report", define_report),
-       command("init", define_init)});
+  // The scripts of `assay completion` ask with this word.
+  if (!arguments.empty() && arguments.front() == "__complete") {
+    return TextCommand{completions(all_commands(), {arguments.begin() + 1, arguments.end()})};
+  }
+  if (arguments == Texts{"help", "all"}) return TextCommand{help_of_all(all_commands())};
+  return parsed(arguments, command_rows());
 }
 
 }  // namespace assay::harness

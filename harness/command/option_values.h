@@ -34,12 +34,17 @@ ReportRequest read_report(const std::string& text, const std::string& option);
 
 /// One of the words, as the value beside it.
 template <class T>
-auto one_of(const std::vector<std::pair<std::string, T>>& meanings) {
-  return [meanings](const std::string& text, const std::string& option) {
-    std::vector<std::string> words;
-    for (const auto& [word, meaning] : meanings) words.push_back(word);
-    return meanings[choice(Value::scalar(text), option, words)].second;
-  };
-}
+struct OneOf {
+  std::vector<std::pair<std::string, T>> meanings;
+
+  std::vector<std::string> words() const {
+    std::vector<std::string> all;
+    for (const auto& [word, meaning] : meanings) all.push_back(word);
+    return all;
+  }
+  T operator()(const std::string& text, const std::string& option) const {
+    return meanings[choice(Value::scalar(text), option, words())].second;
+  }
+};
 
 }  // namespace assay::harness

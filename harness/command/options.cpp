@@ -83,28 +83,6 @@ const CLI::App& chosen(const CLI::App& app) {
   return *app.get_subcommands().front();
 }
 
-/// CLI11's help with its options at most 100 columns wide.
-std::string wrapped_options(const std::string& help) {
-  constexpr std::size_t width = 100;
-  constexpr std::size_t indent = 30;  // column of CLI11's descriptions of options
-  const std::size_t options = help.find("\nOptions:\n");
-  if (options == std::string::npos) return help;
-  std::string out = help.substr(0, options);
-  std::string rest = help.substr(options);
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::size_t blank = rest.substr(0, width + 1).rfind(' ');
-    if (end <= width || blank < indent || blank == std::string::npos) {
-      out += rest.substr(0, end + 1);
-      rest.erase(0, end + 1);
-    } else {
-      out += rest.substr(0, blank) + "\n";
-      rest.replace(0, blank + 1, std::string(indent, ' '));
-    }
-  }
-  return out;
-}
-
 /// `assay help` is `assay --help`, `assay help run` is `assay run --help`.
 Texts without_help_command(const Texts& arguments, const CLI::App& app) {
   if (arguments.empty() || arguments.front() != "help") return arguments;
@@ -153,7 +131,7 @@ std::string in_words(const CLI::ParseError& error) {
 
 void usage_error(const std::string& why) { throw InputError({}, why); }
 
-void Options::about(const std::string& text) { app_.description(text); }
+void Options::about(const std::string& text) { about_ = text; }
 
 Texts Options::Row::given() const {
   Texts texts = option->results();
@@ -163,15 +141,15 @@ Texts Options::Row::given() const {
 
 void Options::add_row(const OptionName& name, const std::string& about, bool repeats,
                       std::function<void(const std::string&)> take) {
-  CLI::Option* option = app_.add_option(name.name, CLI::callback_t{}, about);
-  option->type_name(name.value);
+  CLI::Option* option = app_.add_option(name.name, CLI::callback_t{})->type_name(name.value);
   if (repeats) option->expected(CLI::detail::expected_max_vector_size);
   if (repeats && !option->get_positional()) option->allow_extra_args(false)->take_all();
-  rows_.push_back({option, name, repeats, std::move(take)});
+  rows_.push_back({option, name, about, repeats, std::move(take)});
 }
 
 void Options::flag(const std::string& name, const std::string& about, bool& target) {
-  app_.add_flag(name, target, about);
+  const auto set = [&target](const std::string& text) { target = !text.empty(); };
+  rows_.push_back({app_.add_flag(name), {name, "", Replay::nowhere}, about, false, set});
 }
 
 void Options::read_values() const {
@@ -196,17 +174,28 @@ void Options::read_values() const {
   }
 }
 
-std::string Options::help() const {
-  app_.set_help_flag("-h,--help", "this text");
-  // CLI11 shows needed arguments in the usage line. It would demand them too, in its own words.
+CommandText Options::text(const std::string& summary) const {
+  CommandText text{app_.get_name(), summary, about_, {}};
   for (const Row& row : rows_) {
-    row.option->required(row.option->get_positional() && !row.name.needed.empty());
+    const OptionName& name = row.name;
+    text.options.push_back(
+        {name.name, name.value, row.about, name.words, !name.needed.empty(), row.repeats});
   }
-  return wrapped_options(app_.help("assay"));
+  return text;
 }
 
-Command parsed(const Texts& arguments, const std::string& help,
-               const std::vector<CommandRow>& commands) {
+std::vector<CommandText> texts_of(const std::vector<CommandRow>& commands) {
+  CLI::App app("", "assay");
+  std::vector<CommandText> texts;
+  for (const CommandRow& row : commands) {
+    Options options(*app.add_subcommand(row.name));
+    row.define(options);
+    texts.push_back(options.text(row.summary));
+  }
+  return texts;
+}
+
+Command parsed(const Texts& arguments, const std::vector<CommandRow>& commands) {
   CLI::App app("", "assay");
   app.require_subcommand(0, 1);
   app.allow_extras();
@@ -224,7 +213,8 @@ Command parsed(const Texts& arguments, const std::string& help,
     app.parse(Texts(words.rbegin(), words.rend()));
   } catch (const CLI::CallForHelp&) {
     const auto asked = app.get_subcommands();
-    return TextCommand{asked.empty() ? help : options.at(asked.front()->get_name()).help()};
+    if (asked.empty()) return TextCommand{overview(texts_of(commands))};
+    return TextCommand{help_of(options.at(asked.front()->get_name()).text(""))};
   } catch (const CLI::ParseError& e) {
     usage_error(in_words(e));
   }

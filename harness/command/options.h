@@ -1,6 +1,6 @@
 #pragma once
 
-// Rows of options. CLI11's options, the lists of `--help`, the typed values and the words of the
+// Rows of options. CLI11's options, the texts of help.h, the typed values and the words of the
 // replay line are made from them. Only options.cpp includes CLI11, which compiles slowly.
 
 #include <functional>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/command/cli.h"
+#include "harness/command/help.h"
 
 namespace CLI {
 class App;
@@ -27,9 +28,10 @@ enum class Replay { first, middle, last, nowhere };
 /// How an option or an argument is called.
 struct OptionName {
   std::string name;                ///< "--seed"; an argument's is without dashes.
-  std::string value = "";          ///< What stands for an option's value in `--help`.
+  std::string value = "";          ///< What stands for the value in `--help`.
   Replay replay = Replay::middle;  ///< An argument stands first.
   std::string needed = "";         ///< What a message says is needed; "" if it may be left out.
+  Texts words = {};                ///< Completion offers them; one with a `*` stands for files.
 };
 
 /// The options and arguments of one command.
@@ -43,8 +45,9 @@ class Options {
   /// An option or an argument, which repeats if the target is a list. `read` takes the text and the
   /// option's name. An empty text counts as none if the option does not repeat.
   template <class Target, class Read>
-  void add(const OptionName& name, Target& target, Read read, const std::string& about) {
+  void add(OptionName name, Target& target, Read read, const std::string& about) {
     constexpr bool repeats = requires { target.emplace_back(); };
+    if constexpr (requires { read.words(); }) name.words = read.words();
     add_row(name, about, repeats, [&target, read, option = name.name](const std::string& text) {
       if constexpr (repeats) {
         target.push_back(read(text, option));
@@ -66,12 +69,13 @@ class Options {
   void afterwards(std::function<void()> act) { afterwards_ = std::move(act); }
 
   void read_values() const;
-  std::string help() const;
+  CommandText text(const std::string& summary) const;
 
  private:
   struct Row {
     CLI::Option* option;
     OptionName name;
+    std::string about;
     bool repeats;
     std::function<void(const std::string& text)> take;
 
@@ -81,6 +85,7 @@ class Options {
                std::function<void(const std::string&)> take);
 
   CLI::App& app_;
+  std::string about_ = "";
   std::vector<Row> rows_ = {};
   std::string* replay_line_ = nullptr;
   std::function<void()> afterwards_ = [] {};
@@ -89,11 +94,13 @@ class Options {
 /// A command by name. `define` adds its options and returns what makes the command of their values.
 struct CommandRow {
   std::string name;
+  std::string summary;
   std::function<std::function<Command()>(Options&)> define;
 };
 
-/// The command that the arguments ask for. `help` is the text of `assay --help`.
-Command parsed(const Texts& arguments, const std::string& help,
-               const std::vector<CommandRow>& commands);
+std::vector<CommandText> texts_of(const std::vector<CommandRow>& commands);
+
+/// The command that the arguments ask for.
+Command parsed(const Texts& arguments, const std::vector<CommandRow>& commands);
 
 }  // namespace assay::harness

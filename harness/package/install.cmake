@@ -5,6 +5,13 @@ include(CMakePackageConfigHelpers)
 
 set(ASSAY_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/assay)
 install(TARGETS assay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES ${PROJECT_BINARY_DIR}/prefix/share/man/man1/assay.1
+  DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+set(scripts ${PROJECT_SOURCE_DIR}/harness/command/completion)
+set(data ${CMAKE_INSTALL_DATADIR})
+install(FILES ${scripts}/assay.bash DESTINATION ${data}/bash-completion/completions RENAME assay)
+install(FILES ${scripts}/assay.zsh DESTINATION ${data}/zsh/site-functions RENAME _assay)
+install(FILES ${scripts}/assay.fish DESTINATION ${data}/fish/vendor_completions.d)
 # The interface of shared libraries: a plugin is compiled against it and linked against nothing.
 install(FILES ${PROJECT_SOURCE_DIR}/estimators/plugin_abi.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/assay)

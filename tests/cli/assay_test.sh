@@ -518,7 +518,7 @@ test_check_points_at_the_option_that_is_wrong() {
 }
 
 test_help_is_a_command() {
-  expect 0 help
+  expect 0 help all
   contains out 'Exit codes:'
   expect 0 help run
   contains out 'assay run ['

@@ -170,16 +170,71 @@ TEST(CommandLine, ARandomSeedIsFresh) {
 }
 
 TEST(CommandLine, HelpLeadsWithExamples) {
-  for (const char* name :
-       {"run", "plan", "check", "calibrate", "sample", "list", "describe", "replay", "report"}) {
+  for (const char* name : {"run", "plan", "check", "calibrate", "sample", "list", "describe",
+                           "replay", "report", "init", "completion", "man"}) {
     const std::string help = parsed<TextCommand>({name, "--help"}).text;
     const std::size_t examples = help.find("Examples:\n  assay " + std::string(name));
     ASSERT_NE(examples, std::string::npos) << help;
     EXPECT_LT(examples, help.find("Usage:")) << help;
     EXPECT_THAT(help, HasSubstr(std::string("assay ") + name + " ["));
-    EXPECT_THAT(parsed<TextCommand>({"--help"}).text, HasSubstr(std::string("  ") + name + " "));
+    EXPECT_THAT(parsed<TextCommand>({"help", "all"}).text,
+                HasSubstr(std::string("  ") + name + " "));
   }
-  EXPECT_THAT(parsed<TextCommand>({"-h"}).text, HasSubstr("Exit codes:"));
+  EXPECT_THAT(parsed<TextCommand>({"help", "all"}).text, HasSubstr("Exit codes:"));
+}
+
+TEST(CommandLine, TheFirstPageFitsOneScreen) {
+  std::istringstream lines(parsed<TextCommand>({"--help"}).text);
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 80U) << line;
+  EXPECT_LE(count, 24);
+}
+
+/// The words that completion offers after `assay`, without descriptions.
+std::vector<std::string> offered(std::vector<std::string> words) {
+  words.insert(words.begin(), "__complete");
+  std::istringstream lines(parsed<TextCommand>(words).text);
+  std::vector<std::string> all;
+  for (std::string line; std::getline(lines, line);) all.push_back(line.substr(0, line.find('\t')));
+  return all;
+}
+
+TEST(CommandLine, CompletionOffersWhatMayFollow) {
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(offered({"re"}), (Words{"replay", "report"}));
+  EXPECT_THAT(offered({}), testing::Contains("run"));
+  EXPECT_EQ(offered({"help", "al"}), Words{"all"});
+  EXPECT_EQ(offered({"run", "--sh"}), Words{"--shard"});
+  EXPECT_EQ(offered({"run", "--color", "a"}), (Words{"auto", "always"}));
+  EXPECT_EQ(offered({"run", "--color=n"}), Words{"--color=never"});
+  EXPECT_EQ(offered({"run", "a.yaml", "--report", "m"}), (Words{"markdown=", "metrics="}));
+  EXPECT_EQ(offered({"run", "a.yaml", "--report", "json=r"}), Words{"*"});
+  EXPECT_EQ(offered({"run", ""}), Words{"*.yaml"});
+  EXPECT_EQ(offered({"run", "--quiet", "--seed", "3", "a.yaml", ""}), Words{"*.yaml"});
+  EXPECT_EQ(offered({"replay", ""}), Words{"*.json"});
+  EXPECT_EQ(offered({"replay", "a.json", ""}), Words{});
+  EXPECT_EQ(offered({"check", "mean(a) == 1", "--test", "wel"}), Words{"welch"});
+  EXPECT_EQ(offered({"describe", "luminaire/a"}), Words{"luminaire/area"});
+  EXPECT_EQ(offered({"describe", "exponen"}), Words{"exponential"});
+  EXPECT_EQ(offered({"list", "tests", "a"}), Words{"*.yaml"});
+  EXPECT_EQ(offered({"run", "--detect", ""}), Words{"*.yaml"});  // no option of `run`
+  EXPECT_EQ(offered({"run", "--alpha", ""}), Words{});
+  EXPECT_EQ(offered({"no", "such"}), Words{});
+}
+
+TEST(CommandLine, TheManualPageHasEveryCommandAndOption) {
+  const std::string page = parsed<TextCommand>({"man"}).text;
+  for (const std::string& name : offered({""})) {
+    if (name == "help" || name.starts_with("-")) continue;
+    EXPECT_THAT(page, HasSubstr(".SS assay " + name + " ["));
+    for (std::string option : offered({name, "--"})) {
+      if (option == "--help") continue;
+      for (std::size_t at = 0; (at = option.find('-', at)) != std::string::npos; at += 2) {
+        option.insert(at, "\\");
+      }
+      EXPECT_THAT(page, HasSubstr(".TP\n\\fB" + option + "\\fR"));
+    }
+  }
 }
 
 TEST(CommandLine, HelpIsACommandToo) {

@@ -1,0 +1,253 @@
+#include "harness/command/help.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "harness/base/version.h"
+#include "harness/command/describe.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr const char* purpose =
+    "Assay tests whether Monte Carlo estimators do what their authors claim.";
+
+constexpr std::array<const char*, 5> of_the_first_hour{"init", "check", "run", "images",
+                                                       "describe"};
+
+constexpr std::size_t list_column = 14;  // of the summaries of commands
+
+constexpr std::array<std::pair<const char*, const char*>, 7> exit_codes{{
+    {"0", "every test came out as expected"},
+    {"1",
+     "at least one did not: it failed, was invalid or could not be tested; or the ledger "
+     "alarms"},
+    {"2", "a mistake in what was asked for, or trouble"},
+    {"3", "none of these, but at least one is inconclusive"},
+    {"4",
+     "no test ran: --filter, --tag or --shard selected none (0 where the environment asked "
+     "for a shard)"},
+    {"77", "all tests were skipped"},
+    {"130", "interrupted"},
+}};
+
+/// Two columns, the right one from `column` on. A left side that is too long has its own line.
+std::string entry(const std::string& left, const std::string& right, std::size_t column,
+                  std::size_t width) {
+  const std::string lines = wrapped(right, width, column);
+  if (left.size() >= column) return left + "\n" + lines;
+  return left + lines.substr(left.size());
+}
+
+std::string entry(const CommandText& command) {
+  return entry("  " + command.name, command.summary, list_column, 80);
+}
+
+/// "--filter GLOB ..."
+std::string called(const OptionText& option) {
+  const bool has_value = !option.is_argument() && !option.value.empty();
+  return option.name + (has_value ? " " + option.value : "") + (option.repeats ? " ..." : "");
+}
+
+std::string usage(const CommandText& command) {
+  std::string text = fmt::format("assay {} [OPTIONS]", command.name);
+  for (const OptionText& option : command.options) {
+    if (!option.is_argument()) continue;
+    std::string word = option.value;
+    if (word.empty()) word = option.name + (option.repeats ? "..." : "");
+    text += option.needed ? " " + word : " [" + word + "]";
+  }
+  return text;
+}
+
+std::string exit_code_lines() {
+  std::string text;
+  for (const auto& [code, meaning] : exit_codes) {
+    text += entry(fmt::format("  {}", code), meaning, 7, 80);
+  }
+  return text;
+}
+
+// The manual page.
+
+std::string roff(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || text[i - 1] == '\n';
+    if (begins && (text[i] == '.' || text[i] == '\'')) out += "\\&";
+    if (begins && text[i] == '\n') out += ".PP";
+    if (text[i] == '-') out += '\\';
+    out += text[i] == '\\' ? "\\e" : std::string(1, text[i]);
+  }
+  return out;
+}
+
+/// Short lines, as mandoc asks for.
+std::string paragraph(const std::string& text) { return roff(wrapped(text, 70, 0)); }
+
+std::string roff_entry(const std::string& bold, const std::string& italic,
+                       const std::string& text) {
+  const std::string value = italic.empty() ? "" : fmt::format(" \\fI{}\\fR", roff(italic));
+  return fmt::format(".TP\n\\fB{}\\fR{}\n{}", roff(bold), value, paragraph(text));
+}
+
+std::string roff_section(const CommandText& command) {
+  const std::size_t examples = std::min(command.about.find("\nExamples:\n"), command.about.size());
+  std::string text =
+      fmt::format(".SS {}\n{}", roff(usage(command)), paragraph(command.about.substr(0, examples)));
+  if (examples < command.about.size()) {
+    text += fmt::format(".PP\n.nf\n{}.fi\n", roff(command.about.substr(examples + 1)));
+  }
+  for (const OptionText& option : command.options) {
+    std::string value = option.is_argument() ? "" : option.value;
+    if (option.repeats) value += value.empty() ? "..." : " ...";
+    text += roff_entry(option.name, value, option.about);
+  }
+  return text;
+}
+
+// Completion.
+
+using Offers = std::vector<std::pair<std::string, std::string>>;
+
+void offer_words(const OptionText& option, Offers& offers) {
+  for (const std::string& word : option.words) offers.emplace_back(word, "");
+}
+
+bool takes_value(const OptionText& option, const std::string& word) {
+  return !option.is_argument() && !option.value.empty() && option.name == word;
+}
+
+Offers offers_of(const CommandText& command, const std::vector<std::string>& words) {
+  Offers offers;
+  std::size_t place = 0;  // of the last word among the arguments
+  const OptionText* open = nullptr;
+  for (std::size_t i = 1; i + 1 < words.size(); ++i) {
+    const OptionText* before = std::exchange(open, nullptr);
+    if (before != nullptr) continue;
+    for (const OptionText& option : command.options) {
+      if (takes_value(option, words[i])) open = &option;
+    }
+    if (!words[i].starts_with('-')) ++place;
+  }
+  if (open != nullptr) {
+    offer_words(*open, offers);
+  } else if (words.back().starts_with('-')) {
+    for (const OptionText& option : command.options) {
+      if (!option.is_argument())
+        offers.emplace_back(option.name, option.about.substr(0, option.about.find(';')));
+    }
+    offers.emplace_back("--help", "explain this command");
+  } else {
+    for (const OptionText& option : command.options) {
+      if (!option.is_argument()) continue;
+      if (place == 0 || option.repeats) offer_words(option, offers);
+      if (place-- == 0 || option.repeats) break;
+    }
+  }
+  return offers;
+}
+
+Offers offers_of(const std::vector<CommandText>& commands, std::vector<std::string>& words) {
+  Offers offers;
+  const bool is_help = words.size() == 2 && words.front() == "help";
+  if (words.size() == 1 || is_help) {
+    for (const CommandText& command : commands) offers.emplace_back(command.name, command.summary);
+    if (is_help) return offers.emplace_back("all", "every command"), offers;
+    offers.insert(offers.end(), {{"help", "explain a command"}, {"--help", ""}, {"--version", ""}});
+    return offers;
+  }
+  const auto command = std::ranges::find(commands, words.front(), &CommandText::name);
+  return command == commands.end() ? Offers{} : offers_of(*command, words);
+}
+
+}  // namespace
+
+std::string overview(const std::vector<CommandText>& commands) {
+  std::string text = fmt::format("{}\n\n", purpose);
+  text += R"(Examples:
+  assay init suite       a file of claims that runs at once
+  assay check 'mean(luminaire/area) == analytic' --detect 0.5%
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr'
+
+Commands of the first hour:
+)";
+  for (const char* name : of_the_first_hour) {
+    text += entry(*std::ranges::find(commands, name, &CommandText::name));
+  }
+  text += R"(
+`assay COMMAND --help` explains a command; `assay help all` lists all commands
+and exit codes; `assay man` prints the whole as a manual page.
+`assay completion bash|zsh|fish` prints what completes commands in a shell.
+
+Options:
+  -h, --help   this text
+  --version    version and commit
+)";
+  return text;
+}
+
+std::string help_of_all(const std::vector<CommandText>& commands) {
+  std::string text = "Commands (each has its own --help, with examples and defaults):\n";
+  for (const CommandText& command : commands) text += entry(command);
+  text +=
+      entry("  help", "the first page, or that of a command: `assay help run`", list_column, 80);
+  return text + "\nExit codes:\n" + exit_code_lines();
+}
+
+std::string help_of(const CommandText& command) {
+  constexpr std::size_t column = 30;
+  constexpr std::size_t width = 100;
+  std::string arguments;
+  std::string options;
+  for (const OptionText& option : command.options) {
+    (option.is_argument() ? arguments : options) +=
+        entry("  " + called(option), option.about, column, width);
+  }
+  options += entry("  -h, --help", "this text", column, width);
+  if (!arguments.empty()) arguments = "Arguments:\n" + arguments + "\n";
+  return fmt::format("{}\nUsage: {}\n\n{}Options:\n{}", command.about, usage(command), arguments,
+                     options);
+}
+
+std::string man_page(const std::vector<CommandText>& commands) {
+  std::string text = fmt::format(
+      ".TH ASSAY 1 \"\" \"assay {0}\" \"\"\n.SH NAME\nassay \\- test claims about Monte Carlo "
+      "estimators\n.SH SYNOPSIS\n.B assay\n\\fICOMMAND\\fR [\\fIOPTIONS\\fR] "
+      "[\\fIARGUMENTS\\fR]\n.SH DESCRIPTION\n{1}.SH COMMANDS\n",
+      version(), paragraph(purpose));
+  for (const CommandText& command : commands) text += roff_section(command);
+  text += ".SH EXIT STATUS\n";
+  for (const auto& [code, meaning] : exit_codes) text += roff_entry(code, "", meaning);
+  return text;
+}
+
+std::string completions(const std::vector<CommandText>& commands,
+                        const std::vector<std::string>& typed) {
+  std::vector<std::string> words = typed;
+  if (words.empty()) words.emplace_back();
+  // `--option=value` is two words, of which the first stays before each offer.
+  std::string kept;
+  const std::size_t equals = words.back().find('=');
+  if (words.back().starts_with("--") && equals != std::string::npos) {
+    kept = words.back().substr(0, equals + 1);
+    words.push_back(words.back().substr(equals + 1));
+    words[words.size() - 2] = kept.substr(0, equals);
+  }
+  // A file follows `json=`.
+  if (words.size() > 1 && words.back().find('=') != std::string::npos) return "*\t\n";
+  std::string text;
+  for (const auto& [word, about] : offers_of(commands, words)) {
+    if (word.find('*') != std::string::npos) {
+      text += word + "\t\n";
+    } else if (word.starts_with(words.back())) {
+      text += fmt::format("{}{}\t{}\n", kept, word, about);
+    }
+  }
+  return text;
+}
+
+}  // namespace assay::harness

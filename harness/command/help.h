@@ -1,0 +1,42 @@
+#pragma once
+
+// The rows of options make all that users read and complete of the command line.
+
+#include <string>
+#include <vector>
+
+namespace assay::harness {
+
+struct OptionText {
+  std::string name;   ///< "--seed"; an argument's is without dashes.
+  std::string value;  ///< "N|random"; of an argument what the usage line shows.
+  std::string about;
+  std::vector<std::string> words;  ///< Completion offers them; one with a `*` stands for files.
+  bool needed = false;
+  bool repeats = false;
+
+  bool is_argument() const { return !name.starts_with('-'); }
+};
+
+struct CommandText {
+  std::string name;
+  std::string summary;  ///< a line in the list of commands
+  std::string about;    ///< what it does, then examples
+  std::vector<OptionText> options;
+};
+
+/// `assay --help`: the first hour, in 24 lines of 80 columns.
+std::string overview(const std::vector<CommandText>& commands);
+/// `assay help all`.
+std::string help_of_all(const std::vector<CommandText>& commands);
+/// `assay COMMAND --help`, in lines of 100 columns.
+std::string help_of(const CommandText& command);
+/// assay.1, in the language of man pages.
+std::string man_page(const std::vector<CommandText>& commands);
+
+/// Lists what may stand in the place of the last of the words after `assay`. Each line has a word, a
+/// tab and its description.
+std::string completions(const std::vector<CommandText>& commands,
+                        const std::vector<std::string>& words);
+
+}  // namespace assay::harness
