@@ -5,8 +5,9 @@ include(CMakePackageConfigHelpers)
 
 set(ASSAY_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/assay)
 install(TARGETS assay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES ${PROJECT_BINARY_DIR}/prefix/share/man/man1/assay.1
-  DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+set(page ${PROJECT_BINARY_DIR}/assay.1)
+install(CODE "execute_process(COMMAND \"$<TARGET_FILE:assay>\" man OUTPUT_FILE \"${page}\")")
+install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 set(scripts ${PROJECT_SOURCE_DIR}/harness/command/completion)
 set(data ${CMAKE_INSTALL_DATADIR})
 install(FILES ${scripts}/assay.bash DESTINATION ${data}/bash-completion/completions RENAME assay)
