@@ -265,6 +265,15 @@ Examples:
   options.add({"--samples", "N"}, given.samples,
               "of how many samples the means of one picture with its variance are, or the channel "
               "that counts them; default its own word");
+  options.choice("--means", given.question, ImageQuestion::means,
+                 "are the means equal? the default");
+  options.choice(
+      "--paired", given.question, ImageQuestion::paired,
+      "are the means of differences 0? pictures of one name or number have one seed: finds "
+      "much less");
+  options.choice(
+      "--law", given.question, ImageQuestion::law,
+      "do pictures have one law, as of one renderer with other seeds? exact for any noise");
   options.add({"--detect", "X"}, given.detect,
               "the difference over the whole picture that must not pass, as 0.5% or 0.002; default "
               "none");

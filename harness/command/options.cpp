@@ -152,6 +152,14 @@ void Options::flag(const std::string& name, const std::string& about, bool& targ
   rows_.push_back({app_.add_flag(name), {name, "", Replay::nowhere}, about, false, set});
 }
 
+void Options::add_choice(const std::string& name, const std::string& about,
+                         std::function<void()> take) {
+  CLI::Option* const option = app_.add_flag(name, about);
+  for (CLI::Option* const other : choices_) option->excludes(other);
+  choices_.push_back(option);
+  rows_.push_back({option, {name}, false, [take](const std::string&) { take(); }});
+}
+
 void Options::read_values() const {
   const std::string command = app_.get_name();
   for (const Row& row : rows_) {
@@ -169,7 +177,9 @@ void Options::read_values() const {
     for (const Row& row : rows_) {
       const bool argument = row.option->get_positional();
       if ((argument ? Replay::first : row.name.replay) != place) continue;
-      *replay_line_ += option_words(argument ? "" : row.name.name, row.given());
+      const bool flag = row.option->get_expected_max() == 0;
+      if (flag && row.option->count() > 0) *replay_line_ += " " + row.name.name;
+      if (!flag) *replay_line_ += option_words(argument ? "" : row.name.name, row.given());
     }
   }
 }

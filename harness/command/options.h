@@ -62,6 +62,11 @@ class Options {
     add(name, target, as_typed, about);
   }
   void flag(const std::string& name, const std::string& about, bool& target);
+  /// A flag that chooses one answer to a question of the tests; another answer's flag refuses it.
+  template <class Target>
+  void choice(const std::string& name, Target& target, Target answer, const std::string& about) {
+    add_choice(name, about, [&target, answer] { target = answer; });
+  }
 
   /// The line that repeats a test goes there.
   void repeat_by(std::string& line) { replay_line_ = &line; }
@@ -81,12 +86,14 @@ class Options {
 
     Texts given() const;
   };
+  void add_choice(const std::string& name, const std::string& about, std::function<void()> take);
   void add_row(const OptionName& name, const std::string& about, bool repeats,
                std::function<void(const std::string&)> take);
 
   CLI::App& app_;
   std::string about_ = "";
   std::vector<Row> rows_ = {};
+  std::vector<CLI::Option*> choices_ = {};
   std::string* replay_line_ = nullptr;
   std::function<void()> afterwards_ = [] {};
 };

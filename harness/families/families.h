@@ -32,6 +32,7 @@ const Theta& theta_of_means();
 const Theta& theta_of_biases();
 const Theta& theta_of_images();
 const Theta& theta_of_bias_images();
+const Theta& theta_of_image_laws();
 const Theta& theta_of_variances();
 const Theta& theta_of_costs();
 const Theta& theta_of_efficiencies();

@@ -2,7 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 
+#include "estimators/ready_made.h"
 #include "harness/families/families.h"
 #include "harness/plan/image_plan.h"
 #include "harness/question/question_sources.h"
@@ -71,21 +73,67 @@ void require_something(const Question& question) {
   }
 }
 
+// ---- Pairs
+
+std::string counts_text(const Question& question) {
+  std::string words;
+  for (const Subject& side : question.subjects) {
+    const auto count = side.setup->observations();
+    words += fmt::format("{}`{}` {}", words.empty() ? "" : ", ", side.estimator->name,
+                         count ? fmt::format("has {} pictures", *count) : "is drawn");
+  }
+  return words + ": each picture needs a partner of the same seed on the other side";
+}
+
+/// What partners have in common: the file's name, or else its last number.
+std::string last_number(const std::string& file) {
+  const std::size_t end = file.find_last_of("0123456789");
+  if (end == std::string::npos) return "";
+  const std::size_t before = file.find_last_not_of("0123456789", end);
+  const std::string digits = file.substr(before + 1, end - before);
+  return digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1));
+}
+
+bool are_partners(const std::string& one, const std::string& other) {
+  const std::filesystem::path first(one);
+  const std::filesystem::path second(other);
+  if (first.filename() == second.filename()) return true;
+  const std::string number = last_number(first.stem().string());
+  return !number.empty() && number == last_number(second.stem().string());
+}
+
+void require_partners(const Question& question) {
+  const Setup& first = *question.subjects[0].setup;
+  const Setup& second = *question.subjects[1].setup;
+  for (std::uint64_t i = 0; i < *first.observations(); ++i) {
+    const std::string one = recorded::observation_place(first, {.index = i});
+    const std::string other = recorded::observation_place(second, {.index = i});
+    if (are_partners(one, other)) continue;
+    refuse(question, fmt::format("`{}` and `{}` have neither name nor number in common: a pair of "
+                                 "one seed has the same file name, or the same last number in it",
+                                 one, other));
+  }
+}
+
 /// Theta is the size of the difference of two images' means over all elements, or of one image and
 /// numbers (image_evidence.h).
 class ImageTheta : public Theta {
  public:
-  ImageTheta() : Theta({.joins_channels = true, .of_images = true}) {}
+  ImageTheta() : ImageTheta({.joins_channels = true, .of_images = true}) {}
+  explicit ImageTheta(const ThetaTraits& traits) : Theta(traits) {}
 
   const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        {"image",
-         "cells of every size, and alternating sums: images",
-         any_question, Keeps::images, nullptr, {}}};
+    static const std::vector<MethodRow> table{{"image",
+                                               "cells of every size, and alternating sums: images",
+                                               any_question,
+                                               Keeps::images,
+                                               nullptr,
+                                               {}}};
     return table;
   }
 
   const Theta* of_images() const override { return this; }
+  const Theta* of_pairs() const override;
   /// InputError for inequalities, images of unequal sizes, an image against something else, a
   /// number with an error, and a relative margin of a zero image.
   void check(const Question& question) const override {
@@ -153,6 +201,7 @@ class ImageTheta : public Theta {
 
 class BiasImageTheta final : public ImageTheta {
  public:
+  const Theta* of_pairs() const override { return nullptr; }
   std::string claimed_value(const Question& question, std::size_t) const override {
     return fmt::format("{}", question.offset);
   }
@@ -164,12 +213,74 @@ class BiasImageTheta final : public ImageTheta {
   }
 };
 
+/// Theta is the size of the mean of differences of images that share their random numbers.
+class PairedImageTheta final : public ImageTheta {
+ public:
+  std::string circumstances(const Question& question) const override {
+    return ImageTheta::circumstances(question) + ", in pairs of equal random numbers";
+  }
+  void check(const Question& question) const override {
+    ImageTheta::check(question);
+    const Setup& first = *question.subjects[0].setup;
+    const Setup& second = *question.subjects[1].setup;
+    if (first.observations() != second.observations()) refuse(question, counts_text(question));
+    if (first.observations()) require_partners(question);
+    if (question.subjects[0].estimator->primaries != question.subjects[1].estimator->primaries) {
+      refuse(question,
+             "a pair shares its random numbers only with as many `primaries` on both "
+             "sides");
+    }
+  }
+};
+
+/// Theta is 0 if both images have one law. It has no size.
+class ImageLawTheta final : public ImageTheta {
+ public:
+  ImageLawTheta()
+      : ImageTheta({.joins_channels = true, .of_single_values = true, .of_a_law = true}) {}
+
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{{"permutation",
+                                               "permutation of labels: laws of two images",
+                                               any_question,
+                                               Keeps::images,
+                                               nullptr,
+                                               {.exact = true}}};
+    return table;
+  }
+  const Theta* of_pairs() const override { return nullptr; }
+  void check(const Question& question) const override {
+    if (!question.of_two()) {
+      refuse(question,
+             "the law of an image is compared with that of another image, as in "
+             "`distribution(new) == distribution(old)`");
+    }
+    ImageTheta::check(question);
+  }
+  void check_margin(const Question&, const Margin& margin) const override {
+    throw InputError(margin.where,
+                     "laws of images are the same or not: no margin has a meaning here; leave it "
+                     "out");
+  }
+  ChannelEvidence evidence(const DrawnTest& test, std::size_t,
+                           std::span<const ChannelData> data) const override {
+    ImageEvidence found =
+        evidence_of_image_laws(test.outcome.question, {.share = test.outcome.share()}, data);
+    return {.evidence = std::move(found.evidence), .image = std::move(found.outcome)};
+  }
+};
+
+const ImageLawTheta image_law_theta;
+const PairedImageTheta paired_image_theta;
 const ImageTheta image_theta;
 const BiasImageTheta bias_image_theta;
 
 }  // namespace
 
+const Theta* ImageTheta::of_pairs() const { return &paired_image_theta; }
+
 const Theta& theta_of_images() { return image_theta; }
+const Theta& theta_of_image_laws() { return image_law_theta; }
 const Theta& theta_of_bias_images() { return bias_image_theta; }
 
 }  // namespace assay::harness

@@ -127,6 +127,7 @@ class LawTheta : public Theta {
   using Theta::Theta;
 
   const std::vector<MethodRow>& methods() const override { return rows(); }
+  const Theta* of_images() const override { return &theta_of_image_laws(); }
 
   void check_margin(const Question& question, const Margin& margin) const override {
     require_absolute(margin, "a distance between laws is a probability");

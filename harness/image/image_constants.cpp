@@ -67,6 +67,19 @@ class DeclaredElements {
     for (Declared& channel : each_) channel = mapped(channel);
   }
 
+  /// Makes them the declarations of differences.
+  void subtract(const DeclaredElements& other) {
+    const auto difference = [](const Declared& a, const Declared& b) {
+      return Declared{a.low - b.high, a.high - b.low, a.rounding + b.rounding};
+    };
+    std::vector<Declared> each;
+    for (std::size_t i = 0; i < std::max(each_.size(), other.each_.size()); ++i) {
+      each.push_back(difference((*this)[i], other[i]));
+    }
+    any_ = difference(any_, other.any_);
+    each_ = std::move(each);
+  }
+
  private:
   Declared any_{Channel().low, Channel().high, Channel().rounding};
   std::vector<Declared> each_;
@@ -136,6 +149,12 @@ Declared mapped(const Declared& channel, const Question& question) {
           .rounding = channel.rounding * std::abs(question.factor)};
 }
 
+DeclaredElements mapped_elements(const Question& question) {
+  DeclaredElements second(question.subjects[1]);
+  second.map([&](const Declared& channel) { return mapped(channel, question); });
+  return second;
+}
+
 }  // namespace
 
 double z_of(const UnseenElement& unseen) {
@@ -162,7 +181,8 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
   const stats::ImageReference reference = pair.reference();
   value_.assign(reference.value.begin(), reference.value.end());
   error_.assign(reference.standard_error.begin(), reference.standard_error.end());
-  const DeclaredElements channels(question.subjects[0]);
+  DeclaredElements channels(question.subjects[0]);
+  if (question.test->paired) channels.subtract(mapped_elements(question));
   Spans spans;
   bool constants = false;
   std::vector<Replacement> replacements;
@@ -189,8 +209,7 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
 template <class Real>
 void VaryingPart<Real>::settle_two(const Question& question) {
   const DeclaredElements one(question.subjects[0]);
-  DeclaredElements two(question.subjects[1]);
-  two.map([&](const Declared& channel) { return mapped(channel, question); });
+  const DeclaredElements two = mapped_elements(question);
   std::vector<Replacement> of_first;
   std::vector<Replacement> of_second;
   Spans first_spans;

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
+#include "estimators/stream.h"
 #include "harness/base/parallel.h"
 #include "harness/image/image_uniform.h"
 #include "harness/sampling/picture_look.h"
@@ -13,6 +16,7 @@
 #include "stats/basics/errors.h"
 #include "stats/basics/moments.h"
 #include "stats/images/image_equivalence.h"
+#include "stats/images/image_law.h"
 #include "stats/images/image_reference_error.h"
 #include "stats/pyramids/image_pyramid.h"
 #include "stats/tails/tails.h"
@@ -70,12 +74,23 @@ stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
 }
 
 template <class Real>
+stats::ImageDistance relative_to(const stats::ImageDistance& distance,
+                                 const stats::ImageStack<Real>& other) {
+  const std::vector<double> zeros(other.extent.elements());
+  return stats::relative_to(
+      distance,
+      stats::image_distance(other, stats::ImageReference{other.extent, zeros}, on_all_threads));
+}
+
+template <class Real>
 stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative,
                                  stats::ElementErrors errors) {
   stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
     return stats::image_distance(first, second, on_all_threads);
   });
-  if (!pair.of_two()) {
+  if (const auto* const subtracted = pair.subtracted()) {
+    distance = relative_to(distance, *subtracted);
+  } else if (!pair.of_two()) {
     distance = stats::with_reference_error(distance, pair.first(), pair.reference(), errors);
   }
   return in_units_of_margin(distance, pair.extent(), relative);
@@ -83,9 +98,13 @@ stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative,
 
 template <class Real>
 double uniform_error(const ImagePair<Real>& pair, bool relative) {
-  return uniform_error(
-      channel_means(pair.first()),
-      pair.of_two() ? channel_means(pair.second()) : channel_means(pair.reference()), relative);
+  ChannelMeans other =
+      pair.of_two() ? channel_means(pair.second()) : channel_means(pair.reference());
+  if (const auto* const subtracted = pair.subtracted()) {
+    other = channel_means(*subtracted);
+    drop_errors(other);
+  }
+  return uniform_error(channel_means(pair.first()), other, relative);
 }
 
 /// Replicates at which theta would be excluded from `margin` on. The squared bias's standard error
@@ -115,6 +134,16 @@ stats::TestResult at_margin(const stats::ImageDistance& distance, double hidden,
   return result;
 }
 
+/// Tests of a theta that is known exactly.
+stats::TestResult at_exactly(double known, double theta) {
+  const double never = std::numeric_limits<double>::lowest();
+  return {.statistic = known - theta,
+          .distribution = {"exact", {}},
+          .log_p_lower = known < theta ? never : 0,
+          .log_p_upper = known > theta ? never : 0,
+          .exactness = stats::Exactness::exact};
+}
+
 /// Values of theta that at_margin does not reject, found by the square root's signed square.
 stats::Interval interval_of(const stats::ImageDistance& distance, double hidden,
                             double confidence) {
@@ -138,8 +167,14 @@ std::string all_alike(const Question& question) {
   return words + " are alike";
 }
 
+/// Pictures of files that are alike and were not refused have no noise, such as a layer of depth.
+/// What is drawn should vary.
 void require_spread(const Question& question, bool any, const stats::ImageDistance& distance) {
   if (any && distance.bias_variance > 0) return;
+  const bool files = std::ranges::all_of(question.subjects, [](const Subject& side) {
+    return side.setup->observations().has_value();
+  });
+  if (files && !any) return;
   throw stats::ZeroVariance(fmt::format(
       "{}: without spread nothing can be said of what was never seen; see that the seed changes "
       "the image, take fewer `primaries`, or more observations",
@@ -187,7 +222,89 @@ std::string range_text(std::int64_t first, std::uint32_t count, const char* name
   return fmt::format("{}s {}-{}", name, first, first + count - 1);
 }
 
+// ---- Laws
+
+constexpr double least_permutations = 999;
+// A test that rejects draws so many times the fewest that can.
+constexpr double permutations_over_fewest = 10;
+
+/// All subsets of one size are alike: the first steps of Fisher and Yates's shuffle.
+std::vector<std::uint32_t> drawn_subset(StreamKey key, std::uint64_t index, std::size_t count,
+                                        std::size_t size) {
+  std::vector<std::uint32_t> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  Stream stream(key, index);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double rest = static_cast<double>(count - i);
+    std::swap(all[i], all[i + static_cast<std::size_t>(stream.uniform() * rest)]);
+  }
+  all.resize(size);
+  return all;
+}
+
+std::string seen_text(const stats::ImageLawFinding& most) {
+  const bool more = most.z > 0;
+  switch (most.score) {
+    case stats::ImageScore::value:
+      return more ? "the mean is larger" : "the mean is smaller";
+    case stats::ImageScore::rank:
+      return more ? "the values are mostly larger" : "the values are mostly smaller";
+    case stats::ImageScore::spread:
+      break;
+  }
+  return more ? "the values spread more" : "the values spread less";
+}
+
+template <class Real>
+stats::ImageLawTest law_test_of(const Question& question, const ImageTest& test,
+                                const ImagePair<Real>& pair) {
+  return stats::image_law_test(
+      pair.first(), pair.second(),
+      {.permutations = static_cast<std::size_t>(
+           std::max(least_permutations, permutations_over_fewest / test.share.alpha - 1)),
+       .draw = [key = question.labels](
+                   std::uint64_t index, std::size_t count,
+                   std::size_t size) { return drawn_subset(key, index, count, size); },
+       .for_each = on_all_threads});
+}
+
 }  // namespace
+
+ImageEvidence evidence_of_image_laws(const Question& question, const ImageTest& test,
+                                     std::span<const ChannelData> data) {
+  ImageEvidence result;
+  stats::ImageLawTest law = with_pair(question, data, [&](const auto& pair) {
+    result.outcome.replicates = pair.most_replicates();
+    return law_test_of(question, test, pair);
+  });
+  const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
+  stats::ImageFinding most{.size = law.most.window.width,
+                           .window = law.most.window,
+                           .channel = law.most.channel,
+                           .z = law.most.z,
+                           .log_p = law.log_p,
+                           .adjusted_log_p = law.log_p};
+  result.outcome.family = {
+      .log_p = law.log_p, .winner = most, .groups = {most}, .tested = extent.elements()};
+  result.outcome.seen = seen_text(law.most);
+  result.outcome.z = std::move(law.z);
+  const stats::TestResult equal{
+      .statistic = law.most.z,
+      .distribution = {"permutation", {static_cast<double>(law.permutations)}},
+      .log_p_lower = 0,
+      .log_p_upper = law.log_p,
+      .exactness = stats::Exactness::exact};
+  result.evidence = {.estimate = std::abs(law.most.z),
+                     .at = [equal](double) { return equal; },
+                     .interval =
+                         [](double confidence) {
+                           constexpr double unknown = std::numeric_limits<double>::infinity();
+                           return stats::Interval{-unknown, unknown, confidence};
+                         },
+                     .quantity = "largest z of a cell",
+                     .distance = true};
+  return result;
+}
 
 std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape) {
   const std::string component =
@@ -240,20 +357,24 @@ ImageEvidence evidence_of_images(const Question& question, const ImageTest& test
       .log_p_lower = 0,
       .log_p_upper = family.log_p,
       .exactness = stats::Exactness::asymptotic};
-  result.evidence = {
-      .estimate = std::sqrt(std::max(0.0, distance.squared_bias / distance.squared_norm)),
-      .at =
-          [distance, hidden, equal](double theta) {
-            return theta > 0 ? at_margin(distance, hidden, theta) : equal;
-          },
-      .interval =
-          [distance, hidden](double confidence) {
-            return interval_of(distance, hidden, confidence);
-          },
-      .quantity = relative ? "relative root mean square difference of the images"
-                           : "root mean square difference of the images",
-      .relative = relative,
-      .distance = true};
+  const double estimate = std::sqrt(std::max(0.0, distance.squared_bias / distance.squared_norm));
+  const bool exact = !(distance.bias_variance > 0);
+  result.evidence = {.estimate = estimate,
+                     .at =
+                         [=](double theta) {
+                           if (theta > 0 && exact) return at_exactly(estimate, theta);
+                           return theta > 0 ? at_margin(distance, hidden, theta) : equal;
+                         },
+                     .interval =
+                         [=](double confidence) {
+                           return exact ? stats::Interval{estimate, estimate, confidence}
+                                        : interval_of(distance, hidden, confidence);
+                         },
+                     .quantity = relative ? "relative root mean square difference of the images"
+                                          : "root mean square difference of the images",
+                     .relative = relative,
+                     .distance = true,
+                     .exact = exact};
   return result;
 }
 

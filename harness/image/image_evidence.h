@@ -27,6 +27,7 @@ struct ImageOutcome {
   std::vector<UnseenElement> unseen = {};
   std::vector<double> z = {};  ///< For every element: Welch's, or of the bound on the unseen.
   std::size_t replicates = 0;  ///< The larger side's.
+  std::string seen = {};       ///< What differs at the place, of a test of laws.
   double wanted = 0;           ///< Replicates that would decide, roughly; 0: none.
   double uniform_error = 0;    ///< Standard error of a theta that is the same everywhere.
 };
@@ -39,6 +40,10 @@ struct ImageEvidence {
 /// Throws std::domain_error for fewer than 16 replicates, and if nothing varies.
 ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
                                  std::span<const ChannelData> data);
+
+/// Evidence that two images have different laws (stats/images/image_law.h). Theta is 0 or not.
+ImageEvidence evidence_of_image_laws(const Question& question, const ImageTest& test,
+                                     std::span<const ChannelData> data);
 
 /// The place of a finding: "columns 8-15, rows 16-23 of red (8 x 8 pixels), z = +6.1".
 std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape);

@@ -1,6 +1,7 @@
 #include "harness/image/image_pair.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace assay::harness {
 namespace {
@@ -54,6 +55,7 @@ ImagePair<Real>::ImagePair(const Question& question, std::span<const ChannelData
   if (question.of_two()) {
     second_ = stats::ImageStack<Real>{
         extent_, images_of<Real>(data[1].images, mapping_of(question, 1), made_[1])};
+    if (question.test->paired) subtract();
     return;
   }
   for (const Constant& reference : question.references) {
@@ -61,6 +63,21 @@ ImagePair<Real>::ImagePair(const Question& question, std::span<const ChannelData
     error_.push_back(reference.standard_error);
   }
   if (std::all_of(error_.begin(), error_.end(), [](double e) { return e == 0; })) error_.clear();
+}
+
+template <class Real>
+void ImagePair<Real>::subtract() {
+  subtracted_ = std::move(second_);
+  second_.reset();
+  std::vector<std::vector<Real>> differences;
+  for (std::size_t i = 0; i < std::min(first_.images.size(), subtracted_->images.size()); ++i) {
+    std::vector<Real>& difference = differences.emplace_back(extent_.elements());
+    std::ranges::transform(first_.images[i], subtracted_->images[i], difference.begin(),
+                           std::minus<>());
+  }
+  differences_ = ImageViews(std::move(differences));
+  first_.images = differences_.images<Real>();
+  value_.assign(extent_.elements(), 0);
 }
 
 bool in_single_precision(const Question& question, std::span<const ChannelData> data) {

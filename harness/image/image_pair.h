@@ -14,7 +14,7 @@ namespace assay::harness {
 stats::ImageExtent extent_of(const ImageShape& shape);
 
 /// Replicates of an image, and their comparison: scaled replicates of another image, or a number
-/// for each element.
+/// for each element. Of a paired claim the replicates are differences, which are held against 0.
 template <class Real>
 class ImagePair {
  public:
@@ -35,6 +35,10 @@ class ImagePair {
   const stats::ImageStack<Real>& first() const { return first_; }
   const stats::ImageStack<Real>& second() const { return *second_; }
   stats::ImageReference reference() const { return {extent_, value_, error_}; }
+  /// The replicates that were subtracted in pairs; null if none were.
+  const stats::ImageStack<Real>* subtracted() const {
+    return subtracted_ ? &*subtracted_ : nullptr;
+  }
 
   /// Calls `use` with the first stack and its comparison, and returns the result.
   template <class Use>
@@ -43,10 +47,14 @@ class ImagePair {
   }
 
  private:
+  void subtract();
+
   stats::ImageExtent extent_;
   ImageViews made_[2];  // for a side that is scaled or widened
+  ImageViews differences_;
   stats::ImageStack<Real> first_;
   std::optional<stats::ImageStack<Real>> second_;
+  std::optional<stats::ImageStack<Real>> subtracted_;
   std::vector<double> value_;
   std::vector<double> error_;
 };

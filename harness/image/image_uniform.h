@@ -20,6 +20,11 @@ ChannelMeans channel_means(const std::vector<double>& sums, const stats::ImageEx
 /// Means of numbers whose errors are independent between pixels.
 ChannelMeans channel_means(const stats::ImageReference& reference);
 
+/// Makes means the unit of something else.
+inline void drop_errors(ChannelMeans& means) {
+  for (Constant& mean : means) mean.standard_error = 0;
+}
+
 /// Standard error of a theta that is the same everywhere, in the best channel: absolute, or a part
 /// of the second's mean.
 double uniform_error(const ChannelMeans& first, const ChannelMeans& second, bool relative);

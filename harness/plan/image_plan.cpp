@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "harness/base/parallel.h"
+#include "harness/image/image_pair.h"
 #include "harness/plan/repeated_images.h"
 #include "harness/plan/secondaries.h"
 #include "harness/sampling/image_views.h"
@@ -66,12 +67,44 @@ PilotImage pilot_image(const Subject& subject, const Pilot& pilot) {
                     stack_of(views, extent_of(*subject.image)));
 }
 
+/// The noise of differences, and the brightness of what is subtracted.
+PilotImage pilot_of_differences(const Question& question, const Pilots& pilots) {
+  std::vector<ChannelData> data(2);
+  for (std::size_t s = 0; s < 2; ++s) {
+    data[s].images =
+        ImageViews(pilot_at(question, s, pilots).images, question.subjects[s].channels);
+  }
+  return with_pair(question, data, [](const auto& pair) {
+    return PilotImage{.noise = pilot_image(pair.first()).noise,
+                      .squared_norm = pilot_image(*pair.subtracted()).squared_norm};
+  });
+}
+
+/// The noise of an observation, and the brightness that margins are relative to.
+PilotImage planned_image(const Question& question, const Pilots& pilots, const Plan& plan) {
+  if (question.test->paired) {
+    PilotImage image = pilot_of_differences(question, pilots);
+    image.noise /= averaged(question, plan, 0);
+    return image;
+  }
+  PilotImage image;
+  double noise = 0;
+  for (std::size_t s = 0; s < question.subjects.size(); ++s) {
+    image = pilot_image(question.subjects[s], pilot_at(question, s, pilots));
+    const double factor = factor_of(question, s);
+    noise += factor * factor * image.noise / averaged(question, plan, s);
+  }
+  image.noise = noise;
+  image.squared_norm *= question.of_two() ? question.factor * question.factor : 1;
+  return image;
+}
+
 /// The square of the margins' unit.
 double squared_unit(const Question& question, const PilotImage& last) {
   if (!question.theta->is_relative(question, 0)) {
     return static_cast<double>(question.subjects[0].channels.size());
   }
-  if (question.of_two()) return question.factor * question.factor * last.squared_norm;
+  if (question.of_two()) return last.squared_norm;
   double sum = 0;
   for (const Constant& reference : question.references) {
     const double value = reference.value + question.offset;
@@ -101,21 +134,15 @@ std::optional<std::uint64_t> image_secondaries(const Question& question, const E
   const bool within = regions.relation == Relation::within;
   if ((!within && !regions.detect) || !all_pictured(question, pilots)) return std::nullopt;
   const double margin = within ? regions.within : *regions.detect;
-  double noise = 0;
-  PilotImage last;
-  for (std::size_t s = 0; s < question.subjects.size(); ++s) {
-    last = pilot_image(question.subjects[s], pilot_at(question, s, pilots));
-    const double factor = factor_of(question, s);
-    noise += factor * factor * last.noise / averaged(question, plan, s);
-  }
-  const double unit = squared_unit(question, last);
+  const PilotImage image = planned_image(question, pilots, plan);
+  const double unit = squared_unit(question, image);
   const double room = (margin * margin - regions.allow * regions.allow) * unit;
   if (!(room > 0)) return impossible_secondaries;
   std::uint64_t count = stats::least_replicates;
   while (count < impossible_secondaries) {
     const double n = static_cast<double>(count);
     const double t = -stats::student_t_quantile({stats::Tail::lower, std::log(share.beta)}, n - 1);
-    if (2 * t * noise / n <= room) break;
+    if (2 * t * image.noise / n <= room) break;
     count += count / 8 + 1;
   }
   return std::min(count, impossible_secondaries);

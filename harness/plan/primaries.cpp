@@ -59,6 +59,18 @@ Primaries choose_primaries(const std::vector<Question>& questions,
       primaries = std::max(primaries, std::bit_ceil(std::min(wanted, most_primaries)));
     }
   }
+  // Sides of a pair draw the same random numbers only if they draw as many.
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const Question& question : questions) {
+      if (!question.test->paired) continue;
+      const auto first = chosen.find(question.subjects[0].estimator->name);
+      const auto second = chosen.find(question.subjects[1].estimator->name);
+      if (first == chosen.end() || second == chosen.end()) continue;
+      moved = moved || first->second != second->second;
+      first->second = second->second = std::max(first->second, second->second);
+    }
+  }
   return chosen;
 }
 

@@ -69,6 +69,7 @@ struct Question {
   /// The truth for each subject and channel, about which a mean squared error in an efficiency or a
   /// bias in a slope is taken. Empty: the variance, or the mean itself.
   std::vector<std::vector<Constant>> truths = {};
+  StreamKey labels = {};           ///< Of the random labels of a permutation test.
   std::vector<double> sizes = {};  ///< For a slope: the values of the swept parameter.
 
   const ThetaTraits& is() const;

@@ -34,8 +34,9 @@ double mean_over(const DrawnTest& test, std::size_t subject,
   for (const std::size_t i : elements) {
     const double w = weights.empty() ? 1 : static_cast<double>(weights[i]);
     const double value =
-        numbers ? question.references[i].value + question.offset
-                : test.samples[subject].summary().moments(question.subjects[subject].channels[i]).mean;
+        numbers
+            ? question.references[i].value + question.offset
+            : test.samples[subject].summary().moments(question.subjects[subject].channels[i]).mean;
     sum += w * value;
     weight += w;
   }
@@ -80,18 +81,23 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
     return PlaceEffect{difference, {difference, difference, 1}, base};
   }
   const double half =
-      effect.margin + effect.standard_error *
-                          stats::student_t_quantile(
-                              {stats::Tail::upper, std::log((1 - confidence_at_place) / 2)},
-                              effect.degrees);
-  return PlaceEffect{.estimate = effect.estimate,
-                     .interval = {effect.estimate - half, effect.estimate + half,
-                                  confidence_at_place},
-                     .other = other_mean(test, elements, family.weights)};
+      effect.margin +
+      effect.standard_error *
+          stats::student_t_quantile({stats::Tail::upper, std::log((1 - confidence_at_place) / 2)},
+                                    effect.degrees);
+  return PlaceEffect{
+      .estimate = effect.estimate,
+      .interval = {effect.estimate - half, effect.estimate + half, confidence_at_place},
+      .other = other_mean(test, elements, family.weights)};
 }
 
 std::string means_where_it_differs(const DrawnTest& test) {
   if (test.outcome.verdict != reports::Verdict::fail) return "";
+  const std::string& seen = test.outcome.channels[0].image->seen;
+  if (!seen.empty()) {
+    return fmt::format("; there {} in `{}`", seen,
+                       test.outcome.question.subjects[0].estimator->name);
+  }
   const std::optional<PlaceEffect> effect = effect_at_place(test);
   if (!effect) return "";
   const bool relative = effect->other != 0;
@@ -115,7 +121,7 @@ std::optional<double> detectable_uniformly(const TestOutcome& outcome, const Tes
   const double shrunk =
       std::sqrt(static_cast<double>(outcome.secondaries()) / static_cast<double>(size.secondaries));
   const double found = z * channel.image->uniform_error * shrunk;
-  if (!std::isfinite(found)) return {};
+  if (!std::isfinite(found) || !(found > 0)) return {};
   return found;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <stdexcept>
 
 #include "estimators/ready_made.h"
@@ -131,6 +132,7 @@ class Looking {
       of_pictures_.emplace_back(pictures_);
       of_channels_.emplace_back(pictures_ * extent_.channels);
     }
+    if (question.test->paired) zeros_.resize(extent_.elements());
   }
 
   StreamedPictures take_all(Progress& progress) {
@@ -209,25 +211,61 @@ class Looking {
 
   void take(stats::RowRange rows) {
     const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
-    const stats::ImagePair<float> pair = stats::pair_of(stacks[0], stacks[1]);
+    const stats::ImagePair<float> both = stats::pair_of(stacks[0], stacks[1]);
+    sums_.take(both, rows);
+    for (std::size_t s = 0; s < sides_.size(); ++s) {
+      stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
+    }
+    if (question_.test->paired) {
+      const Stack differences = subtract(stacks);
+      const stats::ImageReference zero{extent_, zeros_};
+      take(stats::pair_of(differences, zero), {differences, stacks[1]}, rows);
+      norm_.take(stats::pair_of(stacks[1], zero), rows, on_all_threads);
+    } else {
+      take(both, {stacks[0], stacks[1]}, rows);
+    }
+  }
+
+  /// What is tested, and whose means are compared.
+  void take(const stats::ImagePair<float>& pair,
+            std::array<std::reference_wrapper<const Stack>, 2> compared, stats::RowRange rows) {
     if (rows.first == 0) {
       pyramid_.emplace(pair, stats::PyramidOptions{.z = look_->z, .for_each = on_all_threads});
     }
-    sums_.take(pair, rows);
     for (std::size_t s = 0; s < sides_.size(); ++s) {
-      stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
-      stats::add_to_channel_sums(of_channels_[s], stacks[s], rows.elements(extent_),
+      stats::add_to_channel_sums(of_channels_[s], compared[s].get(), rows.elements(extent_),
                                  on_all_threads);
     }
     distance_.take(pair, rows, on_all_threads);
     pyramid_->take(pair, rows);
   }
 
+  /// Pictures less their partners, in the rows that are there.
+  Stack subtract(const Stack (&stacks)[2]) {
+    Stack differences{extent_, {}, stacks[0].there};
+    const std::size_t size = stacks[0].there.size();
+    differences_.resize(pictures_ * size);
+    for (std::size_t i = 0; i < pictures_; ++i) {
+      const std::span<float> of(differences_.data() + i * size, size);
+      differences.images.emplace_back(of);
+    }
+    on_all_threads(pictures_, [&](std::size_t i) {
+      std::ranges::transform(stacks[0].images[i], stacks[1].images[i],
+                             differences_.begin() + static_cast<std::ptrdiff_t>(i * size),
+                             std::minus<>());
+    });
+    return differences;
+  }
+
   void finish() {
     look_->distance = distance_.distance();
+    if (question_.test->paired) {
+      look_->distance = stats::relative_to(look_->distance, norm_.distance());
+    }
     look_->family = pyramid_->family();
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       look_->means.push_back(channel_means(of_channels_[s], extent_));
+      if (question_.test->paired && s > 0) drop_errors(look_->means[s]);
       for (double& sum : of_pictures_[s]) sum /= static_cast<double>(extent_.elements());
     }
   }
@@ -242,6 +280,10 @@ class Looking {
   std::vector<std::vector<double>> of_channels_;  // sums of each picture's channels
   stats::RowDistance<float> distance_;
   std::optional<Pyramid> pyramid_;
+  // Of a paired claim:
+  std::vector<float> differences_;
+  std::vector<double> zeros_;
+  stats::RowDistance<float> norm_;
 };
 
 bool is_streamed(const Subject& side, const Subject& other) {

@@ -40,11 +40,14 @@ ImageViews::ImageViews(const Observations& observations, std::span<const std::si
   }
 }
 
-ImageViews::ImageViews(std::vector<std::vector<double>> images) {
-  Kept<double>& kept = kept_.emplace<Kept<double>>();
+template <class Real>
+ImageViews::ImageViews(std::vector<std::vector<Real>> images) {
+  Kept<Real>& kept = kept_.emplace<Kept<Real>>();
   kept.copies = std::move(images);
-  for (const std::vector<double>& image : kept.copies) kept.images.emplace_back(image);
+  for (const std::vector<Real>& image : kept.copies) kept.images.emplace_back(image);
 }
+template ImageViews::ImageViews(std::vector<std::vector<float>>);
+template ImageViews::ImageViews(std::vector<std::vector<double>>);
 
 ImageViews widened(const ImageViews::Images<float>& images) {
   std::vector<std::vector<double>> copies;

@@ -22,7 +22,8 @@ class ImageViews {
   /// The observations must outlive it.
   ImageViews(const Observations& observations, std::span<const std::size_t> channels);
   /// Owns the images.
-  explicit ImageViews(std::vector<std::vector<double>> images);
+  template <class Real>
+  explicit ImageViews(std::vector<std::vector<Real>> images);
   ImageViews(const ImageViews&) = delete;  // views point into copies
   ImageViews& operator=(const ImageViews&) = delete;
   // Moving a vector does not move its elements.

@@ -16,11 +16,12 @@ namespace assay::harness {
 using ChannelMeans = std::vector<Constant>;
 
 struct PictureLook {
-  std::uint64_t pictures = 0;           ///< of each side
-  stats::ImageDistance distance = {};   ///< In the images' own units.
-  stats::ImageFamily family = {};       ///< With cells of every size.
-  std::vector<double> z = {};           ///< For every element.
-  std::vector<ChannelMeans> means = {}; ///< One for each side.
+  std::uint64_t pictures = 0;          ///< of each side
+  stats::ImageDistance distance = {};  ///< In the images' own units.
+  stats::ImageFamily family = {};      ///< With cells of every size.
+  std::vector<double> z = {};          ///< For every element.
+  /// One for each side; of a paired claim those of the differences, and the second's without error.
+  std::vector<ChannelMeans> means = {};
 };
 
 }  // namespace assay::harness

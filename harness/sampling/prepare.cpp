@@ -89,11 +89,38 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
   return prepared;
 }
 
+namespace {
+
+/// Sides of `paired` claims draw the random numbers of the first of those that they are paired
+/// with, directly or through others.
+void share_random_numbers(const Suite& suite, std::map<std::string, PreparedEstimator>& prepared) {
+  std::map<std::string, std::string> leader;
+  const auto leader_of = [&](std::string name) {
+    while (leader.contains(name)) name = leader[name];
+    return name;
+  };
+  for (const TestEntry& test : suite.tests) {
+    if (!test.paired) continue;
+    const std::vector<Source> sides = sources_of(test.claim);
+    const std::string first = leader_of(sides.front().estimator);
+    const std::string second = leader_of(sides.back().estimator);
+    if (first != second) leader[second] = first;
+  }
+  for (const auto& [name, unused] : leader) {
+    const PreparedEstimator& from = prepared.at(leader_of(name));
+    prepared.at(name).key_plugin = from.key_plugin;
+    prepared.at(name).key_parameters = from.key_parameters;
+  }
+}
+
+}  // namespace
+
 std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite) {
   std::map<std::string, PreparedEstimator> prepared;
   for (const EstimatorEntry& entry : suite.estimators) {
     prepared.emplace(entry.name, prepare(entry, suite.folder));
   }
+  share_random_numbers(suite, prepared);
   return prepared;
 }
 

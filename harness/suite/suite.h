@@ -56,6 +56,7 @@ struct TestEntry {
   std::optional<Source> reference = {};           ///< `reference:`, an estimator
   std::optional<Constant> reference_number = {};  ///< `reference:`, a number
   CostKind cost = CostKind::rays;
+  bool paired = false;  ///< Observations of equal index share their random numbers.
   Expectation expect = Expectation::pass;
   std::vector<std::string> tags = {};
   Location where = {};

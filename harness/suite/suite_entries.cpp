@@ -71,6 +71,9 @@ void read_sampling(const Document& document, const Keys& keys, TestEntry& test) 
   if (const Value* v = keys.find("over")) test.over = read_sweep(*v);
   if (const Value* v = keys.find("reference")) read_reference(*v, test);
   if (const Value* v = keys.find("cost")) test.cost = read_cost(*v);
+  if (const Value* v = keys.find("paired")) {
+    test.paired = choice(*v, "`paired`", {"false", "true"}) == 1;
+  }
 }
 
 /// The quantities that have a trait, as "`bias` and `efficiency`".
@@ -280,7 +283,7 @@ TestEntry read_test(const Document& document, const Value& value) {
   refuse_levels(document, value);
   const Keys keys(document, value, "a test",
                   {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
-                   "over", "reference", "cost", "expect", "tags"});
+                   "over", "reference", "cost", "paired", "expect", "tags"});
   TestEntry test{
       .claim = read_claim(document, keys.require("claim", "claim: mean(area) == analytic")),
       .where = value.where()};
@@ -318,6 +321,9 @@ void check_test(const TestEntry& test) {
     refuse_but_for("reference", &QuantityRow::takes_reference);
   }
   if (test.cost != CostKind::rays) refuse_but_for("cost", &QuantityRow::counts_cost);
+  if (test.paired && !std::holds_alternative<ScaledQuantity>(claim.right)) {
+    refuse("paired", "`paired` takes two estimators, as in `mean(new) == mean(old)`");
+  }
 }
 
 }  // namespace assay::harness

@@ -224,6 +224,9 @@ std::optional<Margin> margin(const std::optional<std::string>& text, const char*
 }
 
 std::string claim_of(const ImagesArguments& arguments, const std::string& suffix) {
+  if (arguments.question == ImageQuestion::law) {
+    return fmt::format("distribution(candidate{0}) == distribution(reference{0})", suffix);
+  }
   if (!arguments.within) return fmt::format("mean(candidate{0}) == mean(reference{0})", suffix);
   margin(arguments.within, "--within");
   for (const auto& [text, option] :
@@ -247,6 +250,7 @@ TestEntry test_of(const ImagesArguments& arguments, const std::string& suffix) {
   if (test.detect) test.keys["detect"] = test.detect->where;
   if (test.allow) test.keys["allow"] = test.allow->where;
   if (arguments.within) test.claim.margin.where = place("--within", *arguments.within);
+  test.paired = arguments.question == ImageQuestion::paired;
   check_test(test);
   return test;
 }
@@ -268,6 +272,8 @@ FirstPictures first_pictures(const ImagesArguments& arguments, const std::string
 
 Suite suite_of_images(const ImagesArguments& arguments) {
   test_of(arguments, "");
+  const Location of_candidate = place("--candidate", arguments.candidate);
+  const Location of_reference = place("--reference", arguments.reference);
   const std::vector<std::string> candidates = files_given("--candidate", arguments.candidate);
   require_enough("--candidate", arguments.candidate, candidates.size());
   const std::vector<std::string> references = files_given("--reference", arguments.reference);
@@ -278,13 +284,16 @@ Suite suite_of_images(const ImagesArguments& arguments) {
                      "themselves");
   }
   if (!one) require_enough("--reference", arguments.reference, references.size());
+  if (one && arguments.question != ImageQuestion::means) {
+    throw InputError(of_reference,
+                     "one picture is a mean: its pairs and its law are unknown; give as many as "
+                     "of the candidate");
+  }
   const FirstPictures first = first_pictures(arguments, candidates[0], references[0]);
   Suite suite;
   suite.name = "images";
   suite.stem = "images";
   suite.folder = ".";
-  const Location of_candidate = place("--candidate", arguments.candidate);
-  const Location of_reference = place("--reference", arguments.reference);
   for (const Layer& layer : layers_of(arguments, first)) {
     suite.estimators.push_back(
         stack_entry("candidate" + layer.suffix,

@@ -10,11 +10,16 @@
 
 namespace assay::harness {
 
+/// What is asked of two sets of pictures: are their means equal, are the means of their differences
+/// 0 where equal names have equal seeds, or is their whole law the same?
+enum class ImageQuestion { means, paired, law };
+
 struct ImagesArguments {
-  std::string candidate;                    ///< A pattern of pictures, one observation each.
-  std::string reference;                    ///< A pattern, or one file.
-  std::string channels = "usual";           ///< Patterns separated by commas.
-  bool independent_pixels = false;          ///< Pixels of one picture are independent.
+  std::string candidate;            ///< A pattern of pictures, one observation each.
+  std::string reference;            ///< A pattern, or one file.
+  std::string channels = "usual";   ///< Patterns separated by commas.
+  bool independent_pixels = false;  ///< Pixels of one picture are independent.
+  ImageQuestion question = ImageQuestion::means;
   bool ignores_nonfinite = false;           ///< Leaves out pixels that are not finite somewhere.
   std::optional<std::string> mask = {};     ///< A picture; where it is 0 pixels are left out.
   std::optional<std::string> samples = {};  ///< For a reference that carries its variance.

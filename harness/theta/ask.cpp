@@ -137,6 +137,15 @@ void ask_of_images(Question& question) {
                   element_name(*image.image, 0)));
 }
 
+void ask_of_pairs(Question& question) {
+  const Theta* const theta = question.theta->of_pairs();
+  if (theta == nullptr || !question.of_two()) {
+    throw InputError(question.test->place_of("paired"),
+                     "`paired` has a method for the means of two images alone; leave it out");
+  }
+  question.theta = theta;
+}
+
 }  // namespace
 
 bool has_image(const Question& question) {
@@ -155,13 +164,15 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
   Question question = left.slope ? bind_slope(test, estimators) : left.row->bind(test, estimators);
   require_observations(question);
   if (has_image(question)) ask_of_images(question);
+  if (test.paired) ask_of_pairs(question);
   question.theta->check(question);
   if (question.subjects.size() > 1) {
     require_pairs(question, test.claim);
     require_different_data(question, test.claim);
-    separate_streams(question, test.claim, seed);
+    if (!test.paired) separate_streams(question, test.claim, seed);
   }
   seed_cells(question, test.claim, seed);
+  question.labels = key_of(*question.subjects[0].estimator, seed, 0, "labels");
   require_moments_suffice(question);
   for (const Margin& margin : margins_of(test)) question.theta->check_margin(question, margin);
   check_sizes(question);
@@ -192,12 +203,9 @@ std::string missing_per_cent(const Margin& margin, double size) {
 }
 
 Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
+  Question question = ask(test, estimators, seed);
   if (test.claim.left.row->of_a_law && !test.detect && !test.secondaries) {
-    const std::vector<Source> sources = sources_of(test.claim);
-    const bool given = std::ranges::any_of(sources, [&](const Source& source) {
-      return estimator_of(source, estimators).setup->observations().has_value();
-    });
-    test.detect_by_default = !given;
+    test.detect_by_default = !question.most_rows() && !has_image(question);
   }
   if (test.detect_by_default) {
     test.detect = Margin{.value = default_law_effect};
@@ -208,7 +216,6 @@ Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint
                                    to_string(*test.allow), default_law_effect));
     }
   }
-  Question question = ask(test, estimators, seed);
   refuse_missing_per_cent(question);
   return question;
 }

@@ -59,6 +59,9 @@ class Theta {
   virtual std::string circumstances(const Question&) const { return ""; }
   /// The family for images; null if there is no method for them.
   virtual const Theta* of_images() const { return nullptr; }
+  /// The family for differences of observations that share their random numbers; null if there is
+  /// no method for them.
+  virtual const Theta* of_pairs() const { return nullptr; }
   /// Throws InputError for a claim without a method.
   virtual void check(const Question&) const {}
   /// Throws InputError if the margin has no meaning here.

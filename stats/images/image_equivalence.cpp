@@ -197,6 +197,13 @@ ImageDistance with_norm(ImageDistance distance, double squared_norm) {
   return distance;
 }
 
+ImageDistance relative_to(ImageDistance distance, const ImageDistance& norm) {
+  distance.squared_norm = norm.squared_bias;
+  distance.norm_variance = norm.bias_variance;
+  distance.covariance = 0;
+  return distance;
+}
+
 TestResult squared_margin_test(const ImageDistance& distance, double squared_margin) {
   const double variance = distance.bias_variance - 2 * squared_margin * distance.covariance +
                           squared_margin * squared_margin * distance.norm_variance;

@@ -34,6 +34,10 @@ ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b,
 // The same with an exact norm: a margin in units of its root.
 ImageDistance with_norm(ImageDistance distance, double squared_norm);
 
+// The same with the norm of another image, of which `norm` is the distance from 0. Their errors
+// count as independent.
+ImageDistance relative_to(ImageDistance distance, const ImageDistance& norm);
+
 // Null hypothesis: ||E a - E b||^2 >= squared_margin N. Statistic: (U - squared_margin N) / its
 // jackknife standard error; Student's t. log_p_lower is the p-value, small when the images are
 // equivalent within the margin. log_p_upper tests ||E a - E b||^2 <= squared_margin N. Asymptotic.

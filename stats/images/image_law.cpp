@@ -1,0 +1,415 @@
+#include "stats/images/image_law.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "stats/basics/vector_copies.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr const char* function_name = "image_law_test";
+constexpr std::size_t scores = 3;
+// Side of the tiles that threads take.
+constexpr std::size_t tile_side = 32;
+// Permutations are drawn in batches, the first of which mostly settles a true hypothesis. After so
+// many that are as extreme, no more are drawn.
+constexpr std::size_t first_batch_size = 64;
+constexpr std::size_t batch_size = 256;
+constexpr std::size_t enough = 10;
+
+// The first side's images, one list for each labelling.
+using Labels = std::vector<std::vector<std::uint32_t>>;
+
+// Scores of the cells of one size, side by side, one row of cells an image.
+struct Cells {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t side = 1;
+  std::size_t x = 0;  // Of the first cell, in elements.
+  std::size_t y = 0;
+  std::vector<std::vector<float>> images = {};
+
+  std::size_t count() const { return width * height; }
+};
+
+// Cells of twice the side; an odd last row or column stays as it is.
+Cells doubled(const Cells& cells) {
+  Cells out{.width = (cells.width + 1) / 2,
+            .height = (cells.height + 1) / 2,
+            .side = 2 * cells.side,
+            .x = cells.x,
+            .y = cells.y};
+  for (const std::vector<float>& image : cells.images) {
+    std::vector<float>& sums = out.images.emplace_back(out.count());
+    for (std::size_t y = 0; y < cells.height; ++y) {
+      for (std::size_t x = 0; x < cells.width; ++x) {
+        sums[y / 2 * out.width + x / 2] += image[y * cells.width + x];
+      }
+    }
+  }
+  return out;
+}
+
+// The largest |z| of one score and size, for each labelling.
+struct Group {
+  std::size_t cells = 0;
+  std::vector<float> largest = {};
+  ImageLawFinding most = {};  // Of the first labelling.
+};
+// By score, then by the logarithm of the side.
+using Groups = std::array<std::vector<Group>, scores>;
+
+ASSAY_VECTOR_COPIES void add_images(const std::vector<std::vector<float>>& images,
+                                    const std::vector<std::uint32_t>& chosen, float* sums,
+                                    std::size_t size) {
+  std::fill_n(sums, size, 0.F);
+  for (const std::uint32_t image : chosen) {
+    const float* const from = images[image].data();
+    for (std::size_t i = 0; i < size; ++i) sums[i] += from[i];
+  }
+}
+
+ASSAY_VECTOR_COPIES float largest_of(const float* sums, const float* scale, std::size_t size) {
+  float largest = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const float z = std::abs(sums[i] * scale[i]);
+    largest = z > largest ? z : largest;
+  }
+  return largest;
+}
+
+// One over the standard deviation of a cell's sum over the chosen images, by permutation:
+// m n / (N (N - 1)) sum of squares. 0 of a cell that does not vary. Scores add up to 0 over images.
+std::vector<float> scales_of(const Cells& cells, double chosen) {
+  const auto all = static_cast<double>(cells.images.size());
+  std::vector<double> squares(cells.count());
+  for (const std::vector<float>& image : cells.images) {
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      squares[i] += static_cast<double>(image[i]) * static_cast<double>(image[i]);
+    }
+  }
+  std::vector<float> scales(cells.count());
+  // Sums of rounded scores of a cell that does not vary are not quite 0.
+  const double least = 1e-6 * static_cast<double>(cells.side * cells.side);
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const double variance = squares[i] * chosen * (all - chosen) / (all * (all - 1));
+    scales[i] = variance > least ? static_cast<float>(1 / std::sqrt(variance)) : 0.F;
+  }
+  return scales;
+}
+
+void look_at(const Cells& cells, const Labels& labels, std::size_t channel, Group& group) {
+  const std::vector<float> scales = scales_of(cells, static_cast<double>(labels[0].size()));
+  std::vector<float> sums(cells.count());
+  group.cells += cells.count();
+  group.largest.resize(labels.size());
+  for (std::size_t l = 0; l < labels.size(); ++l) {
+    add_images(cells.images, labels[l], sums.data(), sums.size());
+    const float largest = largest_of(sums.data(), scales.data(), sums.size());
+    if (!(largest > group.largest[l])) continue;
+    group.largest[l] = largest;
+    if (l > 0) continue;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const float z = sums[i] * scales[i];
+      if (std::abs(z) != largest) continue;
+      group.most.channel = channel;
+      group.most.z = z;
+      group.most.window = {static_cast<std::uint32_t>(cells.x + i % cells.width * cells.side),
+                           static_cast<std::uint32_t>(cells.y + i / cells.width * cells.side),
+                           static_cast<std::uint32_t>(cells.side),
+                           static_cast<std::uint32_t>(cells.side)};
+      break;
+    }
+  }
+}
+
+void merge(Group& group, const Group& other) {
+  group.cells += other.cells;
+  if (group.largest.empty()) group.largest.resize(other.largest.size());
+  for (std::size_t l = 0; l < other.largest.size(); ++l) {
+    if (!(other.largest[l] > group.largest[l])) continue;
+    group.largest[l] = other.largest[l];
+    if (l == 0) group.most = other.most;
+  }
+}
+
+// The scores of one element over all images: mean 0, mean square 1; 0 if they do not vary.
+void standardise(std::span<double> values) {
+  const auto [least, most] = std::ranges::minmax(values);
+  if (least == most) {
+    std::ranges::fill(values, 0);
+    return;
+  }
+  const auto count = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double squares = 0;
+  for (double& value : values) {
+    value -= mean;
+    squares += value * value;
+  }
+  const double scale = 1 / std::sqrt(squares / count);
+  for (double& value : values) value *= scale;
+}
+
+class Element {
+ public:
+  explicit Element(std::size_t images) : order_(images), values_(images), scored_(images) {}
+
+  std::span<double> values() { return values_; }
+  std::span<const double> scored(ImageScore score) {
+    if (score == ImageScore::value) {
+      scored_ = values_;
+      standardise(scored_);
+      rank();
+    } else {
+      scored_ = ranks_;
+      standardise(scored_);
+    }
+    if (score == ImageScore::spread) {
+      for (double& each : scored_) each *= each;
+      standardise(scored_);
+    }
+    return scored_;
+  }
+
+ private:
+  void rank() {
+    std::iota(order_.begin(), order_.end(), 0);
+    std::ranges::sort(order_, {}, [&](std::uint32_t i) { return values_[i]; });
+    ranks_.resize(values_.size());
+    for (std::size_t i = 0; i < order_.size();) {
+      std::size_t end = i + 1;
+      while (end < order_.size() && values_[order_[end]] == values_[order_[i]]) ++end;
+      for (std::size_t j = i; j < end; ++j) {
+        ranks_[order_[j]] = static_cast<double>(i + end - 1) / 2;
+      }
+      i = end;
+    }
+  }
+
+  std::vector<std::uint32_t> order_;
+  std::vector<double> values_;
+  std::vector<double> scored_;
+  std::vector<double> ranks_;
+};
+
+struct Place {
+  std::size_t x;
+  std::size_t y;
+  std::size_t channel;
+};
+
+template <class Real>
+class Pooled {
+ public:
+  Pooled(const ImageStack<Real>& a, const ImageStack<Real>& b) : extent_(a.extent) {
+    for (const ImageStack<Real>* stack : {&a, &b}) {
+      images_.insert(images_.end(), stack->images.begin(), stack->images.end());
+    }
+  }
+
+  const ImageExtent& extent() const { return extent_; }
+  std::size_t tiles_across() const { return (extent_.width + tile_side - 1) / tile_side; }
+  std::size_t tiles() const {
+    return tiles_across() * ((extent_.height + tile_side - 1) / tile_side) * extent_.channels;
+  }
+  Place place(std::size_t tile) const {
+    const std::size_t square = tile / extent_.channels;
+    return {square % tiles_across() * tile_side, square / tiles_across() * tile_side,
+            tile % extent_.channels};
+  }
+
+  // Scores of a tile's elements.
+  std::array<Cells, scores> scored(const Place& at) const {
+    std::array<Cells, scores> all;
+    for (Cells& cells : all) {
+      cells = {.width = std::min(tile_side, extent_.width - at.x),
+               .height = std::min(tile_side, extent_.height - at.y),
+               .x = at.x,
+               .y = at.y};
+      cells.images.assign(images_.size(), std::vector<float>(cells.count()));
+    }
+    Element element(images_.size());
+    for (std::size_t i = 0; i < all[0].count(); ++i) {
+      const std::size_t x = at.x + i % all[0].width;
+      const std::size_t y = at.y + i / all[0].width;
+      const std::size_t index = (y * extent_.width + x) * extent_.channels + at.channel;
+      for (std::size_t r = 0; r < images_.size(); ++r) element.values()[r] = images_[r][index];
+      for (std::size_t s = 0; s < scores; ++s) {
+        const std::span<const double> scored = element.scored(static_cast<ImageScore>(s));
+        for (std::size_t r = 0; r < scored.size(); ++r) {
+          all[s].images[r][i] = static_cast<float>(scored[r]);
+        }
+      }
+    }
+    return all;
+  }
+
+ private:
+  ImageExtent extent_;
+  std::vector<std::span<const Real>> images_;
+};
+
+std::size_t level_of(std::size_t side) { return static_cast<std::size_t>(std::countr_zero(side)); }
+
+// Looks at cells of this size and larger ones, up to `last`, and returns those.
+Cells look_upward(Cells cells, std::size_t last, const Labels& labels, std::size_t channel,
+                  std::vector<Group>& groups) {
+  for (;;) {
+    const std::size_t level = level_of(cells.side);
+    if (groups.size() <= level) groups.resize(level + 1);
+    look_at(cells, labels, channel, groups[level]);
+    if (cells.side >= last || cells.count() == 1) return cells;
+    cells = doubled(cells);
+  }
+}
+
+// The z of a tile's elements by their values, with the sides as they are.
+void note_elements(const Cells& values, const Place& at, const ImageExtent& extent,
+                   const std::vector<std::uint32_t>& first, std::span<double> z) {
+  const std::vector<float> scales = scales_of(values, static_cast<double>(first.size()));
+  std::vector<float> sums(values.count());
+  add_images(values.images, first, sums.data(), sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const std::size_t x = at.x + i % values.width;
+    const std::size_t y = at.y + i / values.width;
+    z[(y * extent.width + x) * extent.channels + at.channel] = sums[i] * scales[i];
+  }
+}
+
+template <class Real>
+Groups groups_of(const Pooled<Real>& pooled, const Labels& labels, const ForEach& for_each,
+                 std::span<double> z) {
+  std::vector<Groups> found(pooled.tiles());
+  // By tile, score and image.
+  std::vector<std::array<std::vector<float>, scores>> sums(pooled.tiles());
+  for_each(pooled.tiles(), [&](std::size_t tile) {
+    const Place at = pooled.place(tile);
+    std::array<Cells, scores> scored = pooled.scored(at);
+    if (!z.empty()) note_elements(scored[0], at, pooled.extent(), labels[0], z);
+    for (std::size_t s = 0; s < scores; ++s) {
+      Cells cells =
+          look_upward(std::move(scored[s]), tile_side / 2, labels, at.channel, found[tile][s]);
+      while (cells.count() > 1) cells = doubled(cells);
+      for (const std::vector<float>& image : cells.images) sums[tile][s].push_back(image[0]);
+    }
+  });
+  Groups all;
+  for (const Groups& groups : found) {
+    for (std::size_t s = 0; s < scores; ++s) {
+      all[s].resize(std::max(all[s].size(), groups[s].size()));
+      for (std::size_t l = 0; l < groups[s].size(); ++l) merge(all[s][l], groups[s][l]);
+    }
+  }
+  // Tiles are the cells of larger sizes.
+  const ImageExtent& extent = pooled.extent();
+  for (std::size_t s = 0; s < scores; ++s) {
+    for (std::size_t c = 0; c < extent.channels; ++c) {
+      Cells tiles{.width = pooled.tiles_across(),
+                  .height = pooled.tiles() / pooled.tiles_across() / extent.channels,
+                  .side = tile_side};
+      tiles.images.assign(sums[0][s].size(), std::vector<float>(tiles.count()));
+      for (std::size_t t = 0; t < tiles.count(); ++t) {
+        for (std::size_t r = 0; r < tiles.images.size(); ++r) {
+          tiles.images[r][t] = sums[t * extent.channels + c][s][r];
+        }
+      }
+      look_upward(std::move(tiles), std::bit_ceil(std::max(extent.width, extent.height)), labels, c,
+                  all[s]);
+    }
+  }
+  return all;
+}
+
+// The smallest adjusted p-value of each labelling, over scores and sizes.
+std::vector<double> statistics_of(const Groups& groups, std::size_t labellings) {
+  std::vector<double> least(labellings, 0);
+  for (const std::vector<Group>& sizes : groups) {
+    for (const Group& group : sizes) {
+      if (group.cells == 0) continue;
+      const GroupSize size{static_cast<double>(group.cells), 1};
+      for (std::size_t l = 0; l < labellings; ++l) {
+        const double log_p = log_p_two_sided(normal_tails(static_cast<double>(group.largest[l])));
+        least[l] = std::min(least[l], adjusted(log_p, size));
+      }
+    }
+  }
+  return least;
+}
+
+ImageLawFinding most_of(const Groups& groups, const ImageExtent& extent) {
+  ImageLawFinding most;
+  double least = 1;
+  for (std::size_t s = 0; s < scores; ++s) {
+    for (const Group& group : groups[s]) {
+      if (group.cells == 0) continue;
+      const double log_p =
+          adjusted(log_p_two_sided(normal_tails(static_cast<double>(group.largest[0]))),
+                   {static_cast<double>(group.cells), 1});
+      if (!(log_p < least)) continue;
+      least = log_p;
+      most = group.most;
+      most.score = static_cast<ImageScore>(s);
+    }
+  }
+  const auto cut = [](std::uint32_t first, std::uint32_t size, std::size_t all) {
+    return std::min(size, static_cast<std::uint32_t>(all) - first);
+  };
+  most.window.width = cut(most.window.x, most.window.width, extent.width);
+  most.window.height = cut(most.window.y, most.window.height, extent.height);
+  return most;
+}
+
+}  // namespace
+
+template <class Real>
+ImageLawTest image_law_test(const ImageStack<Real>& a, const ImageStack<Real>& b,
+                            const ImageLawOptions& options) {
+  check::image_stack(function_name, a);
+  check::image_stack(function_name, b);
+  check::same_extent(function_name, a.extent, b.extent);
+  const Pooled<Real> pooled(a, b);
+  const std::size_t first = a.images.size();
+  const std::size_t all = first + b.images.size();
+  ImageLawTest test{.z = std::vector<double>(a.extent.elements())};
+  Labels labels(1, std::vector<std::uint32_t>(first));
+  std::iota(labels[0].begin(), labels[0].end(), 0);
+  std::size_t as_small = 0;
+  double observed = 0;
+  while (test.permutations < options.permutations && as_small < enough) {
+    labels.resize(1);
+    const bool first_batch = test.permutations == 0;
+    const std::size_t size = std::min(first_batch ? first_batch_size : batch_size,
+                                      options.permutations - test.permutations);
+    for (std::size_t i = 0; i < size; ++i) {
+      labels.push_back(options.draw(test.permutations + i, all, first));
+    }
+    const Groups groups = groups_of(pooled, labels, options.for_each,
+                                    first_batch ? std::span(test.z) : std::span<double>());
+    const std::vector<double> statistics = statistics_of(groups, labels.size());
+    if (first_batch) {
+      observed = statistics[0];
+      test.most = most_of(groups, a.extent);
+    }
+    for (std::size_t i = 1; i < statistics.size() && as_small < enough; ++i) {
+      ++test.permutations;
+      if (statistics[i] <= observed) ++as_small;
+    }
+  }
+  const auto drawn = static_cast<double>(test.permutations);
+  const auto count = static_cast<double>(as_small);
+  test.log_p = std::log(as_small < enough ? (count + 1) / (drawn + 1) : count / drawn);
+  return test;
+}
+
+template ImageLawTest image_law_test(const ImageStack<float>&, const ImageStack<float>&,
+                                     const ImageLawOptions&);
+template ImageLawTest image_law_test(const ImageStack<double>&, const ImageStack<double>&,
+                                     const ImageLawOptions&);
+
+}  // namespace assay::stats

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "stats/basics/for_each.h"
+#include "stats/images/image.h"
+#include "stats/images/image_family.h"
+
+namespace assay::stats {
+
+// What is added up over a cell, each in units of its standard deviation over all images.
+enum class ImageScore {
+  value,   // The element's value.
+  rank,    // Its midrank among all images: fireflies weigh no more than others.
+  spread,  // The squared distance of its midrank from the middle (Mood 1954, Ann. Math. Stat. 25,
+           // 514).
+};
+
+// The sum that differs most between the sides.
+struct ImageLawFinding {
+  ImageScore score = ImageScore::value;
+  Rectangle window = {};
+  std::size_t channel = 0;
+  double z = 0;  // Positive where the first side's scores are larger.
+};
+
+struct ImageLawTest {
+  double log_p = 0;
+  std::size_t permutations = 0;  // Drawn, without that of the data.
+  ImageLawFinding most = {};
+  std::vector<double> z = {};  // Of every element's value.
+};
+
+// Draws a subset of `size` of the images 0 to count - 1, all subsets alike; different for each
+// index.
+using DrawSubset = std::function<std::vector<std::uint32_t>(std::uint64_t index, std::size_t count,
+                                                            std::size_t size)>;
+
+struct ImageLawOptions {
+  std::size_t permutations = 999;  // At most.
+  DrawSubset draw = {};
+  ForEach for_each = one_by_one;
+};
+
+// Have two stacks of images one law? Null hypothesis: all images are exchangeable, as independent
+// images of one law are. Exact at any size and law: the labels of the sides are permuted.
+//
+// Cells are squares of 1, 2, 4, ... elements to the whole image, side by side, of one channel. The
+// statistic of a cell and a score is the sum of the first side's scores over its standard deviation
+// under permutation. The statistic of the test is the smallest p-value of Sidak over the cells of
+// one size, by the normal law, over all sizes and scores. It is compared with those of random
+// labels. After ten that are as small, no more are drawn (Besag & Clifford 1991, Biometrika 78,
+// 301): p is the number as small over those drawn, or (1 + number) / (1 + drawn) at the end.
+//
+// It finds differences of means, of typical values and of spreads. Other differences of laws it may
+// miss. Throws std::domain_error for unequal extents and fewer than least_replicates images.
+template <class Real>
+ImageLawTest image_law_test(const ImageStack<Real>& a, const ImageStack<Real>& b,
+                            const ImageLawOptions& options);
+
+}  // namespace assay::stats
