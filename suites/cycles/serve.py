@@ -6,56 +6,40 @@ Blender takes a second to start and some hundredths of a second for a small pict
 import array
 import os
 import pathlib
-import struct
 import sys
 import tempfile
 
 import bpy
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+here = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(here), str(here.parents[1] / "estimators/foreign/python")]
+import assay  # noqa: E402
 import scene  # noqa: E402
-
-PRIME = 2**31 - 1
-
-
-def seed_of(key, index):
-    """From 1 on, in 31 bits, another for each index: as the plugin `command` has it."""
-    return 1 + 630360016 * ((key + index) % PRIME) % PRIME
 
 
 def picture(file, seed, samples):
-    """Red, green and blue of each pixel, row by row from the top, then their average, as bytes of doubles."""
+    """Red, green and blue of each pixel, row by row from the top, and their average."""
     scene.render_to(file, seed, samples)
     image = bpy.data.images.load(file)
     texels = array.array("f", bytes(4 * len(image.pixels)))
     image.pixels.foreach_get(texels)
     bpy.data.images.remove(image)
     os.remove(file)
-    values = array.array("d", [
+    values = [
         texels[4 * (row * scene.WIDTH + column) + component]
         for row in reversed(range(scene.HEIGHT))  # Blender's first row is the lowest
         for column in range(scene.WIDTH)
-        for component in range(3)])
-    values.append(sum(values) / len(values))
-    return values.tobytes()
-
-
-def serve(questions, replies, file):
-    replies.write(f"assay 1 binary\nimage {scene.WIDTH} {scene.HEIGHT} R G B\n"
-                  "channel average diagnostic\nready\n".encode())
-    replies.flush()
-    while question := questions.read(32):
-        key, first, count, samples = struct.unpack("<4Q", question)
-        for index in range(first, first + count):
-            replies.write(picture(file, seed_of(key, index), samples))
-        replies.write(question)
-        replies.flush()
+        for component in range(3)]
+    return values, sum(values) / len(values)
 
 
 try:
     scene.set_up(scene.read_settings(sys.argv[sys.argv.index("--") + 1:]))
-    with tempfile.TemporaryDirectory() as folder, open(3, "wb") as out:
-        serve(sys.stdin.buffer, out, f"{folder}/picture.exr")
+    with tempfile.TemporaryDirectory() as folder:
+        assay.serve(
+            lambda rng, samples: picture(f"{folder}/picture.exr", rng.render_seed, samples),
+            image=assay.Image(scene.WIDTH, scene.HEIGHT),
+            channels=[assay.Channel("average", diagnostic=True)], arguments=[], output=3)
 except Exception as error:  # Blender itself would end with status 0
     print(error, file=sys.stderr)
     sys.exit(1)

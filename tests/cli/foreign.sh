@@ -1,5 +1,8 @@
 # The common part of the tests of other programs' estimators, behind program.sh.
 
+# Programs in Python find the package `assay`.
+export PYTHONPATH=$source_folder/estimators/foreign/python
+
 # tells FILE TEXT: that the text is in it, whatever the width at which the program broke its lines.
 tells() { tr -s ' \n' ' ' <"$1" | grep -qF -- "$2" || fail "no \`$2\` in $1"; }
 

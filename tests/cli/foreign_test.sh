@@ -130,10 +130,13 @@ test_programs_that_fail_are_errors_and_the_others_finish() {
 }
 
 test_seeds_that_do_nothing_are_errors_under_every_seed() {
-  local seeded='random.Random(key << 64 | index)' seed estimator
-  grep -qF "$seeded" "$examples/darts.py" || fail 'the example has changed'
-  sed "s/$seeded/random.Random()/" "$examples/darts.py" >unseeded.py
-  sed "s/$seeded/random.Random(index)/" "$examples/darts.py" >index.py
+  local served='assay.serve(area,' seed estimator mean='sum(area(rng) for _ in range(n)) / n'
+  grep -qF "$served" "$examples/darts.py" || fail 'the example has changed'
+  for seed in '' rng.index; do
+    sed "s|$served|assay.serve(lambda rng, n: (rng.seed($seed), $mean)[1], averages=True,|" \
+      "$examples/darts.py" >"${seed:+index}.py"
+  done
+  mv .py unseeded.py
   for seed in 1 2 3 4 5; do
     for estimator in unseeded index; do
       expect 1 check 'mean(mine) == 3.14159' --detect 1% --seed "$seed" \

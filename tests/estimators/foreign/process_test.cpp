@@ -99,7 +99,8 @@ void expect_darts(const std::shared_ptr<const Setup>& setup) {
 TEST_F(Process, TheShellExampleThrowsDarts) { expect_darts(run({"sh", examples + "/darts.sh"})); }
 
 TEST_F(Process, ThePythonExampleThrowsDarts) {
-  expect_darts(run({"/usr/bin/python3", examples + "/darts.py"}));
+  expect_darts(run({"env", "PYTHONPATH=" ASSAY_SOURCE_DIR "/estimators/foreign/python",
+                    "/usr/bin/python3", examples + "/darts.py"}));
 }
 
 TEST_F(Process, TheExampleInCThrowsDarts) {

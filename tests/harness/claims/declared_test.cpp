@@ -16,19 +16,13 @@ using testing::HasSubstr;
 /// A test of a program that declares `averages`. `observation` makes a number of the list `draws`.
 reports::Test judged(const std::string& law, const std::string& observation, int seed) {
   const Workplace place;
-  place.write("mine.py", R"(import math, random, struct
-questions, replies = open(0, "rb"), open(1, "wb")
-replies.write(b"assay 1 binary\nchannel x\naverages\nready\n")
-replies.flush()
-while question := questions.read(32):
-    key, first, count, primaries = struct.unpack("<4Q", question)
-    for i in range(first, first + count):
-        stream = random.Random(key << 64 | i)
-        draws = [)" + law + R"( for _ in range(primaries)]
-        replies.write(struct.pack("<d", )" +
-                             observation + R"())
-    replies.write(question)
-    replies.flush()
+  place.write("mine.py", "import math, sys\nsys.path.append('" ASSAY_SOURCE_DIR
+                         R"(/estimators/foreign/python')
+import assay
+def mine(stream, primaries):
+    draws = [)" + law + R"( for _ in range(primaries)]
+    return )" + observation + R"(
+assay.serve(mine, averages=True)
 )");
   const std::string file =
       place.write("mine.yaml",

@@ -29,25 +29,20 @@ TEST(DependentRows, OfChainsThatTakeTurnsAreInvalid) {
 // A program whose observation is the mean of five neighbours' random numbers, and its sound sister.
 TEST(DependentDraws, OfAProgramAreInvalidEvenIfForced) {
   const Workplace place;
-  place.write("moving.py", R"(import random, struct, sys
-questions, replies = open(0, "rb"), open(1, "wb")
-replies.write(b"assay 1 binary\nchannel x\nready\n")
-replies.flush()
-wide = int(sys.argv[1])
-while question := questions.read(32):
-    key, first, count, primaries = struct.unpack("<4Q", question)
-    noise = [random.Random(key << 64 | i).random() for i in range(first, first + count + wide)]
-    for i in range(count):
-        replies.write(struct.pack("<d", sum(noise[i:i + wide]) / wide))
-    replies.write(question)
-    replies.flush()
+  place.write("moving.py", "import random, sys\nsys.path.append('" ASSAY_SOURCE_DIR
+                           R"(/estimators/foreign/python')
+import assay
+def moving(rng, primaries, *, wide: int):
+    noise = [random.Random(rng.key << 64 | rng.index + i).random() for i in range(wide)]
+    return sum(noise) / wide
+assay.serve(moving)
 )");
   const auto judged_with = [&](const std::string& wide, const std::string& more, int seed) {
     const std::string file =
         place.write("moving.yaml",
                     "suite: moving\nestimators:\n  x: {plugin: process, command: [python3, "
-                    "moving.py, '" +
-                        wide + "']}\ntests:\n  - {claim: mean(x) == 0.5" + more + "}\n");
+                    "moving.py, wide=" +
+                        wide + "]}\ntests:\n  - {claim: mean(x) == 0.5" + more + "}\n");
     return run_files({file}, {.seed = seed}).suites[0].tests[0];
   };
   for (int seed = 1; seed <= 5; ++seed) {

@@ -1,0 +1,26 @@
+"""Serves one function of a file: python3 -m assay FILE MODULE FUNCTION."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import typing
+
+from assay.declaration import Declaration, declaration_of
+from assay.protocol import run
+
+
+def _prepare() -> tuple[typing.Callable[..., typing.Any], Declaration, list[str]]:
+    file, module_name, function_name = sys.argv[1:]
+    specification = importlib.util.spec_from_file_location(module_name, file)
+    if specification is None or specification.loader is None:
+        raise ImportError(f"{file} is no file of Python")
+    module = importlib.util.module_from_spec(specification)
+    sys.modules[module_name] = module
+    specification.loader.exec_module(module)
+    function = getattr(module, function_name)
+    return function, declaration_of(function), []
+
+
+if __name__ == "__main__":
+    run(_prepare)

@@ -1,0 +1,200 @@
+"""Tests of pytest from claims: `NAME.claims.yaml`, a suite of Assay, and functions with `@claim`.
+
+All selected claims of a suite, or of a module, are tested by one run of the program `assay`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import shutil
+import subprocess
+import tempfile
+import typing
+from pathlib import Path
+
+import pytest
+
+from assay.claims import claims_of, tests_of, write_suite
+
+_HOW = "give --assay-program PATH, set ASSAY=PATH, or put it on PATH"
+_SHARDS = ("GTEST_TOTAL_SHARDS", "GTEST_SHARD_INDEX", "TEST_TOTAL_SHARDS", "TEST_SHARD_INDEX")
+_PROPERTIES = ("estimate", "low", "high")
+
+
+class AssayError(Exception):
+    """What Assay says of a claim, or why it says nothing."""
+
+
+class _Settings:
+    """The program, the seed, and where suites of modules and records go."""
+
+    def __init__(self, config: pytest.Config):
+        self._wanted = config.getoption("--assay-program") or os.environ.get("ASSAY") or "assay"
+        self.path = shutil.which(self._wanted)
+        seed = config.getoption("--assay-seed")
+        self.seed = str(random.SystemRandom().getrandbits(32)) if seed == "random" else seed
+        self._config = config
+        self._folder: Path | None = None
+
+    @property
+    def program(self) -> str:
+        if self.path is None:
+            raise AssayError(f"the program `{self._wanted}` is not there: {_HOW}")
+        return os.path.abspath(self.path)
+
+    @property
+    def header(self) -> str:
+        seed = f"seed {self.seed}" if self.seed else "seed 1, or the suite's; --assay-seed N|random"
+        return f"assay: {self.path or f'`{self._wanted}` is not there: {_HOW}'}, {seed}"
+
+    def file(self, nodeid: str, ending: str) -> Path:
+        """A file of pytest's cache for a suite or a module."""
+        if self._folder is None:
+            cache = getattr(self._config, "cache", None)
+            self._folder = Path(cache.mkdir("assay") if cache else tempfile.mkdtemp(prefix="assay-"))
+        return (self._folder / nodeid.replace("..", "_")).with_suffix(ending)
+
+    def run(self, *words: str) -> subprocess.CompletedProcess[str]:
+        environment = {name: value for name, value in os.environ.items() if name not in _SHARDS}
+        return subprocess.run([self.program, *words], env=environment, text=True, encoding="utf-8",
+                              stdin=subprocess.DEVNULL, capture_output=True, check=False)
+
+
+_SETTINGS = pytest.StashKey[_Settings]()
+_RUN = pytest.StashKey["_Run"]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    group = parser.getgroup("assay", "claims about Monte Carlo estimators")
+    group.addoption("--assay-program", metavar="PATH", help="the program `assay`; default $ASSAY, or the one on PATH")
+    group.addoption("--assay-seed", metavar="N|random", help="seed of all streams; default the suite's, else 1")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.stash[_SETTINGS] = _Settings(config)
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    return config.stash[_SETTINGS].header
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    is_suite = file_path.name.endswith((".claims.yaml", ".claims.yml"))
+    if is_suite or (file_path.suffix == ".yaml" and parent.session.isinitpath(file_path)):
+        return SuiteFile.from_parent(parent, path=file_path)
+    return None
+
+
+def pytest_pycollect_makeitem(collector: pytest.Collector, name: str, obj: object) -> list[pytest.Item] | None:
+    if not claims_of(getattr(obj, "__func__", obj)):  # that of a static method
+        return None
+    if not isinstance(collector, pytest.Module):
+        raise collector.CollectError(f"`{name}` has claims: make it a function of the module")
+    if _RUN not in collector.stash:
+        settings = collector.config.stash[_SETTINGS]
+        suite = settings.file(collector.nodeid, ".yaml")
+        names = [test for _, test, _ in tests_of(collector.obj)]
+        collector.stash[_RUN] = _Run(settings, suite, settings.file(collector.nodeid, ".json"), len(names),
+                                     lambda: write_suite(collector.obj, suite))
+    stem = collector.stash[_RUN].suite.stem
+    return [ClaimItem.from_parent(collector, name=test, run=collector.stash[_RUN], id=f"{stem}/{test}",
+                                  line=obj.__code__.co_firstlineno)  # type: ignore[attr-defined]
+            for function, test, _ in tests_of(collector.obj) if function == name]
+
+
+class SuiteFile(pytest.File):
+    """A suite file: an item for each of its claims."""
+
+    def collect(self) -> typing.Iterator[pytest.Item]:
+        settings = self.config.stash[_SETTINGS]
+        try:
+            listed = settings.run("list", "tests", str(self.path))
+        except AssayError as error:
+            raise self.CollectError(str(error)) from None
+        if listed.returncode != 0:
+            raise self.CollectError(listed.stderr.strip())
+        ids = listed.stdout.splitlines()
+        run = _Run(settings, self.path, settings.file(self.nodeid, ".json"), len(ids))
+        for each in ids:
+            yield ClaimItem.from_parent(self, name=each.split("/", 1)[1], run=run, id=each)
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException]) -> typing.Any:
+        if isinstance(excinfo.value, self.CollectError):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo)
+
+
+class _Run:
+    """The one run of a suite, for all of its claims that are selected."""
+
+    def __init__(self, settings: _Settings, suite: Path, record: Path, claims: int,
+                 prepare: typing.Callable[[], None] = lambda: None):
+        self.suite = suite
+        self._settings, self._record, self._claims, self._prepare = settings, record, claims, prepare
+        self._tests: dict[str, typing.Any] | None = None
+        self._trouble = ""
+
+    def result(self, item: ClaimItem) -> dict[str, typing.Any]:
+        if self._tests is None:
+            self._tests = {}
+            self._start([each.id for each in item.session.items
+                         if isinstance(each, ClaimItem) and each.run is self])
+        if item.id not in self._tests:
+            raise AssayError(self._trouble or f"Assay's record has no test `{item.id}`")
+        return self._tests[item.id]
+
+    def _start(self, ids: list[str]) -> None:
+        words = ["run", str(self.suite), "--report", f"json={self._record}", "--report", "console=/dev/null",
+                 "--quiet", "--github", "never"]
+        words += ["--seed", self._settings.seed] if self._settings.seed else []
+        words += [word for id in ids for word in ("--filter", id)] if len(ids) < self._claims else []
+        self._record.parent.mkdir(parents=True, exist_ok=True)
+        self._record.unlink(missing_ok=True)
+        try:
+            self._prepare()
+            ended = self._settings.run(*words)
+        except (AssayError, OSError) as error:
+            self._trouble = str(error)
+            return
+        if not self._record.exists():
+            self._trouble = ended.stderr.strip() or f"`assay run` ended with exit code {ended.returncode}"
+            return
+        record = json.loads(self._record.read_text(encoding="utf-8"))
+        self._tests = {test["id"]: test for suite in record["suites"] for test in suite["tests"]}
+
+
+class ClaimItem(pytest.Item):
+    """One claim."""
+
+    def __init__(self, *, run: _Run, id: str, line: int | None = None, **more: typing.Any):
+        super().__init__(**more)
+        self.run, self.id, self._line = run, id, line
+
+    def runtest(self) -> None:
+        test = self.run.result(self)
+        self.user_properties += [("verdict", test["verdict"]), ("method", test["method"])]
+        self.user_properties += [(name, test["effect"][name]) for name in _PROPERTIES]
+        if test["verdict"] == "skipped":
+            pytest.skip(test["message"])
+        if not test["ok"]:
+            raise AssayError(_words(test))
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException],
+                     style: typing.Any = None) -> typing.Any:
+        if isinstance(excinfo.value, AssayError):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        return self.path, None if self._line is None else self._line - 1, self.name
+
+
+def _words(test: dict[str, typing.Any]) -> str:
+    sentence = test["display"]["sentence"]
+    facts = [(fact["label"], fact["text"]) for fact in test["display"]["facts"] if fact["text"] != sentence]
+    if test["replay"]:
+        facts.append(("replay", test["replay"]))
+    lines = [f"{test['verdict']}: {sentence}", *(f"  {label:<16} {text}" for label, text in facts)]
+    return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
