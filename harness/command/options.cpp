@@ -154,10 +154,10 @@ void Options::flag(const std::string& name, const std::string& about, bool& targ
 
 void Options::add_choice(const std::string& name, const std::string& about,
                          std::function<void()> take) {
-  CLI::Option* const option = app_.add_flag(name, about);
+  CLI::Option* const option = app_.add_flag(name);
   for (CLI::Option* const other : choices_) option->excludes(other);
   choices_.push_back(option);
-  rows_.push_back({option, {name}, false, [take](const std::string&) { take(); }});
+  rows_.push_back({option, {name}, about, false, [take](const std::string&) { take(); }});
 }
 
 void Options::read_values() const {
