@@ -12,7 +12,7 @@
 #include "harness/sampling/image_views.h"
 #include "harness/theta/planned_channel.h"
 #include "harness/theta/theta.h"
-#include "stats/images/image_equivalence.h"
+#include "stats/images/image_covariance.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
@@ -45,20 +45,21 @@ stats::AnyImageStack stack_of(const ImageViews& views, const stats::ImageExtent&
 
 /// Noise and brightness of an image at one primary an element.
 struct PilotImage {
-  double noise = 0;         ///< sqrt(2 tr C^2), the deviation of R U; C is the elements' covariance
+  double trace = 0;         ///< tr C, of the elements' covariance C
+  double root = 0;          ///< sqrt tr C^2, an upper limit
   double squared_norm = 0;  ///< Squared norm of the mean.
 };
 
-/// Both halves of a pilot have one law: their squared bias is noise alone, with covariance C (2 / R
-/// + 2 / R).
+// Standard errors above the estimate of tr C^2: pilots of heavy noise differ.
+constexpr double errors_above = 2;
+
 template <class Real>
 PilotImage pilot_image(const stats::ImageStack<Real>& pilot) {
-  stats::ImageStack<Real> half[2] = {{pilot.extent, {}}, {pilot.extent, {}}};
-  const std::size_t used = pilot.images.size() / 2 * 2;
-  for (std::size_t r = 0; r < used; ++r) half[r % 2].images.push_back(pilot.images[r]);
-  const stats::ImageDistance distance = stats::image_distance(half[0], half[1], on_all_threads);
-  return {.noise = std::sqrt(distance.bias_variance) * static_cast<double>(used) / 4,
-          .squared_norm = distance.squared_norm};
+  const stats::ImageCovariance found = stats::image_covariance(pilot, on_all_threads);
+  const double square = found.squared_trace + errors_above * found.squared_trace_error;
+  return {.trace = found.trace,
+          .root = std::min(found.trace, std::sqrt(square)),
+          .squared_norm = found.squared_mean};
 }
 
 PilotImage pilot_image(const Subject& subject, const Pilot& pilot) {
@@ -75,28 +76,41 @@ PilotImage pilot_of_differences(const Question& question, const Pilots& pilots) 
         ImageViews(pilot_at(question, s, pilots).images, question.subjects[s].channels);
   }
   return with_pair(question, data, [](const auto& pair) {
-    return PilotImage{.noise = pilot_image(pair.first()).noise,
-                      .squared_norm = pilot_image(*pair.subtracted()).squared_norm};
+    PilotImage image = pilot_image(pair.first());
+    image.squared_norm = pilot_image(*pair.subtracted()).squared_norm;
+    return image;
   });
 }
 
-/// The noise of an observation, and the brightness that margins are relative to.
+/// The noise of an observation, and the brightness that margins are relative to. The root of two
+/// sides is at most the sum of theirs.
 PilotImage planned_image(const Question& question, const Pilots& pilots, const Plan& plan) {
   if (question.test->paired) {
     PilotImage image = pilot_of_differences(question, pilots);
-    image.noise /= averaged(question, plan, 0);
+    image.trace /= averaged(question, plan, 0);
+    image.root /= averaged(question, plan, 0);
     return image;
   }
-  PilotImage image;
-  double noise = 0;
+  PilotImage all;
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
-    image = pilot_image(question.subjects[s], pilot_at(question, s, pilots));
-    const double factor = factor_of(question, s);
-    noise += factor * factor * image.noise / averaged(question, plan, s);
+    const PilotImage image = pilot_image(question.subjects[s], pilot_at(question, s, pilots));
+    const double square = factor_of(question, s) * factor_of(question, s);
+    all.trace += square * image.trace / averaged(question, plan, s);
+    all.root += square * image.root / averaged(question, plan, s);
+    all.squared_norm = square * image.squared_norm;
   }
-  image.noise = noise;
-  image.squared_norm *= question.of_two() ? question.factor * question.factor : 1;
-  return image;
+  return all;
+}
+
+/// The squared distance that `n` images exclude with probability 1 - beta if there is none. With
+/// noise of rank d the squared distance is s (chi^2 - d), its jackknife error 2 s chi, s = root /
+/// sqrt(d) / n.
+double excluded_square(const PilotImage& image, double beta, double n) {
+  if (!(image.root > 0)) return 0;
+  const double degrees = std::pow(image.trace / image.root, 2);
+  const double t = -stats::student_t_quantile({stats::Tail::lower, std::log(beta)}, n - 1);
+  const double square = stats::chi_square_quantile({stats::Tail::upper, std::log(beta)}, degrees);
+  return image.root / std::sqrt(degrees) / n * (square - degrees + 2 * t * std::sqrt(square));
 }
 
 /// The square of the margins' unit.
@@ -140,9 +154,7 @@ std::optional<std::uint64_t> image_secondaries(const Question& question, const E
   if (!(room > 0)) return impossible_secondaries;
   std::uint64_t count = stats::least_replicates;
   while (count < impossible_secondaries) {
-    const double n = static_cast<double>(count);
-    const double t = -stats::student_t_quantile({stats::Tail::lower, std::log(share.beta)}, n - 1);
-    if (2 * t * image.noise / n <= room) break;
+    if (excluded_square(image, share.beta, static_cast<double>(count)) <= room) break;
     count += count / 8 + 1;
   }
   return std::min(count, impossible_secondaries);

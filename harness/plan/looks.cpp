@@ -21,6 +21,8 @@ constexpr double most_planned_primaries = 1e12;
 constexpr std::uint64_t dearest_looks = 4;
 // A test may draw so many times its first look, although it needs less, while a gate is red.
 constexpr std::uint64_t waiting_looks = 4;
+// The only look may be put off to so many times its size.
+constexpr std::uint64_t most_postponed = 64;
 // Fewest secondaries that have a spread.
 constexpr std::uint64_t fewest_tested = 2;
 
@@ -152,6 +154,21 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
     return stats::schedule_looks(sizes_up_to(last, first, growth.factor, count), law, errors);
   }
   return one_look(std::min(std::max(first, *alone), most), place.share);
+}
+
+std::vector<std::uint64_t> postponed_looks(const Question& question, const Plan& plan) {
+  const bool chosen = question.test->secondaries || question.test->detect || has_rows(question);
+  if (chosen || plan.looks.count() > 1 ||
+      plan.method.is.over_looks != stats::LookLaw::independent_increments) {
+    return {};
+  }
+  const std::uint64_t most = most_available(question, plan);
+  std::vector<std::uint64_t> sizes;
+  for (std::uint64_t times = 2; times <= most_postponed; times *= 2) {
+    const std::uint64_t size = times * plan.looks.sizes.front();
+    if (size <= most) sizes.push_back(size);
+  }
+  return sizes;
 }
 
 stats::LookSchedule look_for_its_picture(const Question& question, const FamilyPlace& place,

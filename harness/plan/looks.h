@@ -17,6 +17,10 @@ stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share)
 
 /// The look of a test that is invalid beforehand. It decides nothing; it shows the estimators'
 /// data.
+/// Plan::postponed, each twice the size before and at most 64 times the look. A claim without
+/// `detect` has one look, whose size nobody chose. Empty if it has more looks, or somebody chose.
+std::vector<std::uint64_t> postponed_looks(const Question& question, const Plan& plan);
+
 stats::LookSchedule look_for_its_picture(const Question& question, const FamilyPlace& place,
                                          const Plan& plan);
 

@@ -24,9 +24,11 @@ struct Plan {
   Method method;
   std::vector<std::uint64_t> primaries = {};  ///< One a subject.
   stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
-  std::vector<Regions> regions = {};          ///< One a channel.
-  std::vector<Gate> gates = {};               ///< Gates of the pilot.
-  std::string hint = "";     ///< Reason that the pilot's images give for a fail, or "".
+  /// Larger sizes that the only look is put off to while a gate is red that more observations mend.
+  std::vector<std::uint64_t> postponed = {};
+  std::vector<Regions> regions = {};  ///< One a channel.
+  std::vector<Gate> gates = {};       ///< Gates of the pilot.
+  std::string hint = "";              ///< Reason that the pilot's images give for a fail, or "".
   std::string caution = "";  ///< Possible slip of the user, shown unless the claim is refuted.
   /// True if red gates on the test's own data void a look. A forced method only shows them.
   bool gates_invalidate = true;

@@ -157,7 +157,11 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     const std::uint64_t least = choose_method(question, place, pilots, most, plan);
     plan.looks = plan_looks(question, place, pilots, plan, least);
     if (plan.invalid.empty()) plan.invalid = question.theta->too_few(question, plan);
-    if (!plan.invalid.empty()) plan.looks = look_for_its_picture(question, place, plan);
+    if (plan.invalid.empty()) {
+      plan.postponed = postponed_looks(question, plan);
+    } else {
+      plan.looks = look_for_its_picture(question, place, plan);
+    }
     plan.hint += question.theta->hint(question);
     plan.caution = caution_of(question, pilots);
   } catch (const std::domain_error& error) {

@@ -291,6 +291,12 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
 
 namespace {
 
+/// True if the last look is void and will be taken again at a larger size.
+bool is_put_off(const TestOutcome& outcome) {
+  return !outcome.plan.postponed.empty() && outcome.plan.gates_invalidate &&
+         need_more(outcome.gates) && !red_gates(outcome.gates).empty();
+}
+
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   if (is_settled_beforehand(outcome)) return;
@@ -299,7 +305,8 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   const bool last =
       outcome.look == work.last_look || outcome.look + 1 == outcome.plan.looks.count();
   const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;
-  if (may_go_on && !last && !settled && outcome.plan.invalid.empty()) {
+  const bool goes_on = last ? is_put_off(outcome) : !settled;
+  if (may_go_on && goes_on && outcome.plan.invalid.empty()) {
     outcome.decided = false;
     return;
   }

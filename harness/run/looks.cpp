@@ -55,12 +55,28 @@ Clocks read_clocks(const std::vector<TestWork*>& tests) {
   return clocks;
 }
 
+/// The size of the next look; of the last, what it may be put off to.
+std::uint64_t next_size(const TestOutcome& outcome) {
+  const Plan& plan = outcome.plan;
+  if (outcome.look + 1 < plan.looks.count()) return plan.looks.sizes[outcome.look + 1];
+  return plan.postponed.empty() ? outcome.secondaries() : plan.postponed.front();
+}
+
+void go_on(TestOutcome& outcome) {
+  Plan& plan = outcome.plan;
+  if (outcome.look + 1 < plan.looks.count()) {
+    ++outcome.look;
+    return;
+  }
+  plan.looks.sizes.back() = plan.postponed.front();
+  plan.postponed.erase(plan.postponed.begin());
+  outcome.history.clear();
+}
+
 /// True if a budget in seconds is spent, or the next look would spend it.
 bool is_spent(const TestWork& work, const Clocks& clocks) {
-  const std::vector<std::uint64_t>& sizes = work.outcome.plan.looks.sizes;
-  const std::size_t next = std::min(work.outcome.look + 1, sizes.size() - 1);
-  const double growth =
-      static_cast<double>(sizes[next]) / static_cast<double>(work.outcome.secondaries());
+  const double growth = static_cast<double>(next_size(work.outcome)) /
+                        static_cast<double>(work.outcome.secondaries());
   const auto clock = clocks.find(work.suite_budget);
   if (clock != clocks.end() && growth * clock->second > *work.suite_budget->seconds) return true;
   const std::optional<Budget>& budget = work.outcome.question.test->budget;
@@ -79,7 +95,7 @@ bool take_next(TestWork& work, const Clocks& clocks) {
   const bool ended_early = outcome.look + 1 < outcome.plan.looks.count() &&
                            outcome.verdict == reports::Verdict::inconclusive;
   if (spent && ended_early) outcome.message += "; its budget in seconds ended here";
-  if (!outcome.decided) ++outcome.look;
+  if (!outcome.decided) go_on(outcome);
   return !outcome.decided;
 }
 

@@ -171,6 +171,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
   if (side.estimator->original && side.purpose.empty()) pool->keep_observations(1);
   keep_for(plan.method, side, *pool);
   for (const std::uint64_t size : plan.looks.sizes) pool->mark(side.secondaries(size));
+  for (const std::uint64_t size : plan.postponed) pool->mark(side.secondaries(size));
   return pool;
 }
 
